@@ -1,0 +1,43 @@
+/// The pulse of a turn: what P0 (15)-(16) makes of the force along the tool.
+#pragma once
+
+#include <cstddef>
+
+#include "hammer_loads/hammer/hull_wrench.h"
+
+namespace hammer_loads {
+
+/// Fz(t) = H sin(mu (t - t1)) for t1 < t < T after the blow that began the turn, 0 before t1.
+/// Deviates: P0 (15) prints sin(mu t); (16) needs the shift (model.md 7).
+struct Pulse {
+  double period{};               ///< T [s]
+  double amplitude{};            ///< H, peak of Fz [N]
+  double peak_time{};            ///< of H [s] after the turn's start
+  double frequency{};            ///< mu = 2 H/S [rad/s]
+  double start{};                ///< t1 = T - pi/mu [s]
+  double impulse{};              ///< S, from Fz's last rise through zero to the blow [N s]
+  double turn_impulse_x{};       ///< [N s]
+  double turn_impulse_z{};       ///< [N s]
+  double half_sine_rms_error{};  ///< rms over the turn of (Fz - half sine)/H [-]
+};
+
+/// One instant of a turn. Impulses are exact, so that sparse points lose none of them.
+struct TurnPoint {
+  double time{};       ///< after the turn's start [s]
+  double force_z{};    ///< [N]
+  double impulse_x{};  ///< of the wrench since the turn's start, by the momentum difference [N s]
+  double impulse_z{};  ///< likewise [N s]
+};
+
+/// Pulse from the points of one whole turn, in order, first at time 0 and last at the blow; count >= 3 and some
+/// Fz > 0. Peak and zero between points by parabola and cubic.
+Pulse pulseOfTurn(const TurnPoint* points, std::size_t count) noexcept;
+
+/// Pulse of a turn at constant crank speed (as P0 assumes), peak and zero found to rounding. speed > 0 [rad/s].
+struct ConstantSpeedPulse {
+  Pulse pulse;
+  double peak_angle{};  ///< crank angle of H [rad], in (0, 2 pi)
+};
+ConstantSpeedPulse pulseAtConstantSpeed(const Mechanism& mechanism, Level level, double speed, Gravity gravity);
+
+}  // namespace hammer_loads

@@ -1,0 +1,38 @@
+/// Where the crank stands, without losing the digits that matter at the blow.
+#pragma once
+
+#include <cmath>
+
+namespace hammer_loads {
+
+/// Which side of the blow (crank angle 0 mod 2 pi) a position belongs to. The linkage has a change point there:
+/// its transfer functions jump, so the blow itself has two states.
+enum class Side { kAfterBlow, kBeforeBlow };
+
+/// Crank angle as its offset from the nearest blow: exact however close to the blow, for any winding.
+///
+/// With phi the crank angle counter-clockwise from A->D (model.md 1): offset = phi - 2 pi n [rad].
+/// After the blow offset is normally in [0, pi], before it in [-pi, 0]. An offset of the other sign is the smooth
+/// continuation of that side's branch past the blow (needed to find the blow's instant by root search).
+struct CrankAngle {
+  double offset{};                ///< [rad]
+  Side side{Side::kAfterBlow};
+
+  /// From an angle of any winding [rad]; the exact blow (0, 2 pi as double, ...) counts as after it.
+  static CrankAngle fromAngle(double phi) noexcept { return fromOffset(wrapToPi(phi)); }
+
+  /// From the offset to the nearest blow [rad], in [-pi, pi]; zero counts as after the blow.
+  static CrankAngle fromOffset(double offset) noexcept {
+    return {offset, offset < 0.0 ? Side::kBeforeBlow : Side::kAfterBlow};
+  }
+
+  /// phi - 2 pi n in [-pi, pi] [rad], with 2 pi in two parts: error below 1e-16 (1 + |n|) instead of 2.4e-16 |n|.
+  static double wrapToPi(double phi) noexcept {
+    constexpr double kTwoPiHigh = 6.283185307179586232e+00;
+    constexpr double kTwoPiLow = 2.449293598294706414e-16;
+    const double turns = std::nearbyint(phi / kTwoPiHigh);
+    return std::fma(-turns, kTwoPiLow, std::fma(-turns, kTwoPiHigh, phi));
+  }
+};
+
+}  // namespace hammer_loads

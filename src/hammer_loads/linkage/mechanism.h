@@ -1,0 +1,50 @@
+/// A hammer's striking mechanism as its drawing and its weighing give it: lengths, masses, inertias.
+#pragma once
+
+
+#include "hammer_loads/linkage/crank_rocker.h"
+
+namespace hammer_loads {
+
+/// The hammer file (contract): keys of the same names with the unit appended.
+struct HammerParameters {
+  LinkLengths lengths;                    ///< [m]
+  double rocker_com_distance{};           ///< ls = DS [m], > 0
+  double rocker_com_angle{};              ///< a = angle C-D-S [rad]
+  double rocker_mass{};                   ///< m3 [kg], > 0
+  double rocker_inertia_about_pivot{};    ///< I about D [kg m2], >= m3 ls^2
+  double striking_distance{};             ///< lK = DK, K on line DS [m], > 0
+  double striking_friction{};             ///< f between rocker and tool [-], >= 0
+  double crank_mass{};                    ///< [kg], >= 0
+  double crank_com_along{};               ///< from A towards B [m]
+  double crank_com_across{};              ///< along turned by +90 deg in (xi, eta) [m]
+  double crank_inertia_about_com{};       ///< [kg m2], >= 0
+  double rod_mass{};                      ///< [kg], >= 0
+  double rod_com_along{};                 ///< from B towards C [m]
+  double rod_com_across{};                ///< along turned by +90 deg in (xi, eta) [m]
+  double rod_inertia_about_com{};         ///< [kg m2], >= 0
+  double drive_inertia{};                 ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
+};
+
+/// A hammer that can exist. Built once, then only read.
+class Mechanism {
+ public:
+  /// Reports every violated rule at once; keys as in the hammer file.
+  static Checked<Mechanism> make(const HammerParameters& parameters);
+
+  const CrankRocker& linkage() const noexcept { return linkage_; }
+  /// As given, with the rod's length corrected to the change-point condition.
+  const HammerParameters& parameters() const noexcept { return parameters_; }
+  /// m3 ls, the rocker's first moment about D [kg m].
+  double rockerFirstMoment() const noexcept { return rocker_first_moment_; }
+  double cosComAngle() const noexcept { return cos_com_angle_; }  ///< cos a
+  double sinComAngle() const noexcept { return sin_com_angle_; }  ///< sin a
+
+ private:
+  explicit Mechanism(const CrankRocker& linkage) : linkage_(linkage) {}
+  CrankRocker linkage_;
+  HammerParameters parameters_;
+  double rocker_first_moment_{}, cos_com_angle_{}, sin_com_angle_{};
+};
+
+}  // namespace hammer_loads
