@@ -139,7 +139,7 @@ void passBlow(const ShaftModel& model, ShaftState& state, ShaftMatrix& total) no
   const double before = acceleration(model(state.position.angle), state);
   state.position.angle.side = state.position.angle.side == Side::kBeforeBlow ? Side::kAfterBlow : Side::kBeforeBlow;
   const double after = acceleration(model(state.position.angle), state);
-  constexpr double kSlow = 1e-3;  // [rad/s]: below it a blow has neither energy nor a defined instant
+  constexpr double kSlow = 1.0;  // [rad/s]: a crank that creeps over the blow has no defined instant of passing it
   if (std::abs(state.speed) > kSlow) total.row(1) += ((after - before) / state.speed) * total.row(0);
 }
 
@@ -160,6 +160,7 @@ ShaftMatrix advance(const ShaftModel& model, double dt, ShaftState& state) noexc
     left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
     if (piece.at_blow) passBlow(model, state, total);
   }
+  total.col(3).head<3>() *= state.drive_inertia;
   return total;
 }
 

@@ -15,7 +15,7 @@ class ShaftModel {
   void setGravity(Gravity gravity) noexcept { gravity_ = gravity; }
   Gravity gravity() const noexcept { return gravity_; }
   ShaftLoad operator()(CrankAngle angle) const noexcept {
-    return shaftLoadRocker(*mechanism_, motion(mechanism_->linkage(), angle), gravity_);
+    return shaftLoad(*mechanism_, level_, angle, gravity_);
   }
 
  private:
@@ -35,7 +35,8 @@ struct ShaftState {
 /// w' = (tau + weight - J'/2 w^2)/(Jc + J) [rad/s2] (model.md 6).
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;
 
-/// Order of the shaft's variables in matrices: angle, speed, torque, drive inertia.
+/// Order of the shaft's variables in matrices: angle, speed, torque, logarithm of the drive inertia (which keeps it
+/// positive and makes its uncertainty relative).
 using ShaftMatrix = Eigen::Matrix4d;
 
 /// Advances the state by dt [s] (negative: back in time) with constant torque and inertia, through the blow if it lies

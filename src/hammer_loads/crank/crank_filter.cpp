@@ -1,86 +1,162 @@
 #include "hammer_loads/crank/crank_filter.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hammer_loads {
+namespace {
+
+enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia };
+
+constexpr double kWiden = 25.0;          // innovation^2 over its variance from which on the model does not explain it
+constexpr double kDoubtfulAngle = 0.3;   // [rad] predicted deviation from which on the prediction is worth nothing
+constexpr double kJump = 0.5;            // [rad] innovation that no working machine makes between two samples
+constexpr double kNoiseStep = 2e-3;      // [s] step over which the process noise is spread
+constexpr double kMaxInertiaChange = 0.3;   // of the logarithm by one sample: beyond it the linearisation is worth nothing
+constexpr double kSpeedNoiseGain = 0.005;   // per sample: the noise of measured speeds is learned within some 200
+constexpr double kLeastSpeedNoise = 0.3;    // of the first guess
+
+double square(double x) noexcept { return x * x; }
+
+}  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
-    : model_(model), settings_(settings) {
-  state_.drive_inertia = drive_inertia;
+    : model_(model), settings_(settings), encoder_(settings.angle_resolution),
+      speed_variance_(square(settings.speed_noise)) {
+  now_.drive_inertia = drive_inertia;
   covariance_.setZero();
-  covariance_(3, 3) = std::pow(settings.initial_inertia_deviation * drive_inertia, 2);
+  covariance_(kInertia, kInertia) = square(settings.initial_inertia_deviation);
 }
 
-void CrankFilter::start(const CrankSample& s) noexcept {
-  const double q = settings_.angle_resolution;
-  state_.position = {0, CrankAngle::fromAngle(s.angle + 0.5 * q)};
-  state_.speed = s.speed.value_or(0.0);
-  state_.torque = 0;
-  double pj = covariance_(3, 3);
+void CrankFilter::start(const CrankSample& sample) noexcept {
+  now_.position = {0, CrankAngle::fromAngle(encoder_.angle(sample.angle))};
+  now_.speed = 0.0;
+  now_.torque = 0.0;
+  anchor(0.0, sample);
+}
+
+/// Takes angle and speed from the sample alone; the torque is in doubt, the inertia stays as identified.
+void CrankFilter::anchor(double angle_innovation, const CrankSample& sample) noexcept {
+  const double inertia_variance = covariance_(kInertia, kInertia);  // NaN-proof by min: never above the first guess
+  now_.position.turn(angle_innovation);
+  now_.speed = sample.speed.value_or(now_.speed);
+  has_speed_ = sample.speed.has_value();
+  outlier_seen_ = false;
   covariance_.setZero();
-  covariance_(0, 0) = q * q / 12;
-  covariance_(1, 1) = std::pow(s.speed ? settings_.speed_noise : 20.0, 2);
-  covariance_(2, 2) = std::pow(settings_.initial_torque_deviation, 2);
-  covariance_(3, 3) = pj;
+  covariance_(kAngle, kAngle) = encoder_.variance() + square(settings_.angle_noise);
+  covariance_(kSpeed, kSpeed) = has_speed_ ? speed_variance_ : square(settings_.max_speed);
+  covariance_(kTorque, kTorque) = square(settings_.initial_torque_deviation);
+  covariance_(kInertia, kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
 }
 
 void CrankFilter::predict(double dt) noexcept {
-  // halves
-  const double total = state_.drive_inertia + model_(state_.position.angle).inertia;
-  const ShaftMatrix f = advance(model_, dt, state_);
-  const double qt = settings_.torque_walk * settings_.torque_walk, qw = settings_.speed_walk * settings_.speed_walk;
-  covariance_ = f * covariance_ * f.transpose();
-  const double b = 1.0 / total;
-  covariance_(1, 1) += qw * dt + qt * b * b * dt * dt * dt / 3;
-  covariance_(0, 0) += qw * dt * dt * dt / 3;
-  covariance_(0, 1) += qw * dt * dt / 2;
-  covariance_(1, 0) += qw * dt * dt / 2;
-  covariance_(1, 2) += qt * b * dt * dt / 2;
-  covariance_(2, 1) += qt * b * dt * dt / 2;
-  covariance_(2, 2) += qt * dt;
-  covariance_(3, 3) += settings_.inertia_walk * settings_.inertia_walk * dt;
+  const double b = 1.0 / (now_.drive_inertia + model_(now_.position.angle).inertia);
+  const ShaftMatrix f = advance(model_, dt, now_);
+  const double torque = square(settings_.torque_walk) * dt, speed = square(settings_.speed_walk) * dt;
+  covariance_ = (f * covariance_ * f.transpose()).eval();
+  covariance_(kAngle, kAngle) += speed * dt * dt / 3.0;
+  covariance_(kSpeed, kSpeed) += speed + torque * square(b * dt) / 3.0;
+  covariance_(kTorque, kTorque) += torque;
+  covariance_(kInertia, kInertia) += square(settings_.inertia_walk) * dt;
+  const double angle_speed = 0.5 * speed * dt, speed_torque = 0.5 * torque * b * dt;
+  covariance_(kAngle, kSpeed) += angle_speed;
+  covariance_(kSpeed, kAngle) += angle_speed;
+  covariance_(kSpeed, kTorque) += speed_torque;
+  covariance_(kTorque, kSpeed) += speed_torque;
 }
 
-void CrankFilter::correct(int row, double innovation, double variance) noexcept {
-  const double s = covariance_(row, row) + variance;
-  const Eigen::Vector4d gain = covariance_.col(row) / s;
-  const Eigen::Vector4d d = gain * innovation;
-  (row == 0 ? nis_angle : nis_speed) = innovation * innovation / s;
-  state_.position.turn(d[0]);
-  state_.speed += d[1];
-  state_.torque += d[2];
-  state_.drive_inertia += d[3];
-  if (state_.drive_inertia < 1e-6) state_.drive_inertia = 1e-6;
-  const Eigen::RowVector4d r = covariance_.row(row);
-  covariance_ -= gain * r;
-  covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
+/// Scalar measurement of one state variable.
+void CrankFilter::correct(Eigen::Index row, double innovation, double variance) noexcept {
+  const double total = covariance_(row, row) + variance;
+  const Eigen::Vector4d column = covariance_.col(row);
+  const Eigen::Vector4d change = column * (innovation / total);
+  now_.position.turn(change[kAngle]);
+  now_.speed += change[kSpeed];
+  now_.torque += change[kTorque];
+  now_.drive_inertia *= std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
+  covariance_.noalias() -= column * (column.transpose() / total);
 }
 
-void CrankFilter::update(double dt, const CrankSample& s) noexcept {
-  before_state = state_;
-  const double q = settings_.angle_resolution;
-  int n = std::max(1, int(std::ceil(dt / 0.002)));
-  for (int i = 0; i < n; ++i) predict(dt / n);
-  prior_state = state_;
-  last_dt = dt;
-  const CrankAngle z = CrankAngle::fromAngle(s.angle + 0.5 * q);
-  const double innovation = CrankAngle::wrapToPi(z.offset - state_.position.angle.offset);
-  const double w0 = state_.speed;
-  const double c0 = covariance_(0, 0);
-  (void)w0; (void)c0;
-  if (dt > 0.05) {  // anew
-    state_.position.turn(innovation);
-    covariance_.row(0).setZero(); covariance_.col(0).setZero();
-    covariance_.row(1).setZero(); covariance_.col(1).setZero();
-    covariance_.row(2).setZero(); covariance_.col(2).setZero();
-    covariance_(0, 0) = q * q / 12;
-    covariance_(1, 1) = std::pow(settings_.speed_noise, 2);
-    covariance_(2, 2) = std::pow(settings_.initial_torque_deviation, 2);
-    if (s.speed) state_.speed = *s.speed;
-    return;
+void CrankFilter::correctAngle(double innovation) noexcept {
+  const double variance = encoder_.variance() + square(settings_.angle_noise);
+  const double squared = innovation * innovation;
+  if (squared > kWiden * (covariance_(kAngle, kAngle) + variance)) {
+    const double factor = (0.25 * squared - variance) / covariance_(kAngle, kAngle);
+    covariance_.topLeftCorner<3, 3>() *= factor;
+    covariance_.topRightCorner<3, 1>().setZero();
+    covariance_.bottomLeftCorner<1, 3>().setZero();
   }
-  correct(0, innovation, q * q / 12 + settings_.angle_noise * settings_.angle_noise);
-  if (s.speed) correct(1, *s.speed - state_.speed, settings_.speed_noise * settings_.speed_noise);
+  correct(kAngle, innovation, variance);
+}
+
+void CrankFilter::correctSpeed(double measured) noexcept {
+  const double innovation = measured - now_.speed;
+  const double explained = covariance_(kSpeed, kSpeed);
+  const double squared = std::min(innovation * innovation, kWiden * (explained + speed_variance_));
+  if (innovation * innovation <= squared) correct(kSpeed, innovation, speed_variance_);
+  const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
+  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - explained - speed_variance_), floor);
+}
+
+bool CrankFilter::isSound() const noexcept {
+  return std::isfinite(now_.position.angle.offset) && std::isfinite(now_.speed) && std::isfinite(now_.torque) &&
+         std::isfinite(now_.drive_inertia) && covariance_.allFinite() && (covariance_.diagonal().array() >= 0.0).all();
+}
+
+Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
+  const ShaftState last = now_;
+  const ShaftMatrix last_covariance = covariance_;
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
+  for (int i = 0; i < steps; ++i) predict(dt / steps);
+
+  const double measured = CrankAngle::fromAngle(encoder_.angle(sample.angle)).offset;
+  const double innovation = CrankAngle::wrapToPi(measured - now_.position.angle.offset);
+  const double deviation = std::sqrt(covariance_(kAngle, kAngle));
+  if (!(deviation < kDoubtfulAngle) && has_speed_) {
+    anchor(innovation, sample);
+    return Tracking::kRestarted;
+  }
+  if (has_speed_ && std::abs(innovation) > kJump) {
+    if (!outlier_seen_) {
+      now_ = last;
+      covariance_ = last_covariance;
+      outlier_seen_ = true;
+      return Tracking::kOutlier;
+    }
+    anchor(innovation, sample);
+    return Tracking::kRestarted;
+  }
+  before_ = last;
+  predicted_ = now_;
+  step_ = dt;
+  outlier_seen_ = false;
+  correctAngle(innovation);
+  if (sample.speed) correctSpeed(*sample.speed);
+  if (!isSound()) {
+    now_ = last;
+    anchor(CrankAngle::wrapToPi(measured - now_.position.angle.offset), sample);
+    return Tracking::kRestarted;
+  }
+  const bool continued = has_speed_;
+  has_speed_ = true;
+  return continued ? Tracking::kContinued : Tracking::kRestarted;
+}
+
+CrankEstimate CrankFilter::estimateOf(const ShaftState& state) const noexcept {
+  return {state.position, state.speed, acceleration(model_(state.position.angle), state)};
+}
+
+/// Prediction from the earlier sample, led linearly to what the later sample made of it.
+CrankEstimate CrankFilter::between(double dt) const noexcept {
+  if (dt >= step_) return estimate();
+  ShaftState state = before_;
+  advance(model_, dt, state);
+  const double part = dt / step_;
+  state.position.turn(part * difference(now_.position, predicted_.position));
+  state.speed += part * (now_.speed - predicted_.speed);
+  state.torque += part * (now_.torque - predicted_.torque);
+  state.drive_inertia += part * (now_.drive_inertia - predicted_.drive_inertia);
+  return estimateOf(state);
 }
 
 }  // namespace hammer_loads

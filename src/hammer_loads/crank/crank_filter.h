@@ -1,58 +1,71 @@
 /// Kalman filter on the mechanism: from noisy crank samples to angle, speed, acceleration, torque and drive inertia.
 #pragma once
 
-#include <optional>
-
 #include "hammer_loads/crank/crank_dynamics.h"
+#include "hammer_loads/crank/crank_estimate.h"
+#include "hammer_loads/crank/encoder.h"
 
 namespace hammer_loads {
 
-/// One crank sample as measured.
-struct CrankSample {
-  double angle{};               ///< any winding [rad]
-  std::optional<double> speed;  ///< [rad/s]
-};
-
 /// What the filter assumes about sensors and supply.
 struct CrankFilterSettings {
-  double angle_resolution{};        ///< encoder count [rad], > 0: a sample means [angle, angle + resolution)
-  double angle_noise{};             ///< standard deviation beside the count [rad], >= 0
-  double speed_noise{};             ///< standard deviation of a measured speed [rad/s], > 0
-  double torque_walk{};             ///< random walk of the net torque [N m/sqrt(s)]
-  double speed_walk{};              ///< random walk of the speed [rad/s/sqrt(s)]
-  double inertia_walk{};            ///< random walk of the drive inertia [kg m2/sqrt(s)]
-  double initial_torque_deviation{};    ///< [N m]
-  double initial_inertia_deviation{};   ///< relative to the configured drive inertia [-]
+  double angle_resolution{};           ///< encoder count [rad], > 0
+  double angle_noise{};                ///< standard deviation beside the count [rad], >= 0
+  double speed_noise{};                ///< standard deviation of a measured speed, first guess [rad/s], > 0
+  double torque_walk{};                ///< random walk of the net torque [N m/sqrt(s)], > 0
+  double speed_walk{};                 ///< random walk of the speed [rad/s/sqrt(s)], > 0
+  double inertia_walk{};               ///< relative random walk of the drive inertia [1/sqrt(s)], >= 0
+  double initial_torque_deviation{};   ///< [N m], > 0
+  double initial_inertia_deviation{};  ///< relative [-], >= 0
+  double max_speed{};                  ///< bound of an unknown speed [rad/s], > 0
 };
 
-/// State: angle, speed, net torque, drive inertia (model.md 6). Predicts with advance(), corrects with each sample.
-class CrankFilter {
+/// Extended Kalman filter, state: angle, speed, net torque, drive inertia (model.md 6). The step between samples and its
+/// linearisation are advance()'s, through the blow as well. The inertia identifies itself within a few turns, the
+/// noise of measured speeds within some hundred samples.
+///
+/// An angle that the model cannot explain within 5 standard deviations widens the filter's uncertainty until it can: a
+/// supply that behaves otherwise than a slow random walk is followed with less smoothing, not refused, and teaches
+/// nothing of the inertia. A speed that far off is not used.
+class CrankFilter final : public CrankEstimator {
  public:
+  /// drive_inertia: first guess [kg m2], > 0.
   CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings);
 
-  /// Forgets everything but the identified inertia and starts at a sample.
-  void start(const CrankSample& sample) noexcept;
-  /// dt > 0 [s] since the last sample or start.
-  void update(double dt, const CrankSample& sample) noexcept;
   void setGravity(Gravity gravity) noexcept { model_.setGravity(gravity); }
 
-  const ShaftState& state() const noexcept { return state_; }
+  void start(const CrankSample& sample) noexcept override;
+  Tracking update(double dt, const CrankSample& sample) noexcept override;
+  CrankEstimate estimate() const noexcept override { return estimateOf(now_); }
+  CrankEstimate between(double dt) const noexcept override;
+  bool hasSpeed() const noexcept override { return has_speed_; }
+
+  const ShaftState& state() const noexcept { return now_; }
+  /// Covariance of (angle, speed, torque, logarithm of drive inertia) at the last accepted sample.
   const ShaftMatrix& covariance() const noexcept { return covariance_; }
   const ShaftModel& model() const noexcept { return model_; }
-  double acceleration() const noexcept {
-    return hammer_loads::acceleration(model_(state_.position.angle), state_);
-  }
+  const Encoder& encoder() const noexcept { return encoder_; }
 
-  ShaftState prior_state, before_state; double last_dt{};
-  double nis_angle{}, nis_speed{};
- public:
+ private:
+  CrankEstimate estimateOf(const ShaftState& state) const noexcept;
   void predict(double dt) noexcept;
-  void correct(int row, double innovation, double variance) noexcept;
+  void correctAngle(double innovation) noexcept;
+  void correctSpeed(double measured) noexcept;
+  void correct(Eigen::Index row, double innovation, double variance) noexcept;
+  bool isSound() const noexcept;
+  void anchor(double angle_innovation, const CrankSample& sample) noexcept;
 
   ShaftModel model_;
   CrankFilterSettings settings_;
-  ShaftState state_;
+  Encoder encoder_;
+  ShaftState now_;          ///< at the last sample, corrected by it
+  ShaftState predicted_;    ///< at the last sample, before its correction
+  ShaftState before_;       ///< at the last but one sample
+  double step_{};           ///< between these two [s]
   ShaftMatrix covariance_;
+  double speed_variance_;   ///< of measured speeds, as identified [rad2/s2]
+  bool has_speed_{};
+  bool outlier_seen_{};
 };
 
 }  // namespace hammer_loads

@@ -1,0 +1,50 @@
+/// What is known of the crank at an instant, and the common face of the ways to know it.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "hammer_loads/crank/crank_state.h"
+
+namespace hammer_loads {
+
+/// One crank sample as measured.
+struct CrankSample {
+  double angle{};               ///< any winding [rad]
+  std::optional<double> speed;  ///< [rad/s]
+};
+
+/// Best estimate at an instant.
+struct CrankEstimate {
+  CrankPosition position;
+  double speed{};          ///< [rad/s]
+  double acceleration{};   ///< [rad/s2]
+};
+
+/// How a sample was taken.
+enum class Tracking {
+  kContinued,  ///< agrees with what came before
+  kRestarted,  ///< began anew at this sample: what lies between is not known
+  kOutlier,    ///< contradicts what came before and was ignored; a second one like it restarts
+};
+
+/// From samples to estimates. Time is given as the step since the last accepted sample.
+class CrankEstimator {
+ public:
+  virtual ~CrankEstimator() = default;
+
+  /// Begins at a sample; what was learned about the machine is kept.
+  virtual void start(const CrankSample& sample) noexcept = 0;
+  /// Takes the next sample, dt > 0 [s] after the last accepted one. No allocation.
+  virtual Tracking update(double dt, const CrankSample& sample) noexcept = 0;
+  /// Estimate at the last accepted sample.
+  virtual CrankEstimate estimate() const noexcept = 0;
+  /// Estimate dt [s] after the last but one accepted sample, 0 <= dt <= step between the last two. Continuous in dt
+  /// but for the acceleration at a blow; equals estimate() at the end. Only after kContinued.
+  virtual CrankEstimate between(double dt) const noexcept = 0;
+  /// False while the speed is still unknown (first sample without one).
+  virtual bool hasSpeed() const noexcept = 0;
+};
+
+}  // namespace hammer_loads
