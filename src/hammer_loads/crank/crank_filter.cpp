@@ -14,6 +14,7 @@ constexpr double kJump = 0.5;            // [rad] innovation that no working mac
 constexpr double kNoiseStep = 2e-3;      // [s] step over which the process noise is spread
 constexpr double kMaxInertiaChange = 0.3;   // of the logarithm by one sample: beyond it the linearisation is worth nothing
 constexpr double kSpeedNoiseGain = 0.005;   // per sample: the noise of measured speeds is learned within some 200
+constexpr double kNearCounts = 4.0;         // counts from the blow within which the encoder decides its side
 constexpr double kLeastSpeedNoise = 0.3;    // of the first guess
 
 double square(double x) noexcept { return x * x; }
@@ -49,20 +50,25 @@ void CrankFilter::anchor(double angle_innovation, const CrankSample& sample) noe
   covariance_(kInertia, kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
 }
 
-void CrankFilter::predict(double dt) noexcept {
-  const double b = 1.0 / (now_.drive_inertia + model_(now_.position.angle).inertia);
-  const ShaftMatrix f = advance(model_, dt, now_);
-  const double torque = square(settings_.torque_walk) * dt, speed = square(settings_.speed_walk) * dt;
-  covariance_ = (f * covariance_ * f.transpose()).eval();
-  covariance_(kAngle, kAngle) += speed * dt * dt / 3.0;
-  covariance_(kSpeed, kSpeed) += speed + torque * square(b * dt) / 3.0;
-  covariance_(kTorque, kTorque) += torque;
-  covariance_(kInertia, kInertia) += square(settings_.inertia_walk) * dt;
-  const double angle_speed = 0.5 * speed * dt, speed_torque = 0.5 * torque * b * dt;
-  covariance_(kAngle, kSpeed) += angle_speed;
-  covariance_(kSpeed, kAngle) += angle_speed;
-  covariance_(kSpeed, kTorque) += speed_torque;
-  covariance_(kTorque, kSpeed) += speed_torque;
+/// Advances state and covariance by dt with the process noise of the meantime.
+void CrankFilter::predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept {
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
+  const double h = dt / steps;
+  const double torque = square(settings_.torque_walk) * h, speed = square(settings_.speed_walk) * h;
+  for (int i = 0; i < steps; ++i) {
+    const double b = 1.0 / (state.drive_inertia + model_(state.position.angle).inertia);
+    const ShaftMatrix f = advance(model_, h, state);
+    covariance = (f * covariance * f.transpose()).eval();
+    covariance(kAngle, kAngle) += speed * h * h / 3.0;
+    covariance(kSpeed, kSpeed) += speed + torque * square(b * h) / 3.0;
+    covariance(kTorque, kTorque) += torque;
+    covariance(kInertia, kInertia) += square(settings_.inertia_walk) * h;
+    const double angle_speed = 0.5 * speed * h, speed_torque = 0.5 * torque * b * h;
+    covariance(kAngle, kSpeed) += angle_speed;
+    covariance(kSpeed, kAngle) += angle_speed;
+    covariance(kSpeed, kTorque) += speed_torque;
+    covariance(kTorque, kSpeed) += speed_torque;
+  }
 }
 
 /// Scalar measurement of one state variable.
@@ -98,6 +104,18 @@ void CrankFilter::correctSpeed(double measured) noexcept {
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - explained - speed_variance_), floor);
 }
 
+/// A count says for certain on which side of the blow the crank is, if the count's edge is there: the estimate may not
+/// pass the blow before the encoder does. Matters because the wrench jumps at the blow.
+void CrankFilter::respectCount(double reading) noexcept {
+  if (encoder_.isFiner() || settings_.angle_noise > 0.0) return;
+  const double count = settings_.angle_resolution, edge_tolerance = 1e-6 * count;
+  const double low = CrankAngle::wrapToPi(reading), high = low + count;
+  CrankAngle& angle = now_.position.angle;
+  if (std::abs(low) > kNearCounts * count || std::abs(angle.offset) > kNearCounts * count) return;
+  if (low > -edge_tolerance && angle.side == Side::kBeforeBlow) angle = {0.0, Side::kAfterBlow};
+  if (high < edge_tolerance && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
+}
+
 bool CrankFilter::isSound() const noexcept {
   return std::isfinite(now_.position.angle.offset) && std::isfinite(now_.speed) && std::isfinite(now_.torque) &&
          std::isfinite(now_.drive_inertia) && covariance_.allFinite() && (covariance_.diagonal().array() >= 0.0).all();
@@ -106,8 +124,7 @@ bool CrankFilter::isSound() const noexcept {
 Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   const ShaftState last = now_;
   const ShaftMatrix last_covariance = covariance_;
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
-  for (int i = 0; i < steps; ++i) predict(dt / steps);
+  predict(dt, now_, covariance_);
 
   const double measured = CrankAngle::fromAngle(encoder_.angle(sample.angle)).offset;
   const double innovation = CrankAngle::wrapToPi(measured - now_.position.angle.offset);
@@ -127,11 +144,12 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
     return Tracking::kRestarted;
   }
   before_ = last;
-  predicted_ = now_;
+  before_covariance_ = last_covariance;
   step_ = dt;
   outlier_seen_ = false;
   correctAngle(innovation);
   if (sample.speed) correctSpeed(*sample.speed);
+  respectCount(sample.angle);
   if (!isSound()) {
     now_ = last;
     anchor(CrankAngle::wrapToPi(measured - now_.position.angle.offset), sample);
@@ -146,17 +164,43 @@ CrankEstimate CrankFilter::estimateOf(const ShaftState& state) const noexcept {
   return {state.position, state.speed, acceleration(model_(state.position.angle), state)};
 }
 
-/// Prediction from the earlier sample, led linearly to what the later sample made of it.
+/// The way forward from the earlier sample and the way back from the later one, each trusted near its own end.
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
-  ShaftState state = before_;
+  ShaftState state = before_, back = now_;
   advance(model_, dt, state);
+  advance(model_, dt - step_, back);
   const double part = dt / step_;
-  state.position.turn(part * difference(now_.position, predicted_.position));
-  state.speed += part * (now_.speed - predicted_.speed);
-  state.torque += part * (now_.torque - predicted_.torque);
-  state.drive_inertia += part * (now_.drive_inertia - predicted_.drive_inertia);
+  state.position.turn(part * difference(back.position, state.position));
+  state.speed += part * (back.speed - state.speed);
+  state.torque += part * (back.torque - state.torque);
+  state.drive_inertia += part * (back.drive_inertia - state.drive_inertia);
   return estimateOf(state);
+}
+
+Eigen::Matrix3d CrankFilter::covarianceBetween(double dt) const noexcept {
+  if (dt >= step_) return motionCovariance();
+  ShaftState state = before_;
+  ShaftMatrix covariance = before_covariance_;
+  predict(dt, state, covariance);
+  return motionCovarianceOf(state, covariance);
+}
+
+/// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.
+Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept {
+  const ShaftLoad load = model_(state.position.angle);
+  const double inv = 1.0 / (state.drive_inertia + load.inertia);
+  constexpr double kStep = 1e-5;  // [rad]: error 1e-10 by curvature, 1e-11 by rounding, both relative
+  CrankAngle low = state.position.angle, high = low;
+  low.offset -= kStep;
+  high.offset += kStep;
+  Eigen::Matrix<double, 3, 4> jacobian = Eigen::Matrix<double, 3, 4>::Zero();
+  jacobian(0, kAngle) = jacobian(1, kSpeed) = 1.0;
+  jacobian(2, kAngle) = (acceleration(model_(high), state) - acceleration(model_(low), state)) / (2.0 * kStep);
+  jacobian(2, kSpeed) = -2.0 * load.half_inertia_slope * state.speed * inv;
+  jacobian(2, kTorque) = inv;
+  jacobian(2, kInertia) = -acceleration(load, state) * state.drive_inertia * inv;
+  return jacobian * covariance * jacobian.transpose();
 }
 
 }  // namespace hammer_loads

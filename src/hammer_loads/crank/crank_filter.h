@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hammer_loads/crank/crank_dynamics.h"
-#include "hammer_loads/crank/crank_estimate.h"
+#include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
 
 namespace hammer_loads {
@@ -27,17 +27,19 @@ struct CrankFilterSettings {
 /// An angle that the model cannot explain within 5 standard deviations widens the filter's uncertainty until it can: a
 /// supply that behaves otherwise than a slow random walk is followed with less smoothing, not refused, and teaches
 /// nothing of the inertia. A speed that far off is not used.
-class CrankFilter final : public CrankEstimator {
+class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
   CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings);
 
-  void setGravity(Gravity gravity) noexcept { model_.setGravity(gravity); }
+  void setGravity(Gravity gravity) noexcept override { model_.setGravity(gravity); }
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
   CrankEstimate estimate() const noexcept override { return estimateOf(now_); }
   CrankEstimate between(double dt) const noexcept override;
+  Eigen::Matrix3d covarianceBetween(double dt) const noexcept override;
+  Eigen::Matrix3d motionCovariance() const noexcept override { return motionCovarianceOf(now_, covariance_); }
   bool hasSpeed() const noexcept override { return has_speed_; }
 
   const ShaftState& state() const noexcept { return now_; }
@@ -48,10 +50,12 @@ class CrankFilter final : public CrankEstimator {
 
  private:
   CrankEstimate estimateOf(const ShaftState& state) const noexcept;
-  void predict(double dt) noexcept;
+  Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept;
+  void predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept;
   void correctAngle(double innovation) noexcept;
   void correctSpeed(double measured) noexcept;
   void correct(Eigen::Index row, double innovation, double variance) noexcept;
+  void respectCount(double reading) noexcept;
   bool isSound() const noexcept;
   void anchor(double angle_innovation, const CrankSample& sample) noexcept;
 
@@ -59,10 +63,10 @@ class CrankFilter final : public CrankEstimator {
   CrankFilterSettings settings_;
   Encoder encoder_;
   ShaftState now_;          ///< at the last sample, corrected by it
-  ShaftState predicted_;    ///< at the last sample, before its correction
   ShaftState before_;       ///< at the last but one sample
   double step_{};           ///< between these two [s]
-  ShaftMatrix covariance_;
+  ShaftMatrix covariance_;         ///< at the last sample
+  ShaftMatrix before_covariance_;  ///< at the last but one sample
   double speed_variance_;   ///< of measured speeds, as identified [rad2/s2]
   bool has_speed_{};
   bool outlier_seen_{};

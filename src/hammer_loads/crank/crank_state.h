@@ -1,6 +1,7 @@
 /// The crank's position over many turns.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "hammer_loads/linkage/crank_angle.h"
@@ -26,11 +27,12 @@ struct CrankPosition {
     }
   }
 
-  /// Turns by delta [rad], |delta| < 2 pi, passing the blow when the offset changes sign.
+  /// Turns by delta [rad], passing the blow when the offset changes sign.
   void turn(double delta) noexcept {
+    if (delta == 0.0) return;  // at the blow itself the side must not change
     const double offset = angle.offset + delta;
-    angle = CrankAngle::fromOffset(offset);
-    renormalise();
+    blow += static_cast<std::int64_t>(std::nearbyint(offset / kTwoPi));
+    angle = CrankAngle::fromAngle(offset);
   }
 
   /// Number of blows passed since phi = 0: blow b is passed once the position is at or after it.

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "hammer_loads/crank/crank_state.h"
+#include "hammer_loads/linkage/level.h"
 
 namespace hammer_loads {
 
@@ -30,9 +31,9 @@ enum class Tracking {
 };
 
 /// From samples to estimates. Time is given as the step since the last accepted sample.
-class CrankEstimator {
+class CrankTracker {
  public:
-  virtual ~CrankEstimator() = default;
+  virtual ~CrankTracker() = default;
 
   /// Begins at a sample; what was learned about the machine is kept.
   virtual void start(const CrankSample& sample) noexcept = 0;
@@ -45,6 +46,13 @@ class CrankEstimator {
   virtual CrankEstimate between(double dt) const noexcept = 0;
   /// False while the speed is still unknown (first sample without one).
   virtual bool hasSpeed() const noexcept = 0;
+  /// Covariance of (angle [rad], speed [rad/s], acceleration [rad/s2]) at the same instant as between(dt); zero where
+  /// none is estimated.
+  virtual Eigen::Matrix3d covarianceBetween(double /*dt*/) const noexcept { return Eigen::Matrix3d::Zero(); }
+  /// The same at the last accepted sample.
+  virtual Eigen::Matrix3d motionCovariance() const noexcept { return Eigen::Matrix3d::Zero(); }
+  /// Gravity changes with the hull's pitch; only who predicts the motion needs it.
+  virtual void setGravity(Gravity /*gravity*/) noexcept {}
 };
 
 }  // namespace hammer_loads

@@ -1,0 +1,35 @@
+/// Crank motion without a model of the mechanism, for comparison: what the papers assume and what a difference gives.
+#pragma once
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/encoder.h"
+
+namespace hammer_loads {
+
+/// Angle and speed as measured (speed by difference of angles where none is measured); acceleration zero, as P0
+/// assumes, or by difference of speeds. Neglects noise, encoder counts and the mechanism; on a working machine the peak
+/// force is some 30 % wrong with zero and 20 % with the difference (model.md 6).
+class PlainTracker final : public CrankTracker {
+ public:
+  enum class Acceleration { kZero, kDifference };
+
+  PlainTracker(Acceleration acceleration, double angle_resolution)
+      : acceleration_(acceleration), encoder_(angle_resolution) {}
+
+  void start(const CrankSample& sample) noexcept override;
+  Tracking update(double dt, const CrankSample& sample) noexcept override;
+  CrankEstimate estimate() const noexcept override { return now_; }
+  /// Angle by the cubic through both angles and speeds, speed and acceleration linear.
+  CrankEstimate between(double dt) const noexcept override;
+  bool hasSpeed() const noexcept override { return has_speed_; }
+
+ private:
+  Acceleration acceleration_;
+  Encoder encoder_;
+  CrankEstimate now_;
+  CrankEstimate before_;
+  double step_{};
+  bool has_speed_{};
+};
+
+}  // namespace hammer_loads

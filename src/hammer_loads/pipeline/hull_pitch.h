@@ -1,0 +1,36 @@
+/// Hull pitch from boom joint states.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hammer_loads {
+
+/// Sum of the pitch joints' latest angles (contract: boom + arm + hammer, all about +y). Messages may hold any subset of
+/// joints in any order.
+class HullPitch {
+ public:
+  /// initial: pitch until every joint has been heard [rad].
+  HullPitch(std::vector<std::string> joints, double initial);
+
+  /// Takes what it knows from a message; returns whether any pitch joint was in it. Angles that are not finite are
+  /// refused and counted.
+  bool update(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+
+  double pitch() const noexcept { return pitch_; }            ///< [rad]
+  bool known() const noexcept { return unheard_ == 0; }       ///< every pitch joint has been heard
+  std::uint64_t refused() const noexcept { return refused_; } ///< joint angles refused
+  /// Joints not heard yet, for diagnostics.
+  std::vector<std::string> unheard() const;
+
+ private:
+  std::vector<std::string> joints_;
+  std::vector<double> angles_;
+  std::vector<bool> heard_;
+  std::size_t unheard_;
+  double pitch_;
+  std::uint64_t refused_{};
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,58 @@
+/// Which input is taken, and what becomes of the rest.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "hammer_loads/crank/crank_tracker.h"
+
+namespace hammer_loads {
+
+/// Header stamp [ns]. The only time the pipeline knows.
+using StampNs = std::int64_t;
+
+constexpr double kSecondsPerNs = 1e-9;
+
+/// Why an input gave no wrench.
+enum class Refusal : std::size_t {
+  kMissingJoint,  ///< the crank joint is not in the message
+  kShortArray,    ///< fewer positions (or, where there are any, speeds) than names
+  kNotFinite,     ///< NaN or infinity
+  kImplausible,   ///< faster than any crank, or contradicting the samples before it
+  kOutOfOrder,    ///< older than the last accepted sample
+  kDuplicate,     ///< as old as the last accepted sample
+  kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)
+  kCount
+};
+
+constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRefusalNames{
+    "missing joint", "short array", "not finite", "implausible", "out of order", "duplicate", "unsettled"};
+
+/// Checks that need no model: a sample's own values and its place in time.
+class Intake {
+ public:
+  /// Speed bound [rad/s] and age of the last sample from which on a new one starts anew [s].
+  Intake(double max_speed, double stale_after) : max_speed_(max_speed), stale_after_(stale_after) {}
+
+  enum class Order { kFirst, kNext };
+  struct Verdict {
+    std::optional<Refusal> refusal;
+    Order order{Order::kFirst};
+    double step{};  ///< since the last accepted sample [s]
+  };
+
+  /// Time running back is believed from the second sample on: the first may just be late.
+  Verdict judge(StampNs stamp, const CrankSample& sample) noexcept;
+  void accept(StampNs stamp) noexcept { last_ = stamp; }
+  void reset() noexcept { last_.reset(), rewound_.reset(); }
+  const std::optional<StampNs>& last() const noexcept { return last_; }
+
+ private:
+  double max_speed_, stale_after_;
+  std::optional<StampNs> last_;     ///< of the last accepted sample
+  std::optional<StampNs> rewound_;  ///< of the last sample, if it was refused as out of order
+};
+
+}  // namespace hammer_loads

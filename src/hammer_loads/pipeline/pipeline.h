@@ -1,0 +1,104 @@
+/// Samples in, loads out: the one place where the parts meet. No ROS, no clock: time is the header stamps'.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/hammer/blow.h"
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/parameters/pipeline_settings.h"
+#include "hammer_loads/pipeline/hull_pitch.h"
+#include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/pipeline/turn_recorder.h"
+
+namespace hammer_loads {
+
+/// A blow and, if the turn before it was seen whole, its pulse.
+struct TurnEnd {
+  StampNs stamp{};              ///< instant of the blow, found between samples [ns]
+  std::uint64_t turn{};         ///< blows since the start, 1 for the first
+  Blow blow;
+  double mean_press_force{};    ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
+  std::optional<Pulse> pulse;
+};
+
+/// What one crank sample gave.
+struct Loads {
+  StampNs stamp{};
+  std::optional<Refusal> refusal;  ///< if set, crank and wrench are void (the turn ends are not)
+  CrankEstimate crank;
+  HullWrench wrench;
+  std::size_t turn_ends{};         ///< how many of `ends` are meant; more than one only for sparse samples
+  std::array<TurnEnd, 4> ends;
+};
+
+/// Counts since the start.
+struct IntakeCounts {
+  std::uint64_t accepted{};
+  std::array<std::uint64_t, static_cast<std::size_t>(Refusal::kCount)> refused{};
+  std::uint64_t restarts{};  ///< drop-outs, jumps and time running back
+};
+
+class Pipeline {
+ public:
+  Pipeline(const Mechanism& mechanism, const PipelineSettings& settings);
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  /// Whether turns (blows and pulses) shall be followed; what nobody wants is not computed. Default: yes.
+  void wantTurns(bool wanted) noexcept { want_turns_ = wanted; }
+
+  /// Boom joint angles [rad], any subset in any order.
+  bool boomJoints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+  /// A crank message in JointState's terms; finds the crank joint in it.
+  const Loads& crankJoint(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
+                          const std::vector<double>& velocities) noexcept;
+  /// A crank sample. The result is valid until the next call. No allocation.
+  const Loads& crankSample(StampNs stamp, const CrankSample& sample) noexcept;
+  /// Time jumped: begin anew with the next sample; what was learned about the machine is kept.
+  void reset() noexcept { intake_.reset(), turn_.abandon(), last_blow_.reset(); }
+
+  const IntakeCounts& counts() const noexcept { return counts_; }
+  const HullPitch& hullPitch() const noexcept { return hull_pitch_; }
+  const CrankTracker& tracker() const noexcept { return *tracker_; }
+  const std::optional<StampNs>& lastAccepted() const noexcept { return intake_.last(); }
+  const Mechanism& mechanism() const noexcept { return mechanism_; }
+  const PipelineSettings& settings() const noexcept { return settings_; }
+
+ private:
+  const Loads& refuse(Refusal refusal) noexcept;
+  void restart() noexcept;
+  bool settled() noexcept;
+  double wrenchDeviation() const noexcept;
+  void followTurn(double step) noexcept;
+  void recordTo(double from, double to) noexcept;
+  double timeOfBlow(std::int64_t blow, double step) const noexcept;
+  void endTurn(double time_of_blow) noexcept;
+  TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
+
+  Mechanism mechanism_;
+  PipelineSettings settings_;
+  std::unique_ptr<CrankTracker> tracker_;
+  HullPitch hull_pitch_;
+  Gravity gravity_;
+  Intake intake_;
+  IntakeCounts counts_;
+  Loads loads_;
+  TurnRecorder turn_;
+  StampNs epoch_{};                        ///< first sample since the last beginning
+  CrankPosition last_position_;            ///< at the last accepted sample
+  std::int64_t furthest_blow_{};           ///< highest blow index passed forward since the restart
+  std::optional<StampNs> last_blow_;       ///< if the turn since then was seen whole
+  std::uint64_t turns_{};
+  double peak_force_{};                    ///< of the last whole turn [N], 0 before the first
+  bool want_turns_{true};
+  bool unsettled_{};
+};
+
+}  // namespace hammer_loads
