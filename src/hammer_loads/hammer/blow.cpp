@@ -4,9 +4,9 @@
 
 namespace hammer_loads {
 
-Blow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {
+RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {
   const HammerParameters& p = mechanism.parameters();
-  Blow blow;
+  RockerBlow blow;
   blow.rocker_speed_before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * crank_speed;
   blow.rocker_speed_after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * crank_speed;
   blow.restitution = -blow.rocker_speed_after / blow.rocker_speed_before;

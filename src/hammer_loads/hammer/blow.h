@@ -6,7 +6,7 @@
 namespace hammer_loads {
 
 /// Angular speeds are psi' (positive about hull +y); axes of hammer_hull.
-struct Blow {
+struct RockerBlow {
   double rocker_speed_before{};  ///< [rad/s], < 0 for a real blow
   double rocker_speed_after{};   ///< [rad/s]
   double restitution{};          ///< R = -after/before [-]
@@ -19,6 +19,6 @@ struct Blow {
 
 /// Blow of a crank that passes the blow forward at a speed w > 0 [rad/s]: the crank keeps its speed, the rocker's jumps
 /// from u(2 pi -) w to u(0 +) w (model.md 1). P1 (4)-(9) with frictionless face and massless rod.
-Blow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept;
+RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept;
 
 }  // namespace hammer_loads

@@ -2,18 +2,13 @@
 #pragma once
 
 #include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/motion.h"
 
 namespace hammer_loads {
-
-/// What a wrench needs to know of the crank.
-struct CrankMotion {
-  CrankAngle angle;
-  double speed{};         ///< w [rad/s], positive counter-clockwise in (xi, eta)
-  double acceleration{};  ///< e [rad/s2]
-};
 
 /// BY the moving links ON the hull, moment about D, axes of hammer_hull (model.md 1).
 struct HullWrench {
@@ -59,14 +54,60 @@ inline LinkMomentum linkMomentumRocker(const Mechanism& mechanism, const Motion&
   return {size * m.sin_psi, size * m.cos_psi, mechanism.parameters().rocker_inertia_about_pivot * psi_rate};
 }
 
-/// Hull wrench at a level of the model. No allocation, no failure for finite input.
-inline HullWrench hullWrench(const Mechanism& mechanism, Level /*level*/, const CrankMotion& crank,
-                             Gravity gravity) noexcept {
-  return hullWrenchRocker(mechanism, motion(mechanism.linkage(), crank.angle), crank, gravity);
+/// Level linkage: mass, centre of mass, inertia and weight of crank, rod and rocker. Neglects: friction, motion of the
+/// hull, inertia of motor and flywheel. Momentum theorem in the frame turned by a, where hull x = -re and z = im:
+/// sum m a = C1 e^(i phi)(i e - w^2) + C2 e^(i beta)(...) + C3 e^(i psi)(...); see LinkMoments.
+inline HullWrench hullWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& crank,
+                                    Gravity gravity) noexcept {
+  const LinkMoments& k = mechanism.moments();
+  const LinkAccelerations q = linkAccelerations(l, crank.speed, crank.acceleration);
+  const Planar crank_rod = k.crank * q.crank_turned + k.rod * q.rod_turned;
+  const Planar all = crank_rod + k.rocker * q.rocker_turned;
+  const Planar first_moment = k.fixed + k.crank * l.phi + k.rod * l.beta + k.rocker * l.psi;
+  const Planar coupling = linkCoupling(mechanism, l);
+  // d/dt of the angular momentum about D; A stands at -l0 in the mechanism frame.
+  const double momentum_rate =
+      k.crank_inertia * crank.acceleration + k.rod_inertia * q.rod.im +
+      mechanism.parameters().rocker_inertia_about_pivot * q.rocker.im -
+      mechanism.parameters().lengths.pivot_distance *
+          (mechanism.cosComAngle() * crank_rod.im + mechanism.sinComAngle() * crank_rod.re) +
+      coupling.re * (q.rod.im + crank.acceleration) + coupling.im * (q.rod.re - q.crank.re);
+  return {k.mass * gravity.x + all.re, k.mass * gravity.z - all.im,
+          first_moment.re * gravity.z + first_moment.im * gravity.x - momentum_rate};
 }
 
-inline LinkMomentum linkMomentum(const Mechanism& mechanism, Level /*level*/, CrankAngle angle, double speed) noexcept {
-  return linkMomentumRocker(mechanism, motion(mechanism.linkage(), angle), speed);
+inline LinkMomentum linkMomentumLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed) noexcept {
+  const LinkMoments& k = mechanism.moments();
+  const double rod_rate = l.v * speed, rocker_rate = l.rocker.u * speed;
+  const Planar crank_rod = speed * (k.crank * l.phi) + rod_rate * (k.rod * l.beta);
+  const Planar all = turned(crank_rod + (rocker_rate * k.rocker) * l.psi);
+  const double coupling = linkCoupling(mechanism, l).re;
+  const double about_d = k.crank_inertia * speed + k.rod_inertia * rod_rate +
+                         mechanism.parameters().rocker_inertia_about_pivot * rocker_rate +
+                         coupling * (speed + rod_rate) -
+                         mechanism.parameters().lengths.pivot_distance *
+                             (mechanism.cosComAngle() * crank_rod.re - mechanism.sinComAngle() * crank_rod.im);
+  return {-all.re, all.im, about_d};
+}
+
+/// Mass of the links that a level gives weight and momentum [kg].
+inline double movingMass(const Mechanism& mechanism, Level level) noexcept {
+  return level == Level::kLinkage ? mechanism.moments().mass : mechanism.parameters().rocker_mass;
+}
+
+/// Hull wrench at a level of the model (level pulse: as rocker; the half-sine itself is in hull_model.h).
+/// No allocation, no failure for finite input.
+inline HullWrench hullWrench(const Mechanism& mechanism, Level level, const CrankMotion& crank,
+                             Gravity gravity) noexcept {
+  const Motion m = motion(mechanism.linkage(), crank.angle);
+  if (level != Level::kLinkage) return hullWrenchRocker(mechanism, m, crank, gravity);
+  return hullWrenchLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), crank, gravity);
+}
+
+inline LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle, double speed) noexcept {
+  const Motion m = motion(mechanism.linkage(), angle);
+  if (level != Level::kLinkage) return linkMomentumRocker(mechanism, m, speed);
+  return linkMomentumLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), speed);
 }
 
 }  // namespace hammer_loads

@@ -9,12 +9,15 @@ namespace hammer_loads {
 
 /// Fz(t) = H sin(mu (t - t1)) for t1 < t < T after the blow that began the turn, 0 before t1.
 /// Deviates: P0 (15) prints sin(mu t); (16) needs the shift (model.md 7).
-struct Pulse {
+///
+/// A rise through zero counts when the lobe after it reaches a tenth of H, so that ripple near zero starts no lobe.
+/// Without such a rise the lobe begins with the turn. Without a positive lobe (H or S not positive) mu = 0, t1 = T.
+struct HalfSinePulse {
   double period{};               ///< T [s]
   double amplitude{};            ///< H, peak of Fz [N]
   double peak_time{};            ///< of H [s] after the turn's start
   double frequency{};            ///< mu = 2 H/S [rad/s]
-  double start{};                ///< t1 = T - pi/mu [s]
+  double start{};                ///< t1 = T - pi/mu [s]; negative when the lobe is longer than half a period of mu
   double impulse{};              ///< S, from Fz's last rise through zero to the blow [N s]
   double turn_impulse_x{};       ///< [N s]
   double turn_impulse_z{};       ///< [N s]
@@ -29,13 +32,16 @@ struct TurnPoint {
   double impulse_z{};  ///< likewise [N s]
 };
 
-/// Pulse from the points of one whole turn, in order, first at time 0 and last at the blow; count >= 3 and some
-/// Fz > 0. Peak and zero between points by parabola and cubic.
-Pulse pulseOfTurn(const TurnPoint* points, std::size_t count) noexcept;
+/// Pulse from the points of one whole turn, in order of strictly growing time, first at time 0 and last at the blow;
+/// the distances between them may differ. Fewer than 3 points give an empty pulse (all zero).
+/// Peak between points by parabola (error of H some (mu dt)^3/16 of H), zero by a line, impulse there by the cubic that
+/// has the force as its slope; the impulse is stationary at the zero, so S keeps the exactness of the points' impulses.
+HalfSinePulse pulseOfTurn(const TurnPoint* points, std::size_t count) noexcept;
 
-/// Pulse of a turn at constant crank speed (as P0 assumes), peak and zero found to rounding. speed > 0 [rad/s].
+/// Pulse of a turn at constant crank speed (as P0 assumes), peak and zero found to rounding (1e-12 of the angle for a
+/// regular machine); the impulses are momentum differences. speed > 0 [rad/s].
 struct ConstantSpeedPulse {
-  Pulse pulse;
+  HalfSinePulse pulse;
   double peak_angle{};  ///< crank angle of H [rad], in (0, 2 pi)
 };
 ConstantSpeedPulse pulseAtConstantSpeed(const Mechanism& mechanism, Level level, double speed, Gravity gravity);

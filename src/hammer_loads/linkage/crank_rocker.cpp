@@ -60,7 +60,7 @@ Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
   const double lambda3_less_1 = (l3 - l1) / l1;
   k.sigma = (l0 + l3) / l1;
   k.g = k.sigma * lambda3_less_1 / k.lambda0;
-  k.r0_squared = k.lambda2 * k.lambda3 / k.lambda0;
+  k.two_over_r0_squared = 2.0 * k.lambda0 / (k.lambda2 * k.lambda3);
   k.k_cos = k.lambda3 * lambda0_less_1;
   k.k_sin = k.lambda0 * lambda3_less_1;
   k.w0 = k.lambda2 * lambda0_less_1 / k.lambda0;

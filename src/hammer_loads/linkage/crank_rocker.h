@@ -30,7 +30,7 @@ class CrankRocker {
     double lambda0{}, lambda2{}, lambda3{};
     double sigma{};          ///< lambda0 + lambda3 = 1 + lambda2
     double g{};              ///< r^2 - cos^2(phi/2) = lambda2 lambda3/lambda0 - 1 (P0 (5))
-    double r0_squared{};     ///< lambda2 lambda3/lambda0
+    double two_over_r0_squared{};  ///< 2 lambda0/(lambda2 lambda3); r0 = sqrt(lambda2 lambda3/lambda0)
     double k_cos{}, k_sin{}; ///< lambda3 (lambda0 - 1), lambda0 (lambda3 - 1)
     double w0{};             ///< lambda2 (lambda0 - 1)/lambda0
   };

@@ -1,8 +1,8 @@
 /// A hammer's striking mechanism as its drawing and its weighing give it: lengths, masses, inertias.
 #pragma once
 
-
 #include "hammer_loads/linkage/crank_rocker.h"
+#include "hammer_loads/linkage/planar.h"
 
 namespace hammer_loads {
 
@@ -26,6 +26,20 @@ struct HammerParameters {
   double drive_inertia{};                 ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
 };
 
+/// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism
+/// frame turned by the centre-of-mass angle a, so that hull x = -re and hull z = im (model.md 1).
+struct LinkMoments {
+  double mass{};             ///< m1 + m2 + m3 [kg]
+  Planar crank;              ///< C1 = m1 rho1 + m2 l1, seen from the hull, times e^(i phi) [kg m]
+  Planar rod;                ///< C2 = m2 rho2, seen from the hull, times e^(i beta) [kg m]
+  double rocker{};           ///< C3 = m3 ls, seen from the hull, times e^(i psi) [kg m]
+  Planar fixed;              ///< first moment about D of crank and rod placed at A, seen from the hull [kg m]
+  Planar crank_alone;        ///< m1 rho1, seen from the hull [kg m]
+  Planar coupling;           ///< l1 m2 rho2, in the mechanism frame [kg m2]
+  double crank_inertia{};    ///< J1: crank about A with the rod's mass at B [kg m2]
+  double rod_inertia{};      ///< J2: rod about B [kg m2]
+};
+
 /// A hammer that can exist. Built once, then only read.
 class Mechanism {
  public:
@@ -39,11 +53,13 @@ class Mechanism {
   double rockerFirstMoment() const noexcept { return rocker_first_moment_; }
   double cosComAngle() const noexcept { return cos_com_angle_; }  ///< cos a
   double sinComAngle() const noexcept { return sin_com_angle_; }  ///< sin a
+  const LinkMoments& moments() const noexcept { return moments_; }
 
  private:
   explicit Mechanism(const CrankRocker& linkage) : linkage_(linkage) {}
   CrankRocker linkage_;
   HammerParameters parameters_;
+  LinkMoments moments_;
   double rocker_first_moment_{}, cos_com_angle_{}, sin_com_angle_{};
 };
 

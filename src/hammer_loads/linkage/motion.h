@@ -21,6 +21,8 @@ struct Motion {
   double sin_half{};    ///< s = sin(phi/2) >= 0 within the turn
   double cos_half{};    ///< c = cos(phi/2), negative before the blow
   double r{};           ///< sqrt(lambda2 lambda3/lambda0 - s^2)
+  double sin_psi_over_s{};  ///< sin psi/s, finite at the blow
+  double du_over_s{};       ///< u'/s, finite at the blow
 };
 
 /// Shared by the scalar and the batch call, so that one formula serves both; s >= 0 and c >= 0 are the sine and cosine
@@ -33,7 +35,8 @@ inline Motion motionFromHalfAngle(const CrankRocker::Ratios& k, double s, double
   const double z = r + c;
   const double w = (k.lambda2 - 1.0) * ss - k.w0;
   // tan(psi/2) = p/q
-  const double p = before ? s * d : k.sigma * s;
+  const double p_over_s = before ? d : k.sigma;
+  const double p = p_over_s * s;
   const double q = before ? k.k_cos * cc + k.k_sin * ss : d;
   const double n = p * p + q * q;
   const double inv_n = 1.0 / n;
@@ -41,7 +44,8 @@ inline Motion motionFromHalfAngle(const CrankRocker::Ratios& k, double s, double
   const double half_n_over_r = 0.5 * n * inv_r;
 
   Motion m;
-  m.sin_psi = 2.0 * p * q * inv_n;
+  m.sin_psi_over_s = 2.0 * p_over_s * q * inv_n;
+  m.sin_psi = s * m.sin_psi_over_s;
   m.cos_psi = (q - p) * (q + p) * inv_n;
   const double a_ratio = before ? w * d * d / a : k.sigma * a;
   m.u = k.lambda3 * a_ratio * inv_r * inv_n;
@@ -50,7 +54,8 @@ inline Motion motionFromHalfAngle(const CrankRocker::Ratios& k, double s, double
   const double scale = before ? z * d * d / (k.sigma * k.sigma) : k.sigma * g_over_z;
   const double bracket = before ? lambda03 * a_ratio * z - k.lambda2 * k.sigma * g_over_z * half_n_over_r
                                 : lambda03 * a * g_over_z - k.lambda2 * z * half_n_over_r;
-  m.du = k.lambda3 * s * scale * bracket * (inv_r * inv_r) * (inv_n * inv_n);
+  m.du_over_s = k.lambda3 * scale * bracket * (inv_r * inv_r) * (inv_n * inv_n);
+  m.du = s * m.du_over_s;
   m.sin_half = s;
   m.cos_half = before ? -c : c;
   m.r = r;

@@ -3,6 +3,7 @@
 
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/motion.h"
 
@@ -25,6 +26,39 @@ inline ShaftLoad shaftLoadRocker(const Mechanism& mechanism, const Motion& m, Gr
   const double moment = mechanism.rockerFirstMoment() * (m.sin_psi * gravity.x + m.cos_psi * gravity.z);
   const double moment_slope = mechanism.rockerFirstMoment() * (m.cos_psi * gravity.x - m.sin_psi * gravity.z);
   return {ux * m.u, ux * m.du, m.u * moment, m.du * moment + m.u * m.u * moment_slope};
+}
+
+/// Level linkage: kinetic energy w^2/2 (J1 + J2 v^2 + I u^2 + 2 v Re K), K = linkCoupling, and the weight of all links.
+/// Neglects friction and the motion of the hull.
+inline ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const LinkMotion& l, Gravity gravity) noexcept {
+  const LinkMoments& k = mechanism.moments();
+  const double rocker_inertia = mechanism.parameters().rocker_inertia_about_pivot;
+  const Motion& m = l.rocker;
+  const Planar coupling = linkCoupling(mechanism, l);
+  ShaftLoad load;
+  load.inertia = k.crank_inertia + rocker_inertia * m.u * m.u + l.v * (k.rod_inertia * l.v + 2.0 * coupling.re);
+  load.half_inertia_slope = rocker_inertia * m.u * m.du + l.dv * (k.rod_inertia * l.v + coupling.re) -
+                            l.v * (l.v - 1.0) * coupling.im;
+  // Weight's power per crank speed: with the first moment's rate i M', M' = C1 e^(i phi) + v C2 e^(i beta) + ...
+  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, rocker = k.rocker * l.psi;
+  const Planar rate = crank + l.v * rod + m.u * rocker;
+  const Planar slope = turned(crank + l.v * l.v * rod + m.u * m.u * rocker) + l.dv * rod + m.du * rocker;
+  load.weight_torque = gravity.z * rate.re + gravity.x * rate.im;
+  load.weight_torque_slope = gravity.z * slope.re + gravity.x * slope.im;
+  return load;
+}
+
+/// Shaft load at a level of the model (level pulse: as rocker). No allocation, no failure for finite input.
+inline ShaftLoad shaftLoad(const Mechanism& mechanism, Level level, CrankAngle angle, Gravity gravity) noexcept {
+  const Motion m = motion(mechanism.linkage(), angle);
+  if (level != Level::kLinkage) return shaftLoadRocker(mechanism, m, gravity);
+  return shaftLoadLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), gravity);
+}
+
+/// Drive torque on the crank, about hull +y, that gives it an acceleration [N m]; inertia of motor and flywheel not
+/// included. From the balance of power, so it stays finite and exact where pin forces do not.
+inline double driveTorque(const ShaftLoad& load, double speed, double acceleration) noexcept {
+  return load.inertia * acceleration + load.half_inertia_slope * speed * speed - load.weight_torque;
 }
 
 }  // namespace hammer_loads

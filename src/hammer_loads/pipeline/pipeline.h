@@ -23,9 +23,9 @@ namespace hammer_loads {
 struct TurnEnd {
   StampNs stamp{};              ///< instant of the blow, found between samples [ns]
   std::uint64_t turn{};         ///< blows since the start, 1 for the first
-  Blow blow;
+  RockerBlow blow;
   double mean_press_force{};    ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
-  std::optional<Pulse> pulse;
+  std::optional<HalfSinePulse> pulse;
 };
 
 /// What one crank sample gave.

@@ -36,7 +36,7 @@ void TurnRecorder::add(const TurnInstant& instant) noexcept {
                      weight_impulse_z_ - (instant.momentum.z - first_.momentum.z)});
 }
 
-std::optional<Pulse> TurnRecorder::end(const TurnInstant& before_blow) noexcept {
+std::optional<HalfSinePulse> TurnRecorder::end(const TurnInstant& before_blow) noexcept {
   if (!recording_) return std::nullopt;
   stride_ = 1;
   add(before_blow);

@@ -30,7 +30,7 @@ class TurnRecorder {
   bool recording() const noexcept { return recording_; }
   void add(const TurnInstant& instant) noexcept;
   /// Ends the turn just before a blow; no pulse if the turn was not seen whole or never pushed the hull up.
-  std::optional<Pulse> end(const TurnInstant& before_blow) noexcept;
+  std::optional<HalfSinePulse> end(const TurnInstant& before_blow) noexcept;
 
  private:
   void thin() noexcept;

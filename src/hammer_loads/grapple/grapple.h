@@ -1,0 +1,99 @@
+/// The straight-line grapple: from slider position to every pin and to the jaw edge, on one branch.
+///
+/// Neglects play, elasticity and masses: geometry only. The same slider position admits several poses; the working
+/// branch is the one through the reference pose, from the fold or dead point below it to the one above. There the pose
+/// is a function of the slider position, and nothing else is ever returned. Derivation and errata: doc/grapple.md.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "hammer_loads/grapple/folds.h"
+#include "hammer_loads/grapple/grapple_motion.h"
+#include "hammer_loads/grapple/grapple_parameters.h"
+#include "hammer_loads/grapple/lever_group.h"
+#include "hammer_loads/grapple/slider_drive.h"
+#include "hammer_loads/linkage/checked.h"
+
+namespace hammer_loads {
+
+/// Where the working branch ends.
+struct SliderLimit {
+  enum class Kind {
+    kDeadPoint,  ///< O1, H and G in line: the slider cannot move rocker 1 further
+    kFold,       ///< det J = 0: the lever group reaches no further
+    kSingular,   ///< branches cross or the pose moves by itself
+  };
+  Kind kind{};
+  double slider{};  ///< [m]; of a fold to some 1e-15
+};
+
+/// "dead point", "fold" or "crossing of branches".
+const char* nameOf(SliderLimit::Kind kind) noexcept;
+
+/// Why there is no pose for a slider position.
+enum class Refusal {
+  kNone,
+  kNotFinite,        ///< NaN or infinite
+  kOutOfReach,       ///< the drive does not close: beyond a dead point
+  kAcrossDeadPoint,  ///< the drive closes again, but only on the other side of a dead point
+  kAcrossFold,       ///< beyond the fold that ends the branch, whether or not another branch exists there
+  kOutsideStroke,    ///< a regular pose, but the jaws overlap or open too far
+  kNotFound,         ///< numerical failure; not known to happen
+};
+inline constexpr int kRefusalKinds = 7;
+
+/// One or two words for counters in diagnostics.
+const char* nameOf(Refusal refusal) noexcept;
+
+class Grapple {
+ public:
+  /// Reports every violated rule at once; keys as in the grapple file.
+  static Checked<Grapple> make(const GrappleParameters& parameters);
+
+  const GrappleParameters& parameters() const noexcept { return parameters_; }
+  const SliderLimit& lowerLimit() const noexcept { return lower_; }
+  const SliderLimit& upperLimit() const noexcept { return upper_; }
+
+  /// kNone inside the working branch; the stroke is not considered.
+  Refusal judge(double slider) const noexcept;
+  /// The same, then kOutsideStroke beyond the stroke by more than slider_margin.
+  Refusal judgeInStroke(double slider) const noexcept;
+  /// One line: name, slider position, unit, what is allowed.
+  std::string explain(Refusal refusal, double slider, const std::string& name = "slider position") const;
+
+  /// From nothing: all branches by their polynomial, the working one of them. Nothing unless judge() says kNone.
+  std::optional<GrappleMotion> at(double slider) const noexcept;
+  /// From a motion on the working branch: predictor and Newton, shorter steps where those do not settle, at() as a last
+  /// resort. The same value as at() to rounding. Nothing unless judge() says kNone.
+  std::optional<GrappleMotion> follow(const GrappleMotion& from, double slider) const noexcept;
+
+  /// Links 1 to 6 of the paper, right jaw: O1A, AB, BD, CE, OD, GH. For pictures, not for the hot path.
+  std::array<LinkDirection, 6> linkDirections(const GrappleMotion& motion) const noexcept;
+
+ private:
+  explicit Grapple(const GrappleParameters& parameters);
+
+  /// Each returns false after adding problems.
+  bool findReference(std::vector<std::string>& problems);
+  void findLimits();
+  SliderLimit limit(const Reach& reach, const std::array<BranchEnd, 2>& ends, int side) const;
+  void checkStroke(std::vector<std::string>& problems) const;
+
+  bool inside(double slider) const noexcept;
+  GrappleMotion motionOf(double slider, const DriveMotion& drive, const GroupPose& pose,
+                         const Closure& closure) const noexcept;
+  bool step(const GrappleMotion& from, double slider, GrappleMotion& to) const noexcept;
+  bool walk(const GrappleMotion& from, double slider, GrappleMotion& to) const noexcept;
+  Planar arm(const DriveMotion& drive) const noexcept { return drive.o1h * a_by_h_; }
+
+  GrappleParameters parameters_;
+  SliderDrive drive_;
+  LeverGroup group_;
+  Planar a_by_h_;            ///< O1A = O1H * a_by_h
+  GrappleMotion reference_;
+  SliderLimit lower_, upper_;
+};
+
+}  // namespace hammer_loads

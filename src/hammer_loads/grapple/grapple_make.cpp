@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/grapple/branches.h"
+#include "hammer_loads/grapple/grapple.h"
+#include "hammer_loads/linkage/format.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kReferenceTolerance = 0.05;  ///< of the reference pose's angles [rad]: tells poses apart, no more
+constexpr double kClosedTolerance = 1e-9;     ///< by which P may lie beyond the axis when closed [m]
+constexpr double kSameTheta1 = 1e-6;          ///< [rad]: tells the drive's two assemblies apart
+
+struct NumberKey {
+  const char* key;
+  const char* unit;
+  double value;
+  enum class Sign { kAny, kNotNegative, kPositive } sign;
+};
+
+void checkNumbers(const GrappleParameters& p, std::vector<std::string>& problems) {
+  using Sign = NumberKey::Sign;
+  for (const NumberKey& k : {NumberKey{"o1_x_m", "m", p.o1.re, Sign::kAny},
+                             {"o1_y_m", "m", p.o1.im, Sign::kAny},
+                             {"slider_line_x_m", "m", p.slider_x, Sign::kAny},
+                             {"o1h_length_m", "m", p.o1h, Sign::kPositive},
+                             {"o1a_length_m", "m", p.o1a, Sign::kPositive},
+                             {"ho1a_angle_rad", "rad", p.ho1a, Sign::kAny},
+                             {"gh_length_m", "m", p.gh, Sign::kPositive},
+                             {"ab_length_m", "m", p.ab, Sign::kPositive},
+                             {"ac_length_m", "m", p.ac, Sign::kPositive},
+                             {"bac_angle_rad", "rad", p.bac, Sign::kAny},
+                             {"bd_length_m", "m", p.bd, Sign::kPositive},
+                             {"bp_length_m", "m", p.bp, Sign::kPositive},
+                             {"dbp_angle_rad", "rad", p.dbp, Sign::kAny},
+                             {"ce_length_m", "m", p.ce, Sign::kPositive},
+                             {"od_length_m", "m", p.od, Sign::kPositive},
+                             {"oe_length_m", "m", p.oe, Sign::kPositive},
+                             {"doe_angle_rad", "rad", p.doe, Sign::kAny},
+                             {"slider_closed_m", "m", p.slider_closed, Sign::kAny},
+                             {"slider_open_m", "m", p.slider_open, Sign::kAny},
+                             {"slider_margin_m", "m", p.slider_margin, Sign::kNotNegative},
+                             {"reference_slider_m", "m", p.reference_slider, Sign::kAny},
+                             {"reference_ab_angle_rad", "rad", p.reference_ab, Sign::kAny},
+                             {"reference_od_angle_rad", "rad", p.reference_od, Sign::kAny}}) {
+    const bool good = std::isfinite(k.value) && (k.sign != Sign::kPositive || k.value > 0.0) &&
+                      (k.sign != Sign::kNotNegative || k.value >= 0.0);
+    if (good) continue;
+    const char* allowed = k.sign == Sign::kPositive      ? "> 0 and finite"
+                          : k.sign == Sign::kNotNegative ? ">= 0 and finite"
+                                                         : "finite";
+    problems.push_back(format("%s: %.9g %s, must be %s", k.key, k.value, k.unit, allowed));
+  }
+  if (std::abs(p.drive_sign) != 1) problems.push_back(format("drive_sign: %d, must be 1 or -1", p.drive_sign));
+}
+
+double apart(double angle, double other) { return std::abs(std::remainder(angle - other, 2.0 * kPi)); }
+
+}  // namespace
+
+const char* nameOf(SliderLimit::Kind kind) noexcept {
+  switch (kind) {
+    case SliderLimit::Kind::kDeadPoint: return "dead point";
+    case SliderLimit::Kind::kFold: return "fold";
+    case SliderLimit::Kind::kSingular: break;
+  }
+  return "crossing of branches";
+}
+
+const char* nameOf(Refusal refusal) noexcept {
+  switch (refusal) {
+    case Refusal::kNone: return "accepted";
+    case Refusal::kNotFinite: return "not finite";
+    case Refusal::kOutOfReach: return "out of reach";
+    case Refusal::kAcrossDeadPoint: return "across dead point";
+    case Refusal::kAcrossFold: return "across fold";
+    case Refusal::kOutsideStroke: return "outside stroke";
+    case Refusal::kNotFound: break;
+  }
+  return "not found";
+}
+
+Grapple::Grapple(const GrappleParameters& p)
+    : parameters_(p), drive_(p), group_(p), a_by_h_((p.o1a / p.o1h) * direction(-p.ho1a)) {}
+
+Checked<Grapple> Grapple::make(const GrappleParameters& parameters) {
+  Checked<Grapple> result;
+  checkNumbers(parameters, result.problems);
+  if (!result.problems.empty()) return result;
+  Grapple grapple(parameters);
+  if (!grapple.findReference(result.problems)) return result;
+  grapple.findLimits();
+  grapple.checkStroke(result.problems);
+  if (result.problems.empty()) result.value = grapple;
+  return result;
+}
+
+bool Grapple::findReference(std::vector<std::string>& problems) {
+  const GrappleParameters& p = parameters_;
+  const std::optional<DriveMotion> drive = drive_.at(p.reference_slider);
+  if (!drive) {
+    problems.push_back(
+        format("reference_slider_m: %.9g m, out of reach: |O1G| = %.9g m, must lie between |gh - o1h| = %.9g m and gh + "
+               "o1h = %.9g m",
+               p.reference_slider, norm(Planar{p.slider_x, p.reference_slider} - p.o1), std::abs(p.gh - p.o1h),
+               p.gh + p.o1h));
+    return false;
+  }
+  const Planar a = p.o1 + arm(*drive);
+  const Branches all = enumerateBranches(group_, a);
+  std::string found;
+  for (int i = 0; i < all.count; ++i) {
+    const Branches::Branch& branch = all.branch[static_cast<std::size_t>(i)];
+    found += format(" (%.6g, %.6g)", branch.theta2, branch.theta5);
+    if (apart(branch.theta2, p.reference_ab) > kReferenceTolerance) continue;
+    if (apart(branch.theta5, p.reference_od) > kReferenceTolerance) continue;
+    const GroupPose pose = group_.pose(a, branch.theta2, branch.theta5);
+    reference_ = motionOf(p.reference_slider, *drive, pose, group_.closure(pose));
+    return true;
+  }
+  const char* lead = all.self_motion ? "; and the links can move with the slider held" : "";
+  problems.push_back(format("reference_ab_angle_rad: (%.9g, %.9g) rad with reference_od_angle_rad, must be within %g rad of "
+                            "a pose at reference_slider_m = %.9g m:%s%s",
+                            p.reference_ab, p.reference_od, kReferenceTolerance, p.reference_slider,
+                            found.empty() ? " there is none" : found.c_str(), lead));
+  return false;
+}
+
+void Grapple::findLimits() {
+  const Rocker rocker{parameters_.o1, parameters_.o1a};
+  const CurvePoint start{drive_.theta1(reference_.slider), reference_.theta2, reference_.theta5};
+  const std::array<BranchEnd, 2> ends = {findBranchEnd(group_, rocker, start, -1, 2.0 * kPi),
+                                         findBranchEnd(group_, rocker, start, +1, 2.0 * kPi)};
+  const Reach reach = *drive_.reachAround(reference_.slider);
+  lower_ = limit(reach, ends, -1);
+  upper_ = limit(reach, ends, +1);
+}
+
+SliderLimit Grapple::limit(const Reach& reach, const std::array<BranchEnd, 2>& ends, int side) const {
+  SliderLimit nearest{SliderLimit::Kind::kDeadPoint, side < 0 ? reach.low : reach.high};
+  for (const BranchEnd& end : ends) {
+    if (end.kind == BranchEnd::Kind::kNone) continue;
+    const SliderDrive::Candidates candidates = drive_.slidersAt(end.point.theta1);
+    for (int i = 0; i < candidates.count; ++i) {
+      const double slider = candidates.slider[i];
+      const bool between = side * slider > side * reference_.slider && side * slider < side * nearest.slider;
+      if (!between || !drive_.at(slider) || std::abs(drive_.theta1(slider) - end.point.theta1) > kSameTheta1) continue;
+      nearest = {end.kind == BranchEnd::Kind::kFold ? SliderLimit::Kind::kFold : SliderLimit::Kind::kSingular, slider};
+    }
+  }
+  return nearest;
+}
+
+void Grapple::checkStroke(std::vector<std::string>& problems) const {
+  const GrappleParameters& p = parameters_;
+  const std::pair<const char*, double> named[] = {
+      {"reference_slider_m", p.reference_slider}, {"slider_closed_m", p.slider_closed}, {"slider_open_m", p.slider_open}};
+  for (const auto& [key, slider] : named) {
+    if (inside(slider)) continue;
+    problems.push_back(format("%s: %.12g m, must lie between the %s at %.13g m and the %s at %.13g m", key, slider,
+                              nameOf(lower_.kind), lower_.slider, nameOf(upper_.kind), upper_.slider));
+  }
+  if (!problems.empty()) return;
+  const std::optional<GrappleMotion> closed = at(p.slider_closed), open = at(p.slider_open);
+  if (!closed || !open) {
+    problems.push_back(format("slider_closed_m: %.12g m, no pose found there or at slider_open_m", p.slider_closed));
+    return;
+  }
+  if (closed->p.re < -kClosedTolerance) {
+    problems.push_back(format("slider_closed_m: %.12g m, must not put the jaw edge beyond the axis (x = %.6g m): the jaws "
+                              "would overlap",
+                              p.slider_closed, closed->p.re));
+  }
+  if (!(open->p.re > closed->p.re)) {
+    problems.push_back(format("slider_open_m: %.12g m, must put the jaw edge farther out (x = %.6g m) than "
+                              "slider_closed_m does (x = %.6g m)",
+                              p.slider_open, open->p.re, closed->p.re));
+  }
+}
+
+std::string Grapple::explain(Refusal refusal, double slider, const std::string& name) const {
+  const GrappleParameters& p = parameters_;
+  const std::string given = format("%s: %.12g m, %s: must ", name.c_str(), slider, nameOf(refusal));
+  switch (refusal) {
+    case Refusal::kNone: return {};
+    case Refusal::kNotFinite: return given + "be a finite number";
+    case Refusal::kOutOfReach:
+    case Refusal::kAcrossDeadPoint:
+    case Refusal::kAcrossFold:
+      return given + format("lie between the %s at %.13g m and the %s at %.13g m", nameOf(lower_.kind), lower_.slider,
+                            nameOf(upper_.kind), upper_.slider);
+    case Refusal::kOutsideStroke:
+      return given + format("lie between %.9g m and %.9g m (+- %.3g m)", std::min(p.slider_closed, p.slider_open),
+                            std::max(p.slider_closed, p.slider_open), p.slider_margin);
+    case Refusal::kNotFound: break;
+  }
+  return given + "have a pose on the working branch";
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,34 @@
+#include "hammer_loads/grapple/grapple_tracker.h"
+
+#include <cmath>
+
+namespace hammer_loads {
+
+Refusal GrappleTracker::judge(const SliderMotion& sample) const noexcept {
+  if (!std::isfinite(sample.velocity) || !std::isfinite(sample.acceleration)) return Refusal::kNotFinite;
+  return grapple_.judgeInStroke(sample.position);
+}
+
+Refusal GrappleTracker::update(const SliderMotion& sample) noexcept {
+  Refusal refusal = judge(sample);
+  if (refusal == Refusal::kNone) {
+    const std::optional<GrappleMotion> next =
+        hasMotion() ? grapple_.follow(motion_, sample.position) : grapple_.at(sample.position);
+    if (next) {
+      motion_ = *next;
+      slider_ = sample;
+    } else {
+      refusal = Refusal::kNotFound;
+    }
+  }
+  ++counts_[static_cast<std::size_t>(refusal)];
+  return refusal;
+}
+
+std::uint64_t GrappleTracker::refused() const noexcept {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 1; i < counts_.size(); ++i) sum += counts_[i];
+  return sum;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,81 @@
+/// Motion of crank, rod and rocker together, for the loads that need more than the rocker.
+#pragma once
+
+#include "hammer_loads/linkage/crank_motion.h"
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/linkage/motion.h"
+#include "hammer_loads/linkage/planar.h"
+
+namespace hammer_loads {
+
+/// Directions are e^(i angle), angles counter-clockwise in the mechanism frame; rates per radian of crank angle.
+/// mu = psi - beta is the transmission angle: sin(mu/2) = s/r0, cos(mu/2) = r/r0, mu' = c/r, with s, c, r of Motion.
+/// A quantity `_over_s` is divided by s = sin(phi/2) without the division: it stays finite and exact at the blow.
+struct LinkMotion {
+  Motion rocker;
+  Planar phi;                  ///< crank direction A->B
+  Planar beta;                 ///< rod direction B->C
+  Planar psi;                  ///< rocker direction D->C
+  Planar delta;                ///< e^(i (beta - phi))
+  double sin_delta_over_s{};
+  double sin_mu{}, cos_mu{}, sin_mu_over_s{};
+  double v{};                  ///< dbeta/dphi [-]
+  double dv{};                 ///< d2beta/dphi2 [1/rad]
+  double dv_over_s{};
+};
+
+inline LinkMotion linkMotion(const CrankRocker::Ratios& k, const Motion& m) noexcept {
+  const double s = m.sin_half, c = m.cos_half;
+  LinkMotion l;
+  l.rocker = m;
+  const double sin_phi_over_s = 2.0 * c;
+  l.phi = {1.0 - 2.0 * s * s, s * sin_phi_over_s};
+  l.psi = {m.cos_psi, m.sin_psi};
+  l.sin_mu_over_s = k.two_over_r0_squared * m.r;
+  l.sin_mu = s * l.sin_mu_over_s;
+  l.cos_mu = 1.0 - k.two_over_r0_squared * s * s;
+  l.beta = l.psi * Planar{l.cos_mu, -l.sin_mu};
+  // beta - phi = psi - (mu + phi)
+  const double sin_sum_over_s = l.sin_mu_over_s * l.phi.re + l.cos_mu * sin_phi_over_s;
+  const double cos_sum = l.cos_mu * l.phi.re - l.sin_mu * l.phi.im;
+  l.sin_delta_over_s = m.sin_psi_over_s * cos_sum - m.cos_psi * sin_sum_over_s;
+  l.delta = {m.cos_psi * cos_sum + m.sin_psi * s * sin_sum_over_s, s * l.sin_delta_over_s};
+  const double inv_r = 1.0 / m.r;
+  l.v = m.u - c * inv_r;
+  l.dv_over_s = m.du_over_s + 0.5 * k.g * inv_r * inv_r * inv_r;
+  l.dv = s * l.dv_over_s;
+  return l;
+}
+
+inline LinkMotion linkMotion(const CrankRocker& linkage, CrankAngle angle) noexcept {
+  return linkMotion(linkage.ratios(), motion(linkage, angle));
+}
+
+/// Rod angle beta [rad] in (-pi, pi].
+inline double rodAngle(const LinkMotion& l) noexcept { return std::atan2(l.beta.im, l.beta.re); }
+
+/// What turns each link's direction into its acceleration: d2/dt2 e^(i angle) = e^(i angle) (i angle'' - angle'^2).
+struct LinkAccelerations {
+  Planar crank, rod, rocker;          ///< i angle'' - angle'^2 [1/s2]
+  Planar crank_turned, rod_turned, rocker_turned;  ///< the same times the link's direction [1/s2]
+};
+
+inline LinkAccelerations linkAccelerations(const LinkMotion& l, double speed, double acceleration) noexcept {
+  const double ww = speed * speed;
+  const Motion& m = l.rocker;
+  LinkAccelerations q;
+  q.crank = {-ww, acceleration};
+  q.rod = {-l.v * l.v * ww, l.dv * ww + l.v * acceleration};
+  q.rocker = {-m.u * m.u * ww, m.du * ww + m.u * acceleration};
+  q.crank_turned = l.phi * q.crank;
+  q.rod_turned = l.beta * q.rod;
+  q.rocker_turned = l.psi * q.rocker;
+  return q;
+}
+
+/// Coupling of crank and rod, l1 m2 rho2 e^(i (beta - phi)) [kg m2]: its real part couples their rates.
+inline Planar linkCoupling(const Mechanism& mechanism, const LinkMotion& l) noexcept {
+  return mechanism.moments().coupling * l.delta;
+}
+
+}  // namespace hammer_loads

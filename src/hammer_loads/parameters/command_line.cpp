@@ -1,0 +1,65 @@
+#include "hammer_loads/parameters/command_line.h"
+
+#include <cmath>
+#include <iostream>
+
+#include "hammer_loads/parameters/yaml_value.h"
+
+namespace hammer_loads {
+
+void addParamsOption(CLI::App& app, std::vector<std::string>& files) {
+  app.add_option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
+      ->allow_extra_args(false)
+      ->type_name("FILE.yaml");
+}
+
+void addLevelOption(CLI::App& app, std::optional<Level>& level) {
+  std::vector<std::string> words;
+  for (const auto& [word, meaning] : kLevelNames) words.emplace_back(word);
+  app.add_option_function<std::string>(
+         "--level",
+         [&level](const std::string& given) {
+           for (const auto& [word, meaning] : kLevelNames) {
+             if (given == word) level = meaning;
+           }
+         },
+         "how much of the mechanism has mass; without it as in the parameters")
+      ->check(CLI::IsMember(words))
+      ->type_name("LEVEL");
+}
+
+CLI::Validator numberWithin(double least, double most, const std::string& unit) {
+  const bool open = least == 0.0;
+  const std::string rule =
+      std::isinf(most) ? std::string("a finite number") + (std::isinf(least) ? "" : open ? " > 0" : " >= " + numberText(least))
+                       : std::string("a number in ") + (open ? "(" : "[") + numberText(least) + ", " + numberText(most) + "]";
+  return CLI::Validator(
+      [=](std::string& text) {
+        const std::optional<double> value = asNumber(YAML::Node(text));
+        const bool good = value && std::isfinite(*value) && *value >= least && *value <= most && !(open && *value == 0.0);
+        return good ? std::string{} : text + (unit.empty() ? "" : " " + unit) + ", must be " + rule;
+      },
+      "");
+}
+
+std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << app.get_name() << ": " << onOneLine(error.what()) << " (--help shows the options)\n";
+    return kExitWrongUsage;
+  }
+}
+
+std::optional<Settings> loadOrReport(const std::vector<std::string>& files) {
+  Checked<Settings> settings = loadFiles(configDirectory(), files);
+  for (const std::string& problem : settings.problems) std::cerr << problem << '\n';
+  if (!settings.value) return std::nullopt;
+  for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
+  return std::move(settings.value);
+}
+
+}  // namespace hammer_loads

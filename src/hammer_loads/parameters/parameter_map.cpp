@@ -1,0 +1,80 @@
+#include "hammer_loads/parameters/parameter_map.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "hammer_loads/parameters/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+std::string at(const std::string& origin, const YAML::Mark& mark) {
+  return mark.is_null() ? origin : origin + ":" + std::to_string(mark.line + 1);
+}
+
+/// Nothing, with the reason in `problem`, when the file cannot be read to its end.
+std::optional<std::string> contents(const std::string& file, std::string& problem) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    problem = file + ": is a directory, must be a YAML file";
+    return std::nullopt;
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (stream && stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
+  if (!stream.is_open() || stream.bad()) {
+    problem = file + ": cannot be read: " + std::strerror(errno);
+    return std::nullopt;
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::optional<ParameterMap> parameterMap(const YAML::Node& node, const std::string& origin,
+                                         std::vector<std::string>& problems) {
+  if (!node.IsMap()) {
+    problems.push_back(origin + ": " + describe(node) + ", must be a map of keys to values");
+    return std::nullopt;
+  }
+  ParameterMap map;
+  for (const auto& pair : node) {
+    const std::string place = at(origin, pair.first.Mark());
+    if (!pair.first.IsScalar()) {
+      problems.push_back(place + ": " + describe(pair.first) + " as a key, must be a text");
+      continue;
+    }
+    const std::string& key = pair.first.Scalar();
+    const auto [known, added] = map.emplace(key, Parameter{pair.second, place});
+    if (!added)
+      problems.push_back(onOneLine(key) + ": given twice, must be given once (" + known->second.origin + ", " + place + ")");
+  }
+  return map;
+}
+
+std::optional<ParameterMap> readParameterFile(const std::string& file, std::vector<std::string>& problems) {
+  std::string problem;
+  const std::optional<std::string> text = contents(file, problem);
+  if (!text) {
+    problems.push_back(problem);
+    return std::nullopt;
+  }
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(*text);
+    if (documents.size() == 1) return parameterMap(documents.front(), file, problems);
+    problems.push_back(file + ": " + std::to_string(documents.size()) + " YAML documents, must be one");
+  } catch (const YAML::Exception& error) {
+    problems.push_back(at(file, error.mark) + ": not valid YAML: " + onOneLine(error.msg));
+  }
+  return std::nullopt;
+}
+
+void merge(const ParameterMap& over, ParameterMap& base) {
+  for (const auto& [key, parameter] : over) base.insert_or_assign(key, parameter);
+}
+
+}  // namespace hammer_loads

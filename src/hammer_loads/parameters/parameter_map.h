@@ -1,0 +1,31 @@
+/// Parameters as they were given, not yet judged: key, value and where each came from.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hammer_loads {
+
+struct Parameter {
+  YAML::Node value;
+  std::string origin;  ///< "hammer.yaml:3", a name space, or empty when unknown
+};
+
+using ParameterMap = std::map<std::string, Parameter>;
+
+/// Top-level keys of a map. A key given twice and a key that is no text are reported, one line each, beginning with
+/// `origin`; the first value of a repeated key counts. Nothing when `node` is no map.
+std::optional<ParameterMap> parameterMap(const YAML::Node& node, const std::string& origin,
+                                         std::vector<std::string>& problems);
+
+/// From a YAML file. Nothing when it cannot be read, is not YAML, holds no map or several documents: one line says so.
+std::optional<ParameterMap> readParameterFile(const std::string& file, std::vector<std::string>& problems);
+
+/// Adds `over` to `base`; a key of both takes the value of `over`.
+void merge(const ParameterMap& over, ParameterMap& base);
+
+}  // namespace hammer_loads

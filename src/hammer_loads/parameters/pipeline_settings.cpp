@@ -1,0 +1,32 @@
+#include "hammer_loads/parameters/pipeline_settings.h"
+
+#include "hammer_loads/parameters/parameter_reader.h"
+
+namespace hammer_loads {
+
+PipelineSettings readPipelineSettings(ParameterReader& reader) {
+  constexpr NumberRule kAny = NumberRule::any();
+  constexpr NumberRule kPositive = NumberRule::positive();
+  constexpr NumberRule kNotNegative = NumberRule::notNegative();
+  PipelineSettings s;
+  s.level = reader.choice("level", kLevelNames);
+  s.crank_estimator = reader.choice("crank_estimator", kCrankEstimatorNames);
+  s.crank_joint = reader.text("crank_joint");
+  s.pitch_joints = reader.names("pitch_joints");
+  s.hull_pitch = reader.number("hull_pitch_rad", "rad", kAny);
+  s.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
+  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kPositive);
+  s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", kNotNegative);
+  s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kPositive);
+  s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", kPositive);
+  s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", kNotNegative);
+  s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", kNotNegative);
+  s.initial_torque_deviation = reader.number("initial_torque_deviation_rad_s2", "rad/s2", kPositive);
+  s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", kNotNegative);
+  s.stale_after = reader.number("stale_after_s", "s", kPositive);
+  s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", kPositive);
+  s.withhold_above = reader.number("withhold_above", "", kPositive);
+  return s;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,99 @@
+#include "hammer_loads/ros/loads_flow.h"
+
+#include "hammer_loads/linkage/link_motion.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr char kHullFrame[] = "hammer_hull";
+
+ros::Time timeOf(StampNs stamp) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(stamp));
+  return time;
+}
+
+StampNs stampOf(const ros::Time& time) { return static_cast<StampNs>(time.toNSec()); }
+
+/// Angle in [0, 2 pi) [rad].
+double crankAngle(CrankAngle angle) { return angle.offset < 0.0 ? angle.offset + kTwoPi : angle.offset; }
+
+}  // namespace
+
+LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink)
+    : pipeline_(settings.mechanism, settings.pipeline), sink_(sink) {
+  run_info_.version = HAMMER_LOADS_VERSION;
+  run_info_.revision = HAMMER_LOADS_REVISION;
+  run_info_.parameters_yaml = settings.yaml;
+  run_info_.notes = settings.notes;
+  for (std_msgs::Header* header : {&wrench_.header, &mechanism_.header, &blow_.header, &pulse_.header})
+    header->frame_id = kHullFrame;
+  mechanism_.name = {settings.pipeline.crank_joint, "hammer_rod_joint", "hammer_rocker_joint"};
+  mechanism_.position.resize(mechanism_.name.size());
+  mechanism_.velocity.resize(mechanism_.name.size());
+}
+
+/// Stamped with the first input: a second run over the same input says the same.
+void LoadsFlow::beginRun(const ros::Time& record_time) {
+  if (run_begun_) return;
+  run_begun_ = true;
+  run_info_.header.stamp = record_time;
+  sink_.runInfo(run_info_, record_time);
+}
+
+void LoadsFlow::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+  beginRun(record_time);
+  pipeline_.boomJoints(message.name, message.position);
+}
+
+void LoadsFlow::crank(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+  beginRun(record_time);
+  pipeline_.wantTurns(sink_.wantsTurns());
+  const Loads& loads =
+      pipeline_.crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+  for (std::size_t i = 0; i < loads.turn_ends; ++i) publishTurnEnd(loads.ends[i], record_time);
+  if (loads.refusal) return;
+  wrench_.header.stamp = message.header.stamp;
+  wrench_.wrench.force.x = loads.wrench.force_x;
+  wrench_.wrench.force.z = loads.wrench.force_z;
+  wrench_.wrench.torque.y = loads.wrench.torque_y;
+  sink_.hullWrench(wrench_, record_time);
+  if (sink_.wantsMechanism()) publishMechanism(loads, record_time);
+}
+
+void LoadsFlow::publishMechanism(const Loads& loads, const ros::Time& record_time) {
+  const LinkMotion links = linkMotion(pipeline_.mechanism().linkage(), loads.crank.position.angle);
+  mechanism_.header.stamp = timeOf(loads.stamp);
+  mechanism_.position = {crankAngle(loads.crank.position.angle), rodAngle(links), rockerAngle(links.rocker)};
+  mechanism_.velocity = {loads.crank.speed, links.v * loads.crank.speed, links.rocker.u * loads.crank.speed};
+  sink_.mechanism(mechanism_, record_time);
+}
+
+void LoadsFlow::publishTurnEnd(const TurnEnd& end, const ros::Time& record_time) {
+  blow_.header.stamp = timeOf(end.stamp);
+  blow_.turn = end.turn;
+  blow_.rocker_speed_before_rad_s = end.blow.rocker_speed_before;
+  blow_.rocker_speed_after_rad_s = end.blow.rocker_speed_after;
+  blow_.restitution = end.blow.restitution;
+  blow_.energy_J = end.blow.energy;
+  blow_.tool_impulse_x_Ns = end.blow.tool_impulse_x;
+  blow_.tool_impulse_z_Ns = end.blow.tool_impulse_z;
+  blow_.support_impulse_x_Ns = end.blow.support_impulse_x;
+  blow_.support_impulse_z_Ns = end.blow.support_impulse_z;
+  blow_.mean_press_force_N = end.mean_press_force;
+  sink_.blow(blow_, record_time);
+  if (!end.pulse) return;
+  pulse_.header.stamp = blow_.header.stamp;
+  pulse_.turn = end.turn;
+  pulse_.period_s = end.pulse->period;
+  pulse_.amplitude_N = end.pulse->amplitude;
+  pulse_.frequency_rad_s = end.pulse->frequency;
+  pulse_.start_s = end.pulse->start;
+  pulse_.impulse_Ns = end.pulse->impulse;
+  pulse_.turn_impulse_x_Ns = end.pulse->turn_impulse_x;
+  pulse_.turn_impulse_z_Ns = end.pulse->turn_impulse_z;
+  pulse_.half_sine_rms_error = end.pulse->half_sine_rms_error;
+  sink_.pulse(pulse_, record_time);
+}
+
+}  // namespace hammer_loads

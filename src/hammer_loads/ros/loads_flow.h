@@ -1,0 +1,58 @@
+/// From input messages to output messages: the same for the live node, the nodelet and process_bag.
+#pragma once
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <hammer_loads/Blow.h>
+#include <hammer_loads/Pulse.h>
+#include <hammer_loads/RunInfo.h>
+#include <sensor_msgs/JointState.h>
+
+#include <string>
+
+#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/pipeline/pipeline.h"
+
+namespace hammer_loads {
+
+/// Where output messages go. record_time: that of the input that caused the message.
+class LoadsSink {
+ public:
+  virtual ~LoadsSink() = default;
+  virtual void runInfo(const RunInfo& message, const ros::Time& record_time) = 0;
+  virtual void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) = 0;
+  virtual void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) = 0;
+  virtual void blow(const Blow& message, const ros::Time& record_time) = 0;
+  virtual void pulse(const Pulse& message, const ros::Time& record_time) = 0;
+  /// What nobody takes is not computed.
+  virtual bool wantsMechanism() const = 0;
+  virtual bool wantsTurns() const = 0;
+};
+
+/// Owns the pipeline and the messages, which are filled in place.
+class LoadsFlow {
+ public:
+  LoadsFlow(const Settings& settings, LoadsSink& sink);
+
+  void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  /// Time jumped: see Pipeline::reset.
+  void reset() { pipeline_.reset(); }
+
+  const Pipeline& pipeline() const { return pipeline_; }
+
+ private:
+  void beginRun(const ros::Time& record_time);
+  void publishTurnEnd(const TurnEnd& end, const ros::Time& record_time);
+  void publishMechanism(const Loads& loads, const ros::Time& record_time);
+
+  Pipeline pipeline_;
+  LoadsSink& sink_;
+  RunInfo run_info_;
+  geometry_msgs::WrenchStamped wrench_;
+  sensor_msgs::JointState mechanism_;
+  Blow blow_;
+  Pulse pulse_;
+  bool run_begun_{};
+};
+
+}  // namespace hammer_loads

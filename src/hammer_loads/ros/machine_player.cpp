@@ -1,0 +1,149 @@
+#include "hammer_loads/ros/machine_player.h"
+
+#include <ros/init.h>
+#include <ros/time.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace hammer_loads {
+namespace {
+
+using simulation::CrankReading;
+using simulation::JointReading;
+using simulation::Session;
+using std::chrono::steady_clock;
+
+constexpr auto kBatch = std::chrono::milliseconds(1);
+constexpr auto kPoll = std::chrono::milliseconds(10);
+constexpr double kJointPatience = 1.0;  // who listens to the crank connects to the boom at about the same time [s]
+constexpr auto kLastDelivery = std::chrono::milliseconds(500);  // for what is still in the queues at the end
+constexpr std::uint32_t kQueueSize = 100000;                    // 20 s at 5 kHz: a subscriber that stalls loses nothing
+constexpr std::uint32_t kOwnClockStart = 1700000000;            // [s]; fixed, so that the same seed gives the same bag
+
+ros::Time stampOf(std::int64_t nanoseconds) {
+  ros::Time stamp;
+  stamp.fromNSec(static_cast<std::uint64_t>(nanoseconds));
+  return stamp;
+}
+
+double seconds(steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+}  // namespace
+
+MachinePlayer::MachinePlayer(ros::NodeHandle node, const simulation::SimulatorSettings& settings)
+    : settings_(settings),
+      source_(settings.play.publish_clock ? TimeSource::kOwnClock
+              : ros::Time::isSimTime()    ? TimeSource::kClockTopic
+                                          : TimeSource::kSteadyClock),
+      crank_publisher_(node.advertise<sensor_msgs::JointState>("crank", kQueueSize)),
+      joint_publisher_(node.advertise<sensor_msgs::JointState>("joint_states", kQueueSize)) {
+  if (source_ == TimeSource::kOwnClock)
+    clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueueSize, true);
+  crank_message_.name = {"hammer_crank_joint"};
+  crank_message_.position.resize(1);
+  crank_message_.velocity.resize(settings_.machine.crank.speed ? 1 : 0);
+  joint_message_.name.assign(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+}
+
+void MachinePlayer::run() {
+  waitForTime();
+  waitForSubscribers();
+  start();
+  const double duration = settings_.machine.duration;
+  Session session;
+  double last = 0.0, latest = 0.0;
+  for (SteadyTime next = steady_start_; ros::ok() && last < duration;
+       next = std::max(next + kBatch, steady_clock::now())) {
+    std::this_thread::sleep_until(next);
+    const double time = std::min(elapsed(), duration);
+    if (time < last) {
+      ROS_WARN("time ran back by %.3f s: the machine starts anew", last - time);
+      start();
+      last = 0.0;
+      continue;
+    }
+    latest = std::max(latest, time - last);
+    publishClock(time);
+    session.crank.clear(), session.truth.clear(), session.joints.clear(), session.blows.clear();
+    stream_->advanceTo(time, session);
+    publish(session);
+    last = time;
+  }
+  ROS_INFO("%lu crank samples, %lu joint samples, %lu blows in %.3f s; longest batch %.1f ms",
+           static_cast<unsigned long>(crank_count_), static_cast<unsigned long>(joint_count_),
+           static_cast<unsigned long>(blow_count_), last, 1e3 * latest);
+  if (ros::ok()) std::this_thread::sleep_for(kLastDelivery);
+}
+
+void MachinePlayer::waitForSubscribers() {
+  const auto wait = [this](const ros::Publisher& publisher, double patience) {
+    const SteadyTime begin = steady_clock::now();
+    while (ros::ok() && publisher.getNumSubscribers() == 0 && seconds(steady_clock::now() - begin) < patience) {
+      publishClock(0.0);  // subscribers may need a valid time to get ready
+      std::this_thread::sleep_for(kPoll);
+    }
+  };
+  wait(crank_publisher_, settings_.play.wait_for_subscriber);
+  if (crank_publisher_.getNumSubscribers() > 0) wait(joint_publisher_, kJointPatience);
+}
+
+/// With /clock from elsewhere: until it says something.
+void MachinePlayer::waitForTime() {
+  while (ros::ok() && source_ == TimeSource::kClockTopic && !ros::Time::isValid()) std::this_thread::sleep_for(kPoll);
+}
+
+void MachinePlayer::start() {
+  steady_start_ = steady_clock::now();
+  const ros::Time begin = source_ == TimeSource::kOwnClock ? ros::Time(kOwnClockStart, 0)
+                          : source_ == TimeSource::kClockTopic
+                              ? ros::Time::now()
+                              : stampOf(static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
+  settings_.machine.start_stamp = static_cast<std::int64_t>(begin.toNSec());
+  stream_.emplace(settings_.machine);
+}
+
+void MachinePlayer::publishClock(double time) {
+  if (source_ != TimeSource::kOwnClock) return;
+  rosgraph_msgs::Clock clock;
+  clock.clock = ros::Time(kOwnClockStart, 0) + ros::Duration(time);
+  clock_publisher_.publish(clock);
+}
+
+/// Since the start [s of the machine's time].
+double MachinePlayer::elapsed() const {
+  if (source_ == TimeSource::kClockTopic) return (ros::Time::now() - stampOf(settings_.machine.start_stamp)).toSec();
+  const double steady = seconds(steady_clock::now() - steady_start_);
+  return source_ == TimeSource::kOwnClock ? steady * settings_.play.clock_factor : steady;
+}
+
+/// In the order of the stamps.
+void MachinePlayer::publish(const Session& session) {
+  auto joints = session.joints.begin();
+  for (const CrankReading& crank : session.crank) {
+    for (; joints != session.joints.end() && joints->stamp <= crank.stamp; ++joints) publishJoints(*joints);
+    publishCrank(crank);
+  }
+  for (; joints != session.joints.end(); ++joints) publishJoints(*joints);
+  crank_count_ += session.crank.size();
+  joint_count_ += session.joints.size();
+  blow_count_ += session.blows.size();
+}
+
+void MachinePlayer::publishCrank(const CrankReading& reading) {
+  crank_message_.header.stamp = stampOf(reading.stamp);
+  crank_message_.position[0] = reading.angle;
+  if (reading.speed) crank_message_.velocity[0] = *reading.speed;
+  crank_publisher_.publish(crank_message_);
+}
+
+void MachinePlayer::publishJoints(const JointReading& reading) {
+  joint_message_.header.stamp = stampOf(reading.stamp);
+  joint_message_.position.assign(reading.position.begin(), reading.position.end());
+  joint_message_.velocity.assign(reading.velocity.begin(), reading.velocity.end());
+  joint_publisher_.publish(joint_message_);
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,23 @@
+/// Parameters of a node as the same reader takes them that reads files.
+#pragma once
+
+#include <ros/node_handle.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/parameters/load.h"
+
+namespace hammer_loads {
+
+/// Types stay what they are on the parameter server: a text that looks like a number is still a text.
+YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value);
+
+/// Every parameter in the node's private name space; none if there are none.
+ParameterMap privateParameters(const ros::NodeHandle& private_node, std::vector<std::string>& problems);
+
+/// Private parameters over the shipped ones: hammer_loads::load for a node.
+Checked<Settings> loadPrivateParameters(const ros::NodeHandle& private_node);
+
+}  // namespace hammer_loads

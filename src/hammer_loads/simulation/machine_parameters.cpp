@@ -1,0 +1,123 @@
+#include "hammer_loads/simulation/machine_parameters.h"
+
+#include <limits>
+#include <utility>
+
+#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/parameters/hammer_parameters.h"
+#include "hammer_loads/parameters/parameter_reader.h"
+#include "hammer_loads/parameters/pipeline_settings.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr NumberRule kAny = NumberRule::any();
+constexpr NumberRule kPositive = NumberRule::positive();
+constexpr NumberRule kNotNegative = NumberRule::notNegative();
+constexpr double kTwoPi = 6.283185307179586232;
+constexpr std::int64_t kLargestSeed = std::int64_t{1} << 53;  // exact in every reader of YAML
+constexpr std::int64_t kMostCounts = 1 << 24;
+
+DriveSettings readDrive(ParameterReader& reader) {
+  DriveSettings d;
+  d.motor_displacement = reader.number("motor_displacement_m3_rad", "m3/rad", kPositive);
+  d.compliance = reader.number("line_compliance_m3_Pa", "m3/Pa", kPositive);
+  d.leakage = reader.number("leakage_m3_s_Pa", "m3/(s Pa)", kNotNegative);
+  d.relief_pressure = reader.number("relief_pressure_Pa", "Pa", kPositive);
+  d.relief_slope = reader.number("relief_slope_m3_s_Pa", "m3/(s Pa)", kNotNegative);
+  d.coulomb_friction = reader.number("coulomb_friction_Nm", "N m", kNotNegative);
+  d.viscous_friction = reader.number("viscous_friction_Nm_s", "N m s/rad", kNotNegative);
+  d.friction_speed = reader.number("friction_speed_rad_s", "rad/s", kPositive);
+  d.inertia = reader.number("shaft_inertia_kg_m2", "kg m2", kPositive);
+  d.flow = reader.number("flow_m3_s", "m3/s", kPositive);
+  d.flow_variation = reader.number("flow_variation", "", kNotNegative);
+  d.flow_variation_period = reader.number("flow_variation_period_s", "s", kPositive);
+  d.ripple = reader.number("ripple", "", kNotNegative);
+  d.ripple_frequency = reader.number("ripple_frequency_Hz", "Hz", kNotNegative);
+  d.start_time = reader.number("start_time_s", "s", kNotNegative);
+  d.start_ramp = reader.number("start_ramp_s", "s", kPositive);
+  d.stop_ramp = reader.number("stop_ramp_s", "s", kPositive);
+  d.bypass = reader.number("bypass_m3_s_Pa", "m3/(s Pa)", kNotNegative);
+  return d;
+}
+
+CrankSensorSettings readCrankSensor(ParameterReader& reader) {
+  CrankSensorSettings s;
+  s.rate = reader.number("crank_rate_Hz", "Hz", kPositive);
+  s.jitter = reader.number("crank_jitter_s", "s", kNotNegative);
+  s.stamp_noise = reader.number("stamp_noise_s", "s", kNotNegative);
+  s.counts = static_cast<int>(reader.integer("encoder_counts", "", 0, kMostCounts));
+  s.unwound = reader.boolean("unwound");
+  s.speed = reader.boolean("measure_speed");
+  s.speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kNotNegative);
+  const double from = reader.number("drop_out_start_s", "s", kNotNegative);
+  const double length = reader.number("drop_out_length_s", "s", kNotNegative);
+  if (length > 0.0) s.drop_outs.push_back({from, from + length});
+  return s;
+}
+
+JointMotion readJoint(ParameterReader& reader, const std::string& joint) {
+  JointMotion motion;
+  motion.mean = reader.number(joint + "_mean_rad", "rad", kAny);
+  motion.amplitude = reader.number(joint + "_amplitude_rad", "rad", kAny);
+  motion.period = reader.number(joint + "_period_s", "s", kPositive);
+  motion.phase = reader.number(joint + "_phase_rad", "rad", kAny);
+  return motion;
+}
+
+/// Duration and stop; infinite when the file says 0.
+void readTimes(ParameterReader& reader, MachineSettings& machine) {
+  const double duration = reader.number("duration_s", "s", kNotNegative);
+  const double before_end = reader.number("stop_before_end_s", "s", kNotNegative);
+  machine.duration = duration > 0.0 ? duration : std::numeric_limits<double>::infinity();
+  machine.drive.stop_time = machine.duration - before_end;
+  if (machine.drive.stop_time < 0.0) {
+    reader.addProblem(
+        format("stop_before_end_s: %.9g s, must be <= duration_s = %.9g s, or duration_s 0", before_end, duration));
+  }
+}
+
+MachineSettings readMachine(ParameterReader& reader) {
+  MachineSettings machine;
+  machine.level = reader.choice("level", kLevelNames);
+  machine.drive = readDrive(reader);
+  machine.crank = readCrankSensor(reader);
+  machine.boom = {readJoint(reader, "swing"), readJoint(reader, "boom"), readJoint(reader, "arm"),
+                  readJoint(reader, "hammer")};
+  machine.joint_rate = reader.number("joint_rate_Hz", "Hz", kPositive);
+  machine.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
+  machine.start_angle = reader.number("start_angle_rad", "rad", NumberRule::within(1e-9, kTwoPi - 1e-9));
+  machine.step = reader.number("integration_step_s", "s", kPositive);
+  machine.seed = static_cast<std::uint64_t>(reader.integer("seed", "", 0, kLargestSeed));
+  readTimes(reader, machine);
+  return machine;
+}
+
+}  // namespace
+
+Checked<SimulatorSettings> loadSimulator(const std::string& config_directory, const ParameterMap& given) {
+  Checked<SimulatorSettings> result;
+  std::vector<std::string> shipped{config_directory + "/simulated_machine.yaml"};
+  if (!hasHammerKey(given)) shipped.push_back(config_directory + "/hammer_mo100.yaml");
+  ParameterMap parameters;
+  for (const std::string& file : shipped) {
+    if (const std::optional<ParameterMap> read = readParameterFile(file, result.problems)) merge(*read, parameters);
+  }
+  if (!result.problems.empty()) return result;
+  merge(given, parameters);
+
+  ParameterReader reader(std::move(parameters));
+  SimulatorSettings settings;
+  settings.machine = readMachine(reader);
+  settings.play.publish_clock = reader.boolean("publish_clock");
+  settings.play.clock_factor = reader.number("clock_factor", "", kPositive);
+  settings.play.wait_for_subscriber = reader.number("wait_for_subscriber_s", "s", kNotNegative);
+  if (const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes))
+    settings.machine.hammer = mechanism->parameters();
+  reader.reportUnknownKeys();
+  result.problems = reader.problems();
+  if (result.problems.empty()) result.value = settings;
+  return result;
+}
+
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,81 @@
+/// Everything that defines a simulated machine and what its sensors see of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/mechanism.h"
+
+namespace hammer_loads::simulation {
+
+/// Hydraulic drive: pump flow into a line with compliance, relief valve and leakage, motor on the crank's shaft.
+struct DriveSettings {
+  double motor_displacement{};  ///< [m3/rad], > 0
+  double compliance{};          ///< of line and accumulator: volume per pressure [m3/Pa], > 0
+  double leakage{};             ///< [m3/(s Pa)]
+  double relief_pressure{};     ///< relief valve opens [Pa]
+  double relief_slope{};        ///< relief flow per pressure above it [m3/(s Pa)]
+  double coulomb_friction{};    ///< on the shaft [N m]
+  double viscous_friction{};    ///< on the shaft [N m s/rad]
+  double friction_speed{};      ///< Coulomb friction is tanh(w/this) [rad/s], > 0
+  double inertia{};             ///< Jc: motor, flywheel [kg m2], > 0
+
+  double flow{};                   ///< pump at work [m3/s]
+  double flow_variation{};         ///< slow variation of it, relative to flow [-]
+  double flow_variation_period{};  ///< [s], > 0
+  double ripple{};                 ///< fast variation (pump pistons), relative to flow [-]
+  double ripple_frequency{};       ///< [Hz]
+  double start_time{};             ///< flow begins to rise [s]
+  double start_ramp{};             ///< and is whole after this long [s], > 0
+  double stop_time{};              ///< flow begins to fall and a bypass opens [s]; after the end: never
+  double stop_ramp{};              ///< [s], > 0
+  double bypass{};                 ///< open bypass: flow per pressure [m3/(s Pa)]
+};
+
+/// Crank encoder and the message that carries it.
+struct CrankSensorSettings {
+  double rate{};         ///< [Hz], > 0
+  double jitter{};       ///< standard deviation of the instants of sampling [s]; at most 0.45 periods each
+  double stamp_noise{};  ///< standard deviation of stamp against instant [s]; order may break if large
+  int counts{};          ///< per turn; angle = whole counts passed; 0: continuous
+  bool unwound{};        ///< angle grows over the turns instead of staying in [0, 2 pi)
+  bool speed{true};      ///< speed is measured too
+  double speed_noise{};  ///< standard deviation [rad/s]
+  struct Interval {
+    double from{}, to{};  ///< [s]
+  };
+  std::vector<Interval> drop_outs;  ///< instants in [from, to) give no sample
+};
+
+/// One boom joint: mean + amplitude sin(2 pi t/period + phase).
+struct JointMotion {
+  double mean{};       ///< [rad]
+  double amplitude{};  ///< [rad]
+  double period{};     ///< [s], > 0
+  double phase{};      ///< [rad]
+};
+
+/// Order of the boom's joints in this folder; hull pitch = boom + arm + hammer (contract).
+constexpr std::array<const char*, 4> kBoomJoints{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+
+struct MachineSettings {
+  HammerParameters hammer;      ///< drive_inertia in it is not used: see drive.inertia
+  Level level{Level::kRocker};  ///< which links have mass
+  DriveSettings drive;
+  CrankSensorSettings crank;
+  std::array<JointMotion, 4> boom;
+  double joint_rate{};         ///< of the boom joints' samples [Hz], > 0
+  double gravity{};            ///< [m/s2]
+  double start_angle{};        ///< crank at t = 0, at rest [rad], in (0, 2 pi)
+  double duration{};           ///< [s]
+  double step{};               ///< longest integration step [s], > 0
+  std::int64_t start_stamp{};  ///< header stamp of t = 0 [ns]
+  std::uint64_t seed{};        ///< of all noise
+};
+
+/// A hammer MO-100 at 1000 J on an excavator's boom: works from about 2 s until 2 s before the end of 20 s.
+MachineSettings workingMo100();
+
+}  // namespace hammer_loads::simulation

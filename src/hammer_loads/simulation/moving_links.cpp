@@ -1,0 +1,109 @@
+#include "hammer_loads/simulation/moving_links.h"
+
+#include <cmath>
+
+namespace hammer_loads::simulation {
+namespace {
+
+/// sin(phi/2) within the turn, phi in [0, 2 pi]: from the offset, so that it is exact at both ends.
+Jet sinHalf(TurnAngle angle) noexcept {
+  const Jet half{0.5 * angle.offset, 0.5, 0.0};
+  return angle.before_blow ? -1.0 * sin(half) : sin(half);
+}
+
+}  // namespace
+
+MovingLinks::MovingLinks(const Mechanism& mechanism, Level level)
+    : p_(mechanism.parameters()),
+      level_(level),
+      cos_a_(std::cos(p_.rocker_com_angle)),
+      sin_a_(std::sin(p_.rocker_com_angle)) {}
+
+/// psi = 2 delta - alpha: alpha turns DA into DB, pi - 2 delta is the angle B-D-C of a triangle with sides
+/// c = DB, l3, l2, and sin^2 delta = ((l3 + c)^2 - l2^2)/(4 l3 c), where c - (l2 - l3) = 4 l0 l1 s^2/(c + l0 - l1).
+Jet MovingLinks::rockerAngle(TurnAngle angle) const noexcept {
+  const double l0 = p_.lengths.pivot_distance, l1 = p_.lengths.crank, l2 = p_.lengths.rod, l3 = p_.lengths.rocker;
+  const Jet phi{angle.offset, 1.0, 0.0};
+  const Jet s = sinHalf(angle);
+  const Jet c = sqrt(4.0 * l0 * l1 * (s * s) + (l0 - l1) * (l0 - l1));
+  const Jet delta = asin(s * sqrt((l0 * l1 / l3) * (c + (l2 + l3)) / (c * (c + (l0 - l1)))));
+  const Jet alpha = atan(l1 * sin(phi) / (l0 - l1 * cos(phi)));  // |alpha| < pi/2 since l1 < l0
+  return 2.0 * delta - alpha;
+}
+
+LinkBodies MovingLinks::at(TurnAngle angle) const noexcept {
+  const double l0 = p_.lengths.pivot_distance, l1 = p_.lengths.crank, l2 = p_.lengths.rod, l3 = p_.lengths.rocker;
+  LinkBodies all;
+  const Jet psi = rockerAngle(angle);
+  const Jet to_com = psi + p_.rocker_com_angle;
+  const double ls = p_.rocker_com_distance, m3 = p_.rocker_mass;
+  all.body[all.count++] = {m3, p_.rocker_inertia_about_pivot - m3 * ls * ls, ls * cos(to_com) + l0, ls * sin(to_com),
+                           psi};
+  if (level_ == Level::kRocker) return all;
+
+  const Jet phi{angle.offset, 1.0, 0.0};
+  const Jet cos_phi = cos(phi), sin_phi = sin(phi);
+  all.body[all.count++] = {p_.crank_mass, p_.crank_inertia_about_com,
+                           p_.crank_com_along * cos_phi - p_.crank_com_across * sin_phi,
+                           p_.crank_com_along * sin_phi + p_.crank_com_across * cos_phi, phi};
+  const Jet b_xi = l1 * cos_phi, b_eta = l1 * sin_phi;
+  const Jet cos_beta = (1.0 / l2) * (l3 * cos(psi) + l0 - b_xi), sin_beta = (1.0 / l2) * (l3 * sin(psi) - b_eta);
+  const Jet beta{0.0, cos_beta.value * sin_beta.first - sin_beta.value * cos_beta.first,
+                 cos_beta.value * sin_beta.second - sin_beta.value * cos_beta.second};
+  all.body[all.count++] = {p_.rod_mass, p_.rod_inertia_about_com,
+                           b_xi + (p_.rod_com_along * cos_beta - p_.rod_com_across * sin_beta),
+                           b_eta + (p_.rod_com_along * sin_beta + p_.rod_com_across * cos_beta), beta};
+  return all;
+}
+
+ShaftView MovingLinks::shaft(const LinkBodies& links, Gravity gravity) const noexcept {
+  // The map between hull and mechanism frame is a reflection, hence its own inverse.
+  const double g_xi = -(cos_a_ * gravity.x + sin_a_ * gravity.z), g_eta = -sin_a_ * gravity.x + cos_a_ * gravity.z;
+  ShaftView view;
+  for (int i = 0; i < links.count; ++i) {
+    const LinkBodies::Body& b = links.body[i];
+    view.inertia += b.mass * (b.xi.first * b.xi.first + b.eta.first * b.eta.first) +
+                    b.inertia_about_com * b.angle.first * b.angle.first;
+    view.inertia_slope += 2.0 * (b.mass * (b.xi.first * b.xi.second + b.eta.first * b.eta.second) +
+                                 b.inertia_about_com * b.angle.first * b.angle.second);
+    view.weight_torque += b.mass * (g_xi * b.xi.first + g_eta * b.eta.first);
+  }
+  return view;
+}
+
+Load MovingLinks::load(const LinkBodies& links, double speed, double acceleration, Gravity gravity) const noexcept {
+  const double g_xi = -(cos_a_ * gravity.x + sin_a_ * gravity.z), g_eta = -sin_a_ * gravity.x + cos_a_ * gravity.z;
+  const double ww = speed * speed;
+  double f_xi = 0.0, f_eta = 0.0, torque = 0.0;
+  for (int i = 0; i < links.count; ++i) {
+    const LinkBodies::Body& b = links.body[i];
+    const double b_xi = b.mass * (g_xi - b.xi.second * ww - b.xi.first * acceleration);
+    const double b_eta = b.mass * (g_eta - b.eta.second * ww - b.eta.first * acceleration);
+    f_xi += b_xi;
+    f_eta += b_eta;
+    torque += (b.xi.value - p_.lengths.pivot_distance) * b_eta - b.eta.value * b_xi -
+              b.inertia_about_com * (b.angle.second * ww + b.angle.first * acceleration);
+  }
+  return {-(cos_a_ * f_xi + sin_a_ * f_eta), -sin_a_ * f_xi + cos_a_ * f_eta, torque};
+}
+
+/// At the blow crank, rod and rocker are in line: the rod passes on no moment but its own inertia about B.
+Strike MovingLinks::strike(double crank_speed) const noexcept {
+  const TurnAngle before{0.0, true}, after{0.0, false};
+  const double u_before = rockerAngle(before).first, u_after = rockerAngle(after).first;
+  Strike strike;
+  strike.rocker_speed_before = u_before * crank_speed;
+  strike.rocker_speed_after = u_after * crank_speed;
+  strike.energy = 0.5 * (shaft(at(before), {}).inertia - shaft(at(after), {}).inertia) * crank_speed * crank_speed;
+  double inertia = p_.rocker_inertia_about_pivot;
+  if (level_ == Level::kLinkage) {
+    const double rod_about_b = p_.rod_inertia_about_com + p_.rod_mass * (p_.rod_com_along * p_.rod_com_along +
+                                                                         p_.rod_com_across * p_.rod_com_across);
+    const double ratio = p_.lengths.rocker / p_.lengths.rod;
+    inertia += rod_about_b * ratio * ratio;
+  }
+  strike.tool_impulse = inertia * (u_after - u_before) * crank_speed / p_.striking_distance;
+  return strike;
+}
+
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,71 @@
+/// The striking mechanism's links by loop closure and differentiation: independent of linkage/ and hammer/.
+#pragma once
+
+#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/simulation/jet.h"
+
+namespace hammer_loads::simulation {
+
+/// Crank angle as the signed distance from the nearest blow [rad] and the side of the blow that it belongs to.
+struct TurnAngle {
+  double offset{};
+  bool before_blow{};
+};
+
+/// What the links are to the crank's shaft at one angle.
+struct ShaftView {
+  double inertia{};        ///< J: kinetic energy of the links = J/2 w^2 [kg m2]
+  double inertia_slope{};  ///< dJ/dphi [kg m2/rad]
+  double weight_torque{};  ///< of the links' weight on the crank [N m]
+};
+
+/// Load BY the links ON the hull, about the rocker pivot D, axes of hammer_hull (model.md 1).
+struct Load {
+  double force_x{};   ///< [N]
+  double force_z{};   ///< [N]
+  double torque_y{};  ///< [N m]
+};
+
+/// What one passage of the blow gives away at crank speed w.
+struct Strike {
+  double rocker_speed_before{};  ///< psi' [rad/s]
+  double rocker_speed_after{};   ///< psi' [rad/s]
+  double energy{};               ///< kinetic energy that the links lose [J]
+  double tool_impulse{};         ///< along +z BY the tool ON the rocker [N s]
+};
+
+/// Rigid links in the mechanism frame (model.md 1), as functions of the crank angle.
+struct LinkBodies {
+  struct Body {
+    double mass{};               ///< [kg]
+    double inertia_about_com{};  ///< [kg m2]
+    Jet xi, eta;                 ///< centre of mass from A [m]
+    Jet angle;                   ///< counter-clockwise [rad]; value unused
+  };
+  Body body[3];
+  int count{};
+};
+
+/// Rocker, and at level linkage crank and rod too, as rigid bodies in a plane. Positions come from the triangle B-D-C
+/// with half angles, derivatives by the crank angle from jets. Motor and flywheel are not part of it.
+class MovingLinks {
+ public:
+  MovingLinks(const Mechanism& mechanism, Level level);
+
+  /// Where the links are at a crank angle.
+  LinkBodies at(TurnAngle angle) const noexcept;
+  ShaftView shaft(const LinkBodies& links, Gravity gravity) const noexcept;
+  /// At crank speed w [rad/s] and acceleration e [rad/s2]. Newton-Euler in the mechanism frame.
+  Load load(const LinkBodies& links, double speed, double acceleration, Gravity gravity) const noexcept;
+  Strike strike(double crank_speed) const noexcept;
+  /// psi [rad] with its derivatives by the crank angle.
+  Jet rockerAngle(TurnAngle angle) const noexcept;
+
+ private:
+  HammerParameters p_;
+  Level level_;
+  double cos_a_{}, sin_a_{};
+};
+
+}  // namespace hammer_loads::simulation

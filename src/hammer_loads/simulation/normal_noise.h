@@ -1,0 +1,29 @@
+/// Seeded Gaussian noise that is the same with every standard library.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace hammer_loads::simulation {
+
+/// Box-Muller on mt19937_64, whose sequence the standard fixes (std::normal_distribution's is not).
+class NormalNoise {
+ public:
+  explicit NormalNoise(std::uint64_t seed) : engine_(seed) {}
+
+  /// Standard normal deviate; always consumes two numbers of the generator.
+  double operator()() noexcept {
+    constexpr double kTwoPi = 6.283185307179586232;
+    const double u = 1.0 - uniform();  // (0, 1]
+    const double v = uniform();
+    return std::sqrt(-2.0 * std::log(u)) * std::cos(kTwoPi * v);
+  }
+
+ private:
+  double uniform() noexcept { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  // [0, 1)
+
+  std::mt19937_64 engine_;
+};
+
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,113 @@
+/// A hydraulically driven crank-rocker hammer at work, integrated finely: the truth that estimates are measured by.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hammer_loads/simulation/machine_settings.h"
+#include "hammer_loads/simulation/moving_links.h"
+
+namespace hammer_loads::simulation {
+
+/// Machine at one instant. Load BY the links ON the hull about D, axes of hammer_hull, weight included.
+struct CrankTruth {
+  double time{};          ///< since start [s]
+  std::int64_t turn{};    ///< blows passed
+  double angle{};         ///< in [0, 2 pi) [rad]
+  double speed{};         ///< [rad/s]
+  double acceleration{};  ///< [rad/s2]
+  double net_torque{};    ///< motor less friction, on the shaft [N m]
+  double pressure{};      ///< at the motor [Pa]
+  double hull_pitch{};    ///< [rad]
+  Load load;
+};
+
+/// One blow and the turn that it ended.
+struct BlowTruth {
+  double time{};         ///< since start [s]
+  double crank_speed{};  ///< [rad/s]
+  Strike strike;
+  double turn_period{};          ///< [s]
+  double turn_peak_force_z{};    ///< largest Fz of the turn [N]
+  double turn_impulse_x{};       ///< integral of Fx over the turn [N s]
+  double turn_impulse_z{};       ///< [N s]
+  double last_lobe_impulse_z{};  ///< integral of Fz from its last rise through zero to the blow [N s]
+  bool whole_turn{};             ///< began with a blow and went forward all the way
+};
+
+/// Where the energy went since the start [J]. Balances are tested:
+/// kinetic + blows + stops = motor - friction + weight;  stored = supply - motor - valves.
+struct EnergyAccount {
+  double motor{};     ///< work of the pressure on the shaft
+  double friction{};  ///< lost in it, >= 0
+  double weight{};    ///< work of the links' weight
+  double supply{};    ///< hydraulic work of the pump flow
+  double valves{};    ///< lost in leakage, relief and bypass
+  double blows{};     ///< given to the tool
+  double stops{};     ///< lost when the crank, turning back, comes to rest on the tool
+  double kinetic{};   ///< of links and drive now
+  double stored{};    ///< in the compliance now
+};
+
+/// State crank angle, speed, pressure: w' = (tau + weight - J'/2 w^2)/(Jc + J), p' = (flow - D w - losses)/C.
+/// The blow is located within a step to rounding; crank speed is continuous there. Turning back onto the tool would
+/// need a restitution above 1 to go on: the crank stops there until the torque is positive again.
+/// Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links and shaft.
+/// Runge-Kutta of order 4, steps of at most settings.step.
+class WorkingMachine {
+ public:
+  /// Throws std::invalid_argument when the hammer's linkage is impossible.
+  explicit WorkingMachine(const MachineSettings& settings);
+
+  /// time >= now [s].
+  void advanceTo(double time) noexcept;
+  double time() const noexcept { return now_.time; }
+  CrankTruth truth() const noexcept;
+  EnergyAccount energy() const noexcept;
+  /// Hands over the blows since the last call.
+  std::vector<BlowTruth> takeBlows();
+  double hullPitch(double time) const noexcept;
+  const MachineSettings& settings() const noexcept { return settings_; }
+
+ private:
+  enum Index { kOffset, kSpeed, kPressure, kImpulseX, kImpulseZ, kMotor, kFriction, kWeight, kSupply, kValves, kSize };
+  using Vector = std::array<double, kSize>;
+  struct State {
+    double time{};
+    bool before_blow{};
+    bool resting{};  ///< on the tool, turned back
+    Vector y{};
+  };
+
+  double supplyFlow(double time) const noexcept;
+  double valveFlow(double time, double pressure) const noexcept;
+  double netTorque(const State& state) const noexcept;
+  Gravity gravityAt(double time) const noexcept;
+  Vector rate(const State& state) const noexcept;
+  State step(double dt) const noexcept;
+  double timeToBlow(double dt) const noexcept;
+  void accept(const State& next);
+  void meetTool();
+  void followForce(const State& next, double force_z) noexcept;
+  void beginTurn(bool whole) noexcept;
+
+  MachineSettings settings_;
+  MovingLinks links_;
+  State now_;
+  Vector rate_{};  ///< at now_
+  std::int64_t turn_{};
+  double blow_energy_{}, stop_energy_{};
+  std::vector<BlowTruth> blows_;
+
+  struct Turn {
+    double start_time{}, impulse_x{}, impulse_z{};  ///< impulses at its beginning
+    double lobe_impulse_z{};                        ///< impulse where Fz last rose through zero
+    double peak{};
+    double time[2]{}, force[2]{};  ///< the two last points, for the parabola
+    int points{};
+    bool whole{};
+  } current_;
+};
+
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,89 @@
+#include "hammer_loads/linkage/crank_angle.h"
+
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <random>
+
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+using Real = boost::multiprecision::cpp_bin_float_50;
+
+Real nearestBlow(double phi) {
+  const Real two_pi = 2 * boost::math::constants::pi<Real>();
+  const Real turns = floor(Real(phi) / two_pi + Real(0.5));
+  return Real(phi) - turns * two_pi;
+}
+
+TEST(CrankAngle, OffsetIsExactWithinTheFirstTurns) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> angle(-30.0, 30.0);
+  for (int i = 0; i < 20000; ++i) {
+    const double phi = angle(random);
+    const Real exact = nearestBlow(phi);
+    const double wrapped = CrankAngle::wrapToPi(phi);
+    EXPECT_LE(abs(Real(wrapped) - exact), 2.3e-16 * abs(exact) + 1e-30) << phi;
+  }
+}
+
+TEST(CrankAngle, OffsetKeepsItsDigitsNextToTheBlow) {
+  const double two_pi = 6.283185307179586232;
+  for (double turns = -5.0; turns <= 5.0; ++turns) {
+    for (double distance = 1e-1; distance > 1e-15; distance *= 0.1) {
+      for (double sign : {-1.0, 1.0}) {
+        const double phi = turns * two_pi + sign * distance;
+        const Real exact = nearestBlow(phi);
+        EXPECT_LE(abs(Real(CrankAngle::wrapToPi(phi)) - exact), 2.3e-16 * abs(exact) + 1e-30) << phi;
+      }
+    }
+  }
+}
+
+TEST(CrankAngle, ManyTurnsCostNoMoreThanTheAnglesOwnRounding) {
+  std::mt19937 random(2);
+  for (double turns : {1e3, 1e6, 1e9}) {
+    std::uniform_real_distribution<double> angle(-turns * 6.28, turns * 6.28);
+    for (int i = 0; i < 5000; ++i) {
+      const double phi = angle(random);
+      // fma rounds once at the size of the offset, plus the third part of 2 pi: 6e-33 per turn.
+      const double bound = 4.5e-16 + turns * 6.1e-33 * 10;
+      EXPECT_LE(abs(Real(CrankAngle::wrapToPi(phi)) - nearestBlow(phi)), bound) << phi;
+    }
+  }
+}
+
+TEST(CrankAngle, StaysWithinHalfATurn) {
+  constexpr double kPi = 3.14159265358979324;
+  for (int turn = -3; turn <= 3; ++turn) {
+    for (double part = 0.0; part < 1.0; part += 1.0 / 64.0) {
+      const double offset = CrankAngle::fromAngle(2.0 * kPi * (turn + part)).offset;
+      EXPECT_LE(std::abs(offset), kPi + 1e-15);
+    }
+  }
+}
+
+TEST(CrankAngle, SideFollowsTheOffsetAndTheBlowItselfIsAfter) {
+  EXPECT_EQ(CrankAngle::fromAngle(0.0).side, Side::kAfterBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(-0.0).side, Side::kAfterBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(1e-300).side, Side::kAfterBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(-1e-300).side, Side::kBeforeBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(3.0).side, Side::kAfterBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(3.3).side, Side::kBeforeBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(-3.3).side, Side::kAfterBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(6.2).side, Side::kBeforeBlow);
+  EXPECT_EQ(CrankAngle::fromAngle(6.3).side, Side::kAfterBlow);
+}
+
+TEST(CrankAngle, TwoPiAsDoubleLiesJustBeforeTheBlow) {
+  // The double nearest to 2 pi is 2.4493e-16 smaller than 2 pi.
+  const CrankAngle angle = CrankAngle::fromAngle(6.283185307179586232);
+  EXPECT_EQ(angle.side, Side::kBeforeBlow);
+  EXPECT_NEAR(angle.offset, -2.449293598294706414e-16, 1e-31);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,198 @@
+#include "hammer_loads/linkage/link_motion.h"
+
+#include "support/csv.h"
+#include "support/main.h"
+#include "support/mo100.h"
+#include "support/newton_euler.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::kPi;
+using test::Real;
+
+double relativeError(double value, const Real& exact) {
+  return static_cast<double>(abs(Real(value) - exact) / abs(exact));
+}
+
+Real exactAngle(CrankAngle angle) {
+  return angle.side == Side::kAfterBlow ? Real(angle.offset) : 2 * test::realPi() + Real(angle.offset);
+}
+
+TEST(Motion, EqualsTheReferenceTables) {
+  for (const char* name : {"mo100_constant_speed.csv", "mo100_linkage.csv"}) {
+    const test::Csv csv = test::dataCsv(name);
+    const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+    const double rate_peak = csv.peak("rocker_speed_rad_s"), accel_peak = csv.peak("rocker_accel_rad_s2");
+    ASSERT_GT(csv.size(), 400u);
+    for (std::size_t i = 0; i < csv.size(); ++i) {
+      const CrankAngle angle = CrankAngle::fromAngle(csv.number(i, "crank_angle_rad"));
+      const double w = csv.number(i, "crank_speed_rad_s"), e = csv.number(i, "crank_accel_rad_s2");
+      const LinkMotion l = linkMotion(mechanism.linkage(), angle);
+      EXPECT_NEAR(rockerAngle(l.rocker), csv.number(i, "rocker_angle_rad"), 1e-12) << name << ' ' << i;
+      EXPECT_NEAR(rodAngle(l), csv.number(i, "rod_angle_rad"), 1e-12) << name << ' ' << i;
+      EXPECT_NEAR(l.rocker.u * w, csv.number(i, "rocker_speed_rad_s"), 1e-12 * rate_peak) << name << ' ' << i;
+      EXPECT_NEAR(l.rocker.du * w * w + l.rocker.u * e, csv.number(i, "rocker_accel_rad_s2"), 1e-12 * accel_peak)
+          << name << ' ' << i;
+    }
+  }
+}
+
+/// Offsets 1e-1 ... 1e-12 on both sides of the blow.
+template <typename Check>
+void forOffsetsNearBlow(const Check& check) {
+  for (int decade = 1; decade <= 12; ++decade) {
+    for (double digit : {1.0, 2.7, 6.1}) {
+      const double offset = digit * std::pow(10.0, -decade);
+      check(CrankAngle{offset, Side::kAfterBlow});
+      check(CrankAngle{-offset, Side::kBeforeBlow});
+    }
+  }
+}
+
+TEST(Motion, KeepsAllDigitsNearTheBlowForAnyMachine) {
+  std::mt19937 random(7);
+  double worst_u = 0.0, worst_du = 0.0, worst_sine = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    const HammerParameters p = i == 0 ? test::mo100Parameters() : test::randomParameters(random);
+    const Mechanism mechanism = test::mechanismOf(p);
+    const test::NewtonEuler exact(p, Level::kRocker);
+    forOffsetsNearBlow([&](CrankAngle angle) {
+      const LinkMotion l = linkMotion(mechanism.linkage(), angle);
+      const test::Reference at_speed = exact.at(angle, 1.0, 0.0, {});
+      worst_u = std::max(worst_u, relativeError(l.rocker.u, at_speed.psi_rate));
+      worst_du = std::max(worst_du, relativeError(l.rocker.du, at_speed.psi_accel));
+      const Real transmission = at_speed.psi - at_speed.beta;
+      for (double error : {relativeError(l.rocker.sin_psi, sin(at_speed.psi)), relativeError(l.sin_mu, sin(transmission)),
+                           relativeError(l.delta.im, sin(at_speed.beta - exactAngle(angle))), relativeError(l.v, at_speed.beta_rate)}) {
+        worst_sine = std::max(worst_sine, error);
+      }
+    });
+  }
+  EXPECT_LE(worst_u, 1e-13);
+  EXPECT_LE(worst_du, 1e-13);
+  EXPECT_LE(worst_sine, 1e-12);  // the rod's rate and direction are differences
+  std::printf("worst relative error near the blow: u %.2e, u' %.2e, rod %.2e\n", worst_u, worst_du, worst_sine);
+}
+
+TEST(Motion, IsExactOverTheWholeTurnForAnyMachine) {
+  std::mt19937 random(8);
+  double worst = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    const HammerParameters p = test::randomParameters(random);
+    const Mechanism mechanism = test::mechanismOf(p);
+    const test::NewtonEuler exact(p, Level::kRocker);
+    double u_peak = 0.0, du_peak = 0.0, u_error = 0.0, du_error = 0.0;
+    for (double offset = -3.1; offset < 3.15; offset += 0.0937) {
+      const CrankAngle angle = CrankAngle::fromOffset(offset);
+      const LinkMotion l = linkMotion(mechanism.linkage(), angle);
+      const test::Reference reference = exact.at(angle, 1.0, 0.0, {});
+      u_peak = std::max(u_peak, std::abs(l.rocker.u));
+      du_peak = std::max(du_peak, std::abs(l.rocker.du));
+      u_error = std::max(u_error, std::abs(static_cast<double>(Real(l.rocker.u) - reference.psi_rate)));
+      du_error = std::max(du_error, std::abs(static_cast<double>(Real(l.rocker.du) - reference.psi_accel)));
+      EXPECT_NEAR(l.v, static_cast<double>(reference.beta_rate), 1e-13 * u_peak);
+      EXPECT_NEAR(l.dv, static_cast<double>(reference.beta_accel), 1e-13 * du_peak + 1e-13);
+      EXPECT_NEAR(rodAngle(l), static_cast<double>(reference.beta), 1e-14);
+      EXPECT_NEAR(rockerAngle(l.rocker), static_cast<double>(reference.psi), 1e-14);
+    }
+    worst = std::max({worst, u_error / u_peak, du_error / du_peak});
+  }
+  EXPECT_LE(worst, 1e-13);
+}
+
+TEST(Motion, RatesAreDerivativesOfTheAngles) {
+  std::mt19937 random(9);
+  const double h = 1e-3;
+  for (int i = 0; i < 5; ++i) {
+    const Mechanism mechanism = test::mechanismOf(i == 0 ? test::mo100Parameters() : test::randomParameters(random));
+    for (double offset = -3.0; offset < 3.0; offset += 0.171) {
+      const auto at = [&](double shift) {
+        return linkMotion(mechanism.linkage(), {offset + shift, offset < 0 ? Side::kBeforeBlow : Side::kAfterBlow});
+      };
+      const auto slope = [&](auto value) {  // order 4
+        return (8.0 * (value(h) - value(-h)) - (value(2 * h) - value(-2 * h))) / (12.0 * h);
+      };
+      const LinkMotion l = at(0.0);
+      // Truncation h^4/30 times the fifth derivative; the machines' shapes change within 0.14 rad or more.
+      EXPECT_NEAR(slope([&](double x) { return rockerAngle(at(x).rocker); }), l.rocker.u, 1e-7);
+      EXPECT_NEAR(slope([&](double x) { return at(x).rocker.u; }), l.rocker.du, 1e-6);
+      EXPECT_NEAR(slope([&](double x) { return rodAngle(at(x)); }), l.v, 1e-7);
+      EXPECT_NEAR(slope([&](double x) { return at(x).v; }), l.dv, 1e-6);
+    }
+  }
+}
+
+TEST(Motion, HasThePapersRatiosAtTheBlow) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const Motion before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow});
+  const Motion after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow});
+  // P0 (4) at sin = 0, cos = -1 and 1: u = (1 - l0 +- l2 (l0 - 1)/sqrt(l2 l3/l0))/(l0 - 1)^2 with the ratios 1.625 ...
+  const double root = std::sqrt(3.125 * 2.5 / 1.625);
+  EXPECT_NEAR(before.u, (-1.0 - 3.125 / root) / 0.625, 1e-14);
+  EXPECT_NEAR(after.u, (-1.0 + 3.125 / root) / 0.625, 1e-14);
+  EXPECT_NEAR(before.u, -3.880, 5e-4);
+  EXPECT_NEAR(after.u, 0.680, 5e-4);
+  for (const Motion& m : {before, after}) {
+    EXPECT_EQ(m.du, 0.0);
+    EXPECT_EQ(m.sin_psi, 0.0);
+    EXPECT_DOUBLE_EQ(m.cos_psi, 1.0);
+  }
+}
+
+TEST(Motion, BothBranchesMeetHalfATurnFromTheBlow) {
+  std::mt19937 random(10);
+  for (int i = 0; i < 10; ++i) {
+    const Mechanism mechanism = test::mechanismOf(test::randomParameters(random));
+    const LinkMotion after = linkMotion(mechanism.linkage(), {kPi, Side::kAfterBlow});
+    const LinkMotion before = linkMotion(mechanism.linkage(), {-kPi, Side::kBeforeBlow});
+    EXPECT_NEAR(after.rocker.u, before.rocker.u, 1e-13);
+    EXPECT_NEAR(after.rocker.du, before.rocker.du, 1e-12);
+    EXPECT_NEAR(after.rocker.sin_psi, before.rocker.sin_psi, 1e-13);
+    EXPECT_NEAR(after.v, before.v, 1e-13);
+  }
+}
+
+TEST(Motion, BranchContinuesSmoothlyPastTheBlow) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  for (Side side : {Side::kBeforeBlow, Side::kAfterBlow}) {
+    const Motion here = motion(mechanism.linkage(), {0.0, side});
+    for (double offset : {-1e-3, -1e-6, 1e-6, 1e-3}) {
+      const Motion there = motion(mechanism.linkage(), {offset, side});
+      EXPECT_NEAR(there.sin_psi, here.u * offset, 20.0 * offset * offset);
+      EXPECT_NEAR(there.u, here.u, 20.0 * std::abs(offset));
+    }
+  }
+}
+
+TEST(Motion, WindingAndDirectionDoNotMatter) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  for (double phi = 0.1; phi < 6.2; phi += 0.37) {
+    const Motion first = motion(mechanism.linkage(), CrankAngle::fromAngle(phi));
+    for (double turns : {-1e6, -3.0, -1.0, 1.0, 1000.0, 1e6}) {
+      const double wound = phi + turns * 2.0 * kPi;
+      const Motion again = motion(mechanism.linkage(), CrankAngle::fromAngle(wound));
+      const double tolerance = 1e-14 + 100.0 * std::abs(turns) * 2.0 * kPi * 2.3e-16;  // rounding of the angle itself
+      EXPECT_NEAR(again.u, first.u, tolerance) << phi << ' ' << turns;
+      EXPECT_NEAR(again.sin_psi, first.sin_psi, tolerance) << phi << ' ' << turns;
+    }
+  }
+}
+
+TEST(Motion, DirectionsAreUnitVectors) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 5; ++i) {
+    const Mechanism mechanism = test::mechanismOf(test::randomParameters(random));
+    for (double offset = -3.14; offset < 3.14; offset += 0.01) {
+      const LinkMotion l = linkMotion(mechanism.linkage(), CrankAngle::fromOffset(offset));
+      for (const Planar& direction : {l.phi, l.beta, l.psi, l.delta, Planar{l.cos_mu, l.sin_mu}}) {
+        EXPECT_NEAR(direction.re * direction.re + direction.im * direction.im, 1.0, 4e-15);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,121 @@
+#include "hammer_loads/simulation/machine_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+ParameterMap given(const std::string& yaml) {
+  std::vector<std::string> problems;
+  return parameterMap(YAML::Load(yaml), "test.yaml", problems).value_or(ParameterMap{});
+}
+
+bool mentions(const std::vector<std::string>& lines, const std::string& text) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const std::string& line) { return line.find(text) != std::string::npos; });
+}
+
+void expectSameDrive(const DriveSettings& a, const DriveSettings& b) {
+  EXPECT_EQ(a.motor_displacement, b.motor_displacement);
+  EXPECT_EQ(a.compliance, b.compliance);
+  EXPECT_EQ(a.leakage, b.leakage);
+  EXPECT_EQ(a.relief_pressure, b.relief_pressure);
+  EXPECT_EQ(a.relief_slope, b.relief_slope);
+  EXPECT_EQ(a.coulomb_friction, b.coulomb_friction);
+  EXPECT_EQ(a.viscous_friction, b.viscous_friction);
+  EXPECT_EQ(a.friction_speed, b.friction_speed);
+  EXPECT_EQ(a.inertia, b.inertia);
+  EXPECT_EQ(a.flow, b.flow);
+  EXPECT_EQ(a.flow_variation, b.flow_variation);
+  EXPECT_EQ(a.flow_variation_period, b.flow_variation_period);
+  EXPECT_EQ(a.ripple, b.ripple);
+  EXPECT_EQ(a.ripple_frequency, b.ripple_frequency);
+  EXPECT_EQ(a.start_time, b.start_time);
+  EXPECT_EQ(a.start_ramp, b.start_ramp);
+  EXPECT_EQ(a.stop_time, b.stop_time);
+  EXPECT_EQ(a.stop_ramp, b.stop_ramp);
+  EXPECT_EQ(a.bypass, b.bypass);
+}
+
+TEST(MachineParameters, ShippedFileIsTheWorkingMachine) {
+  const Checked<SimulatorSettings> loaded = loadSimulator(configDirectory(), {});
+  ASSERT_TRUE(loaded.value) << loaded.problems.front();
+  const MachineSettings file = loaded.value->machine, code = workingMo100();
+  expectSameDrive(file.drive, code.drive);
+  EXPECT_EQ(file.level, code.level);
+  EXPECT_EQ(file.crank.rate, code.crank.rate);
+  EXPECT_EQ(file.crank.jitter, code.crank.jitter);
+  EXPECT_EQ(file.crank.stamp_noise, code.crank.stamp_noise);
+  EXPECT_EQ(file.crank.counts, code.crank.counts);
+  EXPECT_EQ(file.crank.unwound, code.crank.unwound);
+  EXPECT_EQ(file.crank.speed, code.crank.speed);
+  EXPECT_EQ(file.crank.speed_noise, code.crank.speed_noise);
+  EXPECT_TRUE(file.crank.drop_outs.empty());
+  for (std::size_t i = 0; i < file.boom.size(); ++i) {
+    EXPECT_EQ(file.boom[i].mean, code.boom[i].mean);
+    EXPECT_EQ(file.boom[i].amplitude, code.boom[i].amplitude);
+    EXPECT_EQ(file.boom[i].period, code.boom[i].period);
+    EXPECT_EQ(file.boom[i].phase, code.boom[i].phase);
+  }
+  EXPECT_EQ(file.joint_rate, code.joint_rate);
+  EXPECT_EQ(file.gravity, code.gravity);
+  EXPECT_EQ(file.start_angle, code.start_angle);
+  EXPECT_EQ(file.duration, code.duration);
+  EXPECT_EQ(file.step, code.step);
+  EXPECT_EQ(file.seed, code.seed);
+  EXPECT_EQ(file.hammer.rocker_mass, code.hammer.rocker_mass);
+  EXPECT_EQ(file.hammer.rocker_inertia_about_pivot, code.hammer.rocker_inertia_about_pivot);
+  EXPECT_NEAR(file.hammer.rocker_com_angle, code.hammer.rocker_com_angle, 1e-15);
+  EXPECT_NEAR(file.hammer.striking_distance, code.hammer.striking_distance, 1e-4);
+}
+
+TEST(MachineParameters, GivenKeysReplaceShippedOnes) {
+  const Checked<SimulatorSettings> loaded = loadSimulator(
+      configDirectory(), given("{seed: 7, crank_rate_Hz: 100, drop_out_start_s: 3, drop_out_length_s: 0.1,"
+                               " measure_speed: false, publish_clock: true, clock_factor: 4}"));
+  ASSERT_TRUE(loaded.value) << loaded.problems.front();
+  EXPECT_EQ(loaded.value->machine.seed, 7U);
+  EXPECT_EQ(loaded.value->machine.crank.rate, 100.0);
+  EXPECT_FALSE(loaded.value->machine.crank.speed);
+  ASSERT_EQ(loaded.value->machine.crank.drop_outs.size(), 1U);
+  EXPECT_EQ(loaded.value->machine.crank.drop_outs[0].to, 3.1);
+  EXPECT_TRUE(loaded.value->play.publish_clock);
+  EXPECT_EQ(loaded.value->play.clock_factor, 4.0);
+}
+
+TEST(MachineParameters, ZeroDurationWorksForEver) {
+  const Checked<SimulatorSettings> loaded = loadSimulator(configDirectory(), given("duration_s: 0"));
+  ASSERT_TRUE(loaded.value);
+  EXPECT_TRUE(std::isinf(loaded.value->machine.duration));
+  SessionStream stream(loaded.value->machine);
+  Session session;
+  stream.advanceTo(4.0, session);
+  EXPECT_GT(session.blows.size(), 5U);
+}
+
+TEST(MachineParameters, EveryProblemIsReportedAtOnce) {
+  const Checked<SimulatorSettings> loaded =
+      loadSimulator(configDirectory(), given("{crank_rate_Hz: -5, level: rokcer, shaft_inertia_kg_m2: heavy, sed: 3,"
+                                             " stop_before_end_s: 30, start_angle_rad: 7}"));
+  EXPECT_FALSE(loaded.value);
+  for (const char* key : {"crank_rate_Hz: -5", "level: ", "shaft_inertia_kg_m2: ", "sed: ", "stop_before_end_s: 30",
+                          "start_angle_rad: 7"}) {
+    EXPECT_TRUE(mentions(loaded.problems, key)) << key;
+  }
+  EXPECT_EQ(loaded.problems.size(), 6U);
+}
+
+TEST(MachineParameters, OneHammerKeyNeedsThemAll) {
+  const Checked<SimulatorSettings> loaded = loadSimulator(configDirectory(), given("rocker_mass_kg: 40.0"));
+  EXPECT_FALSE(loaded.value);
+  EXPECT_TRUE(mentions(loaded.problems, "crank_length_m"));
+}
+
+}  // namespace
+}  // namespace hammer_loads::simulation

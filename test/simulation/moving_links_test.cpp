@@ -1,0 +1,154 @@
+#include "hammer_loads/simulation/moving_links.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/motion.h"
+#include "hammer_loads/linkage/shaft_load.h"
+#include "hammer_loads/simulation/machine_settings.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kPi = 3.141592653589793238;
+constexpr Gravity kTilted{0.8, -9.7};
+
+/// MO-100 with plausible masses of crank and rod.
+HammerParameters heavy() {
+  HammerParameters p = workingMo100().hammer;
+  p.crank_mass = 6.0;
+  p.crank_com_along = 0.01;
+  p.crank_com_across = 0.004;
+  p.crank_inertia_about_com = 0.02;
+  p.rod_mass = 9.0;
+  p.rod_com_along = 0.07;
+  p.rod_com_across = -0.003;
+  p.rod_inertia_about_com = 0.03;
+  return p;
+}
+
+MovingLinks make(const HammerParameters& p, Level level) { return {*Mechanism::make(p).value, level}; }
+
+/// Within the turn (0, 2 pi), and close to both of its ends.
+std::vector<TurnAngle> angles() {
+  std::vector<TurnAngle> all{{0.0, false}, {0.0, true}};
+  for (int i = 1; i < 72; ++i) {
+    const double phi = i * kPi / 36.0;
+    all.push_back(phi <= kPi ? TurnAngle{phi, false} : TurnAngle{phi - 2.0 * kPi, true});
+  }
+  for (double tiny = 1e-2; tiny > 1e-14; tiny *= 0.1) {
+    all.push_back({tiny, false});
+    all.push_back({-tiny, true});
+  }
+  return all;
+}
+
+TEST(MovingLinks, RodKeepsItsLength) {
+  const LinkLengths l = workingMo100().hammer.lengths;
+  const MovingLinks links = make(workingMo100().hammer, Level::kRocker);
+  for (const TurnAngle angle : angles()) {
+    const double psi = links.rockerAngle(angle).value;
+    const double xi = l.pivot_distance + l.rocker * std::cos(psi) - l.crank * std::cos(angle.offset);
+    const double eta = l.rocker * std::sin(psi) - l.crank * std::sin(angle.offset);
+    EXPECT_NEAR(std::hypot(xi, eta), l.rod, 1e-15) << angle.offset;
+    EXPECT_GE(psi, 0.0);
+  }
+}
+
+TEST(MovingLinks, AgreesWithClosedFormMotion) {
+  const HammerParameters p = workingMo100().hammer;
+  const Mechanism mechanism = *Mechanism::make(p).value;
+  const MovingLinks links(mechanism, Level::kRocker);
+  for (const TurnAngle angle : angles()) {
+    const Motion m =
+        motion(mechanism.linkage(), {angle.offset, angle.before_blow ? Side::kBeforeBlow : Side::kAfterBlow});
+    const Jet psi = links.rockerAngle(angle);
+    EXPECT_NEAR(std::sin(psi.value), m.sin_psi, 4e-15) << angle.offset;
+    EXPECT_NEAR(psi.first, m.u, 4e-14) << angle.offset;
+    EXPECT_NEAR(psi.second, m.du, 4e-13) << angle.offset;
+  }
+}
+
+TEST(MovingLinks, LoadAgreesWithHullWrench) {
+  const HammerParameters p = workingMo100().hammer;
+  const Mechanism mechanism = *Mechanism::make(p).value;
+  const MovingLinks links(mechanism, Level::kRocker);
+  for (const TurnAngle angle : angles()) {
+    const CrankAngle crank{angle.offset, angle.before_blow ? Side::kBeforeBlow : Side::kAfterBlow};
+    const HullWrench wrench = hullWrench(mechanism, Level::kRocker, {crank, 40.0, -600.0}, kTilted);
+    const Load load = links.load(links.at(angle), 40.0, -600.0, kTilted);
+    EXPECT_NEAR(load.force_x, wrench.force_x, 1e-8) << angle.offset;
+    EXPECT_NEAR(load.force_z, wrench.force_z, 1e-8) << angle.offset;
+    EXPECT_NEAR(load.torque_y, wrench.torque_y, 1e-9) << angle.offset;
+  }
+}
+
+TEST(MovingLinks, ShaftAgreesWithShaftLoad) {
+  const Mechanism mechanism = *Mechanism::make(workingMo100().hammer).value;
+  const MovingLinks links(mechanism, Level::kRocker);
+  for (const TurnAngle angle : angles()) {
+    const CrankAngle crank{angle.offset, angle.before_blow ? Side::kBeforeBlow : Side::kAfterBlow};
+    const ShaftLoad load = shaftLoadRocker(mechanism, motion(mechanism.linkage(), crank), kTilted);
+    const ShaftView view = links.shaft(links.at(angle), kTilted);
+    EXPECT_NEAR(view.inertia, load.inertia, 1e-12) << angle.offset;
+    EXPECT_NEAR(0.5 * view.inertia_slope, load.half_inertia_slope, 1e-11) << angle.offset;
+    EXPECT_NEAR(view.weight_torque, load.weight_torque, 1e-11) << angle.offset;
+  }
+}
+
+TEST(MovingLinks, SlopeIsTheInertiasDerivative) {
+  const MovingLinks links = make(heavy(), Level::kLinkage);
+  const double h = 1e-3;  // fourth order: error h^4/30 of the fifth derivative
+  for (double phi = 0.1; phi < 3.1; phi += 0.3) {
+    for (const bool before : {false, true}) {
+      const double offset = before ? -phi : phi;
+      const auto inertia = [&](double by) { return links.shaft(links.at({offset + by, before}), kTilted).inertia; };
+      const double slope = (8.0 * (inertia(h) - inertia(-h)) - (inertia(2.0 * h) - inertia(-2.0 * h))) / (12.0 * h);
+      EXPECT_NEAR(links.shaft(links.at({offset, before}), kTilted).inertia_slope, slope, 2e-8) << offset;
+    }
+  }
+}
+
+TEST(MovingLinks, LinkageWithoutCrankAndRodMassIsRocker) {
+  const MovingLinks rocker = make(workingMo100().hammer, Level::kRocker);
+  const MovingLinks linkage = make(workingMo100().hammer, Level::kLinkage);
+  for (const TurnAngle angle : angles()) {
+    const Load a = rocker.load(rocker.at(angle), 30.0, 200.0, kTilted);
+    const Load b = linkage.load(linkage.at(angle), 30.0, 200.0, kTilted);
+    EXPECT_EQ(a.force_x, b.force_x);
+    EXPECT_EQ(a.force_z, b.force_z);
+    EXPECT_EQ(a.torque_y, b.torque_y);
+  }
+}
+
+/// Lagrange's equation of the shaft must follow from Newton-Euler: the drive torque that the hull's load implies by
+/// power balance, for a hull at rest, is d/dt(kinetic) - weight power.
+TEST(MovingLinks, ShaftEquationFollowsFromEnergy) {
+  const MovingLinks links = make(heavy(), Level::kLinkage);
+  const double w = 25.0, e = 300.0, dt = 1e-6;
+  for (double phi = 0.3; phi < 3.0; phi += 0.37) {
+    const auto kinetic = [&](double t) {
+      const double speed = w + e * t;
+      return 0.5 * links.shaft(links.at({phi + w * t + 0.5 * e * t * t, false}), {}).inertia * speed * speed;
+    };
+    const ShaftView view = links.shaft(links.at({phi, false}), {});
+    EXPECT_NEAR((kinetic(dt) - kinetic(-dt)) / (2.0 * dt), (view.inertia * e + 0.5 * view.inertia_slope * w * w) * w,
+                2e-3);
+  }
+}
+
+TEST(MovingLinks, StrikeOfMo100AtConstantSpeed) {
+  const MovingLinks links = make(workingMo100().hammer, Level::kRocker);
+  const Strike strike = links.strike(31.416);
+  EXPECT_NEAR(-strike.rocker_speed_after / strike.rocker_speed_before, 0.1753, 5e-5);  // model.md 1
+  const double inertia = workingMo100().hammer.rocker_inertia_about_pivot;
+  const double swing = 0.5 * inertia * strike.rocker_speed_before * strike.rocker_speed_before;
+  EXPECT_NEAR(swing, 5476.0, 1.0);  // model.md 6
+  EXPECT_NEAR(strike.energy, swing * (1.0 - 0.1753 * 0.1753), 0.2);
+  EXPECT_NEAR(strike.tool_impulse, 534.60, 0.01);  // model.md 4
+}
+
+}  // namespace
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,175 @@
+#include "hammer_loads/simulation/session.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586232;
+
+MachineSettings shortRun() {
+  MachineSettings s = workingMo100();
+  s.duration = 4.0;
+  s.drive.start_time = 0.7;
+  s.drive.stop_time = 9.0;
+  return s;
+}
+
+void expectSame(const Session& a, const Session& b) {
+  ASSERT_EQ(a.crank.size(), b.crank.size());
+  ASSERT_EQ(a.joints.size(), b.joints.size());
+  for (std::size_t i = 0; i < a.crank.size(); ++i) {
+    ASSERT_EQ(a.crank[i].stamp, b.crank[i].stamp);
+    ASSERT_EQ(a.crank[i].angle, b.crank[i].angle);
+    ASSERT_EQ(a.crank[i].speed, b.crank[i].speed);
+  }
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    ASSERT_EQ(a.joints[i].stamp, b.joints[i].stamp);
+    ASSERT_EQ(a.joints[i].position, b.joints[i].position);
+  }
+}
+
+TEST(Session, SameSeedSameReadings) { expectSame(recordSession(shortRun()), recordSession(shortRun())); }
+
+TEST(Session, OtherSeedOtherNoiseSameMachine) {
+  MachineSettings other = shortRun();
+  other.seed = 2;
+  const Session a = recordSession(shortRun()), b = recordSession(other);
+  EXPECT_NE(a.crank[100].stamp, b.crank[100].stamp);
+  ASSERT_EQ(a.blows.size(), b.blows.size());
+  EXPECT_NEAR(a.blows.back().time, b.blows.back().time, 1e-6);
+}
+
+/// The grid of integration differs, so readings agree to its error, the noise exactly.
+TEST(Session, PiecesGiveTheWhole) {
+  const Session whole = recordSession(shortRun());
+  SessionStream stream(shortRun());
+  Session pieces;
+  for (int i = 1; i <= 800; ++i) stream.advanceTo(0.005 * i, pieces);
+  ASSERT_EQ(whole.crank.size(), pieces.crank.size());
+  ASSERT_EQ(whole.blows.size(), pieces.blows.size());
+  ASSERT_EQ(whole.joints.size(), pieces.joints.size());
+  for (std::size_t i = 0; i < whole.crank.size(); ++i) {
+    ASSERT_EQ(whole.crank[i].stamp, pieces.crank[i].stamp);
+    ASSERT_NEAR(*whole.crank[i].speed - whole.truth[i].speed, *pieces.crank[i].speed - pieces.truth[i].speed, 1e-13);
+    ASSERT_NEAR(whole.truth[i].speed, pieces.truth[i].speed, 1e-4);
+  }
+}
+
+TEST(Session, StampsAreTheTruthsInstants) {
+  const Session session = recordSession(shortRun());
+  ASSERT_EQ(session.crank.size(), session.truth.size());
+  EXPECT_NEAR(static_cast<double>(session.crank.size()), 4000.0, 1.0);
+  EXPECT_EQ(session.joints.size(), 200U);
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const std::int64_t since = session.crank[i].stamp - shortRun().start_stamp;
+    ASSERT_EQ(static_cast<double>(since) * 1e-9, session.truth[i].time);
+    ASSERT_TRUE(i == 0 || session.crank[i].stamp > session.crank[i - 1].stamp);
+  }
+}
+
+TEST(Session, AngleIsTheEncodersCount) {
+  const Session session = recordSession(shortRun());
+  const double count = kTwoPi / 4096;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const double below = session.truth[i].angle - session.crank[i].angle;
+    ASSERT_GE(below, -1e-12);
+    ASSERT_LE(below, count + 1e-12);
+    ASSERT_GE(session.crank[i].angle, 0.0);
+    ASSERT_LT(session.crank[i].angle, kTwoPi);
+    ASSERT_NEAR(std::remainder(session.crank[i].angle, count), 0.0, 1e-12);
+  }
+}
+
+TEST(Session, UnwoundAngleGrowsByTheTurns) {
+  MachineSettings s = shortRun();
+  s.crank.unwound = true;
+  const Session wrapped = recordSession(shortRun()), unwound = recordSession(s);
+  ASSERT_EQ(wrapped.crank.size(), unwound.crank.size());
+  for (std::size_t i = 0; i < wrapped.crank.size(); ++i) {
+    const double turns = static_cast<double>(unwound.truth[i].turn) * kTwoPi;
+    ASSERT_NEAR(unwound.crank[i].angle, wrapped.crank[i].angle + turns, 1e-9);
+  }
+  EXPECT_GT(unwound.crank.back().angle, 8.0 * kTwoPi);
+}
+
+TEST(Session, SpeedNoiseHasItsDeviation) {
+  const Session session = recordSession(shortRun());
+  double sum = 0.0, squares = 0.0, fourth = 0.0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const double error = *session.crank[i].speed - session.truth[i].speed;
+    sum += error;
+    squares += error * error;
+    fourth += error * error * error * error;
+  }
+  const double n = static_cast<double>(session.crank.size()), variance = squares / n;
+  EXPECT_NEAR(sum / n, 0.0, 4.0 * 0.15 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(variance), 0.15, 0.15 * 4.0 / std::sqrt(2.0 * n));
+  EXPECT_NEAR(fourth / n / (variance * variance), 3.0, 4.0 * std::sqrt(24.0 / n));  // Gaussian
+}
+
+TEST(Session, DropOutsTakeOnlyTheirSamples) {
+  MachineSettings s = shortRun();
+  s.crank.drop_outs = {{2.0, 2.1}, {3.0, 3.02}};
+  const Session whole = recordSession(shortRun()), gaps = recordSession(s);
+  EXPECT_NEAR(static_cast<double>(whole.crank.size() - gaps.crank.size()), 120.0, 1.0);
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < whole.crank.size(); ++i) {
+    const double t = whole.truth[i].time;
+    if ((t >= 2.0 && t < 2.1) || (t >= 3.0 && t < 3.02)) continue;
+    ASSERT_LT(j, gaps.crank.size());
+    ASSERT_EQ(whole.crank[i].stamp, gaps.crank[j].stamp);
+    ASSERT_NEAR(*whole.crank[i].speed, *gaps.crank[j].speed, 1e-4);
+    ++j;
+  }
+  EXPECT_EQ(j, gaps.crank.size());
+}
+
+TEST(Session, SpeedMayBeMissing) {
+  MachineSettings s = shortRun();
+  s.crank.speed = false;
+  const Session with = recordSession(shortRun()), without = recordSession(s);
+  ASSERT_EQ(with.crank.size(), without.crank.size());
+  for (std::size_t i = 0; i < with.crank.size(); ++i) {
+    ASSERT_FALSE(without.crank[i].speed);
+    ASSERT_EQ(with.crank[i].stamp, without.crank[i].stamp);
+    ASSERT_EQ(with.crank[i].angle, without.crank[i].angle);
+  }
+}
+
+TEST(Session, JointsGiveTheTruthsPitch) {
+  const MachineSettings s = shortRun();
+  const Session session = recordSession(s);
+  const WorkingMachine machine(s);
+  const double h = 1e-4;
+  double largest = 0.0;
+  for (const JointReading& joints : session.joints) {
+    const double t = static_cast<double>(joints.stamp - s.start_stamp) * 1e-9;
+    const double pitch = joints.position[1] + joints.position[2] + joints.position[3];
+    const double rate = joints.velocity[1] + joints.velocity[2] + joints.velocity[3];
+    ASSERT_NEAR(pitch, machine.hullPitch(t), 1e-8);
+    ASSERT_NEAR(rate, (machine.hullPitch(t + h) - machine.hullPitch(t - h)) / (2.0 * h), 1e-8);
+    largest = std::max(largest, std::abs(pitch));
+  }
+  EXPECT_GT(largest, 0.02);
+  EXPECT_LT(largest, 0.2);
+}
+
+TEST(Session, HoldsAtOtherRatesAndCounts) {
+  for (const double rate : {100.0, 5000.0}) {
+    MachineSettings s = shortRun();
+    s.crank.rate = rate;
+    s.crank.counts = 0;
+    s.crank.jitter = 0.5 / rate;  // far too much: cut at 0.45 periods, order is kept
+    const Session session = recordSession(s);
+    EXPECT_NEAR(static_cast<double>(session.crank.size()), 4.0 * rate, 1.0);
+    for (std::size_t i = 1; i < session.crank.size(); ++i)
+      ASSERT_GT(session.crank[i].stamp, session.crank[i - 1].stamp);
+    EXPECT_EQ(session.crank[10].angle, session.truth[10].angle);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads::simulation

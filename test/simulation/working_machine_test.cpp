@@ -1,0 +1,196 @@
+#include "hammer_loads/simulation/working_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kPi = 3.141592653589793238;
+
+/// Shorter than the standard session: 6 s, stop at 5 s.
+MachineSettings shortRun() {
+  MachineSettings s = workingMo100();
+  s.duration = 6.0;
+  s.drive.start_time = 0.9;
+  s.drive.stop_time = 5.0;
+  return s;
+}
+
+void expectBalanced(const EnergyAccount& e) {
+  EXPECT_NEAR(e.kinetic + e.blows + e.stops, e.motor - e.friction + e.weight, 1e-6);
+  EXPECT_NEAR(e.stored, e.supply - e.motor - e.valves, 1e-6);
+  EXPECT_GE(e.friction, 0.0);
+  EXPECT_GE(e.valves, 0.0);
+}
+
+TEST(WorkingMachine, SupplyWorkBecomesBlowsAndLosses) {
+  WorkingMachine machine(shortRun());
+  for (int i = 1; i <= 60; ++i) {
+    machine.advanceTo(0.1 * i);
+    expectBalanced(machine.energy());
+  }
+  double blows = 0.0;
+  for (const BlowTruth& blow : machine.takeBlows()) blows += blow.strike.energy;
+  EXPECT_NEAR(machine.energy().blows, blows, 1e-6);
+  EXPECT_GT(blows, 10e3);
+  EXPECT_GT(machine.energy().stops, 0.1);  // fell back onto the tool at first
+}
+
+TEST(WorkingMachine, WorksLikeTheMachineInTheField) {
+  WorkingMachine machine(workingMo100());
+  machine.advanceTo(18.0);
+  int count = 0;
+  for (const BlowTruth& blow : machine.takeBlows()) {
+    if (blow.time < 4.0) continue;
+    ++count;
+    EXPECT_TRUE(blow.whole_turn);
+    EXPECT_NEAR(1.0 / blow.turn_period, 4.7, 0.1);
+    EXPECT_NEAR(blow.strike.energy, 1010.0, 30.0);
+    EXPECT_NEAR(blow.crank_speed, 13.7, 0.2);
+    EXPECT_NEAR(blow.turn_peak_force_z, 8500.0, 200.0);
+    EXPECT_NEAR(blow.last_lobe_impulse_z, 224.5, 2.0);
+  }
+  EXPECT_NEAR(count, 66, 1);
+}
+
+TEST(WorkingMachine, FallsBackStartsWorksAndStops) {
+  WorkingMachine machine(workingMo100());
+  EXPECT_EQ(machine.truth().angle, 1.0);
+  machine.advanceTo(0.3);
+  EXPECT_LT(machine.truth().speed, -0.5);
+  machine.advanceTo(1.2);
+  EXPECT_EQ(machine.truth().angle, 0.0);
+  EXPECT_EQ(machine.truth().speed, 0.0);
+  EXPECT_EQ(machine.truth().acceleration, 0.0);
+  EXPECT_TRUE(machine.takeBlows().empty());
+  double fastest = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    machine.advanceTo(5.0 + 1e-3 * i);
+    fastest = std::max(fastest, machine.truth().speed);
+  }
+  EXPECT_NEAR(fastest, 53.0, 1.5);
+  machine.advanceTo(20.0);
+  EXPECT_LT(std::abs(machine.truth().speed), 0.05);
+  expectBalanced(machine.energy());
+}
+
+TEST(WorkingMachine, HalfTheStepGivesTheSame) {
+  MachineSettings fine = shortRun();
+  fine.step *= 0.5;
+  WorkingMachine coarse_machine(shortRun()), fine_machine(fine);
+  coarse_machine.advanceTo(4.5);
+  fine_machine.advanceTo(4.5);
+  const std::vector<BlowTruth> a = coarse_machine.takeBlows(), b = fine_machine.takeBlows();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_NEAR(a[i].time, b[i].time, 1e-7);
+    EXPECT_NEAR(a[i].crank_speed, b[i].crank_speed, 1e-6);
+    EXPECT_NEAR(a[i].turn_peak_force_z, b[i].turn_peak_force_z, 0.01);
+    EXPECT_NEAR(a[i].last_lobe_impulse_z, b[i].last_lobe_impulse_z, 1e-4);
+  }
+}
+
+/// Impulse of the wrench = -(change of the rocker's momentum) + weight x time: the integral must give it.
+TEST(WorkingMachine, TurnImpulseIsTheMomentumDifference) {
+  MachineSettings s = shortRun();
+  for (JointMotion& joint : s.boom) joint = {0.0, 0.0, 1.0, 0.0};
+  WorkingMachine machine(s);
+  machine.advanceTo(5.0);
+  const HammerParameters& p = s.hammer;
+  double after_previous = 0.0;
+  for (const BlowTruth& blow : machine.takeBlows()) {
+    const double before = p.rocker_mass * p.rocker_com_distance * blow.strike.rocker_speed_before;
+    if (blow.whole_turn) {
+      const double weight = -p.rocker_mass * s.gravity * blow.turn_period;
+      EXPECT_NEAR(blow.turn_impulse_z, weight - (before - after_previous), 1e-6);
+      EXPECT_NEAR(blow.turn_impulse_x, 0.0, 1e-6);  // psi = 0 at both ends
+    }
+    after_previous = p.rocker_mass * p.rocker_com_distance * blow.strike.rocker_speed_after;
+  }
+}
+
+TEST(WorkingMachine, AccelerationIsTheSpeedsDerivative) {
+  WorkingMachine machine(shortRun());
+  const double h = 1e-5;
+  for (double t = 2.0; t < 3.0; t += 0.0137) {
+    machine.advanceTo(t - h);
+    const CrankTruth before = machine.truth();
+    machine.advanceTo(t);
+    const CrankTruth now = machine.truth();
+    machine.advanceTo(t + h);
+    const CrankTruth after = machine.truth();
+    if (after.turn != before.turn) continue;  // the acceleration jumps at the blow
+    EXPECT_NEAR(now.acceleration, (after.speed - before.speed) / (2.0 * h), 0.05) << t;
+    EXPECT_NEAR(now.speed, (after.angle - before.angle) / (2.0 * h), 1e-4) << t;
+  }
+}
+
+TEST(WorkingMachine, BlowIsWhereTheAngleWraps) {
+  WorkingMachine machine(shortRun());
+  machine.advanceTo(4.0);
+  const std::vector<BlowTruth> blows = machine.takeBlows();
+  ASSERT_GT(blows.size(), 8U);
+  WorkingMachine again(shortRun());
+  for (const BlowTruth& blow : blows) {
+    again.advanceTo(blow.time - 1e-6);
+    EXPECT_NEAR(again.truth().angle, 2.0 * kPi - 1e-6 * blow.crank_speed, 1e-8);
+    again.advanceTo(blow.time + 1e-6);
+    EXPECT_NEAR(again.truth().angle, 1e-6 * blow.crank_speed, 1e-8);
+    EXPECT_NEAR(again.truth().speed, blow.crank_speed, 1e-3);
+  }
+}
+
+/// The rocker's centre of mass has a low point at the far end of its swing: without drive and friction the crank
+/// swings about it for ever.
+TEST(WorkingMachine, SwingsByWeightWithoutLoss) {
+  MachineSettings s = shortRun();
+  s.drive.motor_displacement = s.drive.coulomb_friction = s.drive.viscous_friction = 0.0;
+  for (JointMotion& joint : s.boom) joint = {0.0, 0.0, 1.0, 0.0};
+  s.start_angle = 3.6;
+  WorkingMachine machine(s);
+  double least = 10.0, greatest = 0.0;
+  int reversals = 0;
+  bool forward = true;
+  for (double t = 0.0; t < 20.0; t += 0.01) {
+    machine.advanceTo(t);
+    const CrankTruth truth = machine.truth();
+    least = std::min(least, truth.angle);
+    greatest = std::max(greatest, truth.angle);
+    if (truth.speed != 0.0 && (truth.speed > 0.0) != forward) {
+      forward = !forward;
+      ++reversals;
+    }
+  }
+  EXPECT_NEAR(least, 3.6, 1e-4);
+  EXPECT_GT(greatest, 4.0);
+  EXPECT_LT(greatest, 2.0 * kPi);
+  EXPECT_GT(reversals, 5);
+  EXPECT_NEAR(machine.energy().kinetic, machine.energy().weight, 1e-9);
+}
+
+TEST(WorkingMachine, HeavyLinksBalanceToo) {
+  MachineSettings s = shortRun();
+  s.level = Level::kLinkage;
+  s.hammer.rod_mass = 9.0;
+  s.hammer.rod_com_along = 0.07;
+  s.hammer.rod_inertia_about_com = 0.03;
+  s.hammer.crank_mass = 6.0;
+  s.hammer.crank_com_across = 0.004;
+  WorkingMachine machine(s);
+  machine.advanceTo(6.0);
+  expectBalanced(machine.energy());
+  EXPECT_GT(machine.takeBlows().size(), 12U);
+}
+
+TEST(WorkingMachine, ImpossibleLinkageIsRefused) {
+  MachineSettings s = shortRun();
+  s.hammer.lengths.rod = 0.160;
+  EXPECT_THROW(WorkingMachine{s}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hammer_loads::simulation
