@@ -9,11 +9,10 @@ namespace {
 constexpr double kMaxStepAngle = 0.05;  // [rad]; the transfer functions change over some 0.3 rad near the blow
 constexpr int kMaxSteps = 4096;         // bounds the work for absurd speeds; steps get longer beyond it
 
-/// Offset and h within one half turn, with their derivatives by (angle, h, torque, drive inertia) at the start.
+/// Offset and h within one half turn.
 struct Path {
   double offset{};
   double h{};
-  Eigen::Matrix<double, 2, 4> sensitivity;
 };
 
 struct Shaft {
@@ -23,61 +22,82 @@ struct Shaft {
   double drive_inertia;
 };
 
-/// Time derivative of a path.
-Path rate(const Shaft& shaft, const Path& at) noexcept {
-  const ShaftLoad load = shaft.model({at.offset, shaft.side});
-  const double total = shaft.drive_inertia + load.inertia;
-  const double inv = 1.0 / total;
-  const double inv_root = std::sqrt(inv);
-  const double speed = at.h * inv_root;
-  const double h_rate = (shaft.torque + load.weight_torque) * inv_root;
-  const double slope = load.half_inertia_slope * inv;
-  const double a00 = -speed * slope, a01 = inv_root, a10 = load.weight_torque_slope * inv_root - h_rate * slope;
-  Path derivative;
-  derivative.offset = speed;
-  derivative.h = h_rate;
-  derivative.sensitivity.row(0) = a00 * at.sensitivity.row(0) + a01 * at.sensitivity.row(1);
-  derivative.sensitivity.row(1) = a10 * at.sensitivity.row(0);
-  derivative.sensitivity(1, 2) += inv_root;
-  derivative.sensitivity(0, 3) -= 0.5 * speed * inv;
-  derivative.sensitivity(1, 3) -= 0.5 * h_rate * inv;
-  return derivative;
+/// Time derivative of a path where the load is known.
+Path rate(const Shaft& shaft, double h, const ShaftLoad& load) noexcept {
+  const double inv_root = 1.0 / std::sqrt(shaft.drive_inertia + load.inertia);
+  return {h * inv_root, (shaft.torque + load.weight_torque) * inv_root};
 }
 
 Path along(const Path& start, const Path& derivative, double dt) noexcept {
-  return {start.offset + dt * derivative.offset, start.h + dt * derivative.h,
-          start.sensitivity + dt * derivative.sensitivity};
+  return {start.offset + dt * derivative.offset, start.h + dt * derivative.h};
 }
 
-Path rungeKutta(const Shaft& shaft, const Path& start, double dt) noexcept {
-  const Path k1 = rate(shaft, start);
-  const Path k2 = rate(shaft, along(start, k1, 0.5 * dt));
-  const Path k3 = rate(shaft, along(start, k2, 0.5 * dt));
-  const Path k4 = rate(shaft, along(start, k3, dt));
+/// first: the derivative at the start.
+Path rungeKutta(const Shaft& shaft, const Path& start, const Path& first, double dt) noexcept {
+  const auto derivative = [&](const Path& at) { return rate(shaft, at.h, shaft.model({at.offset, shaft.side})); };
+  const Path k2 = derivative(along(start, first, 0.5 * dt));
+  const Path k3 = derivative(along(start, k2, 0.5 * dt));
+  const Path k4 = derivative(along(start, k3, dt));
   const double w = dt / 6.0;
-  return {start.offset + w * (k1.offset + 2.0 * (k2.offset + k3.offset) + k4.offset),
-          start.h + w * (k1.h + 2.0 * (k2.h + k3.h) + k4.h),
-          start.sensitivity +
-              w * (k1.sensitivity + 2.0 * (k2.sensitivity + k3.sensitivity) + k4.sensitivity)};
+  return {start.offset + w * (first.offset + 2.0 * (k2.offset + k3.offset) + k4.offset),
+          start.h + w * (first.h + 2.0 * (k2.h + k3.h) + k4.h)};
 }
 
-/// d(angle, h)/d(angle, speed, torque, drive inertia) as a full matrix.
-ShaftMatrix toH(const ShaftLoad& load, double drive_inertia, double speed) noexcept {
+/// Derivatives of h by (angle, speed, logarithm of drive inertia) at fixed others.
+struct Scaling {
+  double by_angle, by_speed, by_log_inertia;
+};
+
+Scaling scaling(const ShaftLoad& load, double drive_inertia, double speed) noexcept {
   const double root = std::sqrt(drive_inertia + load.inertia);
-  ShaftMatrix t = ShaftMatrix::Identity();
-  t(1, 0) = speed * load.half_inertia_slope / root;
-  t(1, 1) = root;
-  t(1, 3) = 0.5 * speed / root;
-  return t;
+  return {speed * load.half_inertia_slope / root, root, 0.5 * speed * drive_inertia / root};
 }
 
-ShaftMatrix fromH(const ShaftLoad& load, double drive_inertia, double speed) noexcept {
-  const double total = drive_inertia + load.inertia;
-  ShaftMatrix t = ShaftMatrix::Identity();
-  t(1, 0) = -speed * load.half_inertia_slope / total;
-  t(1, 1) = 1.0 / std::sqrt(total);
-  t(1, 3) = -0.5 * speed / total;
-  return t;
+/// Derivatives of the rates of (angle, h): by angle and h (`a11` is zero), by torque, by logarithm of drive inertia.
+struct Linearised {
+  double a00, a01, a10, h_by_torque, angle_by_inertia, h_by_inertia;
+};
+
+Linearised linearised(const Shaft& shaft, double speed, const ShaftLoad& load) noexcept {
+  const double inv = 1.0 / (shaft.drive_inertia + load.inertia);
+  const double inv_root = std::sqrt(inv);
+  const double h_rate = (shaft.torque + load.weight_torque) * inv_root;
+  const double slope = load.half_inertia_slope * inv, part = 0.5 * shaft.drive_inertia * inv;
+  return {-speed * slope, inv_root, load.weight_torque_slope * inv_root - h_rate * slope,
+          inv_root, -part * speed, -part * h_rate};
+}
+
+/// Transition of one smooth piece: second order in dt with the mean of both ends' linearisations.
+ShaftTransition transition(const Shaft& shaft, double dt, double speed, const ShaftLoad& load, double speed_end,
+                           const ShaftLoad& load_end) noexcept {
+  const Linearised p = linearised(shaft, speed, load), q = linearised(shaft, speed_end, load_end);
+  const double a = 0.5 * dt * (p.a00 + q.a00), b = 0.5 * dt * (p.a01 + q.a01), c = 0.5 * dt * (p.a10 + q.a10);
+  const double half_bc = 0.5 * b * c;
+  // Phi = 1 + A + A^2/2, Gamma = (1 + A/2) B with A = [a b; c 0]
+  const double phi00 = 1.0 + a + 0.5 * a * a + half_bc, phi01 = b + 0.5 * a * b, phi10 = c + 0.5 * a * c;
+  const double phi11 = 1.0 + half_bc;
+  const double torque_h = 0.5 * dt * (p.h_by_torque + q.h_by_torque);
+  const double inertia_angle = 0.5 * dt * (p.angle_by_inertia + q.angle_by_inertia);
+  const double inertia_h = 0.5 * dt * (p.h_by_inertia + q.h_by_inertia);
+  const Scaling from = scaling(load, shaft.drive_inertia, speed), to = scaling(load_end, shaft.drive_inertia, speed_end);
+  ShaftTransition f;
+  f(0, 0) = phi00 + phi01 * from.by_angle;
+  f(0, 1) = phi01 * from.by_speed;
+  f(0, 2) = 0.5 * b * torque_h;
+  f(0, 3) = phi01 * from.by_log_inertia + inertia_angle + 0.5 * (a * inertia_angle + b * inertia_h);
+  f(1, 0) = phi10 + phi11 * from.by_angle;
+  f(1, 1) = phi11 * from.by_speed;
+  f(1, 2) = torque_h;
+  f(1, 3) = phi11 * from.by_log_inertia + inertia_h + 0.5 * c * inertia_angle - to.by_log_inertia;
+  f.row(1) = (f.row(1) - to.by_angle * f.row(0)) / to.by_speed;
+  return f;
+}
+
+/// The transition `first`, then `second`.
+ShaftTransition chained(const ShaftTransition& second, const ShaftTransition& first) noexcept {
+  ShaftTransition both = second.leftCols<2>() * first;
+  both.rightCols<2>() += second.rightCols<2>();
+  return both;
 }
 
 bool passedBlow(Side side, double offset) noexcept {
@@ -85,60 +105,55 @@ bool passedBlow(Side side, double offset) noexcept {
 }
 
 /// Part of the step dt after which the path is at the blow: safeguarded secant on the smooth continuation.
-double timeToBlow(const Shaft& shaft, const Path& start, const Path& end, double dt) noexcept {
+double timeToBlow(const Shaft& shaft, const Path& start, const Path& first, const Path& end, double dt) noexcept {
   double low = 0.0, high = dt, f_low = start.offset, f_high = end.offset;
   double t = 0.0;
   for (int i = 0; i < 8; ++i) {
     t = low - f_low * (high - low) / (f_high - f_low);
-    const double f = rungeKutta(shaft, start, t).offset;
+    const double f = rungeKutta(shaft, start, first, t).offset;
     if (std::abs(f) < 1e-13) break;
-    (std::signbit(f) == std::signbit(f_low) ? low : high) = t;
-    (std::signbit(f) == std::signbit(f_low) ? f_low : f_high) = f;
+    const bool before = std::signbit(f) == std::signbit(f_low);
+    (before ? low : high) = t;
+    (before ? f_low : f_high) = f;
   }
   return t;
 }
 
-/// Speed and matrix of one smooth piece of the way.
 struct Piece {
   double used;
   bool at_blow;
 };
 
-Piece advancePiece(const ShaftModel& model, double dt, ShaftState& state, ShaftMatrix& total) noexcept {
-  const CrankAngle from = state.position.angle;
-  const Shaft shaft{model, from.side, state.torque, state.drive_inertia};
-  const ShaftLoad load = model(from);
-  Path start;
-  start.offset = from.offset;
-  start.h = std::sqrt(state.drive_inertia + load.inertia) * state.speed;
-  start.sensitivity.setZero();
-  start.sensitivity(0, 0) = start.sensitivity(1, 1) = 1.0;
-
-  Path end = rungeKutta(shaft, start, dt);
-  Piece piece{dt, passedBlow(from.side, end.offset)};
+/// One smooth piece of the way, ending at dt or at the blow.
+Piece advancePiece(const ShaftModel& model, double dt, ShaftState& state, ShaftLoad& load,
+                   ShaftTransition& total) noexcept {
+  const Shaft shaft{model, state.position.angle.side, state.torque, state.drive_inertia};
+  const Path start{state.position.angle.offset, std::sqrt(state.drive_inertia + load.inertia) * state.speed};
+  const Path first = rate(shaft, start.h, load);
+  Path end = rungeKutta(shaft, start, first, dt);
+  Piece piece{dt, passedBlow(shaft.side, end.offset)};
   if (piece.at_blow) {
-    piece.used = timeToBlow(shaft, start, end, dt);
-    end = rungeKutta(shaft, start, piece.used);
+    piece.used = timeToBlow(shaft, start, first, end, dt);
+    end = rungeKutta(shaft, start, first, piece.used);
     end.offset = 0.0;
   }
-  const CrankAngle to{end.offset, from.side};
-  const ShaftLoad load_end = model(to);
+  const ShaftLoad load_end = model({end.offset, shaft.side});
   const double speed_end = end.h / std::sqrt(state.drive_inertia + load_end.inertia);
-  ShaftMatrix step = ShaftMatrix::Identity();
-  step.topRows<2>() = end.sensitivity;
-  total = fromH(load_end, state.drive_inertia, speed_end) * step * toH(load, state.drive_inertia, state.speed) * total;
-  state.position.angle = to;
+  total = chained(transition(shaft, piece.used, state.speed, load, speed_end, load_end), total);
+  state.position.angle.offset = end.offset;
   state.position.renormalise();
   state.speed = speed_end;
+  load = load_end;
   return piece;
 }
 
 /// Passes the blow: position and speed are continuous, the acceleration jumps. A path that reaches the blow later by
 /// d(angle)/w keeps the old acceleration for so much longer (saltation).
-void passBlow(const ShaftModel& model, ShaftState& state, ShaftMatrix& total) noexcept {
-  const double before = acceleration(model(state.position.angle), state);
+void passBlow(const ShaftModel& model, ShaftState& state, ShaftLoad& load, ShaftTransition& total) noexcept {
+  const double before = acceleration(load, state);
   state.position.angle.side = state.position.angle.side == Side::kBeforeBlow ? Side::kAfterBlow : Side::kBeforeBlow;
-  const double after = acceleration(model(state.position.angle), state);
+  load = model(state.position.angle);
+  const double after = acceleration(load, state);
   constexpr double kSlow = 1.0;  // [rad/s]: a crank that creeps over the blow has no defined instant of passing it
   if (std::abs(state.speed) > kSlow) total.row(1) += ((after - before) / state.speed) * total.row(0);
 }
@@ -150,17 +165,16 @@ double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept {
          (state.drive_inertia + load.inertia);
 }
 
-ShaftMatrix advance(const ShaftModel& model, double dt, ShaftState& state) noexcept {
-  ShaftMatrix total = ShaftMatrix::Identity();
+ShaftTransition advance(const ShaftModel& model, double dt, ShaftState& state, ShaftLoad& load) noexcept {
+  ShaftTransition total = ShaftTransition::Identity();
   double left = dt;
   for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
     const double steps_needed = std::ceil(std::abs(left * state.speed) / kMaxStepAngle);
     const double steps = std::clamp(steps_needed, 1.0, static_cast<double>(kMaxSteps - i));
-    const Piece piece = advancePiece(model, left / steps, state, total);
+    const Piece piece = advancePiece(model, left / steps, state, load, total);
     left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
-    if (piece.at_blow) passBlow(model, state, total);
+    if (piece.at_blow) passBlow(model, state, load, total);
   }
-  total.col(3).head<3>() *= state.drive_inertia;
   return total;
 }
 

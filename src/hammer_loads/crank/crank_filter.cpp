@@ -43,6 +43,7 @@ void CrankFilter::anchor(double angle_innovation, const CrankSample& sample) noe
   now_.speed = sample.speed.value_or(now_.speed);
   has_speed_ = sample.speed.has_value();
   outlier_seen_ = false;
+  load_ = model_(now_.position.angle);
   covariance_.setZero();
   covariance_(kAngle, kAngle) = encoder_.variance() + square(settings_.angle_noise);
   covariance_(kSpeed, kSpeed) = has_speed_ ? speed_variance_ : square(settings_.max_speed);
@@ -51,23 +52,24 @@ void CrankFilter::anchor(double angle_innovation, const CrankSample& sample) noe
 }
 
 /// Advances state and covariance by dt with the process noise of the meantime.
-void CrankFilter::predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept {
+void CrankFilter::predict(double dt, ShaftState& state, ShaftLoad& load, ShaftMatrix& covariance) const noexcept {
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
   const double torque = square(settings_.torque_walk) * h, speed = square(settings_.speed_walk) * h;
   for (int i = 0; i < steps; ++i) {
-    const double b = 1.0 / (state.drive_inertia + model_(state.position.angle).inertia);
-    const ShaftMatrix f = advance(model_, h, state);
-    covariance = (f * covariance * f.transpose()).eval();
+    const double b = 1.0 / (state.drive_inertia + load.inertia);
+    const ShaftTransition f = advance(model_, h, state, load);
+    const ShaftTransition moved = f * covariance;
+    covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
+    covariance.topRightCorner<2, 2>() = moved.rightCols<2>();
     covariance(kAngle, kAngle) += speed * h * h / 3.0;
     covariance(kSpeed, kSpeed) += speed + torque * square(b * h) / 3.0;
     covariance(kTorque, kTorque) += torque;
     covariance(kInertia, kInertia) += square(settings_.inertia_walk) * h;
-    const double angle_speed = 0.5 * speed * h, speed_torque = 0.5 * torque * b * h;
-    covariance(kAngle, kSpeed) += angle_speed;
-    covariance(kSpeed, kAngle) += angle_speed;
-    covariance(kSpeed, kTorque) += speed_torque;
-    covariance(kTorque, kSpeed) += speed_torque;
+    covariance(kAngle, kSpeed) += 0.5 * speed * h;
+    covariance(kSpeed, kTorque) += 0.5 * torque * b * h;
+    covariance(kSpeed, kAngle) = covariance(kAngle, kSpeed);
+    covariance.bottomLeftCorner<2, 2>() = covariance.topRightCorner<2, 2>().transpose();
   }
 }
 
@@ -123,8 +125,9 @@ bool CrankFilter::isSound() const noexcept {
 
 Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   const ShaftState last = now_;
+  const ShaftLoad last_load = load_;
   const ShaftMatrix last_covariance = covariance_;
-  predict(dt, now_, covariance_);
+  predict(dt, now_, load_, covariance_);
 
   const double measured = CrankAngle::fromAngle(encoder_.angle(sample.angle)).offset;
   const double innovation = CrankAngle::wrapToPi(measured - now_.position.angle.offset);
@@ -136,6 +139,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   if (has_speed_ && std::abs(innovation) > kJump) {
     if (!outlier_seen_) {
       now_ = last;
+      load_ = last_load;
       covariance_ = last_covariance;
       outlier_seen_ = true;
       return Tracking::kOutlier;
@@ -155,34 +159,38 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
     anchor(CrankAngle::wrapToPi(measured - now_.position.angle.offset), sample);
     return Tracking::kRestarted;
   }
+  load_ = model_(now_.position.angle);
   const bool continued = has_speed_;
   has_speed_ = true;
   return continued ? Tracking::kContinued : Tracking::kRestarted;
 }
 
-CrankEstimate CrankFilter::estimateOf(const ShaftState& state) const noexcept {
-  return {state.position, state.speed, acceleration(model_(state.position.angle), state)};
+void CrankFilter::setGravity(Gravity gravity) noexcept {
+  model_.setGravity(gravity);
+  load_ = model_(now_.position.angle);
 }
 
 /// The way forward from the earlier sample and the way back from the later one, each trusted near its own end.
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   ShaftState state = before_, back = now_;
-  advance(model_, dt, state);
-  advance(model_, dt - step_, back);
+  ShaftLoad load = model_(state.position.angle), back_load = load_;
+  advance(model_, dt, state, load);
+  advance(model_, dt - step_, back, back_load);
   const double part = dt / step_;
   state.position.turn(part * difference(back.position, state.position));
   state.speed += part * (back.speed - state.speed);
   state.torque += part * (back.torque - state.torque);
   state.drive_inertia += part * (back.drive_inertia - state.drive_inertia);
-  return estimateOf(state);
+  return {state.position, state.speed, acceleration(model_(state.position.angle), state)};
 }
 
 Eigen::Matrix3d CrankFilter::covarianceBetween(double dt) const noexcept {
   if (dt >= step_) return motionCovariance();
   ShaftState state = before_;
+  ShaftLoad load = model_(state.position.angle);
   ShaftMatrix covariance = before_covariance_;
-  predict(dt, state, covariance);
+  predict(dt, state, load, covariance);
   return motionCovarianceOf(state, covariance);
 }
 

@@ -1,6 +1,8 @@
 /// Kalman filter on the mechanism: from noisy crank samples to angle, speed, acceleration, torque and drive inertia.
 #pragma once
 
+#include <cmath>
+
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
@@ -32,11 +34,13 @@ class CrankFilter final : public CrankTracker {
   /// drive_inertia: first guess [kg m2], > 0.
   CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings);
 
-  void setGravity(Gravity gravity) noexcept override { model_.setGravity(gravity); }
+  void setGravity(Gravity gravity) noexcept override;
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
-  CrankEstimate estimate() const noexcept override { return estimateOf(now_); }
+  CrankEstimate estimate() const noexcept override {
+    return {now_.position, now_.speed, acceleration(load_, now_)};
+  }
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt) const noexcept override;
   Eigen::Matrix3d motionCovariance() const noexcept override { return motionCovarianceOf(now_, covariance_); }
@@ -47,11 +51,11 @@ class CrankFilter final : public CrankTracker {
   const ShaftMatrix& covariance() const noexcept { return covariance_; }
   const ShaftModel& model() const noexcept { return model_; }
   const Encoder& encoder() const noexcept { return encoder_; }
+  double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
 
  private:
-  CrankEstimate estimateOf(const ShaftState& state) const noexcept;
   Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept;
-  void predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept;
+  void predict(double dt, ShaftState& state, ShaftLoad& load, ShaftMatrix& covariance) const noexcept;
   void correctAngle(double innovation) noexcept;
   void correctSpeed(double measured) noexcept;
   void correct(Eigen::Index row, double innovation, double variance) noexcept;
@@ -63,6 +67,7 @@ class CrankFilter final : public CrankTracker {
   CrankFilterSettings settings_;
   Encoder encoder_;
   ShaftState now_;          ///< at the last sample, corrected by it
+  ShaftLoad load_;          ///< there
   ShaftState before_;       ///< at the last but one sample
   double step_{};           ///< between these two [s]
   ShaftMatrix covariance_;         ///< at the last sample

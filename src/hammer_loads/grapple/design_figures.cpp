@@ -10,7 +10,6 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kPanels = 2048;
-constexpr double kDegree = 3.14159265358979323846 / 180.0;  // [rad]
 
 /// One point of the path; low and high are the extremes of y from the closed end up to it.
 struct PathPoint {
@@ -133,8 +132,8 @@ DesignFigures designFigures(const Grapple& grapple, double slider_closed, double
   f.scoop_height = open.im - f.line_height;
   f.deviation_first_80 = straight_end.deviation();
   f.deviation_whole = path.points().back().deviation();
-  f.straight_share_1 = path.straightShare(0.01);
-  f.straight_share_3 = path.straightShare(0.03);
+  f.straight_share_band = path.straightShare(0.5 * kClaimedDeviation);
+  f.straight_share_off = path.straightShare(kClaimedDeviation);
   addConditioning(grapple, f);
   return f;
 }
@@ -146,8 +145,8 @@ Checked<double> sliderForOpening(const Grapple& grapple, double opening) {
   GrappleMotion m = *grapple.at(low);
   const double x = 0.5 * opening, x_low = m.p.re, x_high = grapple.at(high)->p.re;
   if (!(x >= x_low && x <= x_high)) {
-    result.problems.push_back(format("opening: %.9g m, must lie between %.9g m (closed) and %.9g m (open)", opening,
-                                     2.0 * x_low, 2.0 * x_high));
+    result.problems.push_back(format("opening: %.9g m, must lie between %.9f m (closed) and %.9f m (open)", opening,
+                                     2.0 * x_low + 0.0, 2.0 * x_high));
     return result;
   }
   double slider = low + (high - low) * (x - x_low) / (x_high - x_low);
@@ -166,40 +165,6 @@ Checked<double> sliderForOpening(const Grapple& grapple, double opening) {
   }
   result.value = slider;
   return result;
-}
-
-std::string summaryText(const Grapple& grapple, const DesignFigures& f) {
-  std::string text;
-  const auto number = [&text](const char* key, double value) { text += format("%s: %.12g\n", key, value + 0.0); };
-  number("slider_closed_m", f.slider_closed);
-  number("slider_open_m", f.slider_open);
-  number("opening_m", f.opening);
-  number("jaw_travel_m", f.jaw_travel);
-  number("path_length_m", f.path_length);
-  number("scoop_height_m", f.scoop_height);
-  number("line_height_m", f.line_height);
-  number("straight_share_1pct", f.straight_share_1);
-  number("straight_share_3pct", f.straight_share_3);
-  number("deviation_first_80pct", f.deviation_first_80);
-  number("deviation_whole", f.deviation_whole);
-  for (const auto& [name, limit] : {std::pair<const char*, const SliderLimit&>{"lower", grapple.lowerLimit()},
-                                    {"upper", grapple.upperLimit()}}) {
-    text += format("%s_limit_m: %.12g\n%s_limit_kind: %s\n", name, limit.slider, name, nameOf(limit.kind));
-  }
-  number("least_det_J_m4", f.least_determinant.value);
-  number("least_det_J_slider_m", f.least_determinant.slider);
-  number("worst_condition", f.worst_condition.value);
-  number("worst_condition_slider_m", f.worst_condition.slider);
-  number("transmission_angle_least_deg", f.least_transmission.value / kDegree);
-  number("transmission_angle_most_deg", f.most_transmission.value / kDegree);
-  return text;
-}
-
-std::string motionCsvHeader() { return "s_m,x_m,y_m,dx_ds,dy_ds,d2x_ds2,d2y_ds2"; }
-
-std::string motionCsvLine(const GrappleMotion& m) {
-  return format("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", m.slider + 0.0, m.p.re, m.p.im, m.dp.re, m.dp.im, m.ddp.re,
-                m.ddp.im);
 }
 
 }  // namespace hammer_loads

@@ -13,6 +13,7 @@
 namespace hammer_loads {
 
 inline constexpr double kClaimedStraightShare = 0.8;  ///< Gebel 2017, conclusion
+inline constexpr double kClaimedDeviation = 0.03;     ///< the same
 
 /// A figure and the slider position [m] where it occurs.
 struct Extreme {
@@ -29,8 +30,8 @@ struct DesignFigures {
   double scoop_height{};                  ///< [m]; negative if the open end drops below the line
   double deviation_first_80{};            ///< of the first 80 % of L [-]
   double deviation_whole{};               ///< of all of L [-]
-  double straight_share_1{};              ///< for a tolerance of 1 % [-]
-  double straight_share_3{};              ///< for a tolerance of 3 %, the paper's [-]
+  double straight_share_band{};           ///< for a tolerance of 1.5 %: the paper's 3 % read as the width of a band [-]
+  double straight_share_off{};            ///< for a tolerance of 3 %: read as the distance from the band's middle [-]
   Extreme least_determinant;              ///< |det J| [m4]
   Extreme worst_condition;                ///< largest 2-norm condition number of J [-]
   Extreme least_transmission;             ///< angle O1-H-G [rad]
@@ -44,12 +45,5 @@ DesignFigures designFigures(const Grapple& grapple, double slider_closed, double
 /// Slider position [m] within the stroke at which the jaw edges are `opening` [m] apart (2 x_P), to some 1e-15. One of
 /// them if the path turns back. The problem names the reachable openings.
 Checked<double> sliderForOpening(const Grapple& grapple, double opening);
-
-/// `key: value` lines, 12 significant digits, with the limits of the working branch.
-std::string summaryText(const Grapple& grapple, const DesignFigures& figures);
-
-/// Names and units of the columns of one table row, and a row with 17 digits.
-std::string motionCsvHeader();
-std::string motionCsvLine(const GrappleMotion& motion);
 
 }  // namespace hammer_loads

@@ -18,7 +18,7 @@ struct Local {
   Eigen::Vector3d tangent() const { return df1.cross(df2); }  ///< its first component is det J
 };
 
-Local localAt(const LeverGroup& group, const Rocker& rocker, const Eigen::Vector3d& y) {
+Local localAt(const LeverGroup& group, const FirstRocker& rocker, const Eigen::Vector3d& y) {
   const Planar a = rocker.armAt(y[0]);
   const GroupPose p = group.pose(rocker.o1 + a, y[1], y[2]);
   Local l;
@@ -35,7 +35,7 @@ Local localAt(const LeverGroup& group, const Rocker& rocker, const Eigen::Vector
 }
 
 /// Newton in the plane normal to `normal` through y; false if it does not settle near its start.
-bool correct(const LeverGroup& group, const Rocker& rocker, const Eigen::Vector3d& normal, double most_move,
+bool correct(const LeverGroup& group, const FirstRocker& rocker, const Eigen::Vector3d& normal, double most_move,
              Eigen::Vector3d& y, Local& local) {
   const Eigen::Vector3d start = y;
   for (int i = 0; i < 12; ++i) {
@@ -51,7 +51,7 @@ bool correct(const LeverGroup& group, const Rocker& rocker, const Eigen::Vector3
 }
 
 /// Newton on (f1, f2, det J); keeps y if that leads away.
-void polishFold(const LeverGroup& group, const Rocker& rocker, Eigen::Vector3d& y) {
+void polishFold(const LeverGroup& group, const FirstRocker& rocker, Eigen::Vector3d& y) {
   const Eigen::Vector3d start = y;
   Eigen::Vector3d best = y;
   for (int i = 0; i < 4; ++i) {
@@ -66,7 +66,7 @@ void polishFold(const LeverGroup& group, const Rocker& rocker, Eigen::Vector3d& 
 
 class BranchWalk {
  public:
-  BranchWalk(const LeverGroup& group, const Rocker& rocker, const CurvePoint& start, int sense)
+  BranchWalk(const LeverGroup& group, const FirstRocker& rocker, const CurvePoint& start, int sense)
       : group_(group), rocker_(rocker), y_(start.theta1, start.theta2, start.theta5) {
     local_ = localAt(group, rocker, y_);
     sign_ = std::copysign(1.0, local_.closure.determinant);
@@ -130,7 +130,7 @@ class BranchWalk {
   BranchEnd end(BranchEnd::Kind kind) const { return {kind, {y_[0], y_[1], y_[2]}}; }
 
   const LeverGroup& group_;
-  const Rocker& rocker_;
+  const FirstRocker& rocker_;
   Eigen::Vector3d y_;
   Local local_;
   double sign_{}, orientation_{};
@@ -138,7 +138,7 @@ class BranchWalk {
 
 }  // namespace
 
-BranchEnd findBranchEnd(const LeverGroup& group, const Rocker& rocker, const CurvePoint& start, int sense,
+BranchEnd findBranchEnd(const LeverGroup& group, const FirstRocker& rocker, const CurvePoint& start, int sense,
                         double span) {
   return BranchWalk(group, rocker, start, sense).follow(span);
 }

@@ -12,8 +12,8 @@ struct CurvePoint {
   double theta1{}, theta2{}, theta5{};
 };
 
-/// Rocker 1: pin A = o1 + o1a e(theta1) [m].
-struct Rocker {
+/// FirstRocker H-O1-A: pin A = o1 + o1a e(theta1) [m].
+struct FirstRocker {
   Planar o1;
   double o1a{};
   Planar armAt(double theta1) const noexcept { return o1a * direction(theta1); }  ///< from O1 to A
@@ -33,6 +33,6 @@ struct BranchEnd {
 /// Follows the curve of poses by its arc length, which stays regular in a fold, from a pose on it with theta1 growing
 /// (sense = +1) or falling (-1) until det J changes sign or theta1 has moved by span [rad]. Angles of the fold to some
 /// 1e-15 divided by the curvature there (Newton on both closures and det J).
-BranchEnd findBranchEnd(const LeverGroup& group, const Rocker& rocker, const CurvePoint& start, int sense, double span);
+BranchEnd findBranchEnd(const LeverGroup& group, const FirstRocker& rocker, const CurvePoint& start, int sense, double span);
 
 }  // namespace hammer_loads

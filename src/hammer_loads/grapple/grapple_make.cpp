@@ -129,7 +129,7 @@ bool Grapple::findReference(std::vector<std::string>& problems) {
 }
 
 void Grapple::findLimits() {
-  const Rocker rocker{parameters_.o1, parameters_.o1a};
+  const FirstRocker rocker{parameters_.o1, parameters_.o1a};
   const CurvePoint start{drive_.theta1(reference_.slider), reference_.theta2, reference_.theta5};
   const std::array<BranchEnd, 2> ends = {findBranchEnd(group_, rocker, start, -1, 2.0 * kPi),
                                          findBranchEnd(group_, rocker, start, +1, 2.0 * kPi)};

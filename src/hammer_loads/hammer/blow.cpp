@@ -1,24 +1,77 @@
 #include "hammer_loads/hammer/blow.h"
 
+#include <cmath>
+
 #include "hammer_loads/linkage/motion.h"
 
 namespace hammer_loads {
+namespace {
 
-RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {
+double sign(double value) noexcept { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; }
+
+double squaredDistance(HullPoint p) noexcept { return p.x * p.x + p.z * p.z; }
+
+/// J* = J + m_n l_N^2 [kg m2].
+double strikingInertia(const StrikingRocker& rocker) noexcept {
+  return rocker.inertia_about_pivot + rocker.reduced_rod_mass * squaredDistance(rocker.rod_joint);
+}
+
+/// Tool impulse along z per w-(1 + R), where w- = -psi' before is counter-clockwise in (x, z) [kg m]; P1 (4).
+double impulsePerSpeed(const StrikingRocker& rocker, double w) noexcept {
+  const HullPoint k = rocker.striking_point;
+  return strikingInertia(rocker) / (-k.x + rocker.friction * std::abs(k.z) * sign(w));
+}
+
+}  // namespace
+
+StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept {
   const HammerParameters& p = mechanism.parameters();
-  RockerBlow blow;
-  blow.rocker_speed_before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * crank_speed;
-  blow.rocker_speed_after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * crank_speed;
-  blow.restitution = -blow.rocker_speed_after / blow.rocker_speed_before;
+  const double l2 = p.lengths.rod, l3 = p.lengths.rocker;
+  StrikingRocker rocker;
+  rocker.mass = p.rocker_mass;
+  rocker.inertia_about_pivot = p.rocker_inertia_about_pivot;
+  rocker.com = {-p.rocker_com_distance, 0.0};
+  rocker.rod_joint = {-l3 * mechanism.cosComAngle(), -l3 * mechanism.sinComAngle()};
+  rocker.reduced_rod_mass = level == Level::kLinkage ? mechanism.moments().rod_inertia / (l2 * l2) : 0.0;
+  rocker.striking_point = {-p.striking_distance, 0.0};
+  rocker.friction = p.striking_friction;
+  return rocker;
+}
 
-  const double inertia = p.rocker_inertia_about_pivot;
-  blow.energy = 0.5 * inertia *
-                (blow.rocker_speed_before * blow.rocker_speed_before - blow.rocker_speed_after * blow.rocker_speed_after);
-  // At psi = 0: K = (-lK, 0), S = (-ls, 0); angular momentum about D, then momentum.
-  const double jump = blow.rocker_speed_after - blow.rocker_speed_before;
-  blow.tool_impulse_z = inertia * jump / p.striking_distance;
-  blow.support_impulse_z = blow.tool_impulse_z - mechanism.rockerFirstMoment() * jump;
+RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
+  const HullPoint k = rocker.striking_point;
+  const double w = -speed_before;                  // w-, counter-clockwise in (x, z)
+  const double change = speed_after - speed_before;  // w-(1 + R)
+  const double mean = -0.5 * (speed_before + speed_after);
+  RockerBlow blow;
+  blow.rocker_speed_before = speed_before;
+  blow.rocker_speed_after = speed_after;
+  blow.restitution = -speed_after / speed_before;
+  blow.tool_impulse_z = impulsePerSpeed(rocker, w) * change;
+  blow.tool_impulse_x = rocker.friction * blow.tool_impulse_z * sign(w * k.z);
+  // Velocity of K is w (-z, x); an impulse works with the mean of the velocities before and after.
+  blow.energy = -blow.tool_impulse_z * k.x * mean;
+  blow.friction_work = blow.tool_impulse_x * k.z * mean;
+  // The hull gets the opposite of the support impulse on the rocker, P1 (8), (9).
+  const double moment_x = rocker.mass * rocker.com.x + rocker.reduced_rod_mass * rocker.rod_joint.x;
+  const double moment_z = rocker.mass * rocker.com.z + rocker.reduced_rod_mass * rocker.rod_joint.z;
+  blow.support_impulse_x = blow.tool_impulse_x - change * moment_z;
+  blow.support_impulse_z = blow.tool_impulse_z + change * moment_x;
   return blow;
+}
+
+HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) noexcept {
+  const double w = -speed_before;
+  const double per_speed_z = impulsePerSpeed(rocker, w);
+  const double per_speed_x = rocker.friction * per_speed_z * sign(w * rocker.striking_point.z);
+  return {-(per_speed_z + rocker.reduced_rod_mass * rocker.rod_joint.x) / rocker.mass,
+          (per_speed_x - rocker.reduced_rod_mass * rocker.rod_joint.z) / rocker.mass};
+}
+
+RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept {
+  const double before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * crank_speed;
+  const double after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * crank_speed;
+  return blowInSupport(strikingRocker(mechanism, level), before, after);
 }
 
 }  // namespace hammer_loads

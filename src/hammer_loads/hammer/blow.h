@@ -1,6 +1,7 @@
 /// The blow: what the rocker gives to the tool and to its support within no time.
 #pragma once
 
+#include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/mechanism.h"
 
 namespace hammer_loads {
@@ -10,15 +11,52 @@ struct RockerBlow {
   double rocker_speed_before{};  ///< [rad/s], < 0 for a real blow
   double rocker_speed_after{};   ///< [rad/s]
   double restitution{};          ///< R = -after/before [-]
-  double energy{};               ///< given to the tool [J]
+  double energy{};               ///< given to the tool along z: the links' loss less the work of friction [J]
+  double friction_work{};        ///< of the sliding at the striking face [J]
   double tool_impulse_x{};       ///< BY the tool ON the rocker [N s]
   double tool_impulse_z{};       ///< BY the tool ON the rocker [N s], > 0 for a real blow
   double support_impulse_x{};    ///< BY the rocker ON the hull at D [N s]
   double support_impulse_z{};    ///< BY the rocker ON the hull at D [N s]
 };
 
+/// A point in hammer_hull axes, from the pivot D [m].
+struct HullPoint {
+  double x{};
+  double z{};
+};
+
+/// A rocker at the instant of its blow; any shape, P1 fig. 1.
+struct StrikingRocker {
+  double mass{};                 ///< [kg], > 0
+  double inertia_about_pivot{};  ///< J about D [kg m2], > 0
+  HullPoint com;                 ///< C of P1
+  HullPoint rod_joint;           ///< N of P1, pin C of the linkage
+  double reduced_rod_mass{};     ///< m_n: rod mass reduced to the joint [kg], >= 0
+  HullPoint striking_point;      ///< K; x < 0 for a rocker that strikes with psi' < 0
+  double friction{};             ///< f between rocker and tool [-], >= 0
+};
+
+/// The mechanism's rocker at psi = 0: S and K on the line D - S along -x, joint C at the angle a.
+/// Level linkage: m_n = J2/l2^2 (J2: rod about B): crank and B keep their speed, C's jumps. Else the rod is massless.
+/// Neglects the impulse along rod and rocker that a rod's centre of mass off its line needs (A and D share it).
+StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept;
+
+/// P1 (1)-(9) for given rocker speeds psi' before and after [rad/s]; -x_K + f |z_K| sgn(w-) > 0 with w- = -psi' before.
+/// Friction opposes the sliding of K before the blow; a face that does not slide (z_K = 0) transmits no impulse along x.
+/// Deviates: P1 (3)-(5), (8), (9) lose the sign of sliding (model.md 5, 7); (10) is the limit z_K -> 0 from one side.
+RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
+
+/// Centre of mass for which the support gets no impulse [m]; only the sign of the speed before [rad/s] matters.
+/// Deviates: P1 (12), (13) print brackets and a sign wrong; (18) is the special case f = 0, z_K = 0, m_n = 0.
+HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) noexcept;
+
 /// Blow of a crank that passes the blow forward at a speed w > 0 [rad/s]: the crank keeps its speed, the rocker's jumps
-/// from u(2 pi -) w to u(0 +) w (model.md 1). P1 (4)-(9) with frictionless face and massless rod.
-RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept;
+/// from u(2 pi -) w to u(0 +) w (model.md 1).
+RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept;
+
+/// The same at level rocker: massless rod.
+inline RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {
+  return blowAtCrankSpeed(mechanism, Level::kRocker, crank_speed);
+}
 
 }  // namespace hammer_loads

@@ -39,6 +39,7 @@ class LoadsFlow {
   void reset() { pipeline_.reset(); }
 
   const Pipeline& pipeline() const { return pipeline_; }
+  const RunInfo& runInfoMessage() const { return run_info_; }
 
  private:
   void beginRun(const ros::Time& record_time);

@@ -1,0 +1,91 @@
+# shellcheck shell=bash disable=SC1091
+# Sourced by the scripts beside it: environment, missing packages, build. For bash with set -euo pipefail.
+
+root_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build_dir=${BUILD_DIR:-$root_dir/build}
+
+export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH  # the system's python3, for which the ROS modules are installed
+export ROS_HOSTNAME=localhost                    # a name that resolves on every machine
+unset ROS_IP
+
+fail() {
+  echo "error: $*" >&2
+  exit 1
+}
+
+asRoot() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo > /dev/null; then
+    sudo "$@"
+  else
+    fail "need root or sudo for: $*"
+  fi
+}
+
+# Noetic's own environment where it is installed, else Debian's ROS packages under /usr.
+useRos() {
+  package_list=$root_dir/scripts/packages.txt
+  if [ -e /opt/ros/noetic/setup.bash ]; then
+    package_list=$root_dir/scripts/packages_noetic.txt
+    set +u
+    . /opt/ros/noetic/setup.bash
+    set -u
+  fi
+}
+
+# Packages of the list in $1 that dpkg does not know as installed.
+missingPackages() {
+  local package
+  grep -v -E '^[[:space:]]*(#|$)' "$1" | while read -r package; do
+    dpkg-query -W -f '${db:Status-Status}' "$package" 2> /dev/null | grep -q '^installed$' || echo "$package"
+  done
+}
+
+installMissing() {
+  command -v dpkg-query > /dev/null || fail "needs Debian 12, or Ubuntu with ROS Noetic under /opt/ros"
+  local missing
+  missing=$(missingPackages "$package_list")
+  [ -z "$missing" ] && return 0
+  # shellcheck disable=SC2086  # one line
+  echo "installing:" $missing
+  asRoot env DEBIAN_FRONTEND=noninteractive apt-get update -q || fail "apt-get update"
+  # shellcheck disable=SC2086  # one word per package
+  asRoot env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing ||
+    fail "apt-get install failed; needed are the packages of $package_list"
+}
+
+# A bare chroot or container may lack /etc/hosts; ROS then cannot reach itself.
+checkLocalhost() {
+  getent hosts localhost > /dev/null && return 0
+  echo "/etc/hosts: adding 127.0.0.1 localhost"
+  asRoot sh -c 'echo "127.0.0.1 localhost" >> /etc/hosts'
+}
+
+# Targets of make as arguments; default all.
+build() {
+  cmake -S "$root_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release > "$build_dir.log" 2>&1 || {
+    cat "$build_dir.log" >&2
+    fail "cmake cannot configure $root_dir"
+  }
+  rm -f "$build_dir.log"
+  make -C "$build_dir" --no-print-directory -j"$(nproc)" "$@" || fail "build"
+}
+
+# This build's commands and messages.
+useBuild() {
+  set +u
+  . "$build_dir/devel/setup.bash"
+  set -u
+}
+
+# A port that no ROS master uses yet.
+freePort() {
+  python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])'
+}
+
+prepare() {
+  useRos
+  installMissing
+  checkLocalhost
+}

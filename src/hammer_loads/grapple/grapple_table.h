@@ -1,0 +1,30 @@
+/// What the command grapple_table prints: rows of the jaw edge's path, or its design figures.
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "hammer_loads/grapple/design_figures.h"
+
+namespace hammer_loads {
+
+struct TableRequest {
+  std::optional<double> from;     ///< slider position of the first row [m]; without it the closed one
+  std::optional<double> to;       ///< of the last row [m]; without it the open one
+  std::optional<double> opening;  ///< instead: one row, where the jaw edges are this far apart [m]
+  int steps{};                    ///< >= 1; equidistant, one row more than that
+  bool summary{};                 ///< figures of the path between from and to instead of rows
+};
+
+/// Nothing, or one line that says why; then nothing has been printed unless a row in the middle failed.
+std::optional<std::string> printTable(const Grapple& grapple, const TableRequest& request, std::ostream& out);
+
+/// Names and units of the columns.
+std::string motionCsvHeader();
+/// 17 significant digits.
+std::string motionCsvLine(const GrappleMotion& motion);
+/// `key: value` lines, 12 significant digits, with the limits of the working branch.
+std::string summaryText(const Grapple& grapple, const DesignFigures& figures);
+
+}  // namespace hammer_loads

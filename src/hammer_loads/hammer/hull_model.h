@@ -1,0 +1,68 @@
+/// Hull wrench at any level of the model behind one call, level pulse included.
+#pragma once
+
+#include "hammer_loads/hammer/hull_wrench.h"
+
+namespace hammer_loads {
+
+/// Half-sine of the machine's nominal turn: constant speed, without weight, where Fz grows with w^2 and its shape is a
+/// function of the crank angle alone. P0 (15), (16) with time times w as angle.
+struct NominalPulse {
+  double amplitude{};  ///< H/w^2 [kg m]
+  double frequency{};  ///< mu/w [-], half-sine periods per half turn
+  double length{};     ///< pi w/mu: crank angle from its start to the blow [rad]
+};
+
+/// A mechanism and a level; refers to the mechanism, which must outlive it.
+class HullModel {
+ public:
+  /// Level pulse works out the nominal turn at level rocker (some 0.2 ms).
+  HullModel(const Mechanism& mechanism, Level level);
+
+  const Mechanism& mechanism() const noexcept { return *mechanism_; }
+  Level level() const noexcept { return level_; }
+  const NominalPulse& nominalPulse() const noexcept { return pulse_; }  ///< zero except at level pulse
+
+ private:
+  const Mechanism* mechanism_;
+  Level level_;
+  NominalPulse pulse_;
+};
+
+/// Crank angle left until the next forward blow [rad], exact near it.
+inline double angleToBlow(CrankAngle angle) noexcept {
+  constexpr double kTwoPi = 6.283185307179586232;
+  return angle.side == Side::kBeforeBlow ? -angle.offset : kTwoPi - angle.offset;
+}
+
+/// Level pulse: half-sine in crank angle, amplitude in proportion to w^2, and the rocker's weight along the tool.
+/// Neglects: Fx and the moment; crank acceleration; Fz before the last lobe (MO-100: -3 % of H) and the lobe's skewness
+/// (MO-100: 6 % of H rms over the turn). Keeps H and the impulse S of the last lobe at constant speed exactly.
+inline HullWrench hullWrenchPulse(const Mechanism& mechanism, const NominalPulse& pulse, const CrankMotion& crank,
+                                  Gravity gravity) noexcept {
+  const double left = angleToBlow(crank.angle);
+  const double sine = left < pulse.length ? std::sin(pulse.frequency * left) : 0.0;
+  const double weight = mechanism.parameters().rocker_mass * gravity.z;
+  return {0.0, pulse.amplitude * crank.speed * crank.speed * sine + weight, 0.0};
+}
+
+/// Minus the half-sine's impulse since the turn's start [N s] at constant speed, so that momentum differences give it.
+inline LinkMomentum linkMomentumPulse(const NominalPulse& pulse, CrankAngle angle, double speed) noexcept {
+  const double left = angleToBlow(angle);
+  if (!(left < pulse.length)) return {};
+  return {0.0, -pulse.amplitude * speed / pulse.frequency * (1.0 + std::cos(pulse.frequency * left)), 0.0};
+}
+
+/// Hull wrench at the model's level. No allocation, no failure for finite input.
+inline HullWrench hullWrench(const HullModel& model, const CrankMotion& crank, Gravity gravity) noexcept {
+  if (model.level() == Level::kPulse) return hullWrenchPulse(model.mechanism(), model.nominalPulse(), crank, gravity);
+  return hullWrench(model.mechanism(), model.level(), crank, gravity);
+}
+
+/// Momentum whose change is minus the impulse of hullWrench without weight between blows.
+inline LinkMomentum linkMomentum(const HullModel& model, CrankAngle angle, double speed) noexcept {
+  if (model.level() == Level::kPulse) return linkMomentumPulse(model.nominalPulse(), angle, speed);
+  return linkMomentum(model.mechanism(), model.level(), angle, speed);
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,18 @@
+/// hammer_loads_node: the live node.
+#include <ros/init.h>
+#include <ros/spinner.h>
+
+#include <iostream>
+
+#include "hammer_loads/ros/hammer_loads_node.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "hammer_loads");
+  ros::NodeHandle node, private_node("~");
+  std::vector<std::string> problems;
+  const auto hammer_loads_node = hammer_loads::makeNode(node, private_node, problems);
+  for (const std::string& problem : problems) std::cerr << problem << '\n';
+  if (!hammer_loads_node) return 1;
+  ros::spin();
+  return 0;
+}

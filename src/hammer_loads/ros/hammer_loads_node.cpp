@@ -1,0 +1,105 @@
+#include "hammer_loads/ros/hammer_loads_node.h"
+
+#include <utility>
+
+#include "hammer_loads/ros/ros_parameters.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr std::uint32_t kInputQueue = 10000;  // ten seconds at 1 kHz: a stalled machine loses no sample
+constexpr std::uint32_t kOutputQueue = 1000;
+
+}  // namespace
+
+HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
+                                 std::unique_ptr<BagLog> log)
+    : flow_(settings, *this),
+      log_(std::move(log)),
+      hull_wrench_(private_node.advertise<geometry_msgs::WrenchStamped>("hull_wrench", kOutputQueue)),
+      mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kOutputQueue)),
+      blow_(private_node.advertise<Blow>("blow", kOutputQueue)),
+      pulse_(private_node.advertise<Pulse>("pulse", kOutputQueue)),
+      run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
+      diagnostics_(node, private_node, flow_.pipeline(), log_.get()) {
+  RunInfo info = flow_.runInfoMessage();
+  info.header.stamp = ros::Time::now();
+  run_info_.publish(info);
+  const auto no_delay = ros::TransportHints().tcpNoDelay();
+  // Joint states first: where both arrive on one topic, a sample's own pitch counts for it.
+  joint_states_ = node.subscribe("joint_states", kInputQueue, &HammerLoadsNode::onJointStates, this, no_delay);
+  crank_ = node.subscribe("crank", kInputQueue, &HammerLoadsNode::onCrank, this, no_delay);
+  one_topic_ = joint_states_.getTopic() == crank_.getTopic();
+}
+
+void HammerLoadsNode::onJointStates(const JointStateEvent& event) {
+  const ros::Time record_time = recordTime(event);
+  diagnostics_.jointStatesArrived();
+  if (log_) log_->write(joint_states_.getTopic(), record_time, *event.getConstMessage());
+  flow_.jointStates(*event.getConstMessage(), record_time);
+}
+
+void HammerLoadsNode::onCrank(const JointStateEvent& event) {
+  const ros::Time record_time = one_topic_ ? last_record_ : recordTime(event);
+  diagnostics_.crankArrived();
+  if (log_ && !one_topic_) log_->write(crank_.getTopic(), record_time, *event.getConstMessage());
+  flow_.crank(*event.getConstMessage(), record_time);
+}
+
+/// Arrival time, made strictly increasing so that a log read back in time order is in the order of arrival. Time that
+/// runs back (a bag that loops, a simulation that starts again) begins anew.
+ros::Time HammerLoadsNode::recordTime(const JointStateEvent& event) {
+  const ros::Time arrival = event.getReceiptTime();
+  if (arrival < last_arrival_) {
+    flow_.reset();
+    if (log_) log_->split();
+    last_record_ = ros::Time();
+  }
+  last_arrival_ = arrival;
+  last_record_ = BagLog::nextRecordTime(arrival, last_record_);
+  return last_record_;
+}
+
+template <typename Message>
+void HammerLoadsNode::send(const ros::Publisher& publisher, const Message& message, const ros::Time& record_time) {
+  if (publisher.getNumSubscribers() > 0) publisher.publish(message);
+  if (log_) log_->write(publisher.getTopic(), record_time, message);
+}
+
+void HammerLoadsNode::runInfo(const RunInfo& message, const ros::Time& record_time) {
+  if (log_) log_->writeLatched(run_info_.getTopic(), record_time, message);
+}
+
+void HammerLoadsNode::hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) {
+  send(hull_wrench_, message, record_time);
+}
+
+void HammerLoadsNode::mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+  send(mechanism_, message, record_time);
+}
+
+void HammerLoadsNode::blow(const Blow& message, const ros::Time& record_time) { send(blow_, message, record_time); }
+
+void HammerLoadsNode::pulse(const Pulse& message, const ros::Time& record_time) { send(pulse_, message, record_time); }
+
+bool HammerLoadsNode::wantsMechanism() const { return log_ || mechanism_.getNumSubscribers() > 0; }
+
+bool HammerLoadsNode::wantsTurns() const {
+  return log_ || blow_.getNumSubscribers() > 0 || pulse_.getNumSubscribers() > 0;
+}
+
+std::unique_ptr<HammerLoadsNode> makeNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                                          std::vector<std::string>& problems) {
+  const Checked<Settings> settings = loadPrivateParameters(private_node);
+  problems = settings.problems;
+  if (!settings.value) return nullptr;
+  std::unique_ptr<BagLog> log;
+  if (settings.value->log.enabled) {
+    log = std::make_unique<BagLog>(settings.value->log);
+    problems = log->start();
+    if (!problems.empty()) return nullptr;
+  }
+  return std::make_unique<HammerLoadsNode>(node, private_node, *settings.value, std::move(log));
+}
+
+}  // namespace hammer_loads

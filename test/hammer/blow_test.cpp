@@ -1,0 +1,192 @@
+#include "hammer_loads/hammer/blow.h"
+
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/shaft_load.h"
+#include "support/main.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+TEST(Blow, OfThePapersHammerAtNameplateSpeedGivesAThousandJoule) {
+  // model.md 1, 6: R = 0.1753; 13.6 rad/s for 1000 J; 31.416 rad/s brings 5476 J, of which the rebound keeps R^2.
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const RockerBlow nominal = blowAtCrankSpeed(mechanism, 31.416);
+  EXPECT_NEAR(nominal.restitution, 0.1753, 5e-5);
+  EXPECT_NEAR(0.5 * 0.737 * nominal.rocker_speed_before * nominal.rocker_speed_before, 5476.0, 1.0);
+  EXPECT_NEAR(nominal.energy, 5476.2 * (1.0 - 0.1753 * 0.1753), 1.0);
+  EXPECT_NEAR(blowAtCrankSpeed(mechanism, 13.64).energy, 1000.0, 2.0);
+  // The turn lifts the hull by what the blow returns (model.md 4).
+  EXPECT_NEAR(nominal.tool_impulse_z, 534.602622037, 1e-8);
+}
+
+TEST(Blow, LeavesThePercussionCentresSupportWithoutImpulse) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const RockerBlow blow = blowAtCrankSpeed(mechanism, 31.416);
+  EXPECT_NEAR(blow.support_impulse_x, 0.0, 1e-12);
+  EXPECT_NEAR(blow.support_impulse_z, 0.0, 1e-12 * blow.tool_impulse_z);
+}
+
+TEST(Blow, SupportTakesWhatMissesThePercussionCentre) {
+  HammerParameters p = test::mo100Parameters();
+  for (double distance : {0.15, 0.1975, 0.25}) {
+    p.striking_distance = distance;
+    const RockerBlow blow = blowAtCrankSpeed(test::mechanismOf(p), 13.6);
+    // On the hull: what the tool gives to the rocker less what the rocker's momentum takes up.
+    const double momentum = 35.2 * 0.106 * (blow.rocker_speed_after - blow.rocker_speed_before);
+    EXPECT_NEAR(blow.tool_impulse_z * distance, 0.737 * (blow.rocker_speed_after - blow.rocker_speed_before), 1e-12);
+    EXPECT_NEAR(blow.support_impulse_z, blow.tool_impulse_z - momentum, 1e-12);
+  }
+}
+
+TEST(Blow, RodGivesUpTheEnergyThatTheLinkageLoses) {
+  // Kinetic energy of the links with the crank's speed kept; crank and drive do not change theirs. What remains beside
+  // the rod's turning about B is the rod's centre carried along by B: its momentum times B's speed.
+  HammerParameters p = test::mo100LinkageParameters();
+  const Mechanism mechanism = test::mechanismOf(p);
+  const double w = 20.0;
+  const RockerBlow blow = blowAtCrankSpeed(mechanism, Level::kLinkage, w);
+  const auto energy = [&](Side side) { return 0.5 * w * w * shaftLoad(mechanism, Level::kLinkage, {0.0, side}, {}).inertia; };
+  const auto rod_rate = [&](Side side) { return w * linkMotion(mechanism.linkage(), {0.0, side}).v; };
+  const double lost = energy(Side::kBeforeBlow) - energy(Side::kAfterBlow);
+  const double turn = rod_rate(Side::kAfterBlow) - rod_rate(Side::kBeforeBlow);
+  const double rod_inertia = p.rod_inertia_about_com + p.rod_mass * (0.07 * 0.07 + 0.004 * 0.004);
+  // Work of the drive through pin B, where the rod's impulse is (m2 rho2 - J2/l2) times its change of rate.
+  const double impulse_b = (p.rod_mass * p.rod_com_along - rod_inertia / 0.150) * turn;
+  // Through C the rod's end moves with l1 w beside its turning; the reduced mass counts the joint's own speed.
+  const double work_b = impulse_b * 0.048 * w;
+  EXPECT_NEAR(lost + work_b, blow.energy, 1e-10 * blow.energy);
+}
+
+TEST(Blow, ReducedRodMassOnlyCountsAtLevelLinkage) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  EXPECT_EQ(strikingRocker(mechanism, Level::kRocker).reduced_rod_mass, 0.0);
+  EXPECT_NEAR(strikingRocker(mechanism, Level::kLinkage).reduced_rod_mass,
+              (0.012 + 4.5 * (0.07 * 0.07 + 0.004 * 0.004)) / (0.15 * 0.15), 1e-14);
+  EXPECT_GT(blowAtCrankSpeed(mechanism, Level::kLinkage, 13.6).tool_impulse_z,
+            blowAtCrankSpeed(mechanism, Level::kRocker, 13.6).tool_impulse_z);
+}
+
+TEST(Blow, JointLiesWhereTheLinkageHasIt) {
+  // Pin C at psi = 0 is at D + l3 along xi; model.md 1 maps (xi, eta) to (x, z) = -(c xi + s eta), -s xi + c eta.
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const StrikingRocker rocker = strikingRocker(mechanism, Level::kLinkage);
+  EXPECT_NEAR(rocker.rod_joint.x, -0.120 * std::cos(50.0 * test::kPi / 180.0), 1e-15);
+  EXPECT_NEAR(rocker.rod_joint.z, -0.120 * std::sin(50.0 * test::kPi / 180.0), 1e-15);
+  EXPECT_EQ(rocker.com.x, -0.106);
+  EXPECT_EQ(rocker.striking_point.z, 0.0);
+}
+
+/// Random rocker that strikes with its speed before: x_K opposite in sign to w- = -speed.
+StrikingRocker randomRocker(std::mt19937& random, double speed_before) {
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  StrikingRocker r;
+  r.mass = between(1.0, 50.0);
+  r.inertia_about_pivot = between(0.1, 3.0);
+  r.com = {between(-0.2, 0.2), between(-0.2, 0.2)};
+  r.rod_joint = {between(-0.2, 0.2), between(-0.2, 0.2)};
+  r.reduced_rod_mass = between(0.0, 10.0);
+  r.striking_point = {(speed_before < 0.0 ? -1.0 : 1.0) * between(0.1, 0.4), between(-0.05, 0.05)};
+  r.friction = between(0.0, 0.5);
+  return r;
+}
+
+TEST(Blow, BalancesMomentumAndEnergyForAnyRocker) {
+  std::mt19937 random(51);
+  std::uniform_real_distribution<> speed(5.0, 100.0), restitution(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double before = (i % 2 ? -1.0 : 1.0) * speed(random);
+    const double after = -restitution(random) * before;
+    const StrikingRocker r = randomRocker(random, before);
+    const RockerBlow b = blowInSupport(r, before, after);
+    // Speeds of points for psi' about +y: v = psi' (z, -x).
+    const double jump = after - before;
+    const double momentum_x = jump * (r.mass * r.com.z + r.reduced_rod_mass * r.rod_joint.z);
+    const double momentum_z = -jump * (r.mass * r.com.x + r.reduced_rod_mass * r.rod_joint.x);
+    const double size = std::abs(b.tool_impulse_z) + std::abs(momentum_x) + std::abs(momentum_z);
+    EXPECT_NEAR(momentum_x, b.tool_impulse_x - b.support_impulse_x, 1e-13 * size);
+    EXPECT_NEAR(momentum_z, b.tool_impulse_z - b.support_impulse_z, 1e-13 * size);
+    const double joint = r.rod_joint.x * r.rod_joint.x + r.rod_joint.z * r.rod_joint.z;
+    const double inertia = r.inertia_about_pivot + r.reduced_rod_mass * joint;
+    const HullPoint k = r.striking_point;
+    EXPECT_NEAR(inertia * jump, k.z * b.tool_impulse_x - k.x * b.tool_impulse_z, 1e-13 * inertia * std::abs(jump));
+    const double lost = 0.5 * inertia * (before * before - after * after);
+    EXPECT_NEAR(lost, b.energy + b.friction_work, 1e-13 * inertia * before * before);
+    EXPECT_GE(b.friction_work, 0.0);
+    EXPECT_NEAR(b.restitution, -after / before, 1e-15);
+  }
+}
+
+TEST(Blow, FrictionOpposesSlidingInAllFourQuadrants) {
+  for (double before : {-40.0, 40.0}) {
+    for (double z : {-0.03, 0.03}) {
+      StrikingRocker r;
+      r.mass = 35.2;
+      r.inertia_about_pivot = 0.737;
+      r.com = {-0.106, 0.0};
+      r.friction = 0.3;
+      r.striking_point = {before < 0.0 ? -0.2 : 0.2, z};
+      const RockerBlow b = blowInSupport(r, before, -0.2 * before);
+      const double sliding = before * z;  // x speed of K
+      EXPECT_GT(b.tool_impulse_z, 0.0) << "the tool pushes the rocker away from the rock";
+      EXPECT_LT(b.tool_impulse_x * sliding, 0.0);
+      EXPECT_NEAR(std::abs(b.tool_impulse_x), 0.3 * b.tool_impulse_z, 1e-12);
+      EXPECT_GT(b.friction_work, 0.0);
+      // Friction shares the work of stopping the rocker: less for the tool, and a smaller impulse.
+      r.friction = 0.0;
+      EXPECT_LT(b.tool_impulse_z, blowInSupport(r, before, -0.2 * before).tool_impulse_z);
+    }
+  }
+}
+
+TEST(Blow, HasThePapersSpecialCaseTen) {
+  // P1's w- is counter-clockwise in (x, y), so psi' = -w-. (10): com, joint and striking point on the x axis. |I0x| = w(1 + R) J*/|xK| f in the limit of a sliding face,
+  // I0y = -w(1 + R)(m xC + mn xN - J*/xK); the print of (10) lacks the minus that (9) has.
+  const double w = 50.0, restitution = 0.2, f = 0.15;
+  StrikingRocker r;
+  r.mass = 35.2;
+  r.inertia_about_pivot = 0.737;
+  r.com = {-0.1, 0.0};
+  r.rod_joint = {-0.12, 0.0};
+  r.reduced_rod_mass = 2.0;
+  r.friction = f;
+  const double inertia = 0.737 + 2.0 * 0.12 * 0.12;
+  const double factor = w * (1.0 + restitution);
+  for (double side : {-1.0, 1.0}) {
+    r.striking_point = {-0.2, side * 1e-12};
+    const RockerBlow b = blowInSupport(r, -w, restitution * w);
+    const double support_on_rocker_x = -b.support_impulse_x, support_on_rocker_z = -b.support_impulse_z;
+    EXPECT_NEAR(support_on_rocker_x, -side * factor * inertia / 0.2 * f, 1e-8);
+    EXPECT_NEAR(support_on_rocker_z, -factor * (35.2 * -0.1 + 2.0 * -0.12 - inertia / -0.2), 1e-8);
+  }
+  r.striking_point.z = 0.0;  // no sliding, no friction
+  EXPECT_EQ(blowInSupport(r, -w, restitution * w).tool_impulse_x, 0.0);
+}
+
+TEST(Blow, HasThePapersSpecialCaseEighteen) {
+  // (18): f = 0, yK = 0, massless rod: yC = 0, xC = J/(m xK).
+  StrikingRocker r;
+  r.mass = 35.2;
+  r.inertia_about_pivot = 0.737;
+  r.striking_point = {-0.2, 0.0};
+  const HullPoint ideal = idealCentreOfMass(r, -50.0);
+  EXPECT_DOUBLE_EQ(ideal.x, 0.737 / (35.2 * -0.2));
+  EXPECT_EQ(ideal.z, 0.0);
+}
+
+TEST(Blow, IdealCentreOfMassFreesTheSupportOfAnyRocker) {
+  std::mt19937 random(52);
+  for (int i = 0; i < 500; ++i) {
+    const double before = i % 2 ? -60.0 : 60.0;
+    StrikingRocker r = randomRocker(random, before);
+    r.com = idealCentreOfMass(r, before);
+    const RockerBlow b = blowInSupport(r, before, -0.3 * before);
+    EXPECT_NEAR(b.support_impulse_x, 0.0, 1e-12 * (b.tool_impulse_z + r.reduced_rod_mass * 60.0));
+    EXPECT_NEAR(b.support_impulse_z, 0.0, 1e-12 * (b.tool_impulse_z + r.reduced_rod_mass * 60.0));
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,109 @@
+#include "hammer_loads/hammer/hull_model.h"
+
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+
+#include "hammer_loads/hammer/pulse.h"
+#include "support/main.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::kPi;
+
+TEST(HullModel, GivesEachLevelItsOwnWrench) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  const CrankMotion crank{CrankAngle::fromAngle(5.9), 30.0, 200.0};
+  const Gravity gravity{1.0, -9.7};
+  for (Level level : {Level::kRocker, Level::kLinkage}) {
+    const HullModel model(mechanism, level);
+    const HullWrench a = hullWrench(model, crank, gravity), b = hullWrench(mechanism, level, crank, gravity);
+    EXPECT_EQ(a.force_x, b.force_x);
+    EXPECT_EQ(a.force_z, b.force_z);
+    EXPECT_EQ(a.torque_y, b.torque_y);
+    const LinkMomentum p = linkMomentum(model, crank.angle, 30.0), q = linkMomentum(mechanism, level, crank.angle, 30.0);
+    EXPECT_EQ(p.x, q.x);
+    EXPECT_EQ(p.about_d, q.about_d);
+  }
+}
+
+TEST(LevelPulse, HasThePapersFiguresAtThePapersSpeed) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kPulse);
+  const double w = test::kPaperSpeed;
+  EXPECT_NEAR(model.nominalPulse().amplitude * w * w, 40558.0395215, 1e-6);
+  EXPECT_NEAR(model.nominalPulse().frequency * w, 167.866273972, 1e-8);
+  EXPECT_NEAR((2.0 * kPi - model.nominalPulse().length) / w, 0.181284679239, 1e-11);
+}
+
+TEST(LevelPulse, KeepsPeakAndImpulseOfTheRockersLastLobeAtAnySpeed) {
+  using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
+  std::mt19937 random(71);
+  for (int i = 0; i < 6; ++i) {
+    const Mechanism mechanism = test::mechanismOf(i == 0 ? test::mo100Parameters() : test::randomParameters(random));
+    const HullModel model(mechanism, Level::kPulse);
+    for (double w : {0.5, 13.6, 200.0}) {
+      const HalfSinePulse rocker = pulseAtConstantSpeed(mechanism, Level::kRocker, w, {}).pulse;
+      const double length = model.nominalPulse().length;
+      const auto force = [&](double left) {
+        const CrankAngle angle = left < kPi ? CrankAngle{-left, Side::kBeforeBlow} : CrankAngle{2.0 * kPi - left, Side::kAfterBlow};
+        return hullWrench(model, {angle, w, 0.0}, {}).force_z;
+      };
+      EXPECT_NEAR(force(0.5 * length), rocker.amplitude, 1e-11 * rocker.amplitude);
+      const double impulse = Quadrature::integrate(force, 0.0, length, 8, 1e-12) / w;
+      EXPECT_NEAR(impulse, rocker.impulse, 1e-10 * rocker.impulse);
+    }
+  }
+}
+
+TEST(LevelPulse, EqualsTheRockerAlongTheToolAsTheSpeedVanishes) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kPulse);
+  const Gravity gravity{3.0, -9.3};
+  for (double phi = 0.1; phi < 6.28; phi += 0.1) {
+    const CrankMotion crank{CrankAngle::fromAngle(phi), 1e-9, 0.0};
+    EXPECT_NEAR(hullWrench(model, crank, gravity).force_z, hullWrench(mechanism, Level::kRocker, crank, gravity).force_z, 1e-10);
+  }
+}
+
+TEST(LevelPulse, NeglectsForceAcrossAndMoment) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kPulse);
+  const HullWrench wrench = hullWrench(model, {CrankAngle::fromAngle(6.0), 31.0, 500.0}, {4.0, -9.0});
+  EXPECT_EQ(wrench.force_x, 0.0);
+  EXPECT_EQ(wrench.torque_y, 0.0);
+  EXPECT_EQ(movingMass(mechanism, Level::kPulse), 35.2);
+}
+
+TEST(LevelPulse, DeviatesFromTheRockerByTheKnownResidual) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kPulse);
+  const HalfSinePulse rocker = pulseAtConstantSpeed(mechanism, Level::kRocker, 10.0, {}).pulse;
+  constexpr int kSteps = 20000;
+  double sum = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    const CrankMotion crank{CrankAngle::fromAngle(2.0 * kPi * (k + 0.5) / kSteps), 10.0, 0.0};
+    sum += std::pow(hullWrench(model, crank, {}).force_z - hullWrench(mechanism, Level::kRocker, crank, {}).force_z, 2);
+  }
+  EXPECT_NEAR(std::sqrt(sum / kSteps) / rocker.amplitude, rocker.half_sine_rms_error, 1e-6);
+  EXPECT_NEAR(rocker.half_sine_rms_error, 0.062, 0.001);
+}
+
+TEST(LevelPulse, MomentumDifferenceIsTheImpulse) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kPulse);
+  using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
+  const double w = 25.0;
+  for (const auto& [from, to] : {std::pair{-1.5, -0.1}, std::pair{-0.4, -0.2}, std::pair{-3.0, -1.0}, std::pair{-0.3, 0.0}}) {
+    const double impulse = Quadrature::integrate(
+        [&](double x) { return hullWrench(model, {{x, Side::kBeforeBlow}, w, 0.0}, {}).force_z; }, from, to, 15, 1e-12) / w;
+    const double change = linkMomentum(model, {to, Side::kBeforeBlow}, w).z - linkMomentum(model, {from, Side::kBeforeBlow}, w).z;
+    EXPECT_NEAR(impulse, -change, 1e-8) << from;
+  }
+  EXPECT_EQ(linkMomentum(model, {0.0, Side::kAfterBlow}, w).z, 0.0);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN
