@@ -3,6 +3,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include "hammer_loads/linkage/pin_forces.h"
+#include "hammer_loads/linkage/shaft_load.h"
 #include "support/csv.h"
 #include "support/main.h"
 #include "support/mo100.h"

@@ -7,7 +7,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMaxStepAngle = 0.05;  // [rad]; the transfer functions change over some 0.3 rad near the blow
-constexpr int kMaxSteps = 4096;         // bounds the work for absurd speeds; steps get longer beyond it
+constexpr int kMaxSteps = 1024;         // bounds the work for absurd speeds; steps get longer beyond it
 
 /// Offset and h within one half turn.
 struct Path {

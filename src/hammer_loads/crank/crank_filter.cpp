@@ -13,6 +13,8 @@ constexpr double kDoubtfulAngle = 0.3;   // [rad] predicted deviation from which
 constexpr double kJump = 0.5;            // [rad] innovation that no working machine makes between two samples
 constexpr double kNoiseStep = 2e-3;      // [s] step over which the process noise is spread
 constexpr double kMaxInertiaChange = 0.3;   // of the logarithm by one sample: beyond it the linearisation is worth nothing
+constexpr double kInertiaRange = 20.0;      // times the first guess either way: no drawing is further off
+constexpr double kSoundSpeeds = 2.0;        // times the largest plausible speed: more is a diverged filter
 constexpr double kSpeedNoiseGain = 0.005;   // per sample: the noise of measured speeds is learned within some 200
 constexpr double kNearCounts = 4.0;         // counts from the blow within which the encoder decides its side
 constexpr double kLeastSpeedNoise = 0.3;    // of the first guess
@@ -22,7 +24,7 @@ double square(double x) noexcept { return x * x; }
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
-    : model_(model), settings_(settings), encoder_(settings.angle_resolution),
+    : model_(model), settings_(settings), first_guess_(drive_inertia), encoder_(settings.angle_resolution),
       speed_variance_(square(settings.speed_noise)) {
   now_.drive_inertia = drive_inertia;
   covariance_.setZero();
@@ -33,13 +35,14 @@ void CrankFilter::start(const CrankSample& sample) noexcept {
   now_.position = {0, CrankAngle::fromAngle(encoder_.angle(sample.angle))};
   now_.speed = 0.0;
   now_.torque = 0.0;
-  anchor(0.0, sample);
+  anchor(now_.position.angle.offset, sample);
 }
 
-/// Takes angle and speed from the sample alone; the torque is in doubt, the inertia stays as identified.
-void CrankFilter::anchor(double angle_innovation, const CrankSample& sample) noexcept {
+/// Takes angle and speed from the sample alone; the torque is in doubt, the inertia stays as identified. The whole turns
+/// are those nearest to now_.
+void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
   const double inertia_variance = covariance_(kInertia, kInertia);  // NaN-proof by min: never above the first guess
-  now_.position.turn(angle_innovation);
+  now_.position.turn(CrankAngle::wrapToPi(measured - now_.position.angle.offset));
   now_.speed = sample.speed.value_or(now_.speed);
   has_speed_ = sample.speed.has_value();
   outlier_seen_ = false;
@@ -56,7 +59,7 @@ void CrankFilter::predict(double dt, ShaftState& state, ShaftLoad& load, ShaftMa
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
   const double torque = square(settings_.torque_walk) * h, speed = square(settings_.speed_walk) * h;
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < steps && std::abs(state.speed) < kSoundSpeeds * settings_.max_speed; ++i) {
     const double b = 1.0 / (state.drive_inertia + load.inertia);
     const ShaftTransition f = advance(model_, h, state, load);
     const ShaftTransition moved = f * covariance;
@@ -81,7 +84,8 @@ void CrankFilter::correct(Eigen::Index row, double innovation, double variance) 
   now_.position.turn(change[kAngle]);
   now_.speed += change[kSpeed];
   now_.torque += change[kTorque];
-  now_.drive_inertia *= std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
+  const double inertia = now_.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
+  now_.drive_inertia = std::clamp(inertia, first_guess_ / kInertiaRange, first_guess_ * kInertiaRange);
   covariance_.noalias() -= column * (column.transpose() / total);
 }
 
@@ -119,8 +123,8 @@ void CrankFilter::respectCount(double reading) noexcept {
 }
 
 bool CrankFilter::isSound() const noexcept {
-  return std::isfinite(now_.position.angle.offset) && std::isfinite(now_.speed) && std::isfinite(now_.torque) &&
-         std::isfinite(now_.drive_inertia) && covariance_.allFinite() && (covariance_.diagonal().array() >= 0.0).all();
+  return std::isfinite(now_.position.angle.offset) && std::abs(now_.speed) < kSoundSpeeds * settings_.max_speed &&
+         std::isfinite(now_.torque) && std::isfinite(now_.drive_inertia) && covariance_.allFinite() && (covariance_.diagonal().array() >= 0.0).all();
 }
 
 Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
@@ -133,7 +137,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   const double innovation = CrankAngle::wrapToPi(measured - now_.position.angle.offset);
   const double deviation = std::sqrt(covariance_(kAngle, kAngle));
   if (!(deviation < kDoubtfulAngle) && has_speed_) {
-    anchor(innovation, sample);
+    if (!isSound()) now_ = last;
+    anchor(measured, sample);
     return Tracking::kRestarted;
   }
   if (has_speed_ && std::abs(innovation) > kJump) {
@@ -144,7 +149,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
       outlier_seen_ = true;
       return Tracking::kOutlier;
     }
-    anchor(innovation, sample);
+    anchor(measured, sample);
     return Tracking::kRestarted;
   }
   before_ = last;
@@ -156,7 +161,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   respectCount(sample.angle);
   if (!isSound()) {
     now_ = last;
-    anchor(CrankAngle::wrapToPi(measured - now_.position.angle.offset), sample);
+    anchor(measured, sample);
     return Tracking::kRestarted;
   }
   load_ = model_(now_.position.angle);

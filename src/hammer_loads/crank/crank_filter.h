@@ -61,10 +61,11 @@ class CrankFilter final : public CrankTracker {
   void correct(Eigen::Index row, double innovation, double variance) noexcept;
   void respectCount(double reading) noexcept;
   bool isSound() const noexcept;
-  void anchor(double angle_innovation, const CrankSample& sample) noexcept;
+  void anchor(double measured, const CrankSample& sample) noexcept;
 
   ShaftModel model_;
   CrankFilterSettings settings_;
+  double first_guess_;      ///< of the drive inertia [kg m2]
   Encoder encoder_;
   ShaftState now_;          ///< at the last sample, corrected by it
   ShaftLoad load_;          ///< there

@@ -57,7 +57,7 @@ GrappleMotion Grapple::motionOf(double slider, const DriveMotion& drive, const G
   m.c = m.a + pose.c;
   m.d = pose.d;
   m.e = pose.e;
-  m.p = group_.edge(m.a, pose);
+  m.p = group_.edge(m.a, pose, closure);
   m.dp = t1 * r.dp;
   m.ddp = tt * r.ddp + t2 * r.dp;
   m.theta2 = pose.theta2;

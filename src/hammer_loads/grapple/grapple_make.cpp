@@ -111,13 +111,18 @@ bool Grapple::findReference(std::vector<std::string>& problems) {
   const Planar a = p.o1 + arm(*drive);
   const Branches all = enumerateBranches(group_, a);
   std::string found;
+  double nearest = kReferenceTolerance;
+  std::optional<GroupPose> reference;
   for (int i = 0; i < all.count; ++i) {
     const Branches::Branch& branch = all.branch[static_cast<std::size_t>(i)];
     found += format(" (%.6g, %.6g)", branch.theta2, branch.theta5);
-    if (apart(branch.theta2, p.reference_ab) > kReferenceTolerance) continue;
-    if (apart(branch.theta5, p.reference_od) > kReferenceTolerance) continue;
-    const GroupPose pose = group_.pose(a, branch.theta2, branch.theta5);
-    reference_ = motionOf(p.reference_slider, *drive, pose, group_.closure(pose));
+    const double distance = std::max(apart(branch.theta2, p.reference_ab), apart(branch.theta5, p.reference_od));
+    if (!(distance <= nearest)) continue;
+    nearest = distance;
+    reference = group_.pose(a, branch.theta2, branch.theta5);
+  }
+  if (reference) {
+    reference_ = motionOf(p.reference_slider, *drive, *reference, group_.closure(*reference));
     return true;
   }
   const char* lead = all.self_motion ? "; and the links can move with the slider held" : "";

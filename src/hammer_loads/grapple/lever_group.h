@@ -64,8 +64,11 @@ class LeverGroup {
   /// o1a = from O1 to A. Precondition: det J != 0.
   GroupRates rates(Planar o1a, const GroupPose& pose, const Closure& closure) const noexcept;
 
-  /// Jaw edge P [m].
-  Planar edge(Planar a, const GroupPose& pose) const noexcept { return a + pose.b + pose.u * shape_.p_by_bd; }
+  /// Jaw edge P [m]. A short side BD would magnify the rounding left in its length: f1 takes that out.
+  Planar edge(Planar a, const GroupPose& pose, const Closure& closure) const noexcept {
+    const double shortening = 1.0 - closure.f1 / (shape_.bd * shape_.bd);
+    return a + pose.b + shortening * (pose.u * shape_.p_by_bd);
+  }
 
   double closureRounding() const noexcept { return closure_rounding_; }  ///< [m2]
 

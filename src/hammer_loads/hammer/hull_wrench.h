@@ -26,7 +26,7 @@ struct LinkMomentum {
 };
 
 /// Weight of the moving links as a wrench on the hull. Level rocker: the rocker's alone.
-inline HullWrench weightWrenchRocker(const Mechanism& mechanism, const Motion& m, Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE HullWrench weightWrenchRocker(const Mechanism& mechanism, const Motion& m, Gravity gravity) noexcept {
   const double mass = mechanism.parameters().rocker_mass;
   return {mass * gravity.x, mass * gravity.z,
           mechanism.rockerFirstMoment() * (m.sin_psi * gravity.x + m.cos_psi * gravity.z)};
@@ -35,10 +35,10 @@ inline HullWrench weightWrenchRocker(const Mechanism& mechanism, const Motion& m
 /// Level rocker: mass and inertia of the rocker, crank and rod massless (P0). Neglects: inertia and weight of crank and
 /// rod, friction, motion of the hull. Momentum theorem: no pin force is formed, so nothing is singular at the blow.
 /// Deviates: P0 (1) prints P_tau and M with the sign of the acceleration; inertia opposes it (model.md 7).
-inline HullWrench hullWrenchRocker(const Mechanism& mechanism, const Motion& m, const CrankMotion& crank,
+HAMMER_LOADS_INLINE HullWrench hullWrenchRocker(const Mechanism& mechanism, const Motion& m, const CrankMotion& crank,
                                    Gravity gravity) noexcept {
   const double psi_rate = m.u * crank.speed;
-  const double psi_accel = m.du * crank.speed * crank.speed + m.u * crank.acceleration;
+  const double psi_accel = m.du_over_s * (m.sin_half * crank.speed * crank.speed) + m.u * crank.acceleration;
   const double normal = psi_rate * psi_rate;
   const double first_moment = mechanism.rockerFirstMoment();
   HullWrench wrench = weightWrenchRocker(mechanism, m, gravity);
@@ -48,7 +48,7 @@ inline HullWrench hullWrenchRocker(const Mechanism& mechanism, const Motion& m, 
   return wrench;
 }
 
-inline LinkMomentum linkMomentumRocker(const Mechanism& mechanism, const Motion& m, double speed) noexcept {
+HAMMER_LOADS_INLINE LinkMomentum linkMomentumRocker(const Mechanism& mechanism, const Motion& m, double speed) noexcept {
   const double psi_rate = m.u * speed;
   const double size = mechanism.rockerFirstMoment() * psi_rate;
   return {size * m.sin_psi, size * m.cos_psi, mechanism.parameters().rocker_inertia_about_pivot * psi_rate};
@@ -57,26 +57,27 @@ inline LinkMomentum linkMomentumRocker(const Mechanism& mechanism, const Motion&
 /// Level linkage: mass, centre of mass, inertia and weight of crank, rod and rocker. Neglects: friction, motion of the
 /// hull, inertia of motor and flywheel. Momentum theorem in the frame turned by a, where hull x = -re and z = im:
 /// sum m a = C1 e^(i phi)(i e - w^2) + C2 e^(i beta)(...) + C3 e^(i psi)(...); see LinkMoments.
-inline HullWrench hullWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& crank,
+HAMMER_LOADS_INLINE HullWrench hullWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
                                     Gravity gravity) noexcept {
   const LinkMoments& k = mechanism.moments();
-  const LinkAccelerations q = linkAccelerations(l, crank.speed, crank.acceleration);
-  const Planar crank_rod = k.crank * q.crank_turned + k.rod * q.rod_turned;
-  const Planar all = crank_rod + k.rocker * q.rocker_turned;
-  const Planar first_moment = k.fixed + k.crank * l.phi + k.rod * l.beta + k.rocker * l.psi;
+  const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
+  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, rocker = k.rocker * l.psi;
+  const Planar crank_rod = crank * q.crank + rod * q.rod;
+  const Planar all = crank_rod + rocker * q.rocker;
+  const Planar first_moment = k.fixed + crank + rod + rocker;
   const Planar coupling = linkCoupling(mechanism, l);
   // d/dt of the angular momentum about D; A stands at -l0 in the mechanism frame.
   const double momentum_rate =
-      k.crank_inertia * crank.acceleration + k.rod_inertia * q.rod.im +
+      k.crank_inertia * c.acceleration + k.rod_inertia * q.rod.im +
       mechanism.parameters().rocker_inertia_about_pivot * q.rocker.im -
       mechanism.parameters().lengths.pivot_distance *
           (mechanism.cosComAngle() * crank_rod.im + mechanism.sinComAngle() * crank_rod.re) +
-      coupling.re * (q.rod.im + crank.acceleration) + coupling.im * (q.rod.re - q.crank.re);
+      coupling.re * (q.rod.im + c.acceleration) + coupling.im * (q.rod.re - q.crank.re);
   return {k.mass * gravity.x + all.re, k.mass * gravity.z - all.im,
           first_moment.re * gravity.z + first_moment.im * gravity.x - momentum_rate};
 }
 
-inline LinkMomentum linkMomentumLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed) noexcept {
+HAMMER_LOADS_INLINE LinkMomentum linkMomentumLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed) noexcept {
   const LinkMoments& k = mechanism.moments();
   const double rod_rate = l.v * speed, rocker_rate = l.rocker.u * speed;
   const Planar crank_rod = speed * (k.crank * l.phi) + rod_rate * (k.rod * l.beta);
@@ -97,14 +98,14 @@ inline double movingMass(const Mechanism& mechanism, Level level) noexcept {
 
 /// Hull wrench at a level of the model (level pulse: as rocker; the half-sine itself is in hull_model.h).
 /// No allocation, no failure for finite input.
-inline HullWrench hullWrench(const Mechanism& mechanism, Level level, const CrankMotion& crank,
+HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, Level level, const CrankMotion& crank,
                              Gravity gravity) noexcept {
   const Motion m = motion(mechanism.linkage(), crank.angle);
   if (level != Level::kLinkage) return hullWrenchRocker(mechanism, m, crank, gravity);
   return hullWrenchLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), crank, gravity);
 }
 
-inline LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle, double speed) noexcept {
+HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle, double speed) noexcept {
   const Motion m = motion(mechanism.linkage(), angle);
   if (level != Level::kLinkage) return linkMomentumRocker(mechanism, m, speed);
   return linkMomentumLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), speed);

@@ -12,7 +12,7 @@ struct LinkLoads {
 };
 
 /// Level pulse: as rocker. No allocation, no failure for finite input.
-inline LinkLoads linkLoads(const Mechanism& mechanism, Level level, const CrankMotion& crank, Gravity gravity,
+HAMMER_LOADS_INLINE LinkLoads linkLoads(const Mechanism& mechanism, Level level, const CrankMotion& crank, Gravity gravity,
                            const NearBlow& near_blow) noexcept {
   const LinkMotion l = linkMotion(mechanism.linkage(), crank.angle);
   if (level != Level::kLinkage) {

@@ -64,6 +64,12 @@ Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
   k.k_cos = k.lambda3 * lambda0_less_1;
   k.k_sin = k.lambda0 * lambda3_less_1;
   k.w0 = k.lambda2 * lambda0_less_1 / k.lambda0;
+  k.lambda0_squared = k.lambda0 * k.lambda0;
+  k.lambda3_squared = k.lambda3 * k.lambda3;
+  k.lambda03 = k.lambda0 * k.lambda3;
+  k.sigma_squared = k.sigma * k.sigma;
+  k.lambda3_sigma = k.lambda3 * k.sigma;
+  k.lambda3_over_sigma_squared = k.lambda3 / k.sigma_squared;
   result.value = linkage;
   return result;
 }

@@ -22,17 +22,19 @@ class CrankRocker {
   static Checked<CrankRocker> make(const LinkLengths& lengths);
 
   const LinkLengths& lengths() const noexcept { return lengths_; }  ///< rod corrected [m]
-  double rodCorrection() const noexcept { return rod_correction_; } ///< added to the given rod length [m]
+  double rodCorrection() const noexcept { return rod_correction_; }  ///< added to the given rod length [m]
 
   /// Ratios to the crank length and the combinations of them that motion() uses [-]. Differences such as
   /// lambda0 - 1 are formed from the lengths, so no digits are lost when links are nearly equal.
   struct Ratios {
     double lambda0{}, lambda2{}, lambda3{};
-    double sigma{};          ///< lambda0 + lambda3 = 1 + lambda2
-    double g{};              ///< r^2 - cos^2(phi/2) = lambda2 lambda3/lambda0 - 1 (P0 (5))
+    double sigma{};                ///< lambda0 + lambda3 = 1 + lambda2
+    double g{};                    ///< r^2 - cos^2(phi/2) = lambda2 lambda3/lambda0 - 1 (P0 (5))
     double two_over_r0_squared{};  ///< 2 lambda0/(lambda2 lambda3); r0 = sqrt(lambda2 lambda3/lambda0)
-    double k_cos{}, k_sin{}; ///< lambda3 (lambda0 - 1), lambda0 (lambda3 - 1)
-    double w0{};             ///< lambda2 (lambda0 - 1)/lambda0
+    double k_cos{}, k_sin{};       ///< lambda3 (lambda0 - 1), lambda0 (lambda3 - 1)
+    double w0{};                   ///< lambda2 (lambda0 - 1)/lambda0
+    double lambda0_squared{}, lambda3_squared{}, lambda03{};  ///< lambda0^2, lambda3^2, lambda0 lambda3
+    double sigma_squared{}, lambda3_sigma{}, lambda3_over_sigma_squared{};
   };
   const Ratios& ratios() const noexcept { return ratios_; }
 

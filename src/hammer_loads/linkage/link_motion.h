@@ -24,7 +24,7 @@ struct LinkMotion {
   double dv_over_s{};
 };
 
-inline LinkMotion linkMotion(const CrankRocker::Ratios& k, const Motion& m) noexcept {
+HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker::Ratios& k, const Motion& m) noexcept {
   const double s = m.sin_half, c = m.cos_half;
   LinkMotion l;
   l.rocker = m;
@@ -40,41 +40,36 @@ inline LinkMotion linkMotion(const CrankRocker::Ratios& k, const Motion& m) noex
   const double cos_sum = l.cos_mu * l.phi.re - l.sin_mu * l.phi.im;
   l.sin_delta_over_s = m.sin_psi_over_s * cos_sum - m.cos_psi * sin_sum_over_s;
   l.delta = {m.cos_psi * cos_sum + m.sin_psi * s * sin_sum_over_s, s * l.sin_delta_over_s};
-  const double inv_r = 1.0 / m.r;
-  l.v = m.u - c * inv_r;
-  l.dv_over_s = m.du_over_s + 0.5 * k.g * inv_r * inv_r * inv_r;
+  l.v = m.u - c * m.inv_r;
+  l.dv_over_s = m.du_over_s + 0.5 * k.g * m.inv_r * m.inv_r * m.inv_r;
   l.dv = s * l.dv_over_s;
   return l;
 }
 
-inline LinkMotion linkMotion(const CrankRocker& linkage, CrankAngle angle) noexcept {
+HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker& linkage, CrankAngle angle) noexcept {
   return linkMotion(linkage.ratios(), motion(linkage, angle));
 }
 
 /// Rod angle beta [rad] in (-pi, pi].
 inline double rodAngle(const LinkMotion& l) noexcept { return std::atan2(l.beta.im, l.beta.re); }
 
-/// What turns each link's direction into its acceleration: d2/dt2 e^(i angle) = e^(i angle) (i angle'' - angle'^2).
+/// What turns each link's direction into its second derivative: d2/dt2 e^(i angle) = e^(i angle) (i angle'' - angle'^2).
 struct LinkAccelerations {
-  Planar crank, rod, rocker;          ///< i angle'' - angle'^2 [1/s2]
-  Planar crank_turned, rod_turned, rocker_turned;  ///< the same times the link's direction [1/s2]
+  Planar crank, rod, rocker;  ///< i angle'' - angle'^2 [1/s2]
 };
 
-inline LinkAccelerations linkAccelerations(const LinkMotion& l, double speed, double acceleration) noexcept {
+HAMMER_LOADS_INLINE LinkAccelerations linkAccelerations(const LinkMotion& l, double speed, double acceleration) noexcept {
   const double ww = speed * speed;
   const Motion& m = l.rocker;
   LinkAccelerations q;
   q.crank = {-ww, acceleration};
   q.rod = {-l.v * l.v * ww, l.dv * ww + l.v * acceleration};
   q.rocker = {-m.u * m.u * ww, m.du * ww + m.u * acceleration};
-  q.crank_turned = l.phi * q.crank;
-  q.rod_turned = l.beta * q.rod;
-  q.rocker_turned = l.psi * q.rocker;
   return q;
 }
 
 /// Coupling of crank and rod, l1 m2 rho2 e^(i (beta - phi)) [kg m2]: its real part couples their rates.
-inline Planar linkCoupling(const Mechanism& mechanism, const LinkMotion& l) noexcept {
+HAMMER_LOADS_INLINE Planar linkCoupling(const Mechanism& mechanism, const LinkMotion& l) noexcept {
   return mechanism.moments().coupling * l.delta;
 }
 

@@ -26,21 +26,25 @@ void check(const Rule& rule, std::vector<std::string>& problems) {
 
 double squaredSize(Planar a) { return a.re * a.re + a.im * a.im; }
 
-LinkMoments momentsOf(const HammerParameters& p) {
+/// With the corrected rod length.
+LinkMoments momentsOf(const HammerParameters& p, const CrankRocker::Ratios& ratios) {
   const Planar to_hull{std::cos(p.rocker_com_angle), -std::sin(p.rocker_com_angle)};
   const Planar crank_com{p.crank_com_along, p.crank_com_across};
   const Planar rod_com{p.rod_com_along, p.rod_com_across};
   const double l1 = p.lengths.crank;
   LinkMoments k;
   k.mass = p.crank_mass + p.rod_mass + p.rocker_mass;
-  k.crank_alone = p.crank_mass * (crank_com * to_hull);
-  k.crank = k.crank_alone + p.rod_mass * l1 * to_hull;
+  k.rod_at_b = p.rod_mass * l1 * to_hull;
+  k.crank = p.crank_mass * (crank_com * to_hull) + k.rod_at_b;
   k.rod = p.rod_mass * (rod_com * to_hull);
   k.rocker = p.rocker_mass * p.rocker_com_distance;
   k.fixed = -(p.crank_mass + p.rod_mass) * p.lengths.pivot_distance * to_hull;
   k.coupling = p.rod_mass * l1 * rod_com;
   k.crank_inertia = p.crank_inertia_about_com + p.crank_mass * squaredSize(crank_com) + p.rod_mass * l1 * l1;
   k.rod_inertia = p.rod_inertia_about_com + p.rod_mass * squaredSize(rod_com);
+  k.rod_force_factor = 1.0 / (ratios.two_over_r0_squared * p.lengths.rocker);
+  k.rocker_over_rod = p.lengths.rocker / p.lengths.rod;
+  k.inv_rod_length = 1.0 / p.lengths.rod;
   return k;
 }
 
@@ -81,7 +85,7 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
   Mechanism mechanism(*linkage.value);
   mechanism.parameters_ = p;
   mechanism.parameters_.lengths = linkage.value->lengths();
-  mechanism.moments_ = momentsOf(mechanism.parameters_);
+  mechanism.moments_ = momentsOf(mechanism.parameters_, mechanism.linkage_.ratios());
   mechanism.rocker_first_moment_ = p.rocker_mass * p.rocker_com_distance;
   mechanism.cos_com_angle_ = std::cos(p.rocker_com_angle);
   mechanism.sin_com_angle_ = std::sin(p.rocker_com_angle);

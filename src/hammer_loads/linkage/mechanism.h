@@ -34,10 +34,13 @@ struct LinkMoments {
   Planar rod;                ///< C2 = m2 rho2, seen from the hull, times e^(i beta) [kg m]
   double rocker{};           ///< C3 = m3 ls, seen from the hull, times e^(i psi) [kg m]
   Planar fixed;              ///< first moment about D of crank and rod placed at A, seen from the hull [kg m]
-  Planar crank_alone;        ///< m1 rho1, seen from the hull [kg m]
+  Planar rod_at_b;           ///< m2 l1, seen from the hull, times e^(i phi): the rod's mass at B [kg m]
   Planar coupling;           ///< l1 m2 rho2, in the mechanism frame [kg m2]
   double crank_inertia{};    ///< J1: crank about A with the rod's mass at B [kg m2]
   double rod_inertia{};      ///< J2: rod about B [kg m2]
+  double rod_force_factor{};   ///< r0^2/(2 l3): s r/l3/sin mu [1/m]
+  double rocker_over_rod{};    ///< l3/l2 [-]
+  double inv_rod_length{};     ///< 1/l2 [1/m]
 };
 
 /// A hammer that can exist. Built once, then only read.

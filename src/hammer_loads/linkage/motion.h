@@ -9,6 +9,7 @@
 
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/crank_rocker.h"
+#include "hammer_loads/linkage/half_angle_sine.h"
 
 namespace hammer_loads {
 
@@ -21,52 +22,85 @@ struct Motion {
   double sin_half{};    ///< s = sin(phi/2) >= 0 within the turn
   double cos_half{};    ///< c = cos(phi/2), negative before the blow
   double r{};           ///< sqrt(lambda2 lambda3/lambda0 - s^2)
+  double inv_r{};       ///< 1/r
   double sin_psi_over_s{};  ///< sin psi/s, finite at the blow
   double du_over_s{};       ///< u'/s, finite at the blow
 };
 
-/// Shared by the scalar and the batch call, so that one formula serves both; s >= 0 and c >= 0 are the sine and cosine
-/// of half the offset's size, `before` the side of the blow.
-inline Motion motionFromHalfAngle(const CrankRocker::Ratios& k, double s, double c, bool before) noexcept {
-  const double cc = c * c, ss = s * s;
-  const double r = std::sqrt(k.g + cc);  // = sqrt(r0^2 - s^2), without the difference
-  const double d = k.lambda0 * r + k.lambda3 * c;
-  const double a = r + k.lambda2 * c;
-  const double z = r + c;
-  const double w = (k.lambda2 - 1.0) * ss - k.w0;
-  // tan(psi/2) = p/q
-  const double p_over_s = before ? d : k.sigma;
-  const double p = p_over_s * s;
-  const double q = before ? k.k_cos * cc + k.k_sin * ss : d;
-  const double n = p * p + q * q;
-  const double inv_n = 1.0 / n;
-  const double inv_r = 1.0 / r;
-  const double half_n_over_r = 0.5 * n * inv_r;
+namespace detail {
 
+/// Terms of both sides of the blow, from s >= 0 and c >= 0, sine and cosine of half the offset's size.
+struct HalfAngleTerms {
+  double s, c, ss, cc;
+  double r;             ///< sqrt(g + c^2) = sqrt(r0^2 - s^2), without the difference
+  double inv_r;
+  double z, g_over_z;   ///< r + c, r - c
+  double d, d_squared;  ///< lambda0 r + lambda3 c
+};
+
+HAMMER_LOADS_INLINE HalfAngleTerms halfAngleTerms(const CrankRocker::Ratios& k, SineCosine half) noexcept {
+  HalfAngleTerms t;
+  t.s = half.sine;
+  t.c = half.cosine;
+  t.ss = t.s * t.s;
+  t.cc = t.c * t.c;
+  const double rr = k.g + t.cc;
+  t.r = std::sqrt(rr);
+  t.inv_r = 1.0 / t.r;
+  t.z = t.r + t.c;
+  t.g_over_z = k.g / t.z;
+  t.d = k.lambda0 * t.r + k.lambda3 * t.c;
+  t.d_squared = k.lambda0_squared * rr + k.lambda3_squared * t.cc + (2.0 * k.lambda03 * t.c) * t.r;
+  return t;
+}
+
+/// tan(psi/2) = sigma s/d.
+HAMMER_LOADS_INLINE Motion motionAfterBlow(const CrankRocker::Ratios& k, const HalfAngleTerms& t) noexcept {
+  const double pp = k.sigma_squared * t.ss;
+  const double inv_n = 1.0 / (pp + t.d_squared);
+  const double inv_nr = inv_n * t.inv_r;
+  const double a = t.r + k.lambda2 * t.c;
+  const double bracket = (k.lambda03 * a * t.g_over_z) * inv_nr - (0.5 * k.lambda2 * t.z) * (t.inv_r * t.inv_r);
   Motion m;
-  m.sin_psi_over_s = 2.0 * p_over_s * q * inv_n;
-  m.sin_psi = s * m.sin_psi_over_s;
-  m.cos_psi = (q - p) * (q + p) * inv_n;
-  const double a_ratio = before ? w * d * d / a : k.sigma * a;
-  m.u = k.lambda3 * a_ratio * inv_r * inv_n;
-  const double lambda03 = k.lambda0 * k.lambda3;
-  const double g_over_z = k.g / z;  // = r - c
-  const double scale = before ? z * d * d / (k.sigma * k.sigma) : k.sigma * g_over_z;
-  const double bracket = before ? lambda03 * a_ratio * z - k.lambda2 * k.sigma * g_over_z * half_n_over_r
-                                : lambda03 * a * g_over_z - k.lambda2 * z * half_n_over_r;
-  m.du_over_s = k.lambda3 * scale * bracket * (inv_r * inv_r) * (inv_n * inv_n);
-  m.du = s * m.du_over_s;
-  m.sin_half = s;
-  m.cos_half = before ? -c : c;
-  m.r = r;
+  m.sin_psi_over_s = (2.0 * k.sigma * t.d) * inv_n;
+  m.cos_psi = (t.d_squared - pp) * inv_n;
+  m.u = (k.lambda3_sigma * a) * inv_nr;
+  m.du_over_s = (k.lambda3_sigma * t.g_over_z) * inv_nr * bracket;
+  m.cos_half = t.c;
   return m;
 }
 
+/// tan(psi/2) = s d/q; differences of nearly equal terms are replaced by products with their sums.
+HAMMER_LOADS_INLINE Motion motionBeforeBlow(const CrankRocker::Ratios& k, const HalfAngleTerms& t) noexcept {
+  const double q = k.k_cos * t.cc + k.k_sin * t.ss;
+  const double pp = t.ss * t.d_squared, qq = q * q;
+  const double inv_n = 1.0 / (pp + qq);
+  const double inv_nr = inv_n * t.inv_r;
+  const double a = ((k.lambda2 - 1.0) * t.ss - k.w0) / (t.r + k.lambda2 * t.c) * t.d_squared;
+  const double bracket = (k.lambda03 * a * t.z) * inv_nr - (0.5 * k.lambda2 * k.sigma * t.g_over_z) * (t.inv_r * t.inv_r);
+  Motion m;
+  m.sin_psi_over_s = (2.0 * t.d * q) * inv_n;
+  m.cos_psi = (qq - pp) * inv_n;
+  m.u = (k.lambda3 * a) * inv_nr;
+  m.du_over_s = (k.lambda3_over_sigma_squared * t.z * t.d_squared) * inv_nr * bracket;
+  m.cos_half = -t.c;
+  return m;
+}
+
+}  // namespace detail
+
 /// Motion at a crank angle. No allocation, no failure for any finite offset.
-inline Motion motion(const CrankRocker& linkage, CrankAngle angle) noexcept {
+HAMMER_LOADS_INLINE Motion motion(const CrankRocker& linkage, CrankAngle angle) noexcept {
   const bool before = angle.side == Side::kBeforeBlow;
-  const double half = before ? -0.5 * angle.offset : 0.5 * angle.offset;
-  return motionFromHalfAngle(linkage.ratios(), std::sin(half), std::cos(half), before);
+  const SineCosine half = sineCosineOfHalf(before ? -0.5 * angle.offset : 0.5 * angle.offset);
+  const detail::HalfAngleTerms t = detail::halfAngleTerms(linkage.ratios(), half);
+  Motion m = before ? detail::motionBeforeBlow(linkage.ratios(), t) : detail::motionAfterBlow(linkage.ratios(), t);
+  m.sin_half = t.s;
+  m.r = t.r;
+  m.inv_r = t.r * (t.inv_r * t.inv_r);
+  m.sin_psi = t.s * m.sin_psi_over_s;
+  m.du = t.s * m.du_over_s;
+  return m;
 }
 
 /// Rocker angle psi [rad] in [0, pi).

@@ -9,14 +9,12 @@
 /// the rocker. It is returned as it is, flagged near_blow; at the blow itself it is some 1e290, never NaN.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
-#include "hammer_loads/linkage/shaft_load.h"
 
 namespace hammer_loads {
 
@@ -49,11 +47,10 @@ inline double transmissionAngle(const LinkMotion& l) noexcept { return std::atan
 
 namespace detail {
 
-/// (with_s s + rest)/sin mu, where s is cancelled; at s = 0 the rest is divided by 1e-290 instead.
-inline double dividedBySinMu(const LinkMotion& l, double with_s, double rest) noexcept {
+/// s, but never zero: what does not vanish with s is divided by 1e-290 at the blow itself.
+HAMMER_LOADS_INLINE double divisor(double s) noexcept {
   constexpr double kTiny = 1e-290;
-  const double s = std::abs(l.rocker.sin_half) < kTiny ? kTiny : l.rocker.sin_half;
-  return (with_s * s + rest) / (l.sin_mu_over_s * s);
+  return std::abs(s) < kTiny ? kTiny : s;
 }
 
 /// From the frame turned by a (LinkMoments) to hull axes.
@@ -63,26 +60,26 @@ constexpr PinForce toHull(Planar f) noexcept { return {-f.re, f.im}; }
 
 /// Level rocker: P0 (6)-(14) with the signs mended; crank and rod massless, so R01 = R12 = R23 along the rod.
 /// Deviates: P0 (6), (7), (8), (11), (12), see model.md 7. Neglects what hullWrenchRocker neglects.
-inline PinReactions pinForcesRocker(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& crank,
-                                 Gravity gravity, const NearBlow& near_blow) noexcept {
+HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
+                                                 Gravity gravity, const NearBlow& near_blow) noexcept {
   const Motion& m = l.rocker;
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
-  const double ww = crank.speed * crank.speed;
+  const double ww = c.speed * c.speed;
   const double mass = mechanism.parameters().rocker_mass;
-  const double first_moment = mechanism.rockerFirstMoment();
-  const double weight = first_moment * (m.sin_psi * gravity.x + m.cos_psi * gravity.z);
-  const double psi_accel = m.du * ww + m.u * crank.acceleration;
+  const Planar rocker = mechanism.rockerFirstMoment() * l.psi;
+  const double weight = rocker.im * gravity.x + rocker.re * gravity.z;
+  const double psi_accel = m.du * ww + m.u * c.acceleration;
 
-  // Rod force along B->C, positive when the rod pushes the rocker away from B.
-  const double along = -detail::dividedBySinMu(l, inertia * m.du_over_s * ww, inertia * m.u * crank.acceleration - weight) /
-                       mechanism.parameters().lengths.rocker;
+  // Rod force along B->C times s, positive when the rod pushes the rocker away from B.
+  const double with_s = inertia * m.du_over_s * ww, rest = inertia * m.u * c.acceleration - weight;
+  const double s = detail::divisor(m.sin_half);
+  const double along = -(with_s * s + rest) * (mechanism.moments().rod_force_factor * m.inv_r) / s;
   const Planar rod = along * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
-  const Planar rocker = first_moment * (l.psi * Planar{-m.u * m.u * ww, psi_accel});
   PinReactions pins;
   pins.rod_on_rocker = detail::toHull(rod);
   pins.crank_on_rod = pins.rod_on_rocker;
   pins.hull_on_crank = pins.rod_on_rocker;
-  pins.hull_on_rocker = detail::toHull(rocker - rod);
+  pins.hull_on_rocker = detail::toHull(rocker * Planar{-m.u * m.u * ww, psi_accel} - rod);
   pins.hull_on_rocker.x -= mass * gravity.x;
   pins.hull_on_rocker.z -= mass * gravity.z;
   pins.drive_torque = m.u * (inertia * psi_accel - weight);
@@ -92,47 +89,53 @@ inline PinReactions pinForcesRocker(const Mechanism& mechanism, const LinkMotion
 
 /// Level linkage: mass, centre of mass, inertia and weight of all three links. Neglects friction, motion of the hull,
 /// inertia of motor and flywheel.
-inline PinReactions pinForcesLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& crank,
-                                  Gravity gravity, const NearBlow& near_blow) noexcept {
+HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
+                                                  Gravity gravity, const NearBlow& near_blow) noexcept {
   const HammerParameters& p = mechanism.parameters();
   const LinkMoments& k = mechanism.moments();
-  const LinkAccelerations q = linkAccelerations(l, crank.speed, crank.acceleration);
+  const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
   const Motion& m = l.rocker;
-  const double ww = crank.speed * crank.speed, e = crank.acceleration;
-  const Planar rod = k.rod * l.beta;
+  const double ww = c.speed * c.speed, e = c.acceleration;
+  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, rocker = k.rocker * l.psi;
+  const Planar coupling = k.coupling * l.delta;
 
   // Rocker about D: l3 cross(e^(i psi), R23) = s rocker_s + rocker_rest.
-  const double rocker_s = p.rocker_inertia_about_pivot * m.du_over_s * ww;
-  const double rocker_rest = p.rocker_inertia_about_pivot * m.u * e -
-                             k.rocker * (m.sin_psi * gravity.x + m.cos_psi * gravity.z);
+  const double inertia = p.rocker_inertia_about_pivot;
+  const double rocker_s = inertia * m.du_over_s * ww;
+  const double rocker_rest = inertia * m.u * e - (rocker.im * gravity.x + rocker.re * gravity.z);
   // Rod about B: -l2 cross(e^(i beta), R23) = s rod_s + rod_rest.
   const double rod_s = (k.rod_inertia * l.dv_over_s + k.coupling.re * l.sin_delta_over_s) * ww;
-  const double rod_rest = k.rod_inertia * l.v * e + linkCoupling(mechanism, l).re * e +
-                          k.coupling.im * l.delta.re * ww - (rod.re * gravity.z + rod.im * gravity.x);
-  const double l3_over_l2 = p.lengths.rocker / p.lengths.rod;
-  const double across = -(m.sin_half * rod_s + rod_rest) / p.lengths.rod;
-  const double along = -detail::dividedBySinMu(l, rocker_s + l3_over_l2 * l.cos_mu * rod_s,
-                                               rocker_rest + l3_over_l2 * l.cos_mu * rod_rest) / p.lengths.rocker;
+  const double rod_rest = (k.rod_inertia * l.v + coupling.re) * e + k.coupling.im * l.delta.re * ww -
+                          (rod.im * gravity.x + rod.re * gravity.z);
+  // R23 = (along + i across) e^(i beta); along has the divisor sin mu.
+  const double s = detail::divisor(m.sin_half);
+  const double across = -(s * rod_s + rod_rest) * k.inv_rod_length;
+  const double rod_part = k.rocker_over_rod * l.cos_mu;
+  const double along_s = -((rocker_s + rod_part * rod_s) * s + (rocker_rest + rod_part * rod_rest)) *
+                         (k.rod_force_factor * m.inv_r);
+  const double along = along_s / s;
 
-  const Planar to_hull{mechanism.cosComAngle(), -mechanism.sinComAngle()};
-  const Planar weight_per_mass{-gravity.x, gravity.z};
-  const Planar on_rocker = Planar{along, across} * (l.beta * to_hull);
-  const Planar b_turned = (p.lengths.crank * p.rod_mass * to_hull) * q.crank_turned;  // rod mass times B's acceleration
-  const Planar on_rod = on_rocker + b_turned + k.rod * q.rod_turned - p.rod_mass * weight_per_mass;
-  const Planar on_crank = on_rod + k.crank_alone * q.crank_turned - p.crank_mass * weight_per_mass;
+  const Planar weight{-gravity.x, gravity.z};  // per mass
+  const Planar on_rocker = Planar{along, across} * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
+  const Planar rod_change = rod * q.rod;
+  const Planar on_rod = on_rocker + rod_change + (k.rod_at_b * l.phi) * q.crank - p.rod_mass * weight;
+  const Planar on_crank = on_rocker + rod_change + crank * q.crank - (k.mass - p.rocker_mass) * weight;
   PinReactions pins;
   pins.rod_on_rocker = detail::toHull(on_rocker);
   pins.crank_on_rod = detail::toHull(on_rod);
   pins.hull_on_crank = detail::toHull(on_crank);
-  pins.hull_on_rocker = detail::toHull(k.rocker * q.rocker_turned - p.rocker_mass * weight_per_mass - on_rocker);
-  pins.drive_torque = driveTorque(shaftLoadLinkage(mechanism, l, gravity), crank.speed, e);
+  pins.hull_on_rocker = detail::toHull(rocker * q.rocker - p.rocker_mass * weight - on_rocker);
+  // Crank about A, the rod's mass at B counted with it.
+  pins.drive_torque = k.crank_inertia * e - (crank.im * gravity.x + crank.re * gravity.z) +
+                      coupling.re * q.rod.im + coupling.im * q.rod.re +
+                      p.lengths.crank * (along_s * l.sin_delta_over_s + across * l.delta.re);
   pins.near_blow = near_blow(l);
   return pins;
 }
 
 /// Pin forces at a level of the model (level pulse: as rocker). No allocation, no failure for finite input.
-inline PinReactions pinForces(const Mechanism& mechanism, Level level, const CrankMotion& crank, Gravity gravity,
-                           const NearBlow& near_blow) noexcept {
+HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level level, const CrankMotion& crank, Gravity gravity,
+                              const NearBlow& near_blow) noexcept {
   const LinkMotion l = linkMotion(mechanism.linkage(), crank.angle);
   return level == Level::kLinkage ? pinForcesLinkage(mechanism, l, crank, gravity, near_blow)
                                   : pinForcesRocker(mechanism, l, crank, gravity, near_blow);

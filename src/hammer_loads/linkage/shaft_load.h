@@ -19,7 +19,7 @@ struct ShaftLoad {
 
 /// Level rocker: I u^2 and the rocker's weight. Neglects mass and inertia of crank and rod (a constant part of them acts
 /// like drive inertia).
-inline ShaftLoad shaftLoadRocker(const Mechanism& mechanism, const Motion& m, Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE ShaftLoad shaftLoadRocker(const Mechanism& mechanism, const Motion& m, Gravity gravity) noexcept {
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   const double ux = inertia * m.u;
   // Rocker weight times distance: moment about D and its derivative by psi.
@@ -30,7 +30,7 @@ inline ShaftLoad shaftLoadRocker(const Mechanism& mechanism, const Motion& m, Gr
 
 /// Level linkage: kinetic energy w^2/2 (J1 + J2 v^2 + I u^2 + 2 v Re K), K = linkCoupling, and the weight of all links.
 /// Neglects friction and the motion of the hull.
-inline ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const LinkMotion& l, Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const LinkMotion& l, Gravity gravity) noexcept {
   const LinkMoments& k = mechanism.moments();
   const double rocker_inertia = mechanism.parameters().rocker_inertia_about_pivot;
   const Motion& m = l.rocker;
@@ -49,7 +49,7 @@ inline ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const LinkMotion& 
 }
 
 /// Shaft load at a level of the model (level pulse: as rocker). No allocation, no failure for finite input.
-inline ShaftLoad shaftLoad(const Mechanism& mechanism, Level level, CrankAngle angle, Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE ShaftLoad shaftLoad(const Mechanism& mechanism, Level level, CrankAngle angle, Gravity gravity) noexcept {
   const Motion m = motion(mechanism.linkage(), angle);
   if (level != Level::kLinkage) return shaftLoadRocker(mechanism, m, gravity);
   return shaftLoadLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), gravity);
@@ -57,7 +57,7 @@ inline ShaftLoad shaftLoad(const Mechanism& mechanism, Level level, CrankAngle a
 
 /// Drive torque on the crank, about hull +y, that gives it an acceleration [N m]; inertia of motor and flywheel not
 /// included. From the balance of power, so it stays finite and exact where pin forces do not.
-inline double driveTorque(const ShaftLoad& load, double speed, double acceleration) noexcept {
+HAMMER_LOADS_INLINE double driveTorque(const ShaftLoad& load, double speed, double acceleration) noexcept {
   return load.inertia * acceleration + load.half_inertia_slope * speed * speed - load.weight_torque;
 }
 

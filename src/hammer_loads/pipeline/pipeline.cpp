@@ -14,7 +14,7 @@ namespace {
 constexpr double kTrackStep = 1.25e-3;    // [s] between points of a turn at most: 15 of them in the MO-100's pulse
 constexpr double kBlowSpeed = 1.0;        // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
 constexpr double kSideOfBlow = 1e-7;      // [s] before and after the blow where its two sides are looked at
-constexpr double kSettledDeviations = 2;  // predicted error = so many standard deviations
+constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
 
 std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
   if (s.crank_estimator != CrankEstimator::kMechanism) {

@@ -8,23 +8,26 @@
 
 namespace hammer_loads {
 
-/// What a bag must know about a message type, from ros::message_traits.
+/// What a bag must know about a message type: from ros::message_traits, which keeps the texts for ever.
 struct LogType {
-  std::string datatype;    ///< e.g. geometry_msgs/WrenchStamped
-  std::string md5sum;      ///< 32 hexadecimal digits
-  std::string definition;  ///< full text with the definitions of all parts
+  const char* datatype;    ///< e.g. geometry_msgs/WrenchStamped
+  const char* md5sum;      ///< 32 hexadecimal digits
+  const char* definition;  ///< full text with the definitions of all parts
 };
 
-/// Registered once, lives as long as the log. Counters are written by one thread each and read by any.
+/// Lives as long as the log. Each counter is written by one thread and read by any.
 struct LogTopic {
-  std::size_t index{};  ///< order of registration
-  std::string name;     ///< resolved topic name
-  LogType type;
-  bool latched{};                         ///< last message repeated at the start of every file
-  std::string caller;                     ///< node that published it; empty if of no interest
-  std::atomic<std::uint64_t> written{};   ///< messages handed to the bag, repeats not counted
-  std::atomic<std::uint64_t> full{};      ///< messages lost because the queue was full
-  std::atomic<std::uint64_t> unsaved{};   ///< messages lost because the log stopped before their turn came
+  LogTopic(std::size_t index_, std::string name_, const LogType& type_, bool latched_, std::string caller_)
+      : index(index_), name(std::move(name_)), type(type_), latched(latched_), caller(std::move(caller_)) {}
+
+  const std::size_t index;  ///< order of first appearance
+  const std::string name;
+  const LogType type;
+  const bool latched;        ///< last message repeated at the start of every file
+  const std::string caller;  ///< node that published it; empty: of no interest
+  std::atomic<std::uint64_t> written{};  ///< messages handed to a bag; repeats are not counted
+  std::atomic<std::uint64_t> refused{};  ///< messages lost because the queue was full or the type was another
+  std::atomic<std::uint64_t> unsaved{};  ///< messages lost in the queue because the log stopped for a fault
 };
 
 }  // namespace hammer_loads

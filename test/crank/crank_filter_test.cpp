@@ -1,0 +1,213 @@
+#include "hammer_loads/crank/crank_filter.h"
+
+#include "hammer_loads/crank/plain_tracker.h"
+#include "hammer_loads/simulation/session.h"
+#include "support/main.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kCount = kTwoPi / 4096;
+
+CrankFilterSettings settings() {
+  CrankFilterSettings s;
+  s.angle_resolution = kCount;
+  s.speed_noise = 0.3;
+  s.torque_walk = 74.0;
+  s.speed_walk = 0.5;
+  s.inertia_walk = 5e-4;
+  s.initial_torque_deviation = 300.0;
+  s.initial_inertia_deviation = 0.3;
+  s.max_speed = 300.0;
+  return s;
+}
+
+simulation::Session shortSession(bool speed, double rate, double true_inertia, std::uint64_t seed = 5) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 6.0;
+  machine.drive.stop_time = 100.0;
+  machine.drive.inertia = true_inertia;
+  machine.crank.rate = rate;
+  machine.crank.speed = speed;
+  machine.seed = seed;
+  machine.gravity = 0.0;
+  return simulation::recordSession(machine);
+}
+
+class CrankFilterTest : public testing::Test {
+ protected:
+  CrankFilter filter(double inertia) {
+    return CrankFilter(ShaftModel(mechanism_, Level::kRocker), inertia, settings());
+  }
+  /// Runs a session and calls check(filter, truth) after each sample.
+  template <typename Check>
+  void run(CrankFilter& f, const simulation::Session& session, Check check) {
+    for (std::size_t i = 0; i < session.crank.size(); ++i) {
+      const CrankSample sample{session.crank[i].angle, session.crank[i].speed};
+      if (i == 0) {
+        f.start(sample);
+      } else {
+        f.update(1e-9 * static_cast<double>(session.crank[i].stamp - session.crank[i - 1].stamp), sample);
+      }
+      check(f, session.truth[i]);
+    }
+  }
+  Mechanism mechanism_{test::mechanismOf(test::mo100Parameters())};
+};
+
+TEST_F(CrankFilterTest, IdentifiesTheInertiaFromAGuessFiftyPercentWrong) {
+  for (const double guess : {0.3, 0.9}) {
+    for (const bool speed : {true, false}) {
+      CrankFilter f = filter(guess);
+      run(f, shortSession(speed, 1000.0, 0.6), [](const CrankFilter&, const simulation::CrankTruth&) {});
+      EXPECT_NEAR(f.state().drive_inertia, 0.6, 0.012) << guess << ' ' << speed;
+    }
+  }
+}
+
+TEST_F(CrankFilterTest, FollowsTheAccelerationThatDifferencesCannotSee) {
+  CrankFilter f = filter(0.6);
+  double filter_error = 0, peak = 0;
+  run(f, shortSession(true, 1000.0, 0.6), [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
+    if (truth.time < 3.0) return;
+    peak = std::max(peak, std::abs(truth.acceleration));
+    filter_error = std::max(filter_error, std::abs(at.estimate().acceleration - truth.acceleration));
+  });
+  EXPECT_GT(peak, 1000.0);
+  EXPECT_LT(filter_error, 0.03 * peak);
+}
+
+TEST_F(CrankFilterTest, ErrorsLieWithinTwoDeviationsAsOftenAsTheyShould) {
+  CrankFilter f = filter(0.6);
+  double samples = 0, angle = 0, speed = 0, acceleration = 0;
+  run(f, shortSession(true, 1000.0, 0.6), [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
+    if (truth.time < 3.0) return;
+    const Eigen::Vector3d deviation = at.motionCovariance().diagonal().cwiseSqrt();
+    const CrankEstimate e = at.estimate();
+    ++samples;
+    angle += std::abs(CrankAngle::wrapToPi(e.position.angle.offset - truth.angle)) < 2 * deviation[0];
+    speed += std::abs(e.speed - truth.speed) < 2 * deviation[1];
+    acceleration += std::abs(e.acceleration - truth.acceleration) < 2 * deviation[2];
+  });
+  EXPECT_GT(angle / samples, 0.90);
+  EXPECT_GT(speed / samples, 0.90);
+  EXPECT_GT(acceleration / samples, 0.90);
+}
+
+TEST_F(CrankFilterTest, TellsTheMotionBetweenSamples) {
+  simulation::Session dense = shortSession(true, 2000.0, 0.6);
+  CrankFilter f = filter(0.6);
+  double worst = 0;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < dense.crank.size(); i += 20) {  // 100 Hz out of 2 kHz
+    const CrankSample sample{dense.crank[i].angle, dense.crank[i].speed};
+    const auto seconds = [&](std::size_t k) { return 1e-9 * static_cast<double>(dense.crank[k].stamp - dense.crank[last].stamp); };
+    if (i == 0) {
+      f.start(sample);
+      continue;
+    }
+    f.update(seconds(i), sample);
+    for (std::size_t k = last; k <= i && dense.truth[i].time > 3.0; ++k) {
+      const CrankEstimate e = f.between(seconds(k));
+      worst = std::max(worst, std::abs(CrankAngle::wrapToPi(e.position.angle.offset - dense.truth[k].angle)));
+      EXPECT_NEAR(e.speed, dense.truth[k].speed, 1.0) << dense.truth[k].time;
+    }
+    EXPECT_EQ(f.between(seconds(i)).acceleration, f.estimate().acceleration);
+    last = i;
+  }
+  EXPECT_LT(worst, 4e-3);
+  EXPECT_GT(f.covarianceBetween(0.005)(0, 0), 0.0);
+}
+
+TEST_F(CrankFilterTest, StandsStill) {
+  CrankFilter f = filter(0.6);
+  f.start({1.0 - std::fmod(1.0, kCount), 0.0});
+  for (int i = 0; i < 2000; ++i) f.update(1e-3, {1.0 - std::fmod(1.0, kCount), 0.0});
+  EXPECT_NEAR(f.estimate().speed, 0.0, 0.01);
+  EXPECT_NEAR(f.estimate().acceleration, 0.0, 3.0);
+}
+
+TEST_F(CrankFilterTest, LearnsTheSpeedUpFromAnglesAlone) {
+  CrankFilter f = filter(0.6);
+  f.start({0.5, std::nullopt});
+  EXPECT_FALSE(f.hasSpeed());
+  for (int i = 1; i <= 20; ++i) f.update(1e-3, {0.5 + 0.02 * i, std::nullopt});
+  EXPECT_TRUE(f.hasSpeed());
+  EXPECT_NEAR(f.estimate().speed, 20.0, 1.0);
+}
+
+TEST_F(CrankFilterTest, IgnoresOneOutlierAndBelievesTwo) {
+  CrankFilter f = filter(0.6);
+  f.start({0.5, 20.0});
+  double angle = 0.5;
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(f.update(1e-3, {angle += 0.02, 20.0}), Tracking::kContinued);
+  EXPECT_EQ(f.update(1e-3, {angle + 2.0, 20.0}), Tracking::kOutlier);
+  EXPECT_EQ(f.update(2e-3, {angle += 0.04, 20.0}), Tracking::kContinued);
+  EXPECT_EQ(f.update(1e-3, {angle + 2.02, 20.0}), Tracking::kOutlier);
+  EXPECT_EQ(f.update(2e-3, {angle + 2.04, 20.0}), Tracking::kRestarted);
+  EXPECT_NEAR(CrankAngle::wrapToPi(f.estimate().position.angle.offset - (angle + 2.04)), 0.0, kCount);
+}
+
+TEST_F(CrankFilterTest, TheEncoderDecidesTheSideOfTheBlow) {
+  CrankFilter f = filter(0.6);
+  f.start({kTwoPi - 40 * kCount, 15.0});
+  for (int count = -39; count <= 10; ++count) {
+    const double reading = count < 0 ? kTwoPi + count * kCount : count * kCount;
+    f.update(kCount / 15.0, {reading, 15.0});
+    const Side side = f.estimate().position.angle.side;
+    EXPECT_EQ(side, count < 0 ? Side::kBeforeBlow : Side::kAfterBlow) << count;
+  }
+}
+
+TEST_F(CrankFilterTest, StaysSoundWhateverComes) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<> any(-1.0, 1.0);
+  for (int round = 0; round < 50; ++round) {
+    CrankFilter f = filter(0.6);
+    f.start({any(random) * 10, any(random) * 100});
+    for (int i = 0; i < 500; ++i) {
+      f.update(std::pow(10.0, -5 + 4 * std::abs(any(random))), {any(random) * 1e4, any(random) * 300});
+      ASSERT_TRUE(std::isfinite(f.estimate().acceleration));
+      ASSERT_TRUE(f.covariance().allFinite());
+      ASSERT_GT(f.state().drive_inertia, 0.0);
+    }
+  }
+}
+
+TEST(Encoder, MeansTheMiddleOfACount) {
+  Encoder encoder(kCount);
+  EXPECT_DOUBLE_EQ(encoder.angle(100 * kCount), 100.5 * kCount);
+  EXPECT_FALSE(encoder.isFiner());
+}
+
+TEST(Encoder, TakesAFinerSensorAsItIs) {
+  Encoder encoder(kCount);
+  for (int i = 0; i < 5; ++i) encoder.angle(0.1234 * i + 0.01);
+  EXPECT_TRUE(encoder.isFiner());
+  EXPECT_DOUBLE_EQ(encoder.angle(100 * kCount), 100 * kCount);
+}
+
+TEST(PlainTracker, TakesSpeedsAndTheirDifferenceAsTheyAre) {
+  PlainTracker tracker(PlainTracker::Acceleration::kDifference, kCount);
+  tracker.start({6.2, 30.0});
+  EXPECT_EQ(tracker.update(1e-2, {6.2 + 0.305 - kTwoPi, 31.0}), Tracking::kContinued);
+  EXPECT_DOUBLE_EQ(tracker.estimate().speed, 31.0);
+  EXPECT_NEAR(tracker.estimate().acceleration, 100.0, 1e-9);
+  EXPECT_EQ(tracker.estimate().position.blowsPassed(), 0);  // -1 before
+  EXPECT_NEAR(tracker.between(5e-3).speed, 30.5, 1e-9);
+}
+
+TEST(PlainTracker, AssumesNoAccelerationAsThePaper) {
+  PlainTracker tracker(PlainTracker::Acceleration::kZero, kCount);
+  tracker.start({1.0, std::nullopt});
+  EXPECT_FALSE(tracker.hasSpeed());
+  tracker.update(1e-2, {1.3, std::nullopt});
+  EXPECT_NEAR(tracker.estimate().speed, 30.0, 0.1);
+  EXPECT_EQ(tracker.estimate().acceleration, 0.0);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

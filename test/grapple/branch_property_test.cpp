@@ -1,0 +1,191 @@
+/// Properties over random linkages of the grapple's topology: one branch, kept, and right to 50 digits.
+#include <algorithm>
+#include <vector>
+
+#include "grapple/explicit_curve.h"
+#include "grapple/grapples.h"
+#include "hammer_loads/grapple/slider_drive.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::Digits50;
+
+/// theta2 and theta5 over the whole working branch by Newton alone in steps so small that the curve cannot be left:
+/// knows nothing of predictors, signs, polynomials and limits but where to stop.
+class DenseBranch {
+ public:
+  explicit DenseBranch(const Grapple& grapple) : grapple_(grapple), group_(grapple.parameters()) {
+    const GrappleParameters& p = grapple.parameters();
+    const double low = grapple.lowerLimit().slider, high = grapple.upperLimit().slider;
+    const Angles start{p.reference_slider, p.reference_ab, p.reference_od};
+    extend(start, low);
+    std::reverse(nodes_.begin(), nodes_.end());
+    extend(start, high);
+  }
+
+  /// Linear between nodes.
+  std::pair<double, double> at(double slider) const {
+    const auto after = std::lower_bound(nodes_.begin() + 1, nodes_.end() - 1, slider,
+                                        [](const Angles& n, double s) { return n.slider < s; });
+    const Angles& a = *(after - 1);
+    const double part = (slider - a.slider) / (after->slider - a.slider);
+    return {a.theta2 + part * (after->theta2 - a.theta2), a.theta5 + part * (after->theta5 - a.theta5)};
+  }
+
+  double low() const { return nodes_.front().slider; }
+  double high() const { return nodes_.back().slider; }
+
+ private:
+  struct Angles {
+    double slider, theta2, theta5;
+  };
+
+  /// Steps such that no angle moves by more than 0.001 rad; ends where those become tiny, beside the limit.
+  void extend(Angles here, double limit) {
+    const GrappleParameters& p = grapple_.parameters();
+    const SliderDrive drive(p);
+    double stride = 1e-8 * (limit - here.slider);
+    if (nodes_.empty()) nodes_.push_back(here);
+    while (std::abs(stride) > 1e-10) {
+      const double slider = here.slider + stride;
+      const auto motion = drive.at(slider);
+      if (!motion) return;
+      const Planar a = p.o1 + (p.o1a / p.o1h) * (motion->o1h * direction(-p.ho1a));
+      GroupPose pose = group_.pose(a, here.theta2, here.theta5);
+      Closure closure;
+      const bool closed = group_.solve(a, 10, pose, closure);
+      const double moved = std::max(std::abs(pose.theta2 - here.theta2), std::abs(pose.theta5 - here.theta5));
+      if (!closed || !(moved < 0.001) || std::abs(slider - limit) >= std::abs(here.slider - limit)) {
+        stride *= 0.5;
+        continue;
+      }
+      here = {slider, pose.theta2, pose.theta5};
+      nodes_.push_back(here);
+      if (moved < 0.0003) stride *= 1.5;
+      const double remaining = 0.5 * (limit - here.slider);
+      if (std::abs(stride) > std::abs(remaining)) stride = remaining;
+    }
+  }
+
+  const Grapple& grapple_;
+  LeverGroup group_;
+  std::vector<Angles> nodes_;
+};
+
+double apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * test::kPi)); }
+
+TEST(RandomGrapples, ColdAndWarmStayOnTheBranchWhateverTheJump) {
+  test::Random random(41);
+  int grapples = 0, samples = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto grapple = test::randomGrapple(random);
+    if (!grapple) continue;
+    ++grapples;
+    const DenseBranch dense(*grapple);
+    const double width = dense.high() - dense.low();
+    std::optional<GrappleMotion> warm = grapple->at(grapple->parameters().reference_slider);
+    ASSERT_TRUE(warm);
+    for (int j = 0; j < 40; ++j) {
+      const double slider = dense.low() + width * random(0.001, 0.999);
+      const auto cold = grapple->at(slider);
+      warm = grapple->follow(*warm, slider);
+      ASSERT_TRUE(cold && warm) << i << ' ' << slider;
+      const auto [theta2, theta5] = dense.at(slider);
+      ASSERT_LT(std::max(apart(cold->theta2, theta2), apart(cold->theta5, theta5)), 0.003) << i << " cold " << slider;
+      ASSERT_LT(std::max(apart(warm->theta2, theta2), apart(warm->theta5, theta5)), 0.003) << i << " warm " << slider;
+      ++samples;
+    }
+  }
+  std::printf("%d grapples, %d jumps\n", grapples, samples);
+  EXPECT_GT(grapples, 200);
+}
+
+TEST(RandomGrapples, EqualTheExplicitCurveToFiftyDigits) {
+  test::Random random(42);
+  int well_conditioned = 0, checked = 0;
+  double worst[3] = {0.0, 0.0, 0.0};
+  for (int i = 0; i < 3000; ++i) {
+    const auto grapple = test::randomGrapple(random);
+    if (!grapple) continue;
+    const GrappleParameters& p = grapple->parameters();
+    const auto m = grapple->at(p.reference_slider);
+    ASSERT_TRUE(m) << i;
+    const auto exact = test::exactPoseOf(p, *m);
+    ASSERT_TRUE(exact) << i;
+    ++checked;
+    const double size = std::max({p.ab, p.ac, p.bd, p.ce, p.od, p.oe});
+    const double from_limit = std::min(m->slider - grapple->lowerLimit().slider, grapple->upperLimit().slider - m->slider);
+    if (std::abs(m->determinant) < 1e-2 * std::pow(size, 4) || from_limit < 1e-2) continue;
+    ++well_conditioned;
+    const test::PsiPoint edge = exact->edgeBySlider();
+    const auto add = [&](double& error, double value, const Digits50& truth) {
+      const double scale = std::max(1.0, std::abs(static_cast<double>(truth)));
+      error = std::max(error, std::abs(static_cast<double>(value - truth)) / scale);
+    };
+    add(worst[0], m->p.re, edge.x.v);
+    add(worst[0], m->p.im, edge.y.v);
+    add(worst[1], m->dp.re, edge.x.d);
+    add(worst[1], m->dp.im, edge.y.d);
+    add(worst[2], m->ddp.re, edge.x.dd);
+    add(worst[2], m->ddp.im, edge.y.dd);
+  }
+  std::printf("%d checked, %d well conditioned: P %.1e, dP/ds %.1e, d2P/ds2 %.1e\n", checked, well_conditioned, worst[0],
+              worst[1], worst[2]);
+  EXPECT_GT(well_conditioned, 100);
+  EXPECT_LT(worst[0], 1e-12);
+  EXPECT_LT(worst[1], 1e-10);
+  EXPECT_LT(worst[2], 1e-8);
+}
+
+TEST(RandomGrapples, KeepTheirLengths) {
+  test::Random random(43);
+  for (int i = 0; i < 3000; ++i) {
+    const auto grapple = test::randomGrapple(random);
+    if (!grapple) continue;
+    const GrappleParameters& p = grapple->parameters();
+    const double low = grapple->lowerLimit().slider, high = grapple->upperLimit().slider;
+    for (int j = 0; j < 20; ++j) {
+      const auto m = grapple->at(low + (high - low) * random(1e-4, 1.0 - 1e-4));
+      ASSERT_TRUE(m);
+      for (const auto& [vector, length] : {std::pair{m->h - p.o1, p.o1h}, {m->h - m->g, p.gh}, {m->a - p.o1, p.o1a},
+                                           {m->b - m->a, p.ab}, {m->c - m->a, p.ac}, {m->d - m->b, p.bd},
+                                           {m->p - m->b, p.bp}, {m->e - m->c, p.ce}, {m->d, p.od}, {m->e, p.oe}})
+        EXPECT_NEAR(norm(vector), length, 1e-14) << i;
+    }
+  }
+}
+
+TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
+  test::Random random(44);
+  int across_fold = 0, across_dead_point = 0, out_of_reach = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto grapple = test::randomGrapple(random);
+    if (!grapple) continue;
+    const auto inside = grapple->at(grapple->parameters().reference_slider);
+    ASSERT_TRUE(inside);
+    for (const auto& [limit, outwards] : {std::pair{grapple->lowerLimit(), -1.0}, {grapple->upperLimit(), 1.0}}) {
+      EXPECT_EQ(grapple->judge(limit.slider - outwards * 1e-9), Refusal::kNone) << i;
+      for (const double beyond : {0.0, 1e-13, 1e-6, 1e-2, 0.3, 3.0}) {
+        const double slider = limit.slider + outwards * beyond;
+        const Refusal refusal = grapple->judge(slider);
+        EXPECT_NE(refusal, Refusal::kNone);
+        EXPECT_FALSE(grapple->at(slider));
+        EXPECT_FALSE(grapple->follow(*inside, slider));
+        EXPECT_NE(grapple->explain(refusal, slider).find("must"), std::string::npos);
+        across_fold += refusal == Refusal::kAcrossFold;
+        across_dead_point += refusal == Refusal::kAcrossDeadPoint;
+        out_of_reach += refusal == Refusal::kOutOfReach;
+      }
+    }
+  }
+  EXPECT_GT(across_fold, 100);
+  EXPECT_GT(across_dead_point, 5);
+  EXPECT_GT(out_of_reach, 100);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

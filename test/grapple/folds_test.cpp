@@ -1,0 +1,155 @@
+#include "hammer_loads/grapple/folds.h"
+
+#include <algorithm>
+
+#include "grapple/explicit_curve.h"
+#include "grapple/grapples.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+FirstRocker rockerOf(const GrappleParameters& p) { return {p.o1, p.o1a}; }
+
+/// det J = 0 exactly where the lines AO, BD and CE meet in one point or are parallel: the volume of their three
+/// normalised line coordinates, relative to lengths of one metre.
+double concurrency(const FirstRocker& rocker, const GroupPose& pose, double theta1) {
+  const Planar a = rocker.o1 + rocker.armAt(theta1);
+  struct Line {
+    Planar normal;
+    double offset;
+  };
+  const auto through = [](Planar point, Planar along) {
+    const Planar normal = (1.0 / norm(along)) * turned(along);
+    return Line{normal, dot(normal, point)};
+  };
+  const Line l1 = through({0.0, 0.0}, a), l2 = through(pose.d, pose.u), l3 = through(pose.e, pose.v);
+  return l1.offset * cross(l2.normal, l3.normal) + l2.offset * cross(l3.normal, l1.normal) +
+         l3.offset * cross(l1.normal, l2.normal);
+}
+
+TEST(Folds, OfTheClaimsSet) {
+  const GrappleParameters p = test::claimsParameters();
+  const LeverGroup group(p);
+  const FirstRocker rocker = rockerOf(p);
+  const CurvePoint start{-0.731183698512905, 0.378626426521639, -0.648948854844813};
+  const BranchEnd upper = findBranchEnd(group, rocker, start, +1, 7.0);
+  ASSERT_EQ(upper.kind, BranchEnd::Kind::kFold);
+  EXPECT_NEAR(upper.point.theta1, -0.0546685648351, 1e-12);
+  EXPECT_NEAR(upper.point.theta2, -0.0780585291036, 1e-12);
+  EXPECT_NEAR(upper.point.theta5, -0.3977931336716, 1e-12);
+  const GroupPose pose = group.pose(rocker.o1 + rocker.armAt(upper.point.theta1), upper.point.theta2, upper.point.theta5);
+  EXPECT_NEAR(group.closure(pose).determinant, 0.0, 1e-15);
+  EXPECT_NEAR(concurrency(rocker, pose, upper.point.theta1), 0.0, 1e-14);
+  const Planar edge = group.edge(rocker.o1 + rocker.armAt(upper.point.theta1), pose, group.closure(pose));
+  EXPECT_NEAR(edge.re, 2.6622014818, 1e-10);
+  EXPECT_NEAR(edge.im, -2.1372154339, 1e-10);
+  const BranchEnd lower = findBranchEnd(group, rocker, start, -1, 7.0);
+  ASSERT_EQ(lower.kind, BranchEnd::Kind::kFold);
+  EXPECT_NEAR(lower.point.theta1 * 180.0 / test::kPi, -176.87, 5e-3);
+  EXPECT_EQ(findBranchEnd(group, rocker, start, +1, 0.1).kind, BranchEnd::Kind::kNone);
+}
+
+TEST(Folds, OfTheStraightSet) {
+  const GrappleParameters p = test::straightParameters();
+  const Grapple grapple = test::grappleOf(p);
+  const GrappleMotion m = *grapple.at(-0.266);
+  const CurvePoint start{grapple.linkDirections(m)[0].angle, m.theta2, m.theta5};
+  const LeverGroup group(p);
+  const FirstRocker rocker = rockerOf(p);
+  EXPECT_NEAR(findBranchEnd(group, rocker, start, +1, 7.0).point.theta1, -0.766118411260, 1e-12);
+  EXPECT_NEAR(findBranchEnd(group, rocker, start, -1, 7.0).point.theta1, -2.375474242330, 1e-12);
+}
+
+TEST(Folds, OfRandomLinkagesAreSingularAndEndTheBranch) {
+  test::Random random(31);
+  int folds = 0, full_turns = 0, singular = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const GrappleParameters p = test::randomLinkage(random);
+    const LeverGroup group(p);
+    const FirstRocker rocker = rockerOf(p);
+    const double theta1 = random(-test::kPi, test::kPi);
+    const Branches all = enumerateBranches(group, rocker.o1 + rocker.armAt(theta1));
+    if (all.count == 0) continue;
+    const auto& branch = all.branch[static_cast<std::size_t>(random(0.0, all.count))];
+    const int sense = random.coin() ? 1 : -1;
+    const BranchEnd end = findBranchEnd(group, rocker, {theta1, branch.theta2, branch.theta5}, sense, 2.0 * test::kPi);
+    singular += end.kind == BranchEnd::Kind::kSingular;
+    if (end.kind == BranchEnd::Kind::kNone) {
+      ++full_turns;
+      EXPECT_GE(sense * (end.point.theta1 - theta1), 2.0 * test::kPi);
+    }
+    if (end.kind != BranchEnd::Kind::kFold) continue;
+    ++folds;
+    EXPECT_GT(sense * (end.point.theta1 - theta1), 0.0);
+    const Planar a = rocker.o1 + rocker.armAt(end.point.theta1);
+    const GroupPose pose = group.pose(a, end.point.theta2, end.point.theta5);
+    EXPECT_NEAR(norm(pose.u), p.bd, 1e-13) << i;
+    EXPECT_NEAR(norm(pose.v), p.ce, 1e-13) << i;
+    EXPECT_NEAR(concurrency(rocker, pose, end.point.theta1), 0.0, 1e-12) << i;
+    // Two modes vanish there.
+    const auto countAt = [&](double angle) { return enumerateBranches(group, rocker.o1 + rocker.armAt(angle)).count; };
+    const double step = 1e-6;
+    EXPECT_EQ(countAt(end.point.theta1 - sense * step) - countAt(end.point.theta1 + sense * step), 2) << i;
+  }
+  EXPECT_GT(folds, 1000);
+  EXPECT_GT(full_turns, 20);
+  EXPECT_EQ(singular, 0);
+}
+
+TEST(SliderLimits, OfBothSets) {
+  const Grapple claims = test::grappleOf(test::claimsParameters());
+  EXPECT_EQ(claims.lowerLimit().kind, SliderLimit::Kind::kDeadPoint);
+  EXPECT_NEAR(claims.lowerLimit().slider, -0.27, 1e-15);
+  EXPECT_EQ(claims.upperLimit().kind, SliderLimit::Kind::kFold);
+  EXPECT_NEAR(claims.upperLimit().slider, 0.7331923934966, 1e-13);
+  const Grapple straight = test::grappleOf(test::straightParameters());
+  EXPECT_EQ(straight.lowerLimit().kind, SliderLimit::Kind::kFold);
+  EXPECT_EQ(straight.upperLimit().kind, SliderLimit::Kind::kFold);
+  EXPECT_NEAR(straight.upperLimit().slider, -0.019779803958286, 1e-14);
+  EXPECT_NEAR(straight.at(straight.upperLimit().slider - 1e-9)->p.re, 1.552899051827, 5e-4);
+  EXPECT_NEAR(straight.at(straight.upperLimit().slider - 1e-9)->p.im, -2.781501100805, 5e-4);
+}
+
+TEST(SliderLimits, FoldsEqualTheExplicitCurveToFiftyDigits) {
+  for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
+    const Grapple grapple = test::grappleOf(p);
+    for (const SliderLimit& limit : {grapple.lowerLimit(), grapple.upperLimit()}) {
+      if (limit.kind != SliderLimit::Kind::kFold) continue;
+      const double inwards = limit.slider < 0.5 * (p.slider_closed + p.slider_open) ? 1e-4 : -1e-4;
+      const auto fold = test::exactFoldNear(p, *grapple.at(limit.slider + inwards));
+      ASSERT_TRUE(fold);
+      EXPECT_NEAR(limit.slider, static_cast<double>(fold->slider.v), 1e-15);
+    }
+  }
+}
+
+TEST(SliderLimits, FoldsOfRandomGrapplesEqualTheExplicitCurve) {
+  test::Random random(32);
+  int checked = 0, tried = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto grapple = test::randomGrapple(random);
+    if (!grapple) continue;
+    const double width = grapple->upperLimit().slider - grapple->lowerLimit().slider;
+    for (const auto& [limit, inwards] : {std::pair{grapple->lowerLimit(), 1e-5 * width},
+                                         std::pair{grapple->upperLimit(), -1e-5 * width}}) {
+      if (limit.kind != SliderLimit::Kind::kFold) continue;
+      const auto beside = grapple->at(limit.slider + inwards);
+      ASSERT_TRUE(beside) << i;
+      ++tried;
+      const auto fold = test::exactFoldNear(grapple->parameters(), *beside);
+      if (!fold) continue;  // Newton of the oracle left its neighbourhood
+      const double exact = static_cast<double>(fold->slider.v);
+      if (std::abs(exact - limit.slider) > 1e-3 * width) continue;  // it found the next fold
+      EXPECT_NEAR(limit.slider, exact, 1e-12) << i;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 100);
+  EXPECT_GT(checked, 0.9 * tried);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

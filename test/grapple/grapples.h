@@ -1,0 +1,126 @@
+/// Grapples for the tests: the two reconstructed sets, and random linkages of the same topology.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "hammer_loads/grapple/branches.h"
+#include "hammer_loads/grapple/grapple.h"
+
+namespace hammer_loads::test {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+/// Published ten lengths and the angles fitted to the paper's claims; the same numbers as config/grapple_claims.yaml.
+inline GrappleParameters claimsParameters() {
+  GrappleParameters p;
+  p.o1 = {0.0, -0.94};
+  p.slider_x = 0.0;
+  p.o1h = 0.58;
+  p.o1a = 0.94;
+  p.ho1a = 1.0;
+  p.gh = 1.25;
+  p.drive_sign = -1;
+  p.ab = 0.94;
+  p.ac = 0.52;
+  p.bac = 0.0;
+  p.bd = 0.29;
+  p.bp = 1.33;
+  p.dbp = -1.614;
+  p.ce = 0.45;
+  p.od = 2.28;
+  p.oe = 2.02;
+  p.doe = -0.421;
+  p.slider_closed = 0.006695608517900151;
+  p.slider_open = 0.656;
+  p.slider_margin = 0.001;
+  p.reference_slider = 0.332;
+  p.reference_ab = 0.379;
+  p.reference_od = -0.649;
+  return p;
+}
+
+/// The same with the angles fitted to the straightest path; the same numbers as config/grapple_straight.yaml.
+inline GrappleParameters straightParameters() {
+  GrappleParameters p = claimsParameters();
+  p.ho1a = 1.3;
+  p.gh = 0.8;
+  p.dbp = -2.105;
+  p.doe = -0.513;
+  p.slider_closed = -0.5046349008511198;
+  p.slider_open = -0.028;
+  p.reference_slider = -0.266;
+  p.reference_ab = 0.206;
+  p.reference_od = -0.773;
+  return p;
+}
+
+inline Grapple grappleOf(const GrappleParameters& parameters) {
+  const Checked<Grapple> grapple = Grapple::make(parameters);
+  for (const std::string& problem : grapple.problems) ADD_FAILURE() << problem;
+  return grapple.value.value();
+}
+
+/// Uniform in [0, 1) with the same numbers on every platform.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double operator()(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  bool coin() { return (engine_() >> 63) != 0; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Lengths and angles anywhere, no thought of a working machine; no stroke and no reference yet.
+inline GrappleParameters randomLinkage(Random& random) {
+  GrappleParameters p;
+  p.o1 = {random(-1.5, 1.5), random(-1.5, 1.5)};
+  p.slider_x = random(-0.5, 0.5);
+  p.o1h = random(0.3, 1.5);
+  p.gh = random(0.3, 1.5);
+  p.o1a = random(0.5, 2.0);
+  p.ho1a = random(-kPi, kPi);
+  p.drive_sign = random.coin() ? 1 : -1;
+  p.ab = random(0.3, 2.5);
+  p.ac = random(0.3, 2.5);
+  p.bac = random(-kPi, kPi);
+  p.bd = random(0.3, 2.5);
+  p.bp = random(0.3, 2.5);
+  p.dbp = random(-kPi, kPi);
+  p.ce = random(0.3, 2.5);
+  p.od = random(0.3, 2.5);
+  p.oe = random(0.3, 2.5);
+  p.doe = random(-kPi, kPi);
+  return p;
+}
+
+/// A random linkage in one of its poses at a random slider position, with the shortest of strokes there. About one draw
+/// in ten assembles.
+inline std::optional<Grapple> randomGrapple(Random& random) {
+  constexpr double kStroke = 1e-5;
+  GrappleParameters p = randomLinkage(random);
+  p.reference_slider = p.o1.im + random(-2.5, 2.5);
+  const auto drive = SliderDrive(p).at(p.reference_slider);
+  if (!drive) return std::nullopt;
+  const Planar a = p.o1 + (p.o1a / p.o1h) * (drive->o1h * direction(-p.ho1a));
+  const Branches all = enumerateBranches(LeverGroup(p), a);
+  if (all.count == 0) return std::nullopt;
+  const auto& branch = all.branch[static_cast<std::size_t>(random(0.0, all.count))];
+  p.reference_ab = branch.theta2;
+  p.reference_od = branch.theta5;
+  for (const double side : {1.0, -1.0}) {
+    p.slider_closed = p.reference_slider - side * kStroke;
+    p.slider_open = p.reference_slider + side * kStroke;
+    const Checked<Grapple> grapple = Grapple::make(p);
+    if (grapple.value) return grapple.value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace hammer_loads::test

@@ -1,0 +1,285 @@
+#include "hammer_loads/grapple/grapple_motion.h"
+
+#include <algorithm>
+
+#include "grapple/explicit_curve.h"
+#include "grapple/grapples.h"
+#include "support/csv.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::Digits50;
+
+constexpr double kPositions = 1e-12, kFirst = 1e-10, kSecond = 1e-8;  // demanded, relative to max(1, |value|)
+
+void expectClose(double value, double expected, double tolerance, const std::string& what) {
+  EXPECT_NEAR(value, expected, tolerance * std::max(1.0, std::abs(expected))) << what;
+}
+
+void expectClose(Planar value, Planar expected, double tolerance, const std::string& what) {
+  expectClose(value.re, expected.re, tolerance, what + ".x");
+  expectClose(value.im, expected.im, tolerance, what + ".y");
+}
+
+void expectTableRow(const test::Csv& csv, std::size_t row, const Grapple& grapple, const GrappleMotion& m) {
+  const std::string where = "row " + std::to_string(row) + ' ';
+  const auto at = [&](const char* column) { return csv.number(row, column); };
+  const auto point = [&](const std::string& name) { return Planar{csv.number(row, name + "x"), csv.number(row, name + "y")}; };
+  for (const auto& [name, pin] : {std::pair<const char*, Planar>{"H", m.h}, {"A", m.a}, {"B", m.b}, {"C", m.c}, {"D", m.d},
+                                  {"E", m.e}, {"P", m.p}})
+    expectClose(pin, point(name), kPositions, where + name);
+  const auto links = grapple.linkDirections(m);
+  expectClose(links[0].angle, at("theta1"), kPositions, where + "theta1");
+  expectClose(m.theta2, at("theta2"), kPositions, where + "theta2");
+  expectClose(links[2].angle, at("theta3"), kPositions, where + "theta3");
+  expectClose(m.theta5, at("theta5"), kPositions, where + "theta5");
+  expectClose(m.determinant, at("detJ"), kPositions, where + "det J");
+  expectClose(m.dp, {at("dPx_ds"), at("dPy_ds")}, kFirst, where + "dP/ds");
+  expectClose(m.link1.d, at("dtheta1_ds"), kFirst, where + "dtheta1");
+  expectClose(m.link2.d, at("dtheta2_ds"), kFirst, where + "dtheta2");
+  expectClose(m.link5.d, at("dtheta5_ds"), kFirst, where + "dtheta5");
+  expectClose(m.ddp, {at("d2Px_ds2"), at("d2Py_ds2")}, kSecond, where + "d2P/ds2");
+  expectClose(m.link1.dd, at("d2theta1"), kSecond, where + "d2theta1");
+  expectClose(m.link2.dd, at("d2theta2"), kSecond, where + "d2theta2");
+  expectClose(m.link5.dd, at("d2theta5"), kSecond, where + "d2theta5");
+}
+
+TEST(GrappleMotion, EqualsTheReferenceTableColdAndWarm) {
+  const test::Csv csv = test::dataCsv("grapple_table.csv");
+  ASSERT_EQ(csv.size(), 41u);
+  const Grapple grapple = test::grappleOf(test::claimsParameters());
+  std::optional<GrappleMotion> warm = grapple.at(0.1);
+  for (std::size_t i = 0; i < csv.size(); ++i) {
+    const double slider = csv.number(i, "s");
+    const auto cold = grapple.at(slider);
+    ASSERT_TRUE(cold);
+    expectTableRow(csv, i, grapple, *cold);
+    warm = grapple.follow(*warm, slider);
+    ASSERT_TRUE(warm);
+    expectTableRow(csv, i, grapple, *warm);
+  }
+}
+
+TEST(GrappleMotion, EqualsTheSecondSetsValues) {
+  const auto m = test::grappleOf(test::straightParameters()).at(-0.266);
+  ASSERT_TRUE(m);
+  expectClose(m->p, {0.64431532902089, -2.72049994480821}, kPositions, "P");
+  expectClose(m->dp, {2.55993693874449, 0.0131904413153937}, kFirst, "dP/ds");
+  expectClose(m->ddp, {1.14893271524777, -0.191314961926509}, kSecond, "d2P/ds2");
+}
+
+TEST(GrappleMotion, JawEdgesMeetInTheClosedPose) {
+  const auto claims = test::grappleOf(test::claimsParameters()).at(0.006695608517900151);
+  EXPECT_NEAR(claims->p.re, 0.0, 1e-12);
+  EXPECT_NEAR(norm(claims->p), 2.271576202262, 1e-12);
+  const auto straight = test::grappleOf(test::straightParameters()).at(-0.5046349008511198);
+  EXPECT_NEAR(straight->p.re, 0.0, 1e-12);
+  EXPECT_NEAR(norm(straight->p), 2.719955738359, 1e-12);
+}
+
+TEST(GrappleMotion, LinksKeepTheirLengths) {
+  constexpr double kLength = 1e-14;
+  for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
+    const Grapple grapple = test::grappleOf(p);
+    const double low = grapple.lowerLimit().slider, high = grapple.upperLimit().slider;
+    std::optional<GrappleMotion> warm = grapple.at(0.5 * (low + high));
+    for (int i = 1; i < 5000; ++i) {
+      const double slider = low + (high - low) * i / 5000.0;
+      warm = grapple.follow(*warm, slider);
+      ASSERT_TRUE(warm);
+      const auto cold = grapple.at(slider);
+      ASSERT_TRUE(cold);
+      for (const GrappleMotion& m : {*warm, *cold}) {
+        EXPECT_NEAR(norm(m.h - p.o1), p.o1h, kLength);
+        EXPECT_NEAR(norm(m.h - m.g), p.gh, kLength);
+        EXPECT_NEAR(norm(m.a - p.o1), p.o1a, kLength);
+        EXPECT_NEAR(norm(m.b - m.a), p.ab, kLength);
+        EXPECT_NEAR(norm(m.c - m.a), p.ac, kLength);
+        EXPECT_NEAR(norm(m.d - m.b), p.bd, kLength);
+        EXPECT_NEAR(norm(m.p - m.b), p.bp, kLength);
+        EXPECT_NEAR(norm(m.e - m.c), p.ce, kLength);
+        EXPECT_NEAR(norm(m.d), p.od, kLength);
+        EXPECT_NEAR(norm(m.e), p.oe, kLength);
+        if (HasFailure()) FAIL() << "slider " << slider;
+      }
+    }
+  }
+}
+
+/// Largest error of a jet's components against the motion, relative to max(1, |value|): position, first, second.
+struct Errors {
+  double position{}, first{}, second{};
+  void add(const GrappleMotion& m, const test::ExplicitPose& exact) {
+    const test::PsiPoint p = exact.edgeBySlider();
+    const auto error = [](double value, const Digits50& truth) {
+      const Digits50 size = abs(truth) > 1 ? Digits50(abs(truth)) : Digits50(1);
+      return static_cast<double>(abs(value - truth) / size);
+    };
+    position = std::max({position, error(m.p.re, p.x.v), error(m.p.im, p.y.v)});
+    first = std::max({first, error(m.dp.re, p.x.d), error(m.dp.im, p.y.d)});
+    second = std::max({second, error(m.ddp.re, p.x.dd), error(m.ddp.im, p.y.dd)});
+  }
+};
+
+TEST(GrappleMotion, EqualsTheExplicitCurveToFiftyDigitsOverTheStroke) {
+  for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
+    const Grapple grapple = test::grappleOf(p);
+    Errors errors;
+    for (int i = 0; i <= 100; ++i) {
+      const auto m = grapple.at(p.slider_closed + (p.slider_open - p.slider_closed) * i / 100.0);
+      ASSERT_TRUE(m);
+      const auto exact = test::exactPoseOf(p, *m);
+      ASSERT_TRUE(exact) << i;
+      errors.add(*m, *exact);
+    }
+    std::printf("relative errors over the stroke: P %.1e, dP/ds %.1e, d2P/ds2 %.1e\n", errors.position, errors.first,
+                errors.second);
+    EXPECT_LT(errors.position, kPositions);
+    EXPECT_LT(errors.first, kFirst);
+    EXPECT_LT(errors.second, kSecond);
+  }
+}
+
+TEST(GrappleMotion, BesideTheFoldDerivativesGrowAsTheyMust) {
+  const GrappleParameters p = test::claimsParameters();
+  const Grapple grapple = test::grappleOf(p);
+  const double fold = grapple.upperLimit().slider;
+  const auto near = [&](double distance) { return grapple.at(fold - distance).value(); };
+  expectClose(near(1e-3).p, {2.6103473904, -2.1371200926}, 1e-10, "P at 1e-3");
+  expectClose(near(1e-3).dp, {27.3281962562, 0.4906966365}, 1e-10, "dP/ds at 1e-3");
+  expectClose(near(1e-4).dp, {80.36312, -0.77317}, 1e-5, "dP/ds at 1e-4");
+  EXPECT_NEAR(near(1e-6).dp.re, 779.453, 1e-3);
+  EXPECT_NEAR(near(1e-8).dp.re, 7770.7, 0.1);
+  // Rounding is amplified by 1/det J, which falls with the root of the distance: e^-1/2, then e^-1, then e^-2.
+  for (const double distance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
+    const GrappleMotion m = near(distance);
+    const auto exact = test::exactPoseOf(p, m);
+    ASSERT_TRUE(exact) << distance;
+    Errors errors;
+    errors.add(m, *exact);
+    EXPECT_LT(errors.position, 1e-14 / std::sqrt(distance)) << distance;
+    EXPECT_LT(errors.first, 1e-13 / distance) << distance;
+    EXPECT_LT(errors.second, 1e-13 / distance) << distance;
+  }
+}
+
+TEST(GrappleMotion, BesideTheDeadPointItIsStillRegular) {
+  const auto m = test::grappleOf(test::claimsParameters()).at(-0.26);
+  ASSERT_TRUE(m);
+  expectClose(m->p, {-1.0858388224, -2.1317411179}, 1e-10, "P");
+  expectClose(m->dp, {12.6525938643, 0.0110595781}, 1e-10, "dP/ds");
+}
+
+TEST(GrappleMotion, TheOtherBranchIsReachedOnlyByItsOwnReference) {
+  struct Other {
+    double slider, theta2, theta5;
+    Planar p;
+    double determinant;
+  };
+  for (const Other& other : {Other{0.008, -0.3906348813625, -1.0095542441429, {2.3552560925, -2.6935947483}, 0.2056},
+                             Other{0.332, -0.3102260546742, -0.7598561787355, {2.8852720043, -2.1766862237}, 0.1683}}) {
+    GrappleParameters p = test::claimsParameters();
+    p.reference_slider = other.slider;
+    p.reference_ab = other.theta2 + 0.01;
+    p.reference_od = other.theta5 - 0.01;
+    const Grapple grapple = test::grappleOf(p);
+    const auto m = grapple.at(other.slider);
+    ASSERT_TRUE(m);
+    EXPECT_NEAR(m->theta2, other.theta2, 1e-12);
+    EXPECT_NEAR(m->theta5, other.theta5, 1e-12);
+    expectClose(m->p, other.p, 1e-10, "P");
+    EXPECT_NEAR(m->determinant, other.determinant, 5e-5);
+    EXPECT_NEAR(grapple.at(0.7331)->p.re, 2.67689, 5e-6);
+    EXPECT_NEAR(test::grappleOf(test::claimsParameters()).at(0.7331)->p.re, 2.64702, 5e-6);
+    EXPECT_NEAR(grapple.upperLimit().slider, 0.7331923934966, 1e-12);  // both branches end in the same fold
+  }
+}
+
+TEST(GrappleMotion, TimeDerivativesEqualDifferencesAndTheLeftJawMirrorsThem) {
+  const Grapple grapple = test::grappleOf(test::claimsParameters());
+  const double speed = 0.3, acceleration = -1.7, step = 1e-4;
+  const auto jawAt = [&](double t) {
+    return rightJaw(*grapple.at(0.3 + speed * t + 0.5 * acceleration * t * t), speed + acceleration * t, acceleration);
+  };
+  const JawMotion before = jawAt(-step), now = jawAt(0.0), after = jawAt(step);
+  // Central differences: error step^2/6 times the third or fourth derivative, here below 100.
+  const double tolerance = 100.0 * step * step;
+  const auto difference = [&](double b, double a) { return (a - b) / (2.0 * step); };
+  EXPECT_NEAR(now.edge_velocity.re, difference(before.edge.re, after.edge.re), tolerance);
+  EXPECT_NEAR(now.edge_velocity.im, difference(before.edge.im, after.edge.im), tolerance);
+  EXPECT_NEAR(now.edge_acceleration.re, difference(before.edge_velocity.re, after.edge_velocity.re), tolerance);
+  EXPECT_NEAR(now.edge_acceleration.im, difference(before.edge_velocity.im, after.edge_velocity.im), tolerance);
+  EXPECT_NEAR(now.turning_speed, difference(before.angle, after.angle), tolerance);
+  EXPECT_NEAR(now.turning_acceleration, difference(before.turning_speed, after.turning_speed), tolerance);
+
+  const JawMotion left = leftJaw(now), left_after = leftJaw(after), left_before = leftJaw(before);
+  EXPECT_EQ(left.edge.re, -now.edge.re);
+  EXPECT_EQ(left.edge.im, now.edge.im);
+  EXPECT_EQ(left.edge_velocity.re, -now.edge_velocity.re);
+  EXPECT_EQ(left.edge_acceleration.im, now.edge_acceleration.im);
+  EXPECT_NEAR(left.turning_speed, difference(left_before.angle, left_after.angle), tolerance);
+  EXPECT_EQ(left.turning_acceleration, -now.turning_acceleration);
+  EXPECT_NEAR(std::cos(left.angle), -std::cos(now.angle), 1e-15);
+  EXPECT_NEAR(std::sin(left.angle), std::sin(now.angle), 1e-15);
+}
+
+TEST(GrappleMotion, LinkDirectionsTurnAsTheirDerivativesSay) {
+  const Grapple grapple = test::grappleOf(test::straightParameters());
+  const double slider = -0.3, step = 1e-5;
+  const auto before = grapple.linkDirections(*grapple.at(slider - step));
+  const auto now = grapple.linkDirections(*grapple.at(slider));
+  const auto after = grapple.linkDirections(*grapple.at(slider + step));
+  for (std::size_t i = 0; i < now.size(); ++i)
+    EXPECT_NEAR(now[i].d, (after[i].angle - before[i].angle) / (2.0 * step), 1e-8) << "link " << i + 1;
+}
+
+TEST(GrappleMotion, ThePapersFormulasFailWhereTheErrataSay) {
+  const GrappleParameters p = test::claimsParameters();
+  const Grapple grapple = test::grappleOf(p);
+  // Z_O^-1 is printed with + sin in the second row: it does not keep |A|, and is singular at phi_OD = -45 deg.
+  const GrappleMotion m = *grapple.at(0.332);
+  const double c = std::cos(m.theta5), s = std::sin(m.theta5);
+  const Planar inverted{c * m.a.re + s * m.a.im, -s * m.a.re + c * m.a.im};
+  const Planar printed{c * m.a.re + s * m.a.im, s * m.a.re + c * m.a.im};
+  expectClose(inverted, {1.504911698719, -0.826129984765}, 1e-12, "A*");
+  expectClose(printed, {1.504911698719, -1.671882267267}, 1e-12, "printed A*");
+  EXPECT_NEAR(norm(inverted), 1.716755653163, 1e-12);
+  EXPECT_NEAR(norm(inverted), norm(m.a), 1e-15);
+  const GrappleMotion at_45 = *grapple.at(0.178894907739);
+  EXPECT_NEAR(at_45.theta5, -test::kPi / 4, 1e-11);
+  EXPECT_GT(std::abs(at_45.determinant), 0.1);  // nothing is singular there but the printed matrix
+  // phi_O1A = arccos(...) + phi_HO1A lacks the direction of O1G and the sign of the closure.
+  const Planar g = m.g - p.o1;
+  const double bracket = std::acos((p.o1h * p.o1h + squaredNorm(g) - p.gh * p.gh) / (2.0 * norm(g) * p.o1h));
+  EXPECT_NEAR(bracket, 1.301980, 5e-7);
+  EXPECT_NEAR(angleOf(m.h - p.o1), 0.268816, 5e-7);
+  EXPECT_NEAR(test::kPi / 2 - bracket, angleOf(m.h - p.o1), 1e-14);
+  // arctg instead of atan2: off by pi while P lies inside of B or A.
+  const GrappleMotion closed = *grapple.at(0.008);
+  EXPECT_NEAR(angleOf(closed.p - closed.b), -2.626708, 5e-7);
+  EXPECT_NEAR(std::atan((closed.p - closed.b).im / (closed.p - closed.b).re), 0.514884, 5e-7);
+  EXPECT_NEAR(angleOf(closed.p - closed.a), -2.094934, 5e-7);
+  EXPECT_NEAR(std::atan((closed.p - closed.a).im / (closed.p - closed.a).re), 1.046659, 5e-7);
+}
+
+TEST(GrappleMotion, RegularWhereATriangleFormulaWouldChangeSign) {
+  // theta1 = -90 deg: A on the line O-O1.
+  const Grapple grapple = test::grappleOf(test::claimsParameters());
+  double low = grapple.lowerLimit().slider + 1e-6, high = 0.332;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (grapple.at(middle)->a.re < 0.0 ? low : high) = middle;
+  }
+  const GrappleMotion m = *grapple.at(low);
+  EXPECT_NEAR(m.a.re, 0.0, 1e-12);
+  const auto before = grapple.at(low - 1e-6), after = grapple.at(low + 1e-6);
+  EXPECT_NEAR(m.dp.re, (after->p.re - before->p.re) / 2e-6, 1e-6);
+  EXPECT_NEAR(m.dp.im, (after->p.im - before->p.im) / 2e-6, 1e-6);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

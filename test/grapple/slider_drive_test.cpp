@@ -1,0 +1,120 @@
+#include "hammer_loads/grapple/slider_drive.h"
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include "grapple/grapples.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+using Digits100 = boost::multiprecision::cpp_bin_float_100;
+
+/// theta_H by the law of cosines, as the paper has it, to 100 digits.
+Digits100 directionOfH(const GrappleParameters& p, const Digits100& slider) {
+  const Digits100 gx = Digits100(p.slider_x) - p.o1.re, gy = slider - p.o1.im;
+  const Digits100 distance = sqrt(gx * gx + gy * gy), r(p.o1h), l(p.gh);
+  return atan2(gy, gx) + p.drive_sign * acos((r * r + distance * distance - l * l) / (2 * distance * r));
+}
+
+struct Exact {
+  Digits100 angle, first, second;
+};
+
+/// Central differences with a step of 1e-20: error some 1e-40 relative to the fourth derivative.
+Exact exactDrive(const GrappleParameters& p, double slider) {
+  const Digits100 step("1e-20"), s(slider);
+  const Digits100 before = directionOfH(p, s - step), now = directionOfH(p, s), after = directionOfH(p, s + step);
+  return {now, (after - before) / (2 * step), (after - 2 * now + before) / (step * step)};
+}
+
+TEST(SliderDrive, EqualsTheLawOfCosinesToHundredDigits) {
+  test::Random random(11);
+  double worst_angle = 0.0, worst_first = 0.0, worst_second = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    const GrappleParameters p = test::randomLinkage(random);
+    const SliderDrive drive(p);
+    const double slider = p.o1.im + random(-2.5, 2.5);
+    const auto m = drive.at(slider);
+    if (!m) continue;
+    const Exact exact = exactDrive(p, slider);
+    const Digits100 sine = (sin(exact.angle) * m->o1h.re - cos(exact.angle) * m->o1h.im) / p.o1h;
+    const auto relative = [](double value, const Digits100& truth) {
+      return static_cast<double>(abs(value - truth) / (1 + abs(truth)));
+    };
+    // Rounding of |O1G| and of the four lengths' sums moves the flat triangle by some 1e-16: divided by its height.
+    const auto reach = drive.reachAround(slider);
+    ASSERT_TRUE(reach);
+    const double from_dead_point = std::min(slider - reach->low, reach->high - slider);
+    const double amplification = 1.0 + 1.0 / from_dead_point;
+    worst_angle = std::max(worst_angle, static_cast<double>(abs(sine)) / amplification);
+    worst_first = std::max(worst_first, relative(m->dtheta1, exact.first) / amplification);
+    worst_second = std::max(worst_second, relative(m->ddtheta1, exact.second) / amplification);
+  }
+  EXPECT_LT(worst_angle, 1e-15);
+  EXPECT_LT(worst_first, 1e-14);
+  EXPECT_LT(worst_second, 1e-13);
+}
+
+TEST(SliderDrive, ReachEndsInTheDeadPoints) {
+  const SliderDrive drive(test::claimsParameters());
+  const auto upper = drive.reachAround(0.3);
+  ASSERT_TRUE(upper);
+  EXPECT_NEAR(upper->low, -0.27, 1e-15);  // |O1G| = gh - o1h
+  EXPECT_NEAR(upper->high, 0.89, 1e-15);  // |O1G| = gh + o1h
+  EXPECT_TRUE(drive.at(-0.2699999));
+  EXPECT_FALSE(drive.at(-0.2701));
+  EXPECT_FALSE(drive.at(0.8901));
+  EXPECT_FALSE(drive.reachAround(-0.9));
+  const auto lower = drive.reachAround(-2.0);  // G below O1: another interval
+  ASSERT_TRUE(lower);
+  EXPECT_NEAR(lower->low, -0.94 - 1.83, 1e-15);
+  EXPECT_NEAR(lower->high, -0.94 - 0.67, 1e-15);
+}
+
+TEST(SliderDrive, Theta1IsContinuousWithinOneInterval) {
+  test::Random random(12);
+  int passing_beside = 0;
+  for (int i = 0; i < 200; ++i) {
+    const GrappleParameters p = test::randomLinkage(random);
+    const SliderDrive drive(p);
+    const auto reach = drive.reachAround(p.o1.im + random(-2.5, 2.5));
+    if (!reach) continue;
+    passing_beside += reach->low < p.o1.im && reach->high > p.o1.im;
+    const double margin = 1e-3 * (reach->high - reach->low), low = reach->low + margin, high = reach->high - margin;
+    double before = drive.theta1(low), slope_before = drive.at(low)->dtheta1;
+    const int steps = 4000;
+    for (int j = 1; j <= steps; ++j) {
+      const double slider = low + (high - low) * j / steps;
+      const double theta1 = drive.theta1(slider), slope = drive.at(slider)->dtheta1;
+      const double predicted = 0.5 * (slope + slope_before) * (high - low) / steps;
+      ASSERT_NEAR(theta1 - before, predicted, 0.05) << i << ' ' << slider;
+      before = theta1;
+      slope_before = slope;
+    }
+  }
+  EXPECT_GT(passing_beside, 10);
+}
+
+TEST(SliderDrive, FindsTheSliderOfARockerAngle) {
+  test::Random random(13);
+  int checked = 0;
+  for (int i = 0; i < 300; ++i) {
+    const GrappleParameters p = test::randomLinkage(random);
+    const SliderDrive drive(p);
+    const double slider = p.o1.im + random(-2.5, 2.5);
+    const auto reach = drive.reachAround(slider);
+    if (!reach || std::min(slider - reach->low, reach->high - slider) < 1e-2) continue;
+    const auto candidates = drive.slidersAt(drive.theta1(slider));
+    double nearest = 1e9;
+    for (int j = 0; j < candidates.count; ++j) nearest = std::min(nearest, std::abs(candidates.slider[j] - slider));
+    EXPECT_LT(nearest, 1e-6);  // the root of rounding where theta1 turns back
+    ++checked;
+  }
+  EXPECT_GT(checked, 100);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,229 @@
+#include "hammer_loads/pipeline/pipeline.h"
+
+#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/simulation/session.h"
+#include "support/counting_new.h"
+#include "support/main.h"
+#include "support/mo100.h"
+#include "support/session_errors.h"
+
+namespace hammer_loads {
+namespace {
+
+using simulation::MachineSettings;
+using simulation::Session;
+using test::BlowAt;
+using test::WrenchAt;
+
+const std::vector<std::string> kCrank{"hammer_crank_joint"};
+
+struct RunResult {
+  std::vector<WrenchAt> wrenches;
+  std::vector<BlowAt> blows;
+  IntakeCounts counts;
+};
+
+const Settings& shippedSettings() {
+  static const Settings settings = *loadFiles(configDirectory(), {}).value;
+  return settings;
+}
+
+/// Reads a simulated session into a pipeline, joint states in their place between the crank samples.
+RunResult runSession(const Session& session, std::int64_t start, const Mechanism& mechanism, const PipelineSettings& settings) {
+  Pipeline pipeline(mechanism, settings);
+  const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+  std::size_t next_joints = 0;
+  RunResult run;
+  for (const auto& reading : session.crank) {
+    for (; next_joints < session.joints.size() && session.joints[next_joints].stamp <= reading.stamp; ++next_joints) {
+      const auto& position = session.joints[next_joints].position;
+      pipeline.boomJoints(names, {position.begin(), position.end()});
+    }
+    const Loads& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    const double time = 1e-9 * static_cast<double>(reading.stamp - start);
+    for (std::size_t i = 0; i < loads.turn_ends; ++i) {
+      const TurnEnd& end = loads.ends[i];
+      BlowAt blow{1e-9 * static_cast<double>(end.stamp - start), end.blow.energy, end.blow.tool_impulse_z};
+      if (end.pulse) blow.turn_peak = end.pulse->amplitude, blow.turn_impulse_z = end.pulse->turn_impulse_z;
+      run.blows.push_back(blow);
+    }
+    if (!loads.refusal) run.wrenches.push_back({time, loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y});
+  }
+  run.counts = pipeline.counts();
+  return run;
+}
+
+test::SessionErrors errorsOf(const Session& session, const MachineSettings& machine, const RunResult& run, double two_turns) {
+  std::vector<WrenchAt> truth;
+  for (const auto& t : session.truth) truth.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y});
+  std::vector<BlowAt> blows;
+  for (const auto& b : session.blows)
+    blows.push_back({b.time, b.strike.energy, b.strike.tool_impulse, b.turn_peak_force_z, b.turn_impulse_z});
+  test::Judged judged{3.0, machine.duration - 3.0, {}, two_turns};
+  for (const auto& gap : machine.crank.drop_outs) judged.drop_outs.push_back(gap.to);
+  return sessionErrors(run.wrenches, truth, run.blows, blows, judged);
+}
+
+struct Bounds {
+  double rate, rms, peak, impulse, blow_time, energy;
+};
+constexpr Bounds k1kHz{1000.0, 0.0025, 0.012, 0.006, 1e-3, 0.02};
+constexpr Bounds k100Hz{100.0, 0.004, 0.02, 0.012, 1.5e-3, 0.025};
+
+void expectWithin(const test::SessionErrors& e, const Bounds& bounds) {
+  EXPECT_LE(e.rms_x, bounds.rms);
+  EXPECT_LE(e.rms_z, bounds.rms);
+  EXPECT_LE(e.rms_torque, bounds.rms);
+  EXPECT_LE(e.turn_peak, bounds.peak);
+  EXPECT_LE(e.turn_impulse, bounds.impulse);
+  EXPECT_LE(e.blow_time, bounds.blow_time);
+  EXPECT_LE(e.energy, bounds.energy);
+  EXPECT_EQ(e.missed_blows, 0);
+  EXPECT_EQ(e.extra_blows, 0);
+  EXPECT_GT(e.blows, 20);
+}
+
+MachineSettings machineOf(std::uint64_t seed, double rate) {
+  MachineSettings machine = simulation::workingMo100();
+  machine.seed = seed;
+  machine.duration = 12.0;
+  machine.drive.stop_time = 10.5;
+  machine.crank.rate = rate;
+  machine.crank.drop_outs = {{6.0 + 0.03 * static_cast<double>(seed), 6.1 + 0.03 * static_cast<double>(seed)}};
+  return machine;
+}
+
+struct Case {
+  std::uint64_t seed;
+  double inertia_guess;
+  double speed_noise;
+  double true_inertia;
+  bool speed;
+};
+
+class UnseenSessions : public testing::TestWithParam<Case> {};
+
+TEST_P(UnseenSessions, StayWithinTheBounds) {
+  for (const Bounds& bounds : {k1kHz, k100Hz}) {
+    MachineSettings machine = machineOf(GetParam().seed, bounds.rate);
+    machine.crank.speed_noise = GetParam().speed_noise;
+    machine.crank.speed = GetParam().speed;
+    machine.drive.inertia = GetParam().true_inertia;
+    HammerParameters hammer = machine.hammer;
+    hammer.drive_inertia = GetParam().inertia_guess * machine.drive.inertia;
+    const Session session = simulation::recordSession(machine);
+    const RunResult run = runSession(session, machine.start_stamp, test::mechanismOf(hammer), shippedSettings().pipeline);
+    SCOPED_TRACE(bounds.rate);
+    expectWithin(errorsOf(session, machine, run, 0.5), bounds);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, UnseenSessions,
+                         testing::Values(Case{1, 1.0, 0.15, 0.6, true}, Case{2, 0.5, 0.15, 0.6, true},
+                                         Case{3, 1.5, 0.15, 0.8, true}, Case{4, 1.0, 0.6, 0.6, true},
+                                         Case{5, 1.0, 0.03, 0.5, true}, Case{6, 1.5, 0.15, 0.6, false}));
+
+TEST(Pipeline, AfterADropOutNothingIsTenPercentWrong) {
+  for (const double gap : {0.03, 0.1, 0.2, 0.4}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      MachineSettings machine = machineOf(seed, 1000.0);
+      machine.duration = 7.5;
+      machine.drive.stop_time = 7.4;
+      machine.crank.drop_outs = {{6.0 + 0.05 * static_cast<double>(seed), 6.0 + 0.05 * static_cast<double>(seed) + gap}};
+      const Session session = simulation::recordSession(machine);
+      const RunResult run = runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), shippedSettings().pipeline);
+      double peak = 0, worst = 0;
+      std::size_t next = 0;
+      for (const auto& t : session.truth) {
+        while (next < run.wrenches.size() && run.wrenches[next].time < t.time - 1e-5) ++next;
+        peak = std::max(peak, std::abs(t.load.force_z));
+        if (t.time < 5.0 || next == run.wrenches.size() || std::abs(run.wrenches[next].time - t.time) > 1e-5) continue;
+        worst = std::max(worst, std::abs(run.wrenches[next].force_z - t.load.force_z));
+      }
+      EXPECT_LE(worst, 0.1 * peak) << gap << ' ' << seed;
+      EXPECT_LT(run.counts.refused[static_cast<std::size_t>(Refusal::kUnsettled)], 50u) << "output must come back";
+    }
+  }
+}
+
+TEST(Pipeline, ThePapersAssumptionOfConstantSpeedIsThirtyPercentWrong) {
+  const MachineSettings machine = machineOf(1, 1000.0);
+  const Session session = simulation::recordSession(machine);
+  PipelineSettings settings = shippedSettings().pipeline;
+  settings.crank_estimator = CrankEstimator::kNone;
+  const auto none = errorsOf(session, machine, runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), 0.5);
+  EXPECT_GT(none.turn_peak, 0.25);
+  settings.crank_estimator = CrankEstimator::kDifference;
+  const auto diff = errorsOf(session, machine, runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), 0.5);
+  EXPECT_GT(diff.rms_z, 0.03);
+}
+
+TEST(Pipeline, AllocatesNothingPerSample) {
+  const MachineSettings machine = machineOf(1, 1000.0);
+  const Session session = simulation::recordSession(machine);
+  Pipeline pipeline(test::mechanismOf(machine.hammer), shippedSettings().pipeline);
+  std::vector<double> position(1), velocity(1);
+  const std::vector<std::string> boom{"boom_joint", "arm_joint", "hammer_joint"};
+  const std::vector<double> angles{0.1, 0.2, -0.3};
+  const std::size_t before_control = test::allocations;
+  void* volatile block = std::malloc(1);  // volatile: else the compiler may leave both away
+  std::free(block);
+  ASSERT_GT(test::allocations, before_control) << "the counter must see an allocation";
+  const std::size_t before = test::allocations;
+  for (const auto& reading : session.crank) {
+    position[0] = reading.angle;
+    velocity[0] = *reading.speed;
+    pipeline.boomJoints(boom, angles);
+    pipeline.crankJoint(reading.stamp, kCrank, position, velocity);
+  }
+  EXPECT_EQ(test::allocations, before);
+  EXPECT_GT(pipeline.counts().accepted, 11000u);
+}
+
+TEST(Pipeline, CountsEveryRefusalByItsReason) {
+  Pipeline pipeline(test::mechanismOf(test::mo100Parameters()), shippedSettings().pipeline);
+  const auto refusal = [&](StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& position,
+                           const std::vector<double>& velocity) {
+    return pipeline.crankJoint(stamp, names, position, velocity).refusal;
+  };
+  EXPECT_FALSE(refusal(1000000, kCrank, {1.0}, {10.0}));
+  EXPECT_EQ(refusal(2000000, {"wheel"}, {1.0}, {10.0}), Refusal::kMissingJoint);
+  EXPECT_EQ(refusal(2000000, kCrank, {}, {10.0}), Refusal::kShortArray);
+  EXPECT_EQ(refusal(2000000, {"wheel", "hammer_crank_joint"}, {1.0, 1.0}, {1.0}), Refusal::kShortArray);
+  EXPECT_EQ(refusal(2000000, kCrank, {std::nan("")}, {10.0}), Refusal::kNotFinite);
+  EXPECT_EQ(refusal(1000000, kCrank, {1.01}, {10.0}), Refusal::kDuplicate);
+  EXPECT_EQ(refusal(2000000, kCrank, {3.0}, {10.0}), Refusal::kImplausible);
+  EXPECT_FALSE(refusal(2000000, {"wheel", "hammer_crank_joint"}, {1.0, 1.01}, {}));
+  for (std::size_t i = 0; i < kRefusalNames.size(); ++i) {
+    const std::uint64_t expected = i == static_cast<std::size_t>(Refusal::kShortArray)                ? 2
+                                   : i == static_cast<std::size_t>(Refusal::kOutOfOrder) ||
+                                             i == static_cast<std::size_t>(Refusal::kUnsettled) ? 0
+                                                                                                  : 1;
+    EXPECT_EQ(pipeline.counts().refused[i], expected) << kRefusalNames[i];
+  }
+  EXPECT_EQ(pipeline.counts().accepted, 2u);
+}
+
+TEST(Pipeline, AFirstSampleWithoutSpeedGivesNoWrenchTheSecondDoes) {
+  Pipeline pipeline(test::mechanismOf(test::mo100Parameters()), shippedSettings().pipeline);
+  EXPECT_EQ(pipeline.crankSample(0, {1.0, std::nullopt}).refusal, Refusal::kUnsettled);
+  EXPECT_FALSE(pipeline.crankSample(1000000, {1.02, std::nullopt}).refusal);
+}
+
+TEST(Pipeline, ABlowIsOnlyWhatStrikes) {
+  Pipeline pipeline(test::mechanismOf(test::mo100Parameters()), shippedSettings().pipeline);
+  std::size_t blows = 0;
+  const auto swing = [&](StampNs from, double amplitude, double center) {
+    for (int i = 0; i < 2000; ++i) {
+      const double t = 1e-3 * i, angle = center + amplitude * std::sin(3.0 * t);
+      blows += pipeline.crankSample(from + static_cast<StampNs>(i) * 1000000, {angle, 3.0 * amplitude * std::cos(3.0 * t)}).turn_ends;
+    }
+  };
+  swing(0, 0.05, kTwoPi);  // creeps to and fro over the blow
+  EXPECT_EQ(blows, 0u);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,36 @@
+/// Counts heap allocations of the whole test program: malloc and everything built on it (operator new, Eigen).
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+
+// glibc's own allocator under its public alternative names.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+}
+
+namespace hammer_loads::test {
+inline std::size_t allocations = 0;
+}
+
+extern "C" {
+void* malloc(std::size_t size) {
+  ++hammer_loads::test::allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  ++hammer_loads::test::allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  ++hammer_loads::test::allocations;
+  return __libc_realloc(memory, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++hammer_loads::test::allocations;
+  return __libc_memalign(alignment, size);
+}
+}

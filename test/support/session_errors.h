@@ -1,0 +1,86 @@
+/// Errors of the estimated loads over a session whose truth is known.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace hammer_loads::test {
+
+/// Wrench of a sample [N, N, N m], time since the session's start [s].
+struct WrenchAt {
+  double time{}, force_x{}, force_z{}, torque_y{};
+};
+
+/// A blow and the pulse of the turn before it, as estimated or true; turn_* are NaN without a pulse.
+struct BlowAt {
+  double time{}, energy{}, tool_impulse{};
+  double turn_peak{std::numeric_limits<double>::quiet_NaN()};
+  double turn_impulse_z{std::numeric_limits<double>::quiet_NaN()};
+};
+
+/// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
+struct SessionErrors {
+  double rms_x{}, rms_z{}, rms_torque{};
+  double turn_peak{};      ///< relative, worst turn
+  double turn_impulse{};   ///< of the blow's tool impulse, worst turn
+  double blow_time{};      ///< [s], worst
+  double energy{};         ///< relative, worst
+  int blows{}, missed_blows{}, extra_blows{};
+};
+
+/// What is judged: [from, to], without the two turns after each drop-out.
+struct Judged {
+  double from{}, to{};
+  std::vector<double> drop_outs;  ///< ends of drop-outs [s]
+  double two_turns{0.5};          ///< [s]
+  bool operator()(double time) const {
+    return time >= from && time <= to && std::none_of(drop_outs.begin(), drop_outs.end(), [&](double end) {
+             return time > end - 0.15 && time < end + two_turns;
+           });
+  }
+};
+
+inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const std::vector<WrenchAt>& truth,
+                                   const std::vector<BlowAt>& blows, const std::vector<BlowAt>& true_blows,
+                                   const Judged& judged) {
+  SessionErrors e;
+  double peak_x = 0, peak_z = 0, peak_torque = 0, count = 0;
+  std::size_t next = 0;
+  for (const WrenchAt& t : truth) {
+    while (next < estimate.size() && estimate[next].time < t.time - 1e-5) ++next;
+    if (!judged(t.time)) continue;
+    peak_x = std::max(peak_x, std::abs(t.force_x));
+    peak_z = std::max(peak_z, std::abs(t.force_z));
+    peak_torque = std::max(peak_torque, std::abs(t.torque_y));
+    if (next == estimate.size() || std::abs(estimate[next].time - t.time) > 1e-5) continue;  // withheld
+    e.rms_x += std::pow(estimate[next].force_x - t.force_x, 2);
+    e.rms_z += std::pow(estimate[next].force_z - t.force_z, 2);
+    e.rms_torque += std::pow(estimate[next].torque_y - t.torque_y, 2);
+    ++count;
+  }
+  e.rms_x = std::sqrt(e.rms_x / count) / peak_x;
+  e.rms_z = std::sqrt(e.rms_z / count) / peak_z;
+  e.rms_torque = std::sqrt(e.rms_torque / count) / peak_torque;
+  for (const BlowAt& t : true_blows) {
+    if (!judged(t.time)) continue;
+    ++e.blows;
+    const auto nearest = std::min_element(blows.begin(), blows.end(), [&](const BlowAt& a, const BlowAt& b) {
+      return std::abs(a.time - t.time) < std::abs(b.time - t.time);
+    });
+    if (nearest == blows.end() || std::abs(nearest->time - t.time) > 0.05 || std::isnan(nearest->turn_peak)) {
+      ++e.missed_blows;
+      continue;
+    }
+    e.blow_time = std::max(e.blow_time, std::abs(nearest->time - t.time));
+    e.energy = std::max(e.energy, std::abs(nearest->energy / t.energy - 1.0));
+    e.turn_peak = std::max(e.turn_peak, std::abs(nearest->turn_peak / t.turn_peak - 1.0));
+    e.turn_impulse = std::max(e.turn_impulse, std::abs(nearest->turn_impulse_z - t.turn_impulse_z) / t.tool_impulse);
+  }
+  const auto within = [&](const BlowAt& b) { return judged(b.time); };
+  e.extra_blows = static_cast<int>(std::count_if(blows.begin(), blows.end(), within)) - e.blows;
+  return e;
+}
+
+}  // namespace hammer_loads::test
