@@ -63,7 +63,8 @@ def table(log, bags, working):
         ("peak force Fz, median of turns", f"{middle([p.amplitude_N for _, p in working]) / 1e3:.2f} kN"),
         ("largest force Fz", f"{max(f for _, _, f in log.wrench) / 1e3:.2f} kN"),
         ("mean press force needed, median", f"{middle(presses):.0f} N"),
-        ("crank samples / wrenches", f"{log.crank_samples} / {len(log.wrench)}"),
+        ("crank samples logged", f"{log.crank_samples}"),
+        ("wrenches logged", f"{len(log.wrench)}"),
     ]
     rows += [("log", str(path)) for path in bags]
     rows.append(("log size", f"{size / 1e6:.2f} MB"))

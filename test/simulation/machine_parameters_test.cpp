@@ -119,3 +119,8 @@ TEST(MachineParameters, OneHammerKeyNeedsThemAll) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

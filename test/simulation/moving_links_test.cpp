@@ -152,3 +152,8 @@ TEST(MovingLinks, StrikeOfMo100AtConstantSpeed) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -173,3 +173,8 @@ TEST(Session, HoldsAtOtherRatesAndCounts) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

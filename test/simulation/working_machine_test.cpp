@@ -194,3 +194,8 @@ TEST(WorkingMachine, ImpossibleLinkageIsRefused) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

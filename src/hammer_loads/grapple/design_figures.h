@@ -38,8 +38,8 @@ struct DesignFigures {
   Extreme most_transmission;              ///< angle O1-H-G [rad]
 };
 
-/// Precondition: judge() is kNone for both. Lengths and shares to some 1e-9; extremes of conditioning are those of 2049
-/// equidistant positions.
+/// Precondition: judge() is kNone for both. Lengths to some 1e-9 m, those at 80 % to 1e-7; extremes of
+/// conditioning are those of 2049 equidistant positions.
 DesignFigures designFigures(const Grapple& grapple, double slider_closed, double slider_open);
 
 /// Slider position [m] within the stroke at which the jaw edges are `opening` [m] apart (2 x_P), to some 1e-15. One of

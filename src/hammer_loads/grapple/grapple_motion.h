@@ -35,22 +35,20 @@ struct JawMotion {
   Planar edge;                    ///< P [m]
   Planar edge_velocity;           ///< [m/s]
   Planar edge_acceleration;       ///< [m/s2]
-  double angle{};                 ///< direction of BD [rad], in [-pi, pi]
   double turning_speed{};         ///< [rad/s], counter-clockwise
   double turning_acceleration{};  ///< [rad/s2]
 };
 
 inline JawMotion rightJaw(const GrappleMotion& m, double velocity, double acceleration) noexcept {
   const double vv = velocity * velocity;
-  return {m.p, velocity * m.dp, vv * m.ddp + acceleration * m.dp, angleOf(m.d - m.b), velocity * m.jaw.d,
+  return {m.p, velocity * m.dp, vv * m.ddp + acceleration * m.dp, velocity * m.jaw.d,
           vv * m.jaw.dd + acceleration * m.jaw.d};
 }
 
-/// Mirror image of the right jaw; its angle is the direction of the mirrored BD.
+/// Mirror image of the right jaw.
 inline JawMotion leftJaw(const JawMotion& right) noexcept {
   return {mirrored(right.edge), mirrored(right.edge_velocity), mirrored(right.edge_acceleration),
-          std::remainder(3.14159265358979323846 - right.angle, 2.0 * 3.14159265358979323846), -right.turning_speed,
-          -right.turning_acceleration};
+          -right.turning_speed, -right.turning_acceleration};
 }
 
 /// Direction of a link's first side from +x and its derivative by s.

@@ -27,7 +27,16 @@ struct LinkMotion {
 HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker::Ratios& k, const Motion& m) noexcept {
   const double s = m.sin_half, c = m.cos_half;
   LinkMotion l;
-  l.rocker = m;
+  l.rocker.sin_psi = m.sin_psi;  // one by one: copied as a block they would stay in memory
+  l.rocker.cos_psi = m.cos_psi;
+  l.rocker.u = m.u;
+  l.rocker.du = m.du;
+  l.rocker.sin_half = m.sin_half;
+  l.rocker.cos_half = m.cos_half;
+  l.rocker.r = m.r;
+  l.rocker.inv_r = m.inv_r;
+  l.rocker.sin_psi_over_s = m.sin_psi_over_s;
+  l.rocker.du_over_s = m.du_over_s;
   const double sin_phi_over_s = 2.0 * c;
   l.phi = {1.0 - 2.0 * s * s, s * sin_phi_over_s};
   l.psi = {m.cos_psi, m.sin_psi};

@@ -53,7 +53,7 @@ std::vector<rosbag::Bag*>& abandonedBags() {
 LogFile::LogFile(LogName name, std::uint32_t chunk_size) : name_(std::move(name)), chunk_size_(chunk_size) {}
 
 LogFile::~LogFile() {
-  if (bag_) close();
+  if (is_open_) close();
 }
 
 template <typename Action>
@@ -149,10 +149,7 @@ std::optional<LogFault> LogFile::write(const LogTopic& topic, const ros::Time& t
     size_ = bag_->getSize();
     if (!chunk_due_) chunk_due_ = now + kChunkPeriod;
   });
-  if (!full) return fault;
-  auto second = close();
-  if (second) full->reason += "; " + second->reason;
-  return full;
+  return full ? full : fault;
 }
 
 std::optional<LogFault> LogFile::closeChunkInTime(Clock::time_point now) {
@@ -186,6 +183,7 @@ std::optional<LogFault> LogFile::close() {
   }
   const std::string problem = name_.publish();
   if (!problem.empty()) return LogFault{LogState::kFailed, problem};
+  is_complete_ = true;
   return {};
 }
 

@@ -13,17 +13,10 @@
 #include <vector>
 
 #include "hammer_loads/ros/log_name.h"
+#include "hammer_loads/ros/log_status.h"
 #include "hammer_loads/ros/log_topic.h"
 
 namespace hammer_loads {
-
-/// Whether messages reach a file.
-enum class LogState {
-  kOff,        ///< not started, or stopped on request
-  kRecording,  ///< messages are written
-  kDiskFull,   ///< stopped by itself: too little space left
-  kFailed,     ///< stopped by itself: the disk or rosbag reported an error
-};
 
 /// Why a log stopped by itself.
 struct LogFault {
@@ -37,7 +30,7 @@ struct LogDisk {
   std::function<std::uint64_t(const std::string& directory)> free_space{freeSpace};  ///< [byte]
 };
 
-/// Belongs to one thread. A method that returns a fault has ended the file: nothing but the destructor may follow.
+/// Belongs to one thread. After a fault the file is either still open, then it can be closed in good order, or given up.
 class LogFile {
  public:
   using Clock = std::chrono::steady_clock;
@@ -59,8 +52,11 @@ class LogFile {
   std::optional<LogFault> close();
 
   std::uint64_t size() const noexcept { return size_; }  ///< on disk without the open chunk [byte]
-  const std::string& path() const noexcept { return is_open_ ? name_.active() : name_.final(); }
-  bool isDeleted() const noexcept;  ///< somebody removed the file
+  /// As it is called now.
+  const std::string& path() const noexcept { return is_complete_ ? name_.final() : name_.active(); }
+  bool isOpen() const noexcept { return is_open_; }
+  bool isComplete() const noexcept { return is_complete_; }  ///< closed with its index, under its final name
+  bool isDeleted() const noexcept;                           ///< somebody removed the file
 
  private:
   struct Connection {
@@ -80,6 +76,7 @@ class LogFile {
   std::unique_ptr<rosbag::Bag> bag_;
   std::vector<std::unique_ptr<Connection>> connections_;  // by LogTopic::index
   bool is_open_{};
+  bool is_complete_{};
   std::uint64_t size_{};
   std::uint64_t size_bound_{};  // size can be no more once all is flushed [byte]
   std::uint64_t index_bound_{};  // the index written by close() can be no more [byte]

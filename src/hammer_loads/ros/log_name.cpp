@@ -85,7 +85,7 @@ Checked<LogName> LogName::take(const std::string& directory, const std::string& 
     if (access(name.final_.c_str(), F_OK) == 0) continue;
     name.descriptor_ = open(name.active_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (name.descriptor_ >= 0) {
-      result.value = std::move(name);
+      result.value.emplace(std::move(name));
       return result;
     }
     if (errno == EEXIST) continue;

@@ -11,8 +11,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr std::size_t kMostOrders = 1000;
-constexpr std::uint32_t kChunkSize = 768 * 1024;           // rosbag's own
-constexpr std::chrono::milliseconds kLookInterval{10};     // the producing thread need not wake this one
+constexpr std::uint64_t kChunkSize = 768 * 1024;        // rosbag's own [byte]
+constexpr std::chrono::milliseconds kLookInterval{10};  // the producing thread need not wake this one
 constexpr std::chrono::seconds kDiskCheckInterval{1};
 
 }  // namespace
@@ -36,6 +36,13 @@ bool LogWriter::post(LogOrder order) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (orders_.size() >= kMostOrders) return false;
+    if (order.kind == LogOrder::Kind::kStart) {  // known at once, not only when the thread gets there
+      status_session_ = order.session;
+      status_.state = LogState::kRecording;
+      status_.reason.clear();
+      status_.file = order.name->active();
+      status_.file_size = 0;
+    }
     orders_.push_back(std::move(order));
   }
   woken_.notify_one();
@@ -47,9 +54,21 @@ LogStatus LogWriter::status() const {
   return status_;
 }
 
+void LogWriter::report(LogState state, const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_.bytes_written = totals_.bytes_written + (file_ && !file_->isComplete() ? file_->size() : 0);
+  status_.files_closed = totals_.files_closed;
+  status_.files_deleted = totals_.files_deleted;
+  if (session_ != status_session_) return;  // a newer recording has been ordered already
+  status_.state = state;
+  status_.reason = reason;
+  status_.file = file_->path();
+  status_.file_size = file_->size();
+}
+
 void LogWriter::run() {
   while (!quit_) {
-    const std::uint64_t end = queue_.end();  // before the orders: none of a place ahead of it can be missed
+    const std::uint64_t end = queue_.end();  // before looking for orders: none that belongs ahead of it is missed
     std::optional<LogOrder> order = nextOrder();
     drain(order ? order->position : end);
     if (order) {
@@ -80,21 +99,17 @@ void LogWriter::carryOut(LogOrder& order) {
     case LogOrder::Kind::kStart:
       session_ = order.session;
       directory_ = order.directory;
-      begin(std::move(*order.name));
-      break;
+      next_number_ = order.next_number;
+      return begin(std::move(*order.name));
     case LogOrder::Kind::kStop:
-      if (file_) end();
-      break;
+      return end();
     case LogOrder::Kind::kSplit:
-      if (file_) split();
-      break;
+      return split();
     case LogOrder::Kind::kLatched:
-      latch(order);
-      break;
+      return latch(order);
     case LogOrder::Kind::kQuit:
-      if (file_) end();
       quit_ = true;
-      break;
+      return end();
   }
 }
 
@@ -102,93 +117,135 @@ void LogWriter::drain(std::uint64_t position) {
   while (queue_.begin() < position) {
     LogQueue::Record* record = queue_.front();
     if (file_ && disk_.before_write) disk_.before_write();
-    if (file_) write(*record);
+    write(*record);
     queue_.pop();
   }
 }
 
 void LogWriter::write(LogQueue::Record& record) {
   const Clock::time_point now = Clock::now();
-  if (repeat_) repeatLatched(record.time);
-  if (!file_) return;
-  if (auto fault = file_->write(*record.topic, record.time, record.bytes(), record.size, now)) {
-    record.topic->unsaved.fetch_add(1, std::memory_order_relaxed);
-    return stopFor(*fault);
-  }
-  last_time_ = record.time;
-  record.topic->written.fetch_add(1, std::memory_order_relaxed);
+  if (repeat_) repeatLatched(&record.time);
+  std::optional<LogFault> fault;
+  if (file_) fault = file_->write(*record.topic, record.time, record.bytes(), record.size, now);
+  (file_ && !fault ? record.topic->written : record.topic->unsaved).fetch_add(1, std::memory_order_relaxed);
+  if (fault) return stopFor(std::move(*fault));
   keepHouse(now);
 }
 
-/// Chunk, size and disk, each in its time.
+/// Chunk, disk and size, each in its time.
 void LogWriter::keepHouse(Clock::time_point now) {
-  if (!file_) return;
-  if (repeat_ && now - opened_ > LogFile::kChunkPeriod) repeatLatched(last_time_);
+  if (repeat_ && now - opened_ > LogFile::kChunkPeriod) repeatLatched(nullptr);
   if (!file_) return;
   auto fault = file_->closeChunkInTime(now);
   if (!fault && now >= next_check_) {
     next_check_ = now + kDiskCheckInterval;
     fault = checkDisk();
-    report(LogState::kRecording, "");
+    if (!fault) report(LogState::kRecording, "");
   }
-  if (fault) return stopFor(*fault);
+  if (fault) return stopFor(std::move(*fault));
   if (file_->size() >= settings_.split_size) split();
 }
 
 std::optional<LogFault> LogWriter::checkDisk() {
-  if (file_->isDeleted()) return LogFault{LogState::kFailed, "log file " + file_->path() + " was deleted"};
+  if (file_->isDeleted()) return LogFault{LogState::kFailed, "log file " + file_->path() + " was deleted or replaced"};
   const std::uint64_t free = disk_.free_space(directory_);
   if (free >= settings_.min_free_space) return {};
   constexpr double kMb = 1e6;
-  return LogFault{LogState::kDiskFull, format("%.1f MB free in %s, log_min_free_mb is %.1f MB",
-                                              static_cast<double>(free) / kMb, directory_.c_str(),
-                                              static_cast<double>(settings_.min_free_space) / kMb)};
+  return LogFault{LogState::kDiskFull,
+                  format("%.1f MB free in %.300s, log_min_free_mb: %.1f MB must stay free",
+                         static_cast<double>(free) / kMb, directory_.c_str(),
+                         static_cast<double>(settings_.min_free_space) / kMb)};
 }
 
 void LogWriter::begin(LogName name) {
   deleteOldest();
-  const std::uint64_t chunk = std::min<std::uint64_t>(kChunkSize, settings_.split_size / 4);
-  file_ = std::make_unique<LogFile>(std::move(name), static_cast<std::uint32_t>(chunk));
+  const std::uint64_t chunk_size = std::min(kChunkSize, settings_.split_size / 4);
+  file_ = std::make_unique<LogFile>(std::move(name), static_cast<std::uint32_t>(chunk_size));
   opened_ = Clock::now();
   next_check_ = opened_ + kDiskCheckInterval;
-  repeat_ = true;
   auto fault = file_->open();
   if (!fault) fault = checkDisk();
-  if (fault) return stopFor(*fault);
+  if (fault) return stopFor(std::move(*fault));
+  repeat_ = true;
   report(LogState::kRecording, "");
 }
 
-/// Closes the file; what is latched stands in it in any case.
+/// On request. What is latched stands in the file in any case.
 void LogWriter::end() {
-  if (repeat_) repeatLatched(last_time_);
+  if (repeat_) repeatLatched(nullptr);
   if (!file_) return;
-  const auto fault = file_->close();
-  if (fault) return stopFor(*fault);
+  if (auto fault = file_->close()) return stopFor(std::move(*fault));
+  settle();
   report(LogState::kOff, "");
   file_.reset();
 }
 
 void LogWriter::split() {
-  end();
-  if (faultySession() == session_) return;
+  if (!file_) return;
+  if (repeat_) repeatLatched(nullptr);
+  if (!file_) return;
+  if (auto fault = file_->close()) return stopFor(std::move(*fault));
+  settle();
   Checked<LogName> name = LogName::take(directory_, settings_.prefix, next_number_);
   if (!name.value) return stopFor({LogState::kFailed, name.problems.front()});
   begin(std::move(*name.value));
 }
 
-void LogWriter::latch(LogOrder& order) {
-  auto place = std::find_if(latched_.begin(), latched_.end(), [&](const Latched& l) { return l.topic == order.topic; });
-  if (place == latched_.end()) place = latched_.insert(place, {order.topic, {}, {}});
-  place->time = order.time;
-  place->bytes = std::move(order.bytes);
+/// By itself: the file is closed in good order if that is possible; the node goes on without a log.
+void LogWriter::stopFor(LogFault fault) {
+  repeat_ = false;
+  if (file_->isOpen()) {
+    if (const auto second = file_->close()) fault.reason += "; " + second->reason;
+    settle();
+  }
+  faulty_session_.store(session_, std::memory_order_release);
+  report(fault.state, fault.reason);
+  file_.reset();
 }
 
-void LogWriter::repeatLatched(const ros::Time& time) {}
+/// Enters a file that has just been closed.
+void LogWriter::settle() {
+  if (!file_->isComplete()) return;
+  closed_.push_back({file_->path(), file_->size()});
+  closed_size_ += file_->size();
+  totals_.bytes_written += file_->size();
+  ++totals_.files_closed;
+}
 
+/// Makes room for one more file within log_total_mb. Only files of this process: of others nobody here knows whether
+/// they are still wanted, or still written.
 void LogWriter::deleteOldest() {
   if (settings_.total_size == 0) return;
   while (!closed_.empty() && closed_size_ + settings_.split_size > settings_.total_size) {
-    unlink(closed_.front().path.c_str());
+    if (unlink(closed_.front().path.c_str()) == 0) ++totals_.files_deleted;
+    closed_size_ -= closed_.front().size;
+    closed_.pop_front();
+  }
+}
+
+void LogWriter::latch(LogOrder& order) {
+  const auto same = [&order](const Latched& latched) { return latched.topic == order.topic; };
+  auto place = std::find_if(latched_.begin(), latched_.end(), same);
+  if (place == latched_.end()) place = latched_.insert(place, Latched{order.topic, {}, {}});
+  place->time = order.time;
+  place->bytes = std::move(order.bytes);
+  if (!file_) return;
+  order.topic->written.fetch_add(1, std::memory_order_relaxed);
+  if (repeat_) return;  // comes with the others
+  auto& bytes = place->bytes;
+  auto fault = file_->write(*order.topic, order.time, bytes.data(), static_cast<std::uint32_t>(bytes.size()),
+                            Clock::now());
+  if (fault) stopFor(std::move(*fault));
+}
+
+/// time: of the file's first message, so that the file does not begin with a gap; null: there is none yet.
+void LogWriter::repeatLatched(const ros::Time* time) {
+  repeat_ = false;
+  for (Latched& latched : latched_) {
+    auto& bytes = latched.bytes;
+    auto fault = file_->write(*latched.topic, time != nullptr ? *time : latched.time, bytes.data(),
+                              static_cast<std::uint32_t>(bytes.size()), Clock::now());
+    if (fault) return stopFor(std::move(*fault));
   }
 }
 

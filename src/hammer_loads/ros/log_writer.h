@@ -1,10 +1,10 @@
 /// The thread that takes messages from the queue to the disk.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +15,7 @@
 #include "hammer_loads/parameters/log_settings.h"
 #include "hammer_loads/ros/log_file.h"
 #include "hammer_loads/ros/log_queue.h"
+#include "hammer_loads/ros/log_status.h"
 
 namespace hammer_loads {
 
@@ -22,27 +23,17 @@ namespace hammer_loads {
 struct LogOrder {
   enum class Kind { kStart, kStop, kSplit, kLatched, kQuit };
   Kind kind{};
-  std::uint64_t position{};       ///< in the queue: carried out before what was queued later
-  std::uint64_t session{};        ///< kStart: number of this recording
-  std::unique_ptr<LogName> name;  ///< kStart: first file
-  std::string directory;          ///< kStart
-  const LogTopic* topic{};        ///< kLatched
-  ros::Time time;                 ///< kLatched: record time
+  std::uint64_t position{};         ///< in the queue: carried out behind what was queued before
+  std::uint64_t session{};          ///< kStart: number of this recording, from 1
+  std::string directory;            ///< kStart
+  std::optional<LogName> name;      ///< kStart: first file
+  unsigned next_number{};           ///< kStart: in the name of the second file
+  LogTopic* topic{};                ///< kLatched
+  ros::Time time;                   ///< kLatched: record time
   std::vector<std::uint8_t> bytes;  ///< kLatched: serialised message
 };
 
-/// What the writing thread has done so far.
-struct LogStatus {
-  LogState state{LogState::kOff};
-  std::string reason;             ///< why the log stopped by itself; empty otherwise
-  std::string file;               ///< current or last bag
-  std::uint64_t file_size{};      ///< of it, without the open chunk [byte]
-  std::uint64_t bytes_written{};  ///< all bags of this process together [byte]
-  std::uint64_t files_closed{};   ///< complete bags under their final names
-  std::uint64_t files_deleted{};  ///< oldest bags deleted for log_total_mb
-};
-
-/// Only the constructor, the destructor, post() and the const methods are for other threads.
+/// Only the constructor, the destructor, post(), status() and faultySession() are for other threads.
 class LogWriter {
  public:
   LogWriter(const LogSettings& settings, const LogDisk& disk, LogQueue& queue);
@@ -51,16 +42,16 @@ class LogWriter {
   /// Carries out all orders, writes all messages, closes the file.
   ~LogWriter();
 
-  /// False if too many orders wait already.
+  /// False if far too many orders wait already.
   bool post(LogOrder order);
   LogStatus status() const;
-  /// Session that stopped by itself last.
+  /// The recording that stopped by itself last; 0: none.
   std::uint64_t faultySession() const noexcept { return faulty_session_.load(std::memory_order_acquire); }
 
  private:
   using Clock = LogFile::Clock;
   struct Latched {
-    const LogTopic* topic;
+    LogTopic* topic;
     ros::Time time;
     std::vector<std::uint8_t> bytes;
   };
@@ -80,10 +71,11 @@ class LogWriter {
   void begin(LogName name);
   void end();
   void split();
-  void latch(LogOrder& order);
-  void repeatLatched(const ros::Time& time);
+  void stopFor(LogFault fault);
+  void settle();
   void deleteOldest();
-  void stopFor(const LogFault& fault);
+  void latch(LogOrder& order);
+  void repeatLatched(const ros::Time* time);
   void report(LogState state, const std::string& reason);
 
   const LogSettings settings_;
@@ -92,24 +84,24 @@ class LogWriter {
 
   // The writing thread's own.
   std::unique_ptr<LogFile> file_;
-  std::string directory_;
   std::uint64_t session_{};
+  std::string directory_;
   unsigned next_number_{};
   bool quit_{};
   bool repeat_{};  // latched messages still to be repeated in this file
-  Clock::time_point opened_{};
-  Clock::time_point next_check_{};
-  ros::Time last_time_{ros::TIME_MIN};
+  Clock::time_point opened_{}, next_check_{};
   std::vector<Latched> latched_;
-  std::deque<ClosedFile> closed_;
-  std::uint64_t closed_size_{};
+  std::deque<ClosedFile> closed_;  // oldest first
+  std::uint64_t closed_size_{};    // of them together [byte]
+  LogStatus totals_;               // only its sums
 
   std::atomic<std::uint64_t> faulty_session_{};
   mutable std::mutex mutex_;
   std::condition_variable woken_;
-  std::deque<LogOrder> orders_;  // guarded by mutex_
-  LogStatus status_;             // guarded by mutex_
-  std::thread thread_;           // last: starts when all else is there
+  std::deque<LogOrder> orders_;     // guarded by mutex_
+  LogStatus status_;                // guarded by mutex_
+  std::uint64_t status_session_{};  // guarded by mutex_
+  std::thread thread_;              // last: starts when all else is there
 };
 
 }  // namespace hammer_loads

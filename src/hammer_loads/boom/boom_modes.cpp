@@ -1,0 +1,83 @@
+#include "hammer_loads/boom/boom_modes.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+namespace hammer_loads {
+
+void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
+               BoomModes& modes) noexcept {
+  modes.count = static_cast<int>(cylinders.size());
+  modes.dead_point = false;
+  modes.mass = dynamics.massMatrix(position);
+  modes.stiffness.resize(modes.count);
+  for (int i = 0; i < modes.count; ++i) {
+    const Cylinder& cylinder = cylinders[static_cast<std::size_t>(i)];
+    const CylinderPosition at = cylinder.at(position[cylinder.joint()]);
+    modes.joint[static_cast<std::size_t>(i)] = cylinder.joint();
+    modes.stiffness[i] = cylinder.jointStiffness(at);
+    modes.dead_point = modes.dead_point || at.dead_point;
+  }
+  if (modes.dead_point) modes.count = 0;
+  const int n = modes.count;
+  const int joints = static_cast<int>(position.size());
+  if (n == 0) {
+    modes.omega.resize(0), modes.shape.resize(0, 0), modes.inertia.resize(joints, 0);
+    return;
+  }
+  JointMatrix M(n, n), columns(joints, n);
+  for (int i = 0; i < n; ++i) columns.col(i) = modes.mass.col(modes.joint[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < n; ++i) M.row(i) = columns.row(modes.joint[static_cast<std::size_t>(i)]);
+  // K^-1/2 M K^-1/2 y = y/omega^2: symmetric, and well conditioned since every K is positive.
+  const JointVector soft = modes.stiffness.cwiseSqrt().cwiseInverse();
+  JointMatrix scaled = M;
+  for (int j = 0; j < n; ++j) scaled.col(j).array() *= soft.array() * soft[j];
+  const Eigen::SelfAdjointEigenSolver<JointMatrix> solver(scaled);
+  modes.omega.resize(n), modes.shape.resize(n, n);
+  for (int k = 0; k < n; ++k) {
+    const double inverse_square = solver.eigenvalues()[n - 1 - k];  // lowest frequency first
+    modes.omega[k] = 1.0 / std::sqrt(inverse_square);
+    modes.shape.col(k) = solver.eigenvectors().col(n - 1 - k).cwiseProduct(soft) * modes.omega[k];
+  }
+  modes.inertia.noalias() = columns * modes.shape;
+}
+
+JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) noexcept {
+  JointVector force = JointVector::Zero(modes.count);
+  for (int i = 0; i < modes.count; ++i) {
+    force += joint_torque[modes.joint[static_cast<std::size_t>(i)]] * modes.shape.row(i).transpose();
+  }
+  return force;
+}
+
+JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept {
+  JointVector joints = JointVector::Zero(modes.mass.rows());
+  for (int i = 0; i < modes.count; ++i) joints[modes.joint[static_cast<std::size_t>(i)]] = modes.shape.row(i).dot(modal);
+  return joints;
+}
+
+JointVector modalOf(const BoomModes& modes, const JointVector& joints) noexcept {
+  JointVector modal = JointVector::Zero(modes.count);
+  for (int i = 0; i < modes.count; ++i) {
+    const int joint = modes.joint[static_cast<std::size_t>(i)];
+    modal += joints[joint] * modes.inertia.row(joint).transpose();
+  }
+  return modal;
+}
+
+ReducedHull reducedAtTip(const BoomModes& modes, const JointVector& tip_velocity) noexcept {
+  double mobility = 0.0, compliance = 0.0;
+  for (int k = 0; k < modes.count; ++k) {
+    double modal = 0.0;
+    for (int i = 0; i < modes.count; ++i) {
+      modal += tip_velocity[modes.joint[static_cast<std::size_t>(i)]] * modes.shape(i, k);
+    }
+    mobility += modal * modal;
+    compliance += modal * modal / (modes.omega[k] * modes.omega[k]);
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {mobility > 0.0 ? 1.0 / mobility : kInfinity, compliance > 0.0 ? 1.0 / compliance : kInfinity};
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,48 @@
+/// How the boom vibrates on the oil of its cylinders, at one pose.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hammer_loads/boom/chain_dynamics.h"
+#include "hammer_loads/boom/cylinder.h"
+
+namespace hammer_loads {
+
+/// Small vibration about a pose, M q'' + C q' + K q = Q: M from the chain, K diagonal from the cylinders, C by one
+/// damping ratio for every mode. Joints without a cylinder are held. Modes in the order of their frequencies.
+///
+/// Neglects: flexibility of links, pins, machine and ground; stiffness from weight and from the cylinders' pre-load;
+/// oil moving between chambers (valves shut); forces from the boom's slow motion on its vibration.
+struct BoomModes {
+  int count{};                             ///< modes = joints with a cylinder; 0 at a dead point
+  bool dead_point{};                       ///< some cylinder does not hold its joint: there are no modes
+  std::array<int, kMaxJoints> joint{};     ///< index in the chain of the joints that vibrate
+  JointVector stiffness;                   ///< K of those [N m/rad]
+  JointMatrix mass;                        ///< M of all joints [kg m2]
+  JointVector omega;                       ///< natural frequencies [rad/s]
+  JointMatrix shape;                       ///< of the joints that vibrate, per mode; shape^T M shape = 1 [1/sqrt(kg m2)]
+  JointMatrix inertia;                     ///< M shape, of all joints, per mode [sqrt(kg m2)]
+};
+
+/// Modes at a pose; at most one cylinder per joint. No allocation.
+void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
+               BoomModes& modes) noexcept;
+
+/// Modal forces of joint torques [N m] and the joint displacements or velocities that modal ones make, of all joints.
+JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) noexcept;
+JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept;
+/// Modal displacements or velocities of those of the joints; held joints do not count.
+JointVector modalOf(const BoomModes& modes, const JointVector& joints) noexcept;
+
+/// What the hull is like to a force on it: it moves at first like a free mass, and yields at rest like a spring.
+struct ReducedHull {
+  double mass{};       ///< 1/(d^T J M^-1 J^T d) [kg]
+  double stiffness{};  ///< 1/(d^T J K^-1 J^T d) [N/m]
+};
+
+/// Along a direction through the tip's origin: tip_velocity = that velocity per joint rate, d^T J [m]. Infinite where the
+/// vibrating joints do not move the hull along it.
+ReducedHull reducedAtTip(const BoomModes& modes, const JointVector& tip_velocity) noexcept;
+
+}  // namespace hammer_loads

@@ -1,0 +1,222 @@
+#include "hammer_loads/boom/chain.h"
+
+#include <algorithm>
+#include <kdl/tree.hpp>
+#include <kdl_parser/kdl_parser.hpp>
+#include <limits>
+#include <set>
+
+#include "hammer_loads/boom/urdf_text.h"
+#include "hammer_loads/linkage/format.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool moves(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
+
+Eigen::Vector3d toEigen(const KDL::Vector& v) { return {v.x(), v.y(), v.z()}; }
+
+Eigen::Matrix3d toEigen(const KDL::Rotation& R) {
+  Eigen::Matrix3d M;
+  M << R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2);
+  return M;
+}
+
+/// Position and rotation of a segment as functions of its joint.
+ChainLink toLink(const KDL::Segment& segment) {
+  ChainLink link;
+  link.name = segment.getName();
+  const KDL::Frame rest = segment.pose(0.0);
+  const Eigen::Matrix3d R = toEigen(rest.M);
+  link.origin = toEigen(rest.p);
+  link.steady = R;
+  link.sine = link.cosine = Eigen::Matrix3d::Zero();
+  link.slide = link.axis = Eigen::Vector3d::Zero();
+  link.body = {segment.getInertia().getMass(), toEigen(segment.getInertia().getCOG())};
+  const KDL::Joint::JointType type = segment.getJoint().getType();
+  if (type == KDL::Joint::Fixed) return link;
+  link.axis = toEigen(segment.getJoint().JointAxis());
+  link.prismatic = type == KDL::Joint::TransAxis;
+  if (link.prismatic) {
+    link.slide = link.axis;
+    return link;
+  }
+  // Rodrigues: Rot(a, q) = (I + K^2) + sin q K - cos q K^2 with K = [a]x.
+  Eigen::Matrix3d K;
+  K << 0.0, -link.axis.z(), link.axis.y(), link.axis.z(), 0.0, -link.axis.x(), -link.axis.y(), link.axis.x(), 0.0;
+  link.steady = R + K * K * R;
+  link.sine = K * R;
+  link.cosine = -K * K * R;
+  return link;
+}
+
+}  // namespace
+
+/// Collects the chain's data and whatever is wrong with it.
+class ChainBuilder {
+ public:
+  ChainBuilder(const urdf::ModelInterface& model, const ChainRequest& request, Checked<Chain>& result)
+      : model_(model), request_(request), result_(result) {}
+
+  void build() {
+    const std::size_t problems_before = result_.problems.size();
+    findPath();
+    if (result_.problems.size() == problems_before) checkJoints();
+    if (!result_.problems.empty()) return;
+    if (!kdl_parser::treeFromUrdfModel(model_, tree_)) {
+      result_.problems.push_back("robot_description: cannot be made a tree of rigid bodies");
+      return;
+    }
+    addLinks();
+    checkMassBeyondJoints();
+    if (!result_.problems.empty()) return;
+    result_.value = Chain(std::make_shared<const Chain::Data>(std::move(data_)));
+  }
+
+ private:
+  void findPath() {
+    for (const std::string& name : {request_.root, request_.tip}) {
+      if (!model_.getLink(name)) {
+        result_.problems.push_back(format("robot_description: link %s: not in the model, must be there", name.c_str()));
+      }
+    }
+    if (!result_.problems.empty()) return;
+    urdf::LinkConstSharedPtr link = model_.getLink(request_.tip);
+    while (link->name != request_.root && link->parent_joint) {
+      path_.push_back(link->parent_joint);
+      link = link->getParent();
+    }
+    std::reverse(path_.begin(), path_.end());
+    if (link->name != request_.root) {
+      result_.problems.push_back(format("robot_description: link %s: hangs on %s, must hang on %s",
+                                        request_.tip.c_str(), link->name.c_str(), request_.root.c_str()));
+    }
+  }
+
+  void checkJoints() {
+    std::set<std::string> moving;
+    for (const urdf::JointConstSharedPtr& joint : path_) {
+      if (moves(*joint)) moving.insert(joint->name);
+      if (!moves(*joint) && joint->type != urdf::Joint::FIXED) {
+        result_.problems.push_back(format("robot_description: joint %s: must be revolute, continuous, prismatic or fixed",
+                                          joint->name.c_str()));
+      }
+      if (joint->mimic) {
+        result_.problems.push_back(format("robot_description: joint %s: mimics %s, must move by itself",
+                                          joint->name.c_str(), joint->mimic->joint_name.c_str()));
+      }
+    }
+    const auto count = static_cast<int>(moving.size());
+    if (count < 1 || count > kMaxJoints || static_cast<int>(path_.size()) >= kMaxLinks) {
+      result_.problems.push_back(format("robot_description: %d moving joints and %d links from %s to %s, must be 1 to %d "
+                                        "joints and at most %d links", count, static_cast<int>(path_.size()) + 1,
+                                        request_.root.c_str(), request_.tip.c_str(), kMaxJoints, kMaxLinks));
+    }
+    for (const std::string& name : request_.joints) {
+      if (moving.count(name) != 0) continue;
+      const char* why = model_.getJoint(name) ? "not a moving joint" : "not in the model, must be a moving joint";
+      result_.problems.push_back(format("robot_description: joint %s: %s between %s and %s", name.c_str(), why,
+                                        request_.root.c_str(), request_.tip.c_str()));
+    }
+  }
+
+  void addLinks() {
+    for (const urdf::JointConstSharedPtr& joint : path_) in_chain_.insert(joint->child_link_name);
+    in_chain_.insert(request_.root);
+    const KDL::SegmentMap::const_iterator root = tree_.getSegment(request_.root);
+    ChainLink base = toLink(KDL::Segment(request_.root));
+    const KDL::RigidBodyInertia base_body = ownBody(*model_.getLink(request_.root)) + fixedNeighbours(root);
+    base.body = {base_body.getMass(), toEigen(base_body.getCOG())};
+    data_.links.push_back(base);
+    data_.lower.resize(0), data_.upper.resize(0);
+    for (const urdf::JointConstSharedPtr& joint : path_) addLink(*joint);
+  }
+
+  void addLink(const urdf::Joint& joint) {
+    const KDL::SegmentMap::const_iterator element = tree_.getSegment(joint.child_link_name);
+    const KDL::Segment& bare = GetTreeElementSegment(element->second);
+    data_.kdl.addSegment(KDL::Segment(bare.getName(), bare.getJoint(), bare.getFrameToTip(),
+                                      bare.getInertia() + fixedNeighbours(element)));
+    ChainLink link = toLink(data_.kdl.segments.back());
+    if (moves(joint)) {
+      link.joint = static_cast<int>(data_.joint_names.size());
+      data_.joint_names.push_back(joint.name);
+      data_.link_beyond.push_back(static_cast<int>(data_.links.size()));
+      const bool limited = joint.type != urdf::Joint::CONTINUOUS && joint.limits;
+      data_.lower.conservativeResize(link.joint + 1);
+      data_.upper.conservativeResize(link.joint + 1);
+      data_.lower[link.joint] = limited ? joint.limits->lower : -kInfinity;
+      data_.upper[link.joint] = limited ? joint.limits->upper : kInfinity;
+    }
+    data_.links.push_back(link);
+  }
+
+  /// The tree's root has no inertia in KDL; its mass still holds the machine down.
+  static KDL::RigidBodyInertia ownBody(const urdf::Link& link) {
+    if (!link.inertial) return KDL::RigidBodyInertia::Zero();
+    const urdf::Vector3& p = link.inertial->origin.position;
+    return KDL::RigidBodyInertia(link.inertial->mass, KDL::Vector(p.x, p.y, p.z));
+  }
+
+  /// What hangs on a link by fixed joints beside the chain, in the link's frame.
+  KDL::RigidBodyInertia fixedNeighbours(const KDL::SegmentMap::const_iterator& element) {
+    KDL::RigidBodyInertia sum = KDL::RigidBodyInertia::Zero();
+    for (const KDL::SegmentMap::const_iterator& child : GetTreeElementChildren(element->second)) {
+      const KDL::Segment& segment = GetTreeElementSegment(child->second);
+      if (in_chain_.count(segment.getName()) != 0) continue;
+      const KDL::RigidBodyInertia body = segment.getInertia() + fixedNeighbours(child);
+      if (segment.getJoint().getType() == KDL::Joint::Fixed) {
+        sum = sum + segment.pose(0.0) * body;
+      } else if (body.getMass() > 0.0) {
+        result_.notes.push_back(format("robot_description: link %s: %.6g kg move beside the chain and are not counted",
+                                       segment.getName().c_str(), body.getMass()));
+      }
+    }
+    return sum;
+  }
+
+  /// Else the mass matrix is singular.
+  void checkMassBeyondJoints() {
+    const int last = data_.link_beyond.back();
+    double mass = 0.0;
+    for (std::size_t i = static_cast<std::size_t>(last); i < data_.links.size(); ++i) mass += data_.links[i].body.mass;
+    if (mass > 0.0) return;
+    result_.problems.push_back(format("robot_description: mass beyond joint %s: %.6g kg, must be > 0",
+                                      data_.joint_names.back().c_str(), mass));
+  }
+
+  const urdf::ModelInterface& model_;
+  const ChainRequest& request_;
+  Checked<Chain>& result_;
+  std::vector<urdf::JointConstSharedPtr> path_;
+  std::set<std::string> in_chain_;
+  KDL::Tree tree_;
+  Chain::Data data_;
+};
+
+Checked<Chain> Chain::make(const std::string& urdf_text, const ChainRequest& request) {
+  Checked<Chain> result;
+  const urdf::ModelInterfaceSharedPtr model = readUrdf(urdf_text, result.problems);
+  if (model) ChainBuilder(*model, request, result).build();
+  return result;
+}
+
+std::optional<int> Chain::jointIndex(const std::string& name) const noexcept {
+  const auto found = std::find(data_->joint_names.begin(), data_->joint_names.end(), name);
+  if (found == data_->joint_names.end()) return std::nullopt;
+  return static_cast<int>(found - data_->joint_names.begin());
+}
+
+std::optional<int> Chain::linkIndex(const std::string& name) const noexcept {
+  for (int i = 0; i < links(); ++i) {
+    if (link(i).name == name) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,81 @@
+/// The boom as a chain of rigid links, from the text of a robot description (URDF).
+#pragma once
+
+#include <Eigen/Core>
+#include <kdl/chain.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/joint_space.h"
+#include "hammer_loads/linkage/checked.h"
+
+namespace hammer_loads {
+
+/// Which part of the description is the boom.
+struct ChainRequest {
+  std::string root{"base_link"};
+  std::string tip{"hammer_hull"};
+  std::vector<std::string> joints;  ///< that must move between root and tip
+};
+
+/// A body's mass and where it acts.
+struct PointMass {
+  double mass{};                                     ///< [kg]
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();       ///< centre of mass from a frame's origin in its axes [m]
+};
+
+/// A link of the chain and how it hangs on the one before. With q its joint's position, in the frame P of the one before:
+/// R_PL = steady + sin q sine + cos q cosine, p_PL = origin + q slide. The terms that a joint does not have are zero.
+struct ChainLink {
+  std::string name;
+  int joint{-1};  ///< index of its moving joint; -1: fixed
+  bool prismatic{};
+  Eigen::Matrix3d steady, sine, cosine;
+  Eigen::Vector3d origin, slide;
+  Eigen::Vector3d axis;  ///< of the joint in P; zero when fixed
+  PointMass body;        ///< in its own frame, with what is fixed to it beside the chain
+};
+
+/// A chain that can carry loads: at most kMaxJoints revolute or prismatic joints, mass beyond the last of them. Built
+/// once; copies share the data, whose address stays (KDL's solvers keep a reference to the chain).
+///
+/// What is fixed to a chain link beside the chain counts with that link. What moves beside the chain does not count:
+/// a note names it. The mechanism's moving links belong to the hull's mass in the description, so that they count once.
+class Chain {
+ public:
+  /// Every problem at once, one line each, beginning with `robot_description`: text that is no URDF, missing link, tip
+  /// not beyond root, joint not in the chain, kind of joint, impossible mass or inertia.
+  static Checked<Chain> make(const std::string& urdf_text, const ChainRequest& request);
+
+  int joints() const noexcept { return static_cast<int>(data_->joint_names.size()); }
+  int links() const noexcept { return static_cast<int>(data_->links.size()); }  ///< root included
+  const std::vector<std::string>& jointNames() const noexcept { return data_->joint_names; }
+  const ChainLink& link(int index) const noexcept { return data_->links[static_cast<std::size_t>(index)]; }
+  std::optional<int> jointIndex(const std::string& name) const noexcept;
+  std::optional<int> linkIndex(const std::string& name) const noexcept;
+  int tip() const noexcept { return links() - 1; }
+  /// Link before and beyond a joint.
+  int linkBefore(int joint) const noexcept { return data_->link_beyond[static_cast<std::size_t>(joint)] - 1; }
+  int linkBeyond(int joint) const noexcept { return data_->link_beyond[static_cast<std::size_t>(joint)]; }
+
+  const JointVector& lower() const noexcept { return data_->lower; }  ///< [rad], -infinity for a continuous joint
+  const JointVector& upper() const noexcept { return data_->upper; }  ///< [rad]
+  /// The same chain for KDL, fixed neighbours included in its inertias.
+  const KDL::Chain& kdl() const noexcept { return data_->kdl; }
+
+ private:
+  friend class ChainBuilder;
+  struct Data {
+    std::vector<ChainLink> links;  ///< [0] is the root
+    std::vector<std::string> joint_names;
+    std::vector<int> link_beyond;
+    JointVector lower, upper;
+    KDL::Chain kdl;
+  };
+  explicit Chain(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace hammer_loads

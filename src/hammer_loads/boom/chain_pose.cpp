@@ -1,0 +1,93 @@
+#include "hammer_loads/boom/chain_pose.h"
+
+#include <cmath>
+
+namespace hammer_loads {
+
+void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept {
+  pose.links = chain.links();
+  pose.joints = chain.joints();
+  pose.X_BL[0].setIdentity();
+  for (int i = 1; i < pose.links; ++i) {
+    const ChainLink& link = chain.link(i);
+    const auto here = static_cast<std::size_t>(i);
+    const Pose& X_BP = pose.X_BL[here - 1];
+    Pose& X_BL = pose.X_BL[here];
+    X_BL.makeAffine();
+    if (link.joint < 0) {
+      X_BL.linear().noalias() = X_BP.linear() * link.steady;
+      X_BL.translation() = X_BP * link.origin;
+      continue;
+    }
+    const double q = position[link.joint];
+    const double sin_q = link.prismatic ? 0.0 : std::sin(q), cos_q = link.prismatic ? 0.0 : std::cos(q);
+    X_BL.linear().noalias() = X_BP.linear() * (link.steady + sin_q * link.sine + cos_q * link.cosine);
+    X_BL.translation() = X_BP * (link.origin + q * link.slide);
+    const auto joint = static_cast<std::size_t>(link.joint);
+    pose.axis_B[joint].noalias() = X_BP.linear() * link.axis;
+    pose.p_BJ_B[joint] = X_BL.translation();
+    pose.prismatic[joint] = link.prismatic;
+  }
+}
+
+Jacobian tipJacobian(const ChainPose& pose) noexcept {
+  Jacobian J(6, pose.joints);
+  const Pose& X_BT = pose.tip();
+  for (int j = 0; j < pose.joints; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    const Eigen::Vector3d axis_T = X_BT.linear().transpose() * pose.axis_B[i];
+    if (pose.prismatic[i]) {
+      J.col(j) << axis_T, Eigen::Vector3d::Zero();
+    } else {
+      const Eigen::Vector3d p_JT_T = X_BT.linear().transpose() * (X_BT.translation() - pose.p_BJ_B[i]);
+      J.col(j) << axis_T.cross(p_JT_T), axis_T;
+    }
+  }
+  return J;
+}
+
+Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexcept {
+  return shifted(pose.link(link).inverse() * pose.tip(), w_tip);
+}
+
+JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_tip) noexcept {
+  JointVector torque(pose.joints);
+  const Pose& X_BT = pose.tip();
+  const Eigen::Vector3d f_B = X_BT.linear() * w_tip.force;
+  const Eigen::Vector3d t_B = X_BT.linear() * w_tip.torque;
+  for (int j = 0; j < pose.joints; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    torque[j] = pose.prismatic[i] ? pose.axis_B[i].dot(f_B)
+                                  : pose.axis_B[i].dot(t_B + (X_BT.translation() - pose.p_BJ_B[i]).cross(f_B));
+  }
+  return torque;
+}
+
+JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept {
+  JointVector torque(pose.joints);
+  double mass = 0.0;
+  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  // mass times centre of mass, of all links so far from the tip
+  for (int i = pose.links - 1; i > 0; --i) {
+    const ChainLink& link = chain.link(i);
+    mass += link.body.mass;
+    moment_B += link.body.mass * (pose.link(i) * link.body.p);
+    if (link.joint < 0) continue;
+    const auto j = static_cast<std::size_t>(link.joint);
+    torque[link.joint] = link.prismatic ? mass * pose.axis_B[j].dot(g_B)
+                                        : pose.axis_B[j].dot((moment_B - mass * pose.p_BJ_B[j]).cross(g_B));
+  }
+  return torque;
+}
+
+PointMass massFrom(const Chain& chain, const ChainPose& pose, int first) noexcept {
+  PointMass all;
+  for (int i = first; i < pose.links; ++i) {
+    const PointMass& body = chain.link(i).body;
+    all.mass += body.mass;
+    all.p += body.mass * (pose.link(i) * body.p);
+  }
+  if (all.mass > 0.0) all.p /= all.mass;
+  return all;
+}
+
+}  // namespace hammer_loads

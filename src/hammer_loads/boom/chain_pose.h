@@ -1,0 +1,42 @@
+/// Where the chain's links are at given joint positions, and what that makes of a wrench.
+#pragma once
+
+#include <array>
+
+#include "hammer_loads/boom/chain.h"
+#include "hammer_loads/boom/wrench.h"
+
+namespace hammer_loads {
+
+/// Frames of the links and axes of the joints in the root's frame B.
+struct ChainPose {
+  int links{}, joints{};
+  std::array<Pose, kMaxLinks> X_BL;               ///< pose of each link, index as in Chain
+  std::array<Eigen::Vector3d, kMaxJoints> axis_B; ///< unit vector of each joint
+  std::array<Eigen::Vector3d, kMaxJoints> p_BJ_B; ///< a point on each joint's axis [m]
+  std::array<bool, kMaxJoints> prismatic{};
+
+  const Pose& tip() const noexcept { return X_BL[static_cast<std::size_t>(links - 1)]; }
+  const Pose& link(int index) const noexcept { return X_BL[static_cast<std::size_t>(index)]; }
+};
+
+/// position: one entry per joint. No allocation, no failure for finite positions; error some 1e-15 of the lengths.
+void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept;
+
+/// Velocity of the tip's origin and turning rate of the tip per joint rate, axes of the tip.
+Jacobian tipJacobian(const ChainPose& pose) noexcept;
+
+/// The wrench shifted to the origin of a link of the chain, axes of that link.
+Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexcept;
+
+/// J^T w of a load on the tip: what it does per joint rate, so torque of the load on the joint about its axis, positive
+/// when it drives the joint forward [N m] ([N] for a prismatic joint). What holds the joint gives the opposite.
+JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_tip) noexcept;
+
+/// Likewise of the links' weight, with g_B the gravity in the root's axes [m/s2].
+JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept;
+
+/// All links from `first` to the tip as one body in the root's frame.
+PointMass massFrom(const Chain& chain, const ChainPose& pose, int first) noexcept;
+
+}  // namespace hammer_loads

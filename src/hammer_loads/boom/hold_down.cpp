@@ -1,0 +1,60 @@
+#include "hammer_loads/boom/hold_down.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// How many times `load` may be added to `now` before the sum passes `limit`; each in the direction that gives.
+double factor(double now, double load, double limit) noexcept {
+  if (now > limit) return 0.0;
+  return load > 0.0 ? (limit - now) / load : kInfinity;
+}
+
+/// Moment about an edge of the supports; positive lifts what stands inside. The inside is to the left of the edge.
+double tippingMoment(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& point,
+                     const Eigen::Vector3d& force, const Eigen::Vector3d& moment) noexcept {
+  return (to - from).normalized().dot(moment + (point - from).cross(force));
+}
+
+double cylinderFactor(const Cylinder& cylinder, double angle, double weight, double load) noexcept {
+  const CylinderPosition at = cylinder.at(angle);
+  if (at.dead_point) return weight == 0.0 && load == 0.0 ? kInfinity : 0.0;
+  const double force_weight = -weight / at.arm, force_load = -load / at.arm;
+  return std::min(factor(force_weight, force_load, cylinder.greatestPush()),
+                  factor(-force_weight, -force_load, cylinder.greatestPull()));
+}
+
+}  // namespace
+
+HoldDown holdDown(const Chain& chain, const ChainPose& pose, const JointVector& position,
+                  const std::vector<Cylinder>& cylinders, const Supports& supports, const Wrench& w_mean,
+                  const Eigen::Vector3d& g_B) noexcept {
+  HoldDown result;
+  const PointMass all = massFrom(chain, pose, 0);
+  const Eigen::Vector3d f_B = pose.tip().linear() * w_mean.force, t_B = pose.tip().linear() * w_mean.torque;
+  const std::array<Eigen::Vector3d, 4> corner{Eigen::Vector3d(supports.front_x, -supports.front_half_width, 0.0),
+                                              Eigen::Vector3d(supports.front_x, supports.front_half_width, 0.0),
+                                              Eigen::Vector3d(supports.rear_x, supports.rear_half_width, 0.0),
+                                              Eigen::Vector3d(supports.rear_x, -supports.rear_half_width, 0.0)};
+  result.machine = kInfinity;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3d &from = corner[i], &to = corner[(i + 1) % 4];
+    const double weight = tippingMoment(from, to, all.p, all.mass * g_B, Eigen::Vector3d::Zero());
+    const double times = factor(weight, tippingMoment(from, to, pose.tip().translation(), f_B, t_B), 0.0);
+    if (times < result.machine) result.machine = times, result.edge = static_cast<int>(i);
+  }
+  result.least = result.machine;
+  const JointVector weight = jointTorqueOfWeight(chain, pose, g_B), load = jointTorqueOfTipLoad(pose, w_mean);
+  for (std::size_t i = 0; i < cylinders.size(); ++i) {
+    const int joint = cylinders[i].joint();
+    result.cylinder[i] = cylinderFactor(cylinders[i], position[joint], weight[joint], load[joint]);
+    result.least = std::min(result.least, result.cylinder[i]);
+  }
+  return result;
+}
+
+}  // namespace hammer_loads

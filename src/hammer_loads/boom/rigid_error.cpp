@@ -1,0 +1,35 @@
+#include "hammer_loads/boom/rigid_error.h"
+
+#include <algorithm>
+
+#include "hammer_loads/boom/mode.h"
+
+namespace hammer_loads {
+
+double rigidError(const BoomModes& modes, double damping_ratio, const JointVector& peak_torque,
+                  double pulse_length) noexcept {
+  constexpr double kPi = 3.14159265358979323846;
+  const double peak = peak_torque.size() > 0 ? peak_torque.cwiseAbs().maxCoeff() : 0.0;
+  if (modes.count == 0 || !(peak > 0.0) || !(pulse_length > 0.0)) return 0.0;
+  const double mu = kPi / pulse_length;
+  const JointVector amplitude = modalForce(modes, peak_torque);
+  double worst = 0.0;
+  const auto look = [&](double time, double sine) {
+    JointVector acceleration_now(modes.count);
+    for (int k = 0; k < modes.count; ++k) {
+      const Mode mode{modes.omega[k], damping_ratio};
+      const ModeState state = halfSineResponse(mode, amplitude[k], mu, time);
+      acceleration_now[k] = acceleration(mode, state, amplitude[k] * sine);
+    }
+    worst = std::max(worst, (modes.inertia * acceleration_now).cwiseAbs().maxCoeff());
+  };
+  // During the pulse; then over one period of the slowest mode, in steps that resolve the fastest.
+  constexpr int kSamples = 64;
+  for (int i = 0; i <= kSamples; ++i) look(pulse_length * i / kSamples, std::sin(kPi * i / kSamples));
+  const double slowest = 2.0 * kPi / modes.omega[0], fastest = 2.0 * kPi / modes.omega[modes.count - 1];
+  const int after = std::clamp(static_cast<int>(32.0 * slowest / fastest), kSamples, 100 * kSamples);
+  for (int i = 1; i <= after; ++i) look(pulse_length + slowest * i / after, 0.0);
+  return worst / peak;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,70 @@
+#include "hammer_loads/boom/vibration.h"
+
+#include <utility>
+
+namespace hammer_loads {
+
+Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings)
+    : dynamics_(chain),
+      cylinders_(std::move(cylinders)),
+      settings_(settings),
+      position_(JointVector::Zero(chain.joints())),
+      torque_(JointVector::Zero(chain.joints())) {
+  modes_.mass = JointMatrix::Zero(chain.joints(), chain.joints());
+  modes_.inertia.resize(chain.joints(), 0);
+  rest();
+}
+
+void Vibration::setPose(const JointVector& position) noexcept {
+  if (posed_ && (position - position_).cwiseAbs().maxCoeff() <= settings_.refresh_angle) return;
+  const bool kept = posed_ && known();
+  const JointVector displacement = jointsOf(modes_, x_), velocity = jointsOf(modes_, v_);
+  findModes(dynamics_, cylinders_, position, modes_);
+  position_ = position;
+  posed_ = true;
+  if (kept) {
+    x_ = modalOf(modes_, displacement);
+    v_ = modalOf(modes_, velocity);
+  } else {
+    x_.setZero(modes_.count), v_.setZero(modes_.count);
+  }
+}
+
+void Vibration::rest() noexcept {
+  x_.setZero(modes_.count);
+  v_.setZero(modes_.count);
+  torque_.setZero();
+}
+
+void Vibration::advance(double step, const TorqueStep& torque) noexcept {
+  const JointVector from = modalForce(modes_, torque.from), to = modalForce(modes_, torque.to);
+  const JointVector mean = modalForce(modes_, torque.mean);
+  for (int k = 0; k < modes_.count; ++k) {
+    const ModeState next = advanced(mode(k), {x_[k], v_[k]}, {from[k], to[k], mean[k]}, step);
+    x_[k] = next.x;
+    v_[k] = next.v;
+  }
+  torque_ = torque.to;
+}
+
+void Vibration::strike(const JointVector& impulse) noexcept { v_ += modalForce(modes_, impulse); }
+
+JointVector Vibration::displacement() const noexcept { return jointsOf(modes_, x_); }
+
+JointVector Vibration::velocity() const noexcept { return jointsOf(modes_, v_); }
+
+JointVector Vibration::acceleration() const noexcept { return jointsOf(modes_, modalAcceleration()); }
+
+JointVector Vibration::torque() const noexcept { return -(modes_.inertia * modalAcceleration()); }
+
+double Vibration::energy() const noexcept {
+  return 0.5 * (v_.squaredNorm() + x_.cwiseProduct(modes_.omega).squaredNorm());
+}
+
+JointVector Vibration::modalAcceleration() const noexcept {
+  JointVector result = modalForce(modes_, torque_);
+  for (int k = 0; k < modes_.count; ++k) result[k] = hammer_loads::acceleration(mode(k), {x_[k], v_[k]}, result[k]);
+  return result;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,65 @@
+/// The boom's vibration under the hammer: each mode advanced exactly from sample to sample.
+#pragma once
+
+#include <vector>
+
+#include "hammer_loads/boom/boom_modes.h"
+#include "hammer_loads/boom/mode.h"
+
+namespace hammer_loads {
+
+struct VibrationSettings {
+  double damping_ratio{};  ///< of every mode [-], in (0, 1)
+  double refresh_angle{};  ///< a joint moved by more since the last modes: new ones [rad], >= 0
+};
+
+/// Joint torques of the hammer over one step, axes and signs as in jointTorqueOfTipLoad() [N m].
+struct TorqueStep {
+  JointVector from, to;  ///< at the step's ends; where the load jumps (a blow), end a step there and begin anew
+  JointVector mean;      ///< over the step; linear between the ends makes it their mean
+};
+
+/// Vibration of the joints about the pose that joint_states report. Between refreshes the modes stay; at a refresh
+/// displacements and velocities of the joints carry over, so that what the boom's own motion does to the energy is kept
+/// to first order. At a dead point there is no answer (known() is false) and the boom comes to rest.
+///
+/// The load must be the part that comes from motion relative to the hull, the links' mass being in the hull's already.
+class Vibration {
+ public:
+  Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings);
+
+  /// Pose from now on. The first call, and each that moved a joint far enough, finds new modes.
+  void setPose(const JointVector& position) noexcept;
+  /// At rest without load.
+  void rest() noexcept;
+  /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
+  void advance(double step, const TorqueStep& torque) noexcept;
+  /// A blow's impulse as joint torque times time [N m s].
+  void strike(const JointVector& impulse) noexcept;
+
+  bool known() const noexcept { return modes_.count > 0; }
+  JointVector displacement() const noexcept;  ///< [rad], zero for held joints
+  JointVector velocity() const noexcept;      ///< [rad/s]
+  JointVector acceleration() const noexcept;  ///< [rad/s2]
+  /// -M q'': what vibration adds to the static torque of the load, so that hammer + vibration = what the cylinders hold
+  /// (K q + C q') for the joints that they hold, and likewise for the held ones [N m].
+  JointVector torque() const noexcept;
+  /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
+  double energy() const noexcept;
+  const BoomModes& modes() const noexcept { return modes_; }
+  Mode mode(int index) const noexcept { return {modes_.omega[index], settings_.damping_ratio}; }
+
+ private:
+  JointVector modalAcceleration() const noexcept;
+
+  ChainDynamics dynamics_;
+  std::vector<Cylinder> cylinders_;
+  VibrationSettings settings_;
+  BoomModes modes_;
+  JointVector position_;  ///< where the modes belong
+  bool posed_{};
+  JointVector x_, v_;     ///< modal displacements and velocities
+  JointVector torque_;    ///< of the load at the end of the last step
+};
+
+}  // namespace hammer_loads

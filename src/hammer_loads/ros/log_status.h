@@ -1,0 +1,44 @@
+/// How the log fares.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hammer_loads {
+
+/// Whether messages reach a file.
+enum class LogState {
+  kOff,        ///< not started, or stopped on request
+  kRecording,  ///< messages are written
+  kDiskFull,   ///< stopped by itself: too little space left
+  kFailed,     ///< stopped by itself: the disk or rosbag reported an error
+};
+
+/// What has reached the disk. Brought up to date once a second and at every change of state or file.
+struct LogStatus {
+  LogState state{LogState::kOff};
+  std::string reason;             ///< why the log stopped by itself; empty otherwise
+  std::string file;               ///< current or last bag
+  std::uint64_t file_size{};      ///< of it, without the open chunk [byte]
+  std::uint64_t bytes_written{};  ///< all bags of this process together, deleted ones too [byte]
+  std::uint64_t files_closed{};   ///< complete bags under their final names
+  std::uint64_t files_deleted{};  ///< oldest bags deleted for log_total_mb
+};
+
+/// Messages of one topic; every message offered while the log is recording is counted once.
+struct LogTopicCounts {
+  std::string topic;
+  std::uint64_t written{};  ///< in a bag
+  std::uint64_t dropped{};  ///< not in a bag: queue full, or still queued when the log stopped by itself
+};
+
+/// All of it at once.
+struct LogHealth : LogStatus {
+  double queue_fill{};  ///< share of the queue in use [0..1]
+  std::vector<LogTopicCounts> topics;  ///< in order of first appearance
+  std::uint64_t messages_written{};    ///< sum over topics
+  std::uint64_t messages_dropped{};    ///< sum over topics
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,157 @@
+#include "hammer_loads/grapple/grapple.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <limits>
+
+#include "grapple/grapples.h"
+#include "hammer_loads/grapple/read_grapple.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+std::string configFile(const std::string& name) { return std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/" + name; }
+
+/// A file with one or more lines laid over the claims set.
+std::vector<std::string> claimsWith(const std::string& lines) {
+  const std::string path = testing::TempDir() + "grapple_over_" + std::to_string(::getpid()) + ".yaml";
+  std::ofstream(path) << lines << '\n';
+  return {configFile("grapple_claims.yaml"), path};
+}
+
+bool mentions(const std::vector<std::string>& problems, const std::string& text) {
+  for (const std::string& problem : problems) {
+    if (problem.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+void expectSame(const GrappleParameters& a, const GrappleParameters& b) {
+  for (const auto& [x, y] : {std::pair{a.o1.re, b.o1.re}, {a.o1.im, b.o1.im}, {a.slider_x, b.slider_x}, {a.o1h, b.o1h},
+                             {a.o1a, b.o1a}, {a.ho1a, b.ho1a}, {a.gh, b.gh}, {a.ab, b.ab}, {a.ac, b.ac}, {a.bac, b.bac},
+                             {a.bd, b.bd}, {a.bp, b.bp}, {a.dbp, b.dbp}, {a.ce, b.ce}, {a.od, b.od}, {a.oe, b.oe},
+                             {a.doe, b.doe}, {a.slider_closed, b.slider_closed}, {a.slider_open, b.slider_open},
+                             {a.slider_margin, b.slider_margin}, {a.reference_slider, b.reference_slider},
+                             {a.reference_ab, b.reference_ab}, {a.reference_od, b.reference_od}})
+    EXPECT_EQ(x, y);
+  EXPECT_EQ(a.drive_sign, b.drive_sign);
+}
+
+TEST(GrappleFile, ShippedFilesHoldTheTwoSets) {
+  const Checked<Grapple> claims = loadGrapple({configFile("grapple_claims.yaml")});
+  ASSERT_TRUE(claims.value) << claims.problems.front();
+  expectSame(claims.value->parameters(), test::claimsParameters());
+  const Checked<Grapple> straight = loadGrapple({configFile("grapple_straight.yaml")});
+  ASSERT_TRUE(straight.value) << straight.problems.front();
+  expectSame(straight.value->parameters(), test::straightParameters());
+}
+
+TEST(GrappleFile, ShippedFilesSayWhatTheyAre) {
+  for (const char* name : {"grapple_claims.yaml", "grapple_straight.yaml"}) {
+    std::ifstream file(configFile(name));
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_NE(text.find("RECONSTRUCTION, not the author's data"), std::string::npos) << name;
+    EXPECT_NE(text.find("FITTED here"), std::string::npos) << name;
+  }
+}
+
+TEST(GrappleFile, ReportsEveryProblemAtOnce) {
+  const auto result = loadGrapple(claimsWith("gh_length_m: -1\nab_length_m: long\ndrive_sign: 0\ngh_lenght_m: 1.25"));
+  EXPECT_FALSE(result.value);
+  EXPECT_EQ(result.problems.size(), 4u);
+  EXPECT_TRUE(mentions(result.problems, "gh_length_m: -1 m, must be > 0"));
+  EXPECT_TRUE(mentions(result.problems, "ab_length_m: long m"));
+  EXPECT_TRUE(mentions(result.problems, "drive_sign: 0, must be 1 or -1"));
+  EXPECT_TRUE(mentions(result.problems, "gh_lenght_m: unknown key, perhaps gh_length_m"));
+}
+
+TEST(GrappleFile, MissingKeysHaveNoDefault) {
+  const std::string path = testing::TempDir() + "grapple_alone_" + std::to_string(::getpid()) + ".yaml";
+  std::ofstream(path) << "gh_length_m: 1.25\n";
+  const auto result = loadGrapple({path});
+  EXPECT_FALSE(result.value);
+  EXPECT_EQ(result.problems.size(), 23u);
+  EXPECT_TRUE(mentions(result.problems, "drive_sign: missing"));
+  EXPECT_FALSE(loadGrapple({"/nonexistent.yaml"}).value);
+}
+
+TEST(GrappleFile, NamesTheLimitThatAStrokePasses) {
+  const auto beyond_fold = loadGrapple(claimsWith("slider_open_m: 0.74"));
+  EXPECT_FALSE(beyond_fold.value);
+  EXPECT_TRUE(mentions(beyond_fold.problems, "slider_open_m: 0.74 m"));
+  EXPECT_TRUE(mentions(beyond_fold.problems, "fold at 0.7331923934967 m"));
+  const auto beyond_dead_point = loadGrapple(claimsWith("slider_closed_m: -0.3"));
+  EXPECT_TRUE(mentions(beyond_dead_point.problems, "dead point at -0.27 m"));
+  EXPECT_TRUE(mentions(loadGrapple(claimsWith("slider_closed_m: -0.1")).problems, "jaws would overlap"));
+  EXPECT_TRUE(mentions(loadGrapple(claimsWith("slider_open_m: 0.005\nslider_closed_m: 0.3")).problems,
+                       "slider_open_m: 0.005 m, must put the jaw edge farther out"));
+}
+
+TEST(GrappleFile, NamesThePosesWhenTheReferenceIsNone) {
+  const auto none = loadGrapple(claimsWith("reference_ab_angle_rad: 1.5"));
+  EXPECT_FALSE(none.value);
+  EXPECT_TRUE(mentions(none.problems, "(0.378626, -0.648949)"));
+  EXPECT_TRUE(mentions(loadGrapple(claimsWith("reference_slider_m: 2.0")).problems, "out of reach"));
+  EXPECT_TRUE(mentions(loadGrapple(claimsWith("reference_slider_m: 0.8")).problems, "there is none"));
+  EXPECT_TRUE(mentions(loadGrapple(claimsWith("reference_slider_m: 0.8")).problems, "reference_slider_m = 0.8 m"));
+}
+
+TEST(Grapple, RefusesValuesThatAreNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  GrappleParameters p = test::claimsParameters();
+  p.dbp = nan;
+  p.od = std::numeric_limits<double>::infinity();
+  const Checked<Grapple> grapple = Grapple::make(p);
+  EXPECT_FALSE(grapple.value);
+  EXPECT_EQ(grapple.problems.size(), 2u);
+}
+
+TEST(Grapple, BesideAFoldTheNearestPoseIsTheReference) {
+  const GrappleParameters p = test::claimsParameters();
+  const double slider = 0.7331;  // the other branch lies 0.012 rad away
+  const GrappleMotion working = *test::grappleOf(p).at(slider);
+  GrappleParameters beside = p;
+  beside.reference_slider = slider;
+  beside.reference_ab = working.theta2;
+  beside.reference_od = working.theta5;
+  EXPECT_NEAR(test::grappleOf(beside).at(0.332)->p.re, 0.802384681896094, 1e-12);
+}
+
+TEST(Grapple, ParallelogramAtTheReferenceIsRefused) {
+  GrappleParameters p = test::claimsParameters();
+  const double slider = 0.332;
+  const Planar a = test::grappleOf(p).at(slider)->a;
+  p.od = p.ab;
+  p.oe = p.ac;
+  p.doe = p.bac = 0.3;
+  p.bd = p.ce = norm(a);
+  p.reference_ab = p.reference_od = 0.2;
+  const Checked<Grapple> grapple = Grapple::make(p);
+  EXPECT_FALSE(grapple.value);
+  EXPECT_TRUE(mentions(grapple.problems, "can move with the slider held"));
+}
+
+TEST(Grapple, SaysWhyThereIsNoPose) {
+  const Grapple grapple = test::grappleOf(test::claimsParameters());
+  EXPECT_EQ(grapple.judge(0.74), Refusal::kAcrossFold);        // the drive closes, the lever group does not
+  EXPECT_EQ(grapple.judge(0.9), Refusal::kOutOfReach);         // beyond the drive's upper dead point at 0.89
+  EXPECT_EQ(grapple.judge(-0.2701), Refusal::kOutOfReach);     // beyond its lower one at -0.27
+  EXPECT_EQ(grapple.judge(-2.0), Refusal::kAcrossDeadPoint);   // G below O1: closes again
+  EXPECT_EQ(grapple.judge(0.7), Refusal::kNone);
+  EXPECT_EQ(grapple.judgeInStroke(0.7), Refusal::kOutsideStroke);
+  EXPECT_EQ(grapple.judgeInStroke(0.6569), Refusal::kNone);    // within the margin
+  EXPECT_EQ(grapple.judge(std::nan("")), Refusal::kNotFinite);
+  EXPECT_EQ(grapple.explain(Refusal::kAcrossFold, 0.74),
+            "slider position: 0.74 m, across fold: must lie between the dead point at -0.27 m and the fold at "
+            "0.7331923934967 m");
+  EXPECT_EQ(grapple.explain(Refusal::kOutsideStroke, 0.7, "--to"),
+            "--to: 0.7 m, outside stroke: must lie between 0.00669560852 m and 0.656 m (+- 0.001 m)");
+  EXPECT_TRUE(grapple.explain(Refusal::kNone, 0.3).empty());
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

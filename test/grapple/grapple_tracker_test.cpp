@@ -1,0 +1,93 @@
+#include "hammer_loads/grapple/grapple_tracker.h"
+
+#include <limits>
+
+#include "grapple/grapples.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+GrappleTracker trackerOf(const GrappleParameters& p) { return GrappleTracker(test::grappleOf(p)); }
+
+TEST(GrappleTracker, BadSamplesAreRefusedCountedAndForgotten) {
+  struct Bad {
+    SliderMotion sample;
+    Refusal refusal;
+  };
+  GrappleTracker tracker = trackerOf(test::claimsParameters());
+  EXPECT_FALSE(tracker.hasMotion());
+  std::uint64_t accepted = 0, refused = 0;
+  for (const Bad& bad : {Bad{{kNan, 0.0, 0.0}, Refusal::kNotFinite}, Bad{{0.3, kInfinity, 0.0}, Refusal::kNotFinite},
+                         Bad{{0.3, 0.0, kNan}, Refusal::kNotFinite}, Bad{{0.74, 0.1, 0.0}, Refusal::kAcrossFold},
+                         Bad{{0.88, 0.1, 0.0}, Refusal::kAcrossFold}, Bad{{0.9, 0.1, 0.0}, Refusal::kOutOfReach},
+                         Bad{{-0.3, 0.1, 0.0}, Refusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, Refusal::kAcrossDeadPoint},
+                         Bad{{0.7, 0.1, 0.0}, Refusal::kOutsideStroke}, Bad{{0.0, 0.1, 0.0}, Refusal::kOutsideStroke}}) {
+    // Good: accepted, and the channel is proven.
+    const double good = 0.3 + 0.01 * static_cast<double>(accepted);
+    ASSERT_EQ(tracker.update({good, 0.2, 0.0}), Refusal::kNone);
+    EXPECT_EQ(tracker.count(Refusal::kNone), ++accepted);
+    const GrappleMotion before = tracker.motion();
+    EXPECT_EQ(before.slider, good);
+    // Bad: refused, its counter alone rises, and everything else stays.
+    const std::uint64_t count = tracker.count(bad.refusal);
+    EXPECT_EQ(tracker.update(bad.sample), bad.refusal);
+    EXPECT_EQ(tracker.count(bad.refusal), count + 1);
+    EXPECT_EQ(tracker.refused(), ++refused);
+    EXPECT_EQ(tracker.motion().p.re, before.p.re);
+    EXPECT_EQ(tracker.motion().theta2, before.theta2);
+    EXPECT_EQ(tracker.slider().position, good);
+    // Good again: the same branch.
+    ASSERT_EQ(tracker.update({0.332, 0.2, 0.0}), Refusal::kNone);
+    ++accepted;
+    EXPECT_NEAR(tracker.motion().p.re, 0.802384681896094, 1e-12);
+  }
+  EXPECT_EQ(tracker.count(Refusal::kNotFound), 0u);
+}
+
+TEST(GrappleTracker, ABadFirstSampleLeavesItEmpty) {
+  GrappleTracker tracker = trackerOf(test::claimsParameters());
+  EXPECT_EQ(tracker.update({0.74, 0.0, 0.0}), Refusal::kAcrossFold);
+  EXPECT_FALSE(tracker.hasMotion());
+  EXPECT_EQ(tracker.update({0.1, 0.0, 0.0}), Refusal::kNone);
+  EXPECT_TRUE(tracker.hasMotion());
+}
+
+TEST(GrappleTracker, NeverLeavesTheBranchUpToTheFold) {
+  GrappleParameters p = test::claimsParameters();
+  const Grapple whole = test::grappleOf(p);
+  p.slider_open = whole.upperLimit().slider - 1e-9;
+  p.slider_margin = 0.0;
+  GrappleTracker tracker = trackerOf(p);
+  test::Random random(51);
+  // Onto the fold in ever shorter steps, and away from it in one; det J keeps its sign.
+  for (int i = 0; i < 2000; ++i) {
+    const double distance = i % 2 == 0 ? std::pow(10.0, random(-9.0, -1.0)) : random(0.1, 0.7);
+    ASSERT_EQ(tracker.update({whole.upperLimit().slider - distance, 0.0, 0.0}), Refusal::kNone) << distance;
+    EXPECT_LT(tracker.motion().determinant, 0.0);
+    const GrappleMotion cold = *whole.at(tracker.slider().position);
+    // Beside the fold rounding moves the pose by eps/sqrt(distance).
+    EXPECT_NEAR(tracker.motion().theta2, cold.theta2, 1e-14 / std::sqrt(distance));
+  }
+  EXPECT_EQ(tracker.refused(), 0u);
+}
+
+TEST(GrappleTracker, JawsAreInTime) {
+  GrappleTracker tracker = trackerOf(test::claimsParameters());
+  ASSERT_EQ(tracker.update({0.332, 0.5, -2.0}), Refusal::kNone);
+  const GrappleMotion& m = tracker.motion();
+  const JawMotion right = tracker.right(), left = tracker.left();
+  EXPECT_DOUBLE_EQ(right.edge_velocity.re, 0.5 * m.dp.re);
+  EXPECT_DOUBLE_EQ(right.edge_acceleration.re, 0.25 * m.ddp.re - 2.0 * m.dp.re);
+  EXPECT_DOUBLE_EQ(right.turning_speed, 0.5 * m.jaw.d);
+  EXPECT_EQ(left.edge.re, -right.edge.re);
+  EXPECT_EQ(left.edge_velocity.im, right.edge_velocity.im);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,112 @@
+/// What one step costs: time and heap.
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "grapple/grapples.h"
+#include "hammer_loads/grapple/branches.h"
+#include "hammer_loads/grapple/grapple_tracker.h"
+#include "support/counting_new.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+/// Median over batches of the time per call [ns].
+template <typename Call>
+double medianTime(int batches, int calls, const Call& call) {
+  std::vector<double> times;
+  for (int i = 0; i < batches; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int j = 0; j < calls; ++j) call(i * calls + j);
+    times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / calls);
+  }
+  std::nth_element(times.begin(), times.begin() + batches / 2, times.end());
+  return times[static_cast<std::size_t>(batches / 2)];
+}
+
+/// A slider that swings over the stroke, 2000 samples per swing (2 s at 1 kHz).
+std::vector<double> swing(const GrappleParameters& p) {
+  std::vector<double> sliders;
+  const double middle = 0.5 * (p.slider_closed + p.slider_open), half = 0.5 * (p.slider_open - p.slider_closed);
+  for (int i = 0; i < 2000; ++i) sliders.push_back(middle + half * std::cos(2.0 * test::kPi * i / 2000.0));
+  return sliders;
+}
+
+constexpr double kWarmLimit = 300.0, kColdLimit = 20000.0;  // [ns], demanded
+
+TEST(Speed, WarmStepWithVelocityAndAccelerationOfBothJaws) {
+  for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
+    GrappleTracker tracker(test::grappleOf(p));
+    const std::vector<double> sliders = swing(p);
+    double sum = 0.0;
+    const double step = medianTime(200, 2000, [&](int i) {
+      tracker.update({sliders[static_cast<std::size_t>(i) % sliders.size()], 0.3, -0.2});
+      sum += tracker.motion().p.re;
+    });
+    const double with_jaws = medianTime(200, 2000, [&](int i) {
+      tracker.update({sliders[static_cast<std::size_t>(i) % sliders.size()], 0.3, -0.2});
+      sum += tracker.right().edge_acceleration.re + tracker.left().edge_acceleration.re;
+    });
+    std::printf("warm step: %.0f ns; with both jaws in time: %.0f ns (%g)\n", step, with_jaws, sum);
+    EXPECT_EQ(tracker.refused(), 0u);
+#ifdef __OPTIMIZE__
+    EXPECT_LT(with_jaws, kWarmLimit);
+#endif
+  }
+}
+
+TEST(Speed, ColdEnumeration) {
+  const GrappleParameters p = test::claimsParameters();
+  const Grapple grapple = test::grappleOf(p);
+  const std::vector<double> sliders = swing(p);
+  double sum = 0.0;
+  const double two_modes = medianTime(100, 100, [&](int i) {
+    const double slider = sliders[static_cast<std::size_t>(i * 37) % sliders.size()];
+    if (const auto m = grapple.at(slider)) sum += m->p.re;
+  });
+  GrappleParameters six;
+  six.o1 = {1.3, -1.3};
+  six.o1a = 0.9;
+  six.ab = 1.7;
+  six.ac = 1.9;
+  six.bac = -1.4;
+  six.bd = 2.3;
+  six.bp = 1.0;
+  six.ce = 2.3;
+  six.od = 1.7;
+  six.oe = 2.0;
+  six.doe = 1.4;
+  const LeverGroup group(six);
+  const double six_modes = medianTime(100, 100, [&](int i) {
+    sum += enumerateBranches(group, six.o1 + six.o1a * direction(0.4 + 1e-6 * i)).count;
+  });
+  std::printf("cold pose, two modes: %.1f us; enumeration of six modes: %.1f us (%g)\n", 1e-3 * two_modes, 1e-3 * six_modes,
+              sum);
+#ifdef __OPTIMIZE__
+  EXPECT_LT(two_modes, kColdLimit);
+  EXPECT_LT(six_modes, kColdLimit);
+#endif
+}
+
+TEST(Heap, NeitherWarmNorColdNorRefusedSamplesAllocate) {
+  const GrappleParameters p = test::claimsParameters();
+  GrappleTracker tracker(test::grappleOf(p));
+  const std::size_t before = test::allocations;
+  double sum = 0.0;
+  for (const double slider : {0.1, 0.1001, 0.5, 0.74, 0.9, std::nan(""), 0.0067, 0.655}) {
+    tracker.update({slider, 0.1, 0.2});
+    sum += tracker.right().edge.re + tracker.left().edge_velocity.re;
+    if (const auto cold = tracker.grapple().at(slider)) sum += cold->p.re;
+  }
+  EXPECT_EQ(test::allocations, before);
+  EXPECT_EQ(tracker.refused(), 3u);
+  EXPECT_GT(sum, 0.0);
+  const std::vector<double> counted(10, 1.0);  // the counter counts
+  EXPECT_EQ(test::allocations, before + (counted.empty() ? 0 : 1));
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,320 @@
+#include "hammer_loads/ros/bag_log.h"
+
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/String.h>
+
+#include <atomic>
+#include <ctime>
+#include <random>
+
+#include "test/ros/log_test_support.h"
+
+namespace hammer_loads::test {
+namespace {
+
+constexpr char kRunInfo[] = "/node/run_info";
+
+std_msgs::String text(const std::string& data) {
+  std_msgs::String message;
+  message.data = data;
+  return message;
+}
+
+TEST_F(LogTest, KeepsEveryMessageWithTypeTimeAndOrder) {
+  constexpr std::size_t kCount = 3000;
+  {
+    BagLog log(settings_);
+    ASSERT_EQ(log.start(), std::vector<std::string>{});
+    for (std::size_t i = 0; i < kCount; ++i) {
+      sensor_msgs::JointState input;
+      input.name = {"hammer_crank_joint"};
+      input.position.assign(1 + i % 50, 0.01 * static_cast<double>(i));  // all sizes
+      log.write("/hammer/crank", at(i), input);
+      log.write("/node/hull_wrench", at(i), wrench(i));
+    }
+  }
+  ASSERT_EQ(files().size(), 1u);
+  ASSERT_TRUE(files(".active").empty());
+  const auto entries = readAll();
+  ASSERT_EQ(entries.size(), 2 * kCount);
+  const auto inputs = onTopic(entries, "/hammer/crank");
+  const auto outputs = onTopic(entries, "/node/hull_wrench");
+  ASSERT_EQ(outputs.size(), kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    ASSERT_EQ(inputs[i].time, at(i));
+    ASSERT_EQ(outputs[i].time, at(i));
+    ASSERT_EQ(inputs[i].as<sensor_msgs::JointState>().position.size(), 1 + i % 50);
+    ASSERT_EQ(outputs[i].as<geometry_msgs::WrenchStamped>(), wrench(i));
+  }
+  EXPECT_EQ(inputs[0].datatype, "sensor_msgs/JointState");
+  EXPECT_EQ(inputs[0].md5sum, ros::message_traits::md5sum<sensor_msgs::JointState>());
+  EXPECT_EQ(inputs[0].definition, ros::message_traits::definition<sensor_msgs::JointState>());
+  EXPECT_FALSE(inputs[0].latched);
+}
+
+TEST_F(LogTest, EverySplitStandsAlone) {
+  settings_.split_size = 200'000;
+  constexpr std::size_t kCount = 20000;
+  std::mt19937 random(1);
+  std::vector<geometry_msgs::WrenchStamped> sent;
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    log.writeLatched("/tf_static", at(0), text("one arm"), "/first");
+    log.writeLatched("/tf_static", at(0), text("other arm"), "/second");
+    for (std::size_t i = 0; i < kCount; ++i) {
+      sent.push_back(wrench(i));
+      sent.back().wrench.force.z = static_cast<double>(random());  // hardly compressible
+      log.write("/wrench", at(i), sent.back());
+      if (i == 0) log.writeLatched(kRunInfo, at(i), text("old"), "/node");
+      if (i == 1) log.writeLatched(kRunInfo, at(i), text("new"), "/node");
+    }
+  }
+  ASSERT_GE(files().size(), 4u);
+  std::size_t next = 0;
+  for (std::size_t n = 0; n < files().size(); ++n) {
+    const std::string file = files()[n];
+    EXPECT_LT(std::filesystem::file_size(file), settings_.split_size * 3 / 2) << file;
+    const auto entries = readBag(file);
+    const auto wrenches = onTopic(entries, "/wrench");
+    ASSERT_FALSE(wrenches.empty());
+    for (const Entry& entry : wrenches) ASSERT_EQ(entry.as<geometry_msgs::WrenchStamped>(), sent[next++]);
+    const auto transforms = onTopic(entries, "/tf_static");
+    ASSERT_EQ(transforms.size(), 2u);
+    for (const Entry& entry : transforms) {
+      EXPECT_TRUE(entry.latched);
+      EXPECT_EQ(entry.time, wrenches[0].time);
+    }
+    EXPECT_NE(transforms[0].caller, transforms[1].caller);
+    const auto info = onTopic(entries, kRunInfo);
+    ASSERT_EQ(info.size(), n == 0 ? 2u : 1u);
+    EXPECT_EQ(info.back().as<std_msgs::String>().data, "new");
+    EXPECT_EQ(info.back().caller, "/node");
+  }
+  EXPECT_EQ(next, kCount);
+}
+
+TEST_F(LogTest, StartsStopsAndSplitsOnRequest) {
+  BagLog log(settings_);
+  EXPECT_FALSE(log.split());
+  log.writeLatched(kRunInfo, at(0), text("remembered while off"));
+  log.write("/wrench", at(1), wrench(1));  // off: not kept, not counted
+  EXPECT_EQ(log.health().state, LogState::kOff);
+  ASSERT_TRUE(log.start().empty());
+  EXPECT_EQ(log.health().state, LogState::kRecording);
+  EXPECT_NE(log.health().file.find(directory_), std::string::npos);
+  ASSERT_EQ(log.start().size(), 1u);  // already recording
+  log.write("/wrench", at(2), wrench(2));
+  EXPECT_TRUE(log.split());
+  log.write("/wrench", at(3), wrench(3));
+  log.stop();
+  log.write("/wrench", at(4), wrench(4));
+  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+  EXPECT_EQ(log.health().files_closed, 2u);
+  EXPECT_EQ(readBag(log.health().file).size(), 2u);  // whole while the log lives on
+  ASSERT_TRUE(log.start().empty());
+  log.stop();
+  ASSERT_TRUE(log.start().empty());  // at once, whatever the disk is at
+  log.write("/wrench", at(5), wrench(5));
+  log.stop();
+  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+  ASSERT_EQ(files().size(), 4u);
+  std::vector<std::size_t> kept;
+  for (const std::string& file : files()) {
+    const auto entries = readBag(file);
+    EXPECT_EQ(onTopic(entries, kRunInfo).size(), 1u) << "even where there is nothing else";
+    for (const Entry& entry : onTopic(entries, "/wrench")) kept.push_back(entry.as<geometry_msgs::WrenchStamped>().header.seq);
+  }
+  std::sort(kept.begin(), kept.end());
+  EXPECT_EQ(kept, (std::vector<std::size_t>{2, 3, 5}));
+  EXPECT_EQ(log.health().messages_written, 3u + 0u);
+  EXPECT_EQ(log.health().messages_dropped, 0u);
+}
+
+TEST_F(LogTest, NeverOverwritesAFile) {
+  // Every name of the next seconds that the log would choose first is taken, by a bag or by one being written.
+  std::vector<std::string> taken;
+  const std::time_t now = std::time(nullptr);
+  for (int second = -1; second < 30; ++second) {
+    const std::time_t time = now + second;
+    std::tm parts{};
+    localtime_r(&time, &parts);
+    char stamp[32];
+    std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H-%M-%S", &parts);
+    taken.push_back(path(std::string("test_") + stamp + "_0.bag"));
+    taken.push_back(path(std::string("test_") + stamp + "_1.bag.active"));
+  }
+  for (const std::string& file : taken) writeFile(file, "precious");
+  std::string late;
+  {
+    BagLog first(settings_), second(settings_);
+    ASSERT_TRUE(first.start().empty());
+    ASSERT_TRUE(second.start().empty());
+    first.write("/wrench", at(1), wrench(1));
+    second.write("/wrench", at(2), wrench(2));
+    late = first.health().file;
+    late = late.substr(0, late.size() - std::string(".active").size());
+    writeFile(late, "precious");  // its final name, taken while it writes
+  }
+  taken.push_back(late);
+  for (const std::string& file : taken) EXPECT_EQ(readFile(file), "precious") << file;
+  std::size_t wrenches = 0;
+  for (const std::string& file : files())
+    if (std::filesystem::file_size(file) > 100) wrenches += readBag(file).size();
+  EXPECT_EQ(wrenches, 2u);
+}
+
+TEST_F(LogTest, SaysBeforehandWhyItCannotStart) {
+  writeFile(path("file"), "");
+  std::filesystem::create_directory(path("empty"));
+  using Change = std::function<void(LogSettings&)>;
+  const std::vector<std::pair<Change, std::string>> cases = {
+      {[&](LogSettings& s) { s.directory = path("missing"); }, "missing', must exist: No such file or directory"},
+      {[&](LogSettings& s) { s.directory = path("file/below"); }, "file/below', must exist: Not a directory"},
+      {[&](LogSettings& s) { s.directory = path("file"); }, "file', must be a directory"},
+      {[&](LogSettings& s) { s.directory = ""; }, "log_directory: '', must exist"},
+      {[&](LogSettings& s) { s.directory = "/sys"; }, "log_directory: '/sys', must be writable"},
+      {[&](LogSettings& s) { s.prefix = "../up"; }, "log_prefix: '../up', must be a file name's beginning"},
+      {[&](LogSettings& s) { s.prefix = ""; }, "log_prefix: ''"},
+      {[&](LogSettings& s) { s.prefix = "a\nb"; }, "log_prefix"},
+      {[&](LogSettings& s) { s.split_size = 0; }, "log_split_mb: 0 MB, must be >= 0.064 MB"},
+      {[&](LogSettings& s) { s.total_size = s.split_size; }, "log_total_mb: 100 MB, must be 0 (no limit) or >= 2 x"},
+      {[&](LogSettings& s) { s.queue_size = 5'000'000'000; }, "log_queue_mb: 5000 MB, must be <= 4000 MB"},
+      {[&](LogSettings& s) { s.min_free_space = 1'000'000'000'000'000'000; }, "log_min_free_mb: 1e+12 MB, must be <="},
+  };
+  for (const auto& [change, line] : cases) {
+    LogSettings changed = settings_;
+    changed.directory = path("empty");
+    change(changed);
+    BagLog log(changed);
+    const auto problems = log.start();
+    ASSERT_EQ(problems.size(), 1u) << line;
+    EXPECT_NE(problems[0].find(line), std::string::npos) << problems[0];
+    EXPECT_EQ(log.health().state, LogState::kOff);
+    log.write("/wrench", at(0), wrench(0));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(path("empty")));
+  EXPECT_FALSE(std::filesystem::exists(path("missing")));
+}
+
+TEST_F(LogTest, MakesItsDirectoryBelowHomeOnly) {
+  const std::string home = std::getenv("HOME") != nullptr ? std::getenv("HOME") : "";
+  setenv("HOME", directory_.c_str(), 1);
+  settings_.directory = "~/.ros/hammer_loads";
+  {
+    BagLog log(settings_);
+    EXPECT_EQ(log.start(), std::vector<std::string>{});
+  }
+  setenv("HOME", home.c_str(), 1);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path(".ros/hammer_loads")), {}), 1);
+}
+
+TEST_F(LogTest, DeletesOldestFilesOfItsOwnOnly) {
+  settings_.split_size = 100'000;
+  settings_.total_size = 350'000;
+  writeFile(path("test_2001-01-01-00-00-00_0.bag"), "of another run");
+  std::mt19937 random(1);
+  LogHealth health;
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    for (std::size_t i = 0; i < 20000; ++i) {
+      auto message = wrench(i);
+      message.wrench.force.z = static_cast<double>(random());
+      log.write("/wrench", at(i), message);
+    }
+    log.stop();
+    ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+    health = log.health();
+  }
+  EXPECT_GT(health.files_deleted, 2u);
+  EXPECT_EQ(health.files_closed, health.files_deleted + files().size() - 1);
+  EXPECT_EQ(readFile(path("test_2001-01-01-00-00-00_0.bag")), "of another run");
+  std::filesystem::remove(path("test_2001-01-01-00-00-00_0.bag"));
+  std::uint64_t total = 0;
+  for (const std::string& file : files()) total += std::filesystem::file_size(file);
+  EXPECT_LE(total, settings_.total_size + settings_.split_size / 4);
+  const auto left = readAll();
+  ASSERT_FALSE(left.empty());
+  EXPECT_EQ(left.back().as<geometry_msgs::WrenchStamped>().header.seq, 19999u);
+  EXPECT_EQ(left.back().as<geometry_msgs::WrenchStamped>().header.seq - left.front().as<geometry_msgs::WrenchStamped>().header.seq + 1, left.size());
+}
+
+TEST_F(LogTest, SameInputsGiveSameContents) {
+  for (const char* prefix : {"one", "two"}) {
+    settings_.prefix = prefix;
+    settings_.split_size = prefix[0] == 'o' ? 64'000 : 100'000'000;
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    for (std::size_t i = 0; i < 5000; ++i) {
+      log.write("/a", at(i), wrench(i));
+      if (i % 3 == 0) log.write("/b", at(i), wrench(2 * i));
+      if (i % 3 == 0) log.write("/b", at(i), wrench(2 * i + 1));  // two at one time
+    }
+  }
+  std::vector<Entry> one, two;
+  for (const std::string& file : files()) {
+    auto& entries = file.find("/one_") != std::string::npos ? one : two;
+    for (const Entry& entry : readBag(file)) entries.push_back(entry);
+  }
+  EXPECT_EQ(two.size(), 5000u + 2 * 1667u);
+  for (const char* topic : {"/a", "/b"}) EXPECT_EQ(onTopic(one, topic), onTopic(two, topic));
+}
+
+TEST(RecordTime, RisesWhateverTheClockDoes) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> step(-3, 3);
+  ros::Time clock(0, 0), last(0, 0);
+  for (int i = 0; i < 100000; ++i) {
+    const std::int64_t next = std::max<std::int64_t>(0, static_cast<std::int64_t>(clock.toNSec()) + step(random));
+    clock.fromNSec(static_cast<std::uint64_t>(next));
+    const ros::Time time = BagLog::nextRecordTime(clock, last);
+    ASSERT_GT(time, last);
+    ASSERT_GE(time, clock);
+    ASSERT_GE(time, ros::TIME_MIN);
+    last = time;
+  }
+  EXPECT_EQ(BagLog::nextRecordTime(ros::Time(5, 999999999), ros::Time(5, 999999999)), ros::Time(6, 0));
+  EXPECT_EQ(BagLog::nextRecordTime(ros::Time(7, 5), ros::Time(5, 0)), ros::Time(7, 5));
+  const ros::Time end(std::numeric_limits<std::uint32_t>::max(), 999999999);
+  EXPECT_EQ(BagLog::nextRecordTime(end, end), end);
+}
+
+TEST(LogQueue, HandsOverEveryByteBetweenThreads) {
+  LogQueue queue(4096);
+  LogTopic topic(0, "/t", {}, false, "");
+  constexpr std::uint32_t kCount = 200000;
+  std::thread producer([&] {
+    for (std::uint32_t i = 0; i < kCount;) {
+      const std::uint32_t size = i * 7 % 600;
+      std::uint8_t* bytes = queue.reserve(size);
+      if (bytes == nullptr) continue;
+      std::fill_n(bytes, size, static_cast<std::uint8_t>(i));
+      queue.commit(topic, ros::Time(i + 1, 0));
+      ++i;
+    }
+  });
+  std::uint32_t wrong = 0;
+  for (std::uint32_t i = 0; i < kCount;) {
+    LogQueue::Record* record = queue.front();
+    if (record == nullptr) continue;
+    wrong += record->topic != &topic || record->time.sec != i + 1 || record->size != i * 7 % 600;
+    for (std::uint32_t k = 0; k < record->size; ++k) wrong += record->bytes()[k] != static_cast<std::uint8_t>(i);
+    queue.pop();
+    ++i;
+  }
+  producer.join();
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(queue.front(), nullptr);
+  EXPECT_EQ(queue.fill(), 0.0);
+  EXPECT_EQ(queue.reserve(4096), nullptr);  // never fits
+}
+
+}  // namespace
+}  // namespace hammer_loads::test
+
+int main(int argc, char** argv) {
+  ros::Time::init();
+  ::testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
