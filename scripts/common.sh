@@ -13,6 +13,11 @@ fail() {
   exit 1
 }
 
+failUsage() {
+  echo "error: $*" >&2
+  exit 2
+}
+
 asRoot() {
   if [ "$(id -u)" -eq 0 ]; then
     "$@"
@@ -62,13 +67,16 @@ checkLocalhost() {
   asRoot sh -c 'echo "127.0.0.1 localhost" >> /etc/hosts'
 }
 
-# Targets of make as arguments; default all.
+# Targets of make as arguments.
 build() {
-  cmake -S "$root_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release > "$build_dir.log" 2>&1 || {
-    cat "$build_dir.log" >&2
+  local log
+  log=$(mktemp)
+  cmake -S "$root_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release > "$log" 2>&1 || {
+    cat "$log" >&2
+    rm -f "$log"
     fail "cmake cannot configure $root_dir"
   }
-  rm -f "$build_dir.log"
+  rm -f "$log"
   make -C "$build_dir" --no-print-directory -j"$(nproc)" "$@" || fail "build"
 }
 

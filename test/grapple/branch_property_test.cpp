@@ -116,7 +116,8 @@ TEST(RandomGrapples, EqualTheExplicitCurveToFiftyDigits) {
     ASSERT_TRUE(exact) << i;
     ++checked;
     const double size = std::max({p.ab, p.ac, p.bd, p.ce, p.od, p.oe});
-    const double from_limit = std::min(m->slider - grapple->lowerLimit().slider, grapple->upperLimit().slider - m->slider);
+    const double from_limit =
+        std::min(m->slider - grapple->lowerLimit().slider, grapple->upperLimit().slider - m->slider);
     if (std::abs(m->determinant) < 1e-2 * std::pow(size, 4) || from_limit < 1e-2) continue;
     ++well_conditioned;
     const test::PsiPoint edge = exact->edgeBySlider();
@@ -131,8 +132,8 @@ TEST(RandomGrapples, EqualTheExplicitCurveToFiftyDigits) {
     add(worst[2], m->ddp.re, edge.x.dd);
     add(worst[2], m->ddp.im, edge.y.dd);
   }
-  std::printf("%d checked, %d well conditioned: P %.1e, dP/ds %.1e, d2P/ds2 %.1e\n", checked, well_conditioned, worst[0],
-              worst[1], worst[2]);
+  std::printf("%d checked, %d well conditioned: P %.1e, dP/ds %.1e, d2P/ds2 %.1e\n", checked, well_conditioned,
+              worst[0], worst[1], worst[2]);
   EXPECT_GT(well_conditioned, 100);
   EXPECT_LT(worst[0], 1e-12);
   EXPECT_LT(worst[1], 1e-10);
@@ -149,9 +150,16 @@ TEST(RandomGrapples, KeepTheirLengths) {
     for (int j = 0; j < 20; ++j) {
       const auto m = grapple->at(low + (high - low) * random(1e-4, 1.0 - 1e-4));
       ASSERT_TRUE(m);
-      for (const auto& [vector, length] : {std::pair{m->h - p.o1, p.o1h}, {m->h - m->g, p.gh}, {m->a - p.o1, p.o1a},
-                                           {m->b - m->a, p.ab}, {m->c - m->a, p.ac}, {m->d - m->b, p.bd},
-                                           {m->p - m->b, p.bp}, {m->e - m->c, p.ce}, {m->d, p.od}, {m->e, p.oe}})
+      for (const auto& [vector, length] : {std::pair{m->h - p.o1, p.o1h},
+                                           {m->h - m->g, p.gh},
+                                           {m->a - p.o1, p.o1a},
+                                           {m->b - m->a, p.ab},
+                                           {m->c - m->a, p.ac},
+                                           {m->d - m->b, p.bd},
+                                           {m->p - m->b, p.bp},
+                                           {m->e - m->c, p.ce},
+                                           {m->d, p.od},
+                                           {m->e, p.oe}})
         EXPECT_NEAR(norm(vector), length, 1e-14) << i;
     }
   }

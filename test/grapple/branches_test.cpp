@@ -40,11 +40,15 @@ TEST(Branches, FindsAllSixOfTheSixModeCase) {
   ASSERT_EQ(found.count, 6);
   EXPECT_FALSE(found.self_motion);
   // To 40 digits by Newton elsewhere.
-  for (const Angles& expected : {Angles{-2.945252945483, 0.463930253426}, {-2.581850934118, -2.559905175605},
-                                 {-2.054058583304, -0.107159404127}, {-1.412551073309, -1.390482777202},
-                                 {1.780980057544, -0.994174154374}, {2.429300890893, -1.988796758067}})
+  for (const Angles& expected : {Angles{-2.945252945483, 0.463930253426},
+                                 {-2.581850934118, -2.559905175605},
+                                 {-2.054058583304, -0.107159404127},
+                                 {-1.412551073309, -1.390482777202},
+                                 {1.780980057544, -0.994174154374},
+                                 {2.429300890893, -1.988796758067}})
     EXPECT_TRUE(contains(found, expected, 1e-12)) << expected.theta2;
-  EXPECT_EQ(std::count_if(found.branch.begin(), found.branch.end(), [](const auto& b) { return b.determinant > 0; }), 3);
+  EXPECT_EQ(std::count_if(found.branch.begin(), found.branch.end(), [](const auto& b) { return b.determinant > 0; }),
+            3);
 }
 
 TEST(Branches, ClaimsSetHasTwoModesBetweenItsFoldsAndNoneBeyond) {

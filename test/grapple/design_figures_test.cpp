@@ -59,12 +59,13 @@ TEST(DesignFigures, FollowTheirDefinitions) {
 
 TEST(DesignFigures, ClaimsSetReproducesWhatCanBeReproduced) {
   const DesignFigures f = figuresOf(test::claimsParameters());
-  EXPECT_NEAR(f.scoop_height, 0.070, 0.001);           // h = 70 mm: the set was fitted to it
-  EXPECT_NEAR(f.deviation_first_80, 0.0106, 5e-5);     // 80 % of the path within +-1.06 % of its length
-  EXPECT_NEAR(f.deviation_whole, 0.022, 5e-4);         // < 3 % even over the whole path
-  EXPECT_GT(f.straight_share_band, 0.8);               // a band of 3 % holds more than the claimed 80 %
+  EXPECT_NEAR(f.scoop_height, 0.070, 0.001);                 // h = 70 mm: the set was fitted to it
+  EXPECT_NEAR(f.deviation_first_80, 0.0106, 5e-5);           // 80 % of the path within +-1.06 % of its length
+  EXPECT_NEAR(f.deviation_whole, 0.022, 5e-4);               // < 3 % even over the whole path
+  EXPECT_NEAR(f.scoop_height / f.path_length, 0.035, 5e-4);  // above 3 % as distance from the line of the 80 %
+  EXPECT_GT(f.straight_share_band, 0.8);                     // a band of 3 % holds more than the claimed 80 %
   EXPECT_EQ(f.straight_share_off, 1.0);
-  EXPECT_NEAR(f.opening, 4.0067, 1e-4);                // 4 m, not 200 mm
+  EXPECT_NEAR(f.opening, 4.0067, 1e-4);  // 4 m, not 200 mm
   EXPECT_NEAR(f.least_transmission.value * 180.0 / test::kPi, 46.0, 0.5);
   EXPECT_NEAR(f.most_transmission.value * 180.0 / test::kPi, 117.0, 0.5);
   EXPECT_NEAR(f.least_determinant.value, 0.092, 5e-4);
@@ -128,13 +129,22 @@ TEST(SliderForOpening, InvertsThePath) {
   }
 }
 
+TEST(SliderForOpening, ClosedIsZeroWhateverItsRounding) {
+  for (const GrappleParameters& p : {test::claimsParameters(), test::straightParameters()}) {
+    const Checked<double> slider = sliderForOpening(test::grappleOf(p), 0.0);
+    ASSERT_TRUE(slider.value);
+    EXPECT_NEAR(*slider.value, p.slider_closed, 1e-14);
+  }
+}
+
 TEST(SliderForOpening, NamesTheReachableOpenings) {
   const Grapple grapple = test::grappleOf(test::claimsParameters());
   for (const double opening : {-0.1, 4.1, std::nan("")}) {
     const Checked<double> none = sliderForOpening(grapple, opening);
     EXPECT_FALSE(none.value);
     ASSERT_EQ(none.problems.size(), 1u);
-    EXPECT_NE(none.problems[0].find("must lie between 0.000000000 m (closed) and 4.006659937 m (open)"), std::string::npos)
+    EXPECT_NE(none.problems[0].find("must lie between 0.000000000 m (closed) and 4.006659937 m (open)"),
+              std::string::npos)
         << none.problems[0];
   }
 }
@@ -182,8 +192,9 @@ TEST(GrappleTable, SummaryAndOpening) {
   TableRequest request;
   request.summary = true;
   EXPECT_FALSE(printTable(grapple, request, summary));
-  for (const char* line : {"slider_open_m: 0.656\n", "scoop_height_m: 0.070706", "straight_share_within_3pct: 1\n",
-                           "lower_limit_kind: dead point\n", "upper_limit_m: 0.733192393497\n", "upper_limit_kind: fold\n"})
+  for (const char* line :
+       {"slider_open_m: 0.656\n", "scoop_height_m: 0.070706", "straight_share_within_3pct: 1\n",
+        "lower_limit_kind: dead point\n", "upper_limit_m: 0.733192393497\n", "upper_limit_kind: fold\n"})
     EXPECT_NE(summary.str().find(line), std::string::npos) << line << summary.str();
   TableRequest inverse;
   inverse.opening = 0.2;

@@ -1,4 +1,5 @@
-/// The grapple's whole configuration curve without iteration, to 50 digits: an oracle that shares nothing with the code.
+/// The grapple's whole configuration curve without iteration, to 50 digits: an oracle that shares nothing with the
+/// code.
 ///
 /// Seen from link 5 (O-E-D) the jaw's side DB is the crank of a four-bar D-B-C-E. Its angle psi gives B, then C by two
 /// circles, A by similarity, the distance |OA| and with it rocker 1, the true orientation, H and the slider: every
@@ -13,8 +14,7 @@
 
 namespace hammer_loads::test {
 
-using Digits50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
-                                               boost::multiprecision::et_off>;
+using Digits50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 /// Value, first and second derivative by psi.
 struct PsiJet {

@@ -12,7 +12,9 @@
 namespace hammer_loads {
 namespace {
 
-std::string configFile(const std::string& name) { return std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/" + name; }
+std::string configFile(const std::string& name) {
+  return std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/" + name;
+}
 
 /// A file with one or more lines laid over the claims set.
 std::vector<std::string> claimsWith(const std::string& lines) {
@@ -29,12 +31,29 @@ bool mentions(const std::vector<std::string>& problems, const std::string& text)
 }
 
 void expectSame(const GrappleParameters& a, const GrappleParameters& b) {
-  for (const auto& [x, y] : {std::pair{a.o1.re, b.o1.re}, {a.o1.im, b.o1.im}, {a.slider_x, b.slider_x}, {a.o1h, b.o1h},
-                             {a.o1a, b.o1a}, {a.ho1a, b.ho1a}, {a.gh, b.gh}, {a.ab, b.ab}, {a.ac, b.ac}, {a.bac, b.bac},
-                             {a.bd, b.bd}, {a.bp, b.bp}, {a.dbp, b.dbp}, {a.ce, b.ce}, {a.od, b.od}, {a.oe, b.oe},
-                             {a.doe, b.doe}, {a.slider_closed, b.slider_closed}, {a.slider_open, b.slider_open},
-                             {a.slider_margin, b.slider_margin}, {a.reference_slider, b.reference_slider},
-                             {a.reference_ab, b.reference_ab}, {a.reference_od, b.reference_od}})
+  for (const auto& [x, y] : {std::pair{a.o1.re, b.o1.re},
+                             {a.o1.im, b.o1.im},
+                             {a.slider_x, b.slider_x},
+                             {a.o1h, b.o1h},
+                             {a.o1a, b.o1a},
+                             {a.ho1a, b.ho1a},
+                             {a.gh, b.gh},
+                             {a.ab, b.ab},
+                             {a.ac, b.ac},
+                             {a.bac, b.bac},
+                             {a.bd, b.bd},
+                             {a.bp, b.bp},
+                             {a.dbp, b.dbp},
+                             {a.ce, b.ce},
+                             {a.od, b.od},
+                             {a.oe, b.oe},
+                             {a.doe, b.doe},
+                             {a.slider_closed, b.slider_closed},
+                             {a.slider_open, b.slider_open},
+                             {a.slider_margin, b.slider_margin},
+                             {a.reference_slider, b.reference_slider},
+                             {a.reference_ab, b.reference_ab},
+                             {a.reference_od, b.reference_od}})
     EXPECT_EQ(x, y);
   EXPECT_EQ(a.drive_sign, b.drive_sign);
 }
@@ -135,13 +154,13 @@ TEST(Grapple, ParallelogramAtTheReferenceIsRefused) {
 
 TEST(Grapple, SaysWhyThereIsNoPose) {
   const Grapple grapple = test::grappleOf(test::claimsParameters());
-  EXPECT_EQ(grapple.judge(0.74), Refusal::kAcrossFold);        // the drive closes, the lever group does not
-  EXPECT_EQ(grapple.judge(0.9), Refusal::kOutOfReach);         // beyond the drive's upper dead point at 0.89
-  EXPECT_EQ(grapple.judge(-0.2701), Refusal::kOutOfReach);     // beyond its lower one at -0.27
-  EXPECT_EQ(grapple.judge(-2.0), Refusal::kAcrossDeadPoint);   // G below O1: closes again
+  EXPECT_EQ(grapple.judge(0.74), Refusal::kAcrossFold);       // the drive closes, the lever group does not
+  EXPECT_EQ(grapple.judge(0.9), Refusal::kOutOfReach);        // beyond the drive's upper dead point at 0.89
+  EXPECT_EQ(grapple.judge(-0.2701), Refusal::kOutOfReach);    // beyond its lower one at -0.27
+  EXPECT_EQ(grapple.judge(-2.0), Refusal::kAcrossDeadPoint);  // G below O1: closes again
   EXPECT_EQ(grapple.judge(0.7), Refusal::kNone);
   EXPECT_EQ(grapple.judgeInStroke(0.7), Refusal::kOutsideStroke);
-  EXPECT_EQ(grapple.judgeInStroke(0.6569), Refusal::kNone);    // within the margin
+  EXPECT_EQ(grapple.judgeInStroke(0.6569), Refusal::kNone);  // within the margin
   EXPECT_EQ(grapple.judge(std::nan("")), Refusal::kNotFinite);
   EXPECT_EQ(grapple.explain(Refusal::kAcrossFold, 0.74),
             "slider position: 0.74 m, across fold: must lie between the dead point at -0.27 m and the fold at "

@@ -21,11 +21,12 @@ TEST(GrappleTracker, BadSamplesAreRefusedCountedAndForgotten) {
   GrappleTracker tracker = trackerOf(test::claimsParameters());
   EXPECT_FALSE(tracker.hasMotion());
   std::uint64_t accepted = 0, refused = 0;
-  for (const Bad& bad : {Bad{{kNan, 0.0, 0.0}, Refusal::kNotFinite}, Bad{{0.3, kInfinity, 0.0}, Refusal::kNotFinite},
-                         Bad{{0.3, 0.0, kNan}, Refusal::kNotFinite}, Bad{{0.74, 0.1, 0.0}, Refusal::kAcrossFold},
-                         Bad{{0.88, 0.1, 0.0}, Refusal::kAcrossFold}, Bad{{0.9, 0.1, 0.0}, Refusal::kOutOfReach},
-                         Bad{{-0.3, 0.1, 0.0}, Refusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, Refusal::kAcrossDeadPoint},
-                         Bad{{0.7, 0.1, 0.0}, Refusal::kOutsideStroke}, Bad{{0.0, 0.1, 0.0}, Refusal::kOutsideStroke}}) {
+  for (const Bad& bad :
+       {Bad{{kNan, 0.0, 0.0}, Refusal::kNotFinite}, Bad{{0.3, kInfinity, 0.0}, Refusal::kNotFinite},
+        Bad{{0.3, 0.0, kNan}, Refusal::kNotFinite}, Bad{{0.74, 0.1, 0.0}, Refusal::kAcrossFold},
+        Bad{{0.88, 0.1, 0.0}, Refusal::kAcrossFold}, Bad{{0.9, 0.1, 0.0}, Refusal::kOutOfReach},
+        Bad{{-0.3, 0.1, 0.0}, Refusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, Refusal::kAcrossDeadPoint},
+        Bad{{0.7, 0.1, 0.0}, Refusal::kOutsideStroke}, Bad{{0.0, 0.1, 0.0}, Refusal::kOutsideStroke}}) {
     // Good: accepted, and the channel is proven.
     const double good = 0.3 + 0.01 * static_cast<double>(accepted);
     ASSERT_EQ(tracker.update({good, 0.2, 0.0}), Refusal::kNone);

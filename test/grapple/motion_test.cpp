@@ -1,9 +1,8 @@
-#include "hammer_loads/grapple/grapple_motion.h"
-
 #include <algorithm>
 
 #include "grapple/explicit_curve.h"
 #include "grapple/grapples.h"
+#include "hammer_loads/grapple/grapple_motion.h"
 #include "support/csv.h"
 #include "support/main.h"
 
@@ -26,9 +25,16 @@ void expectClose(Planar value, Planar expected, double tolerance, const std::str
 void expectTableRow(const test::Csv& csv, std::size_t row, const Grapple& grapple, const GrappleMotion& m) {
   const std::string where = "row " + std::to_string(row) + ' ';
   const auto at = [&](const char* column) { return csv.number(row, column); };
-  const auto point = [&](const std::string& name) { return Planar{csv.number(row, name + "x"), csv.number(row, name + "y")}; };
-  for (const auto& [name, pin] : {std::pair<const char*, Planar>{"H", m.h}, {"A", m.a}, {"B", m.b}, {"C", m.c}, {"D", m.d},
-                                  {"E", m.e}, {"P", m.p}})
+  const auto point = [&](const std::string& name) {
+    return Planar{csv.number(row, name + "x"), csv.number(row, name + "y")};
+  };
+  for (const auto& [name, pin] : {std::pair<const char*, Planar>{"H", m.h},
+                                  {"A", m.a},
+                                  {"B", m.b},
+                                  {"C", m.c},
+                                  {"D", m.d},
+                                  {"E", m.e},
+                                  {"P", m.p}})
     expectClose(pin, point(name), kPositions, where + name);
   const auto links = grapple.linkDirections(m);
   expectClose(links[0].angle, at("theta1"), kPositions, where + "theta1");
@@ -236,35 +242,6 @@ TEST(GrappleMotion, LinkDirectionsTurnAsTheirDerivativesSay) {
   const auto after = grapple.linkDirections(*grapple.at(slider + step));
   for (std::size_t i = 0; i < now.size(); ++i)
     EXPECT_NEAR(now[i].d, (after[i].angle - before[i].angle) / (2.0 * step), 1e-8) << "link " << i + 1;
-}
-
-TEST(GrappleMotion, ThePapersFormulasFailWhereTheErrataSay) {
-  const GrappleParameters p = test::claimsParameters();
-  const Grapple grapple = test::grappleOf(p);
-  // Z_O^-1 is printed with + sin in the second row: it does not keep |A|, and is singular at phi_OD = -45 deg.
-  const GrappleMotion m = *grapple.at(0.332);
-  const double c = std::cos(m.theta5), s = std::sin(m.theta5);
-  const Planar inverted{c * m.a.re + s * m.a.im, -s * m.a.re + c * m.a.im};
-  const Planar printed{c * m.a.re + s * m.a.im, s * m.a.re + c * m.a.im};
-  expectClose(inverted, {1.504911698719, -0.826129984765}, 1e-12, "A*");
-  expectClose(printed, {1.504911698719, -1.671882267267}, 1e-12, "printed A*");
-  EXPECT_NEAR(norm(inverted), 1.716755653163, 1e-12);
-  EXPECT_NEAR(norm(inverted), norm(m.a), 1e-15);
-  const GrappleMotion at_45 = *grapple.at(0.178894907739);
-  EXPECT_NEAR(at_45.theta5, -test::kPi / 4, 1e-11);
-  EXPECT_GT(std::abs(at_45.determinant), 0.1);  // nothing is singular there but the printed matrix
-  // phi_O1A = arccos(...) + phi_HO1A lacks the direction of O1G and the sign of the closure.
-  const Planar g = m.g - p.o1;
-  const double bracket = std::acos((p.o1h * p.o1h + squaredNorm(g) - p.gh * p.gh) / (2.0 * norm(g) * p.o1h));
-  EXPECT_NEAR(bracket, 1.301980, 5e-7);
-  EXPECT_NEAR(angleOf(m.h - p.o1), 0.268816, 5e-7);
-  EXPECT_NEAR(test::kPi / 2 - bracket, angleOf(m.h - p.o1), 1e-14);
-  // arctg instead of atan2: off by pi while P lies inside of B or A.
-  const GrappleMotion closed = *grapple.at(0.008);
-  EXPECT_NEAR(angleOf(closed.p - closed.b), -2.626708, 5e-7);
-  EXPECT_NEAR(std::atan((closed.p - closed.b).im / (closed.p - closed.b).re), 0.514884, 5e-7);
-  EXPECT_NEAR(angleOf(closed.p - closed.a), -2.094934, 5e-7);
-  EXPECT_NEAR(std::atan((closed.p - closed.a).im / (closed.p - closed.a).re), 1.046659, 5e-7);
 }
 
 TEST(GrappleMotion, RegularWhereATriangleFormulaWouldChangeSign) {

@@ -78,11 +78,10 @@ TEST(Speed, ColdEnumeration) {
   six.oe = 2.0;
   six.doe = 1.4;
   const LeverGroup group(six);
-  const double six_modes = medianTime(100, 100, [&](int i) {
-    sum += enumerateBranches(group, six.o1 + six.o1a * direction(0.4 + 1e-6 * i)).count;
-  });
-  std::printf("cold pose, two modes: %.1f us; enumeration of six modes: %.1f us (%g)\n", 1e-3 * two_modes, 1e-3 * six_modes,
-              sum);
+  const double six_modes = medianTime(
+      100, 100, [&](int i) { sum += enumerateBranches(group, six.o1 + six.o1a * direction(0.4 + 1e-6 * i)).count; });
+  std::printf("cold pose, two modes: %.1f us; enumeration of six modes: %.1f us (%g)\n", 1e-3 * two_modes,
+              1e-3 * six_modes, sum);
 #ifdef __OPTIMIZE__
   EXPECT_LT(two_modes, kColdLimit);
   EXPECT_LT(six_modes, kColdLimit);

@@ -46,7 +46,9 @@ TEST(Blow, RodGivesUpTheEnergyThatTheLinkageLoses) {
   const Mechanism mechanism = test::mechanismOf(p);
   const double w = 20.0;
   const RockerBlow blow = blowAtCrankSpeed(mechanism, Level::kLinkage, w);
-  const auto energy = [&](Side side) { return 0.5 * w * w * shaftLoad(mechanism, Level::kLinkage, {0.0, side}, {}).inertia; };
+  const auto energy = [&](Side side) {
+    return 0.5 * w * w * shaftLoad(mechanism, Level::kLinkage, {0.0, side}, {}).inertia;
+  };
   const auto rod_rate = [&](Side side) { return w * linkMotion(mechanism.linkage(), {0.0, side}).v; };
   const double lost = energy(Side::kBeforeBlow) - energy(Side::kAfterBlow);
   const double turn = rod_rate(Side::kAfterBlow) - rod_rate(Side::kBeforeBlow);
@@ -140,8 +142,9 @@ TEST(Blow, FrictionOpposesSlidingInAllFourQuadrants) {
 }
 
 TEST(Blow, HasThePapersSpecialCaseTen) {
-  // P1's w- is counter-clockwise in (x, y), so psi' = -w-. (10): com, joint and striking point on the x axis. |I0x| = w(1 + R) J*/|xK| f in the limit of a sliding face,
-  // I0y = -w(1 + R)(m xC + mn xN - J*/xK); the print of (10) lacks the minus that (9) has.
+  // P1's w- is counter-clockwise in (x, y), so psi' = -w-. (10): com, joint and striking point on the x axis. |I0x| =
+  // w(1 + R) J*/|xK| f in the limit of a sliding face, I0y = -w(1 + R)(m xC + mn xN - J*/xK); the print of (10) lacks
+  // the minus that (9) has.
   const double w = 50.0, restitution = 0.2, f = 0.15;
   StrikingRocker r;
   r.mass = 35.2;

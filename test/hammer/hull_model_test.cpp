@@ -21,7 +21,8 @@ TEST(HullModel, GivesEachLevelItsOwnWrench) {
     EXPECT_EQ(a.force_x, b.force_x);
     EXPECT_EQ(a.force_z, b.force_z);
     EXPECT_EQ(a.torque_y, b.torque_y);
-    const LinkMomentum p = linkMomentum(model, crank.angle, 30.0), q = linkMomentum(mechanism, level, crank.angle, 30.0);
+    const LinkMomentum p = linkMomentum(model, crank.angle, 30.0),
+                       q = linkMomentum(mechanism, level, crank.angle, 30.0);
     EXPECT_EQ(p.x, q.x);
     EXPECT_EQ(p.about_d, q.about_d);
   }
@@ -46,7 +47,8 @@ TEST(LevelPulse, KeepsPeakAndImpulseOfTheRockersLastLobeAtAnySpeed) {
       const HalfSinePulse rocker = pulseAtConstantSpeed(mechanism, Level::kRocker, w, {}).pulse;
       const double length = model.nominalPulse().length;
       const auto force = [&](double left) {
-        const CrankAngle angle = left < kPi ? CrankAngle{-left, Side::kBeforeBlow} : CrankAngle{2.0 * kPi - left, Side::kAfterBlow};
+        const CrankAngle angle =
+            left < kPi ? CrankAngle{-left, Side::kBeforeBlow} : CrankAngle{2.0 * kPi - left, Side::kAfterBlow};
         return hullWrench(model, {angle, w, 0.0}, {}).force_z;
       };
       EXPECT_NEAR(force(0.5 * length), rocker.amplitude, 1e-11 * rocker.amplitude);
@@ -62,7 +64,8 @@ TEST(LevelPulse, EqualsTheRockerAlongTheToolAsTheSpeedVanishes) {
   const Gravity gravity{3.0, -9.3};
   for (double phi = 0.1; phi < 6.28; phi += 0.1) {
     const CrankMotion crank{CrankAngle::fromAngle(phi), 1e-9, 0.0};
-    EXPECT_NEAR(hullWrench(model, crank, gravity).force_z, hullWrench(mechanism, Level::kRocker, crank, gravity).force_z, 1e-10);
+    EXPECT_NEAR(hullWrench(model, crank, gravity).force_z,
+                hullWrench(mechanism, Level::kRocker, crank, gravity).force_z, 1e-10);
   }
 }
 
@@ -94,10 +97,16 @@ TEST(LevelPulse, MomentumDifferenceIsTheImpulse) {
   const HullModel model(mechanism, Level::kPulse);
   using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
   const double w = 25.0;
-  for (const auto& [from, to] : {std::pair{-1.5, -0.1}, std::pair{-0.4, -0.2}, std::pair{-3.0, -1.0}, std::pair{-0.3, 0.0}}) {
+  for (const auto& [from, to] :
+       {std::pair{-1.5, -0.1}, std::pair{-0.4, -0.2}, std::pair{-3.0, -1.0}, std::pair{-0.3, 0.0}}) {
     const double impulse = Quadrature::integrate(
-        [&](double x) { return hullWrench(model, {{x, Side::kBeforeBlow}, w, 0.0}, {}).force_z; }, from, to, 15, 1e-12) / w;
-    const double change = linkMomentum(model, {to, Side::kBeforeBlow}, w).z - linkMomentum(model, {from, Side::kBeforeBlow}, w).z;
+                               [&](double x) {
+                                 return hullWrench(model, {{x, Side::kBeforeBlow}, w, 0.0}, {}).force_z;
+                               },
+                               from, to, 15, 1e-12) /
+                           w;
+    const double change =
+        linkMomentum(model, {to, Side::kBeforeBlow}, w).z - linkMomentum(model, {from, Side::kBeforeBlow}, w).z;
     EXPECT_NEAR(impulse, -change, 1e-8) << from;
   }
   EXPECT_EQ(linkMomentum(model, {0.0, Side::kAfterBlow}, w).z, 0.0);

@@ -17,8 +17,8 @@ using test::Real;
 constexpr Gravity kGravity{3.1, -9.3};
 
 TEST(HullWrench, EqualsTheReferenceTables) {
-  for (const auto& [name, level, tolerance] :
-       {std::tuple{"mo100_constant_speed.csv", Level::kRocker, 1e-13}, std::tuple{"mo100_linkage.csv", Level::kLinkage, 1e-12}}) {
+  for (const auto& [name, level, tolerance] : {std::tuple{"mo100_constant_speed.csv", Level::kRocker, 1e-13},
+                                               std::tuple{"mo100_linkage.csv", Level::kLinkage, 1e-12}}) {
     const test::Csv csv = test::dataCsv(name);
     const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
     const double peak_x = csv.peak("hull_force_x_N"), peak_z = csv.peak("hull_force_z_N");
@@ -56,7 +56,8 @@ TEST(HullWrench, KeepsAllDigitsNearTheBlowForAnyMachine) {
             worst = std::max({worst, relative(wrench.force_x, reference.hull_force.x),
                               relative(wrench.force_z, reference.hull_force.y)});
             torque_peak = std::max(torque_peak, std::abs(wrench.torque_y));
-            torque_error = std::max(torque_error, std::abs(static_cast<double>(Real(wrench.torque_y) - reference.hull_torque)));
+            torque_error =
+                std::max(torque_error, std::abs(static_cast<double>(Real(wrench.torque_y) - reference.hull_torque)));
           }
         }
         worst_torque = std::max(worst_torque, torque_error / torque_peak);
@@ -64,8 +65,8 @@ TEST(HullWrench, KeepsAllDigitsNearTheBlowForAnyMachine) {
     }
     EXPECT_LE(worst, 1e-13) << static_cast<int>(level);
     EXPECT_LE(worst_torque, 1e-13) << static_cast<int>(level);
-    std::printf("level %d near the blow: force %.2e relative, torque %.2e of the peak\n", static_cast<int>(level), worst,
-                worst_torque);
+    std::printf("level %d near the blow: force %.2e relative, torque %.2e of the peak\n", static_cast<int>(level),
+                worst, worst_torque);
   }
 }
 
@@ -87,7 +88,8 @@ TEST(HullWrench, EqualsKinetostaticsOverTheTurn) {
         peak = std::max(peak, std::hypot(wrench.force_x, wrench.force_z));
         error = std::max(error, std::hypot(miss_x, miss_z));
         torque_peak = std::max(torque_peak, std::abs(wrench.torque_y));
-        torque_error = std::max(torque_error, std::abs(static_cast<double>(Real(wrench.torque_y) - reference.hull_torque)));
+        torque_error =
+            std::max(torque_error, std::abs(static_cast<double>(Real(wrench.torque_y) - reference.hull_torque)));
       }
       EXPECT_LE(error, 1e-13 * peak);
       EXPECT_LE(torque_error, 1e-13 * torque_peak);
@@ -115,9 +117,7 @@ TEST(HullWrench, EqualsThePinForcesOnTheHull) {
 /// Crank at offset x0 + w0 t + e/2 t^2.
 struct Path {
   double x0, w0, e;
-  CrankMotion at(double t) const {
-    return {CrankAngle::fromOffset(x0 + t * (w0 + 0.5 * e * t)), w0 + e * t, e};
-  }
+  CrankMotion at(double t) const { return {CrankAngle::fromOffset(x0 + t * (w0 + 0.5 * e * t)), w0 + e * t, e}; }
 };
 
 TEST(HullWrench, ImpulseIsTheMomentumDifference) {
@@ -125,12 +125,13 @@ TEST(HullWrench, ImpulseIsTheMomentumDifference) {
   std::mt19937 random(43);
   for (Level level : {Level::kRocker, Level::kLinkage}) {
     for (int i = 0; i < 4; ++i) {
-      const Mechanism mechanism = test::mechanismOf(i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random));
+      const Mechanism mechanism =
+          test::mechanismOf(i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random));
       for (const Path& path : {Path{0.02, 25.0, 120.0}, Path{-3.0, 31.0, 0.0}, Path{-0.02, -25.0, 60.0}}) {
         const double duration = 0.07;
         const auto impulse = [&](double HullWrench::*member) {
-          return Quadrature::integrate([&](double t) { return hullWrench(mechanism, level, path.at(t), {}).*member; }, 0.0,
-                                       duration, 10, 1e-13);
+          return Quadrature::integrate([&](double t) { return hullWrench(mechanism, level, path.at(t), {}).*member; },
+                                       0.0, duration, 10, 1e-13);
         };
         const auto momentum = [&](double t) {
           const CrankMotion crank = path.at(t);
@@ -160,7 +161,8 @@ TEST(HullWrench, MomentumEqualsTheReference) {
       const double scale = p.rocker_mass * 7.0 * (p.lengths.rod + p.rocker_com_distance) * 4.0;
       EXPECT_NEAR(momentum.x, static_cast<double>(reference.momentum.x), 1e-14 * scale);
       EXPECT_NEAR(momentum.z, static_cast<double>(reference.momentum.y), 1e-14 * scale);
-      EXPECT_NEAR(momentum.about_d, static_cast<double>(reference.momentum_about_d), 1e-14 * scale * p.lengths.rod * 4.0);
+      EXPECT_NEAR(momentum.about_d, static_cast<double>(reference.momentum_about_d),
+                  1e-14 * scale * p.lengths.rod * 4.0);
     }
   }
 }
@@ -204,7 +206,8 @@ TEST(HullWrench, LightCrankAndRodApproachTheRockerInProportion) {
   const CrankMotion crank{CrankAngle::fromAngle(5.5), 31.0, 100.0};
   const auto miss = [&](double scale) {
     HammerParameters p = test::mo100LinkageParameters();
-    for (double* value : {&p.crank_mass, &p.rod_mass, &p.crank_inertia_about_com, &p.rod_inertia_about_com}) *value *= scale;
+    for (double* value : {&p.crank_mass, &p.rod_mass, &p.crank_inertia_about_com, &p.rod_inertia_about_com})
+      *value *= scale;
     const Mechanism mechanism = test::mechanismOf(p);
     return hullWrench(mechanism, Level::kLinkage, crank, kGravity).force_z -
            hullWrench(mechanism, Level::kRocker, crank, kGravity).force_z;
@@ -242,7 +245,8 @@ Printed asPrinted(const HammerParameters& p, double phi, double w, double sign_o
   const double psi = kPi - std::atan(std::sin(phi) / (l0 - std::cos(phi))) -
                      std::acos((l3 * l3 - l2 * l2 + l0 * l0 + 1 - 2 * l0 * std::cos(phi)) / (2 * l3 * std::sqrt(d)));
   const double s = std::sin(phi / 2), y = std::cos(phi / 2);
-  const double u = (1 - l0 + 2 * l0 * s * s + (2 * l0 * s * s + l2 * (l0 - 1)) * y / std::sqrt(l2 * l3 / l0 - s * s)) / d;
+  const double u =
+      (1 - l0 + 2 * l0 * s * s + (2 * l0 * s * s + l2 * (l0 - 1)) * y / std::sqrt(l2 * l3 / l0 - s * s)) / d;
   const double b = (1 - l0 * l0) / (2 * l0), g = l2 * l3 / l0 - 1, a = (l0 + 1) * (l0 + 1) / (4 * l0);
   const double c = l2 * (l0 - 1) / (2 * l0) + 1;
   const double y2 = y * y;
@@ -258,7 +262,8 @@ TEST(PrintedFormulas, WithTheSignMendedGiveTheSameForces) {
   const Mechanism mechanism = test::mechanismOf(p);
   for (double phi = 0.05; phi < 6.25; phi += 0.05) {
     const Printed mended = asPrinted(p, phi, test::kPaperSpeed, -1.0);
-    const HullWrench wrench = hullWrench(mechanism, Level::kRocker, {CrankAngle::fromAngle(phi), test::kPaperSpeed, 0.0}, {});
+    const HullWrench wrench =
+        hullWrench(mechanism, Level::kRocker, {CrankAngle::fromAngle(phi), test::kPaperSpeed, 0.0}, {});
     EXPECT_NEAR(mended.force_x, wrench.force_x, 1e-10 * 55448.8);
     EXPECT_NEAR(mended.force_z, wrench.force_z, 1e-10 * 40558.0);
   }

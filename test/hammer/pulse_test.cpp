@@ -47,20 +47,22 @@ TEST(ConstantSpeedPulse, HalfSineKeepsPeakAndImpulse) {
 
 /// Fz of MO-100 at constant speed; phi in [0, 2 pi].
 double forceZ(const Mechanism& mechanism, Level level, double phi, double w, Gravity gravity) {
-  const CrankAngle angle = phi < kPi ? CrankAngle{phi, Side::kAfterBlow} : CrankAngle{phi - 2.0 * kPi, Side::kBeforeBlow};
+  const CrankAngle angle =
+      phi < kPi ? CrankAngle{phi, Side::kAfterBlow} : CrankAngle{phi - 2.0 * kPi, Side::kBeforeBlow};
   return hullWrench(mechanism, level, {angle, w, 0.0}, gravity).force_z;
 }
 
 TEST(ConstantSpeedPulse, ImpulsesAndResidualEqualQuadrature) {
   std::mt19937 random(61);
   for (int i = 0; i < 6; ++i) {
-    const Mechanism mechanism = test::mechanismOf(i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random));
+    const Mechanism mechanism =
+        test::mechanismOf(i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random));
     for (Level level : {Level::kRocker, Level::kLinkage}) {
       const double w = 20.0;
       const Gravity gravity{2.0, -9.6};
       const HalfSinePulse pulse = pulseAtConstantSpeed(mechanism, level, w, gravity).pulse;
       const auto integral = [&](auto value) {  // over the turn, by time
-        constexpr int kSteps = 40000;         // midpoints
+        constexpr int kSteps = 40000;          // midpoints
         double sum = 0.0;
         for (int k = 0; k < kSteps; ++k) sum += value(2.0 * kPi * (k + 0.5) / kSteps);
         return sum * 2.0 * kPi / kSteps / w;
@@ -165,7 +167,8 @@ TEST(PulseOfTurn, ApproachesTheExactPulseWithFinerPoints) {
   struct Case {
     double step, amplitude, impulse;
   };
-  for (const Case& c : {Case{0.5e-3, 1e-4, 1e-5}, Case{1e-3, 1e-3, 2e-5}, Case{5e-3, 0.05, 2e-3}, Case{10e-3, 0.2, 1e-2}}) {
+  for (const Case& c :
+       {Case{0.5e-3, 1e-4, 1e-5}, Case{1e-3, 1e-3, 2e-5}, Case{5e-3, 0.05, 2e-3}, Case{10e-3, 0.2, 1e-2}}) {
     const std::vector<TurnPoint> points = turnPoints(c.step, 0.4, {});
     const HalfSinePulse pulse = pulseOfTurn(points.data(), points.size());
     EXPECT_NEAR(pulse.amplitude, exact.amplitude, c.amplitude * exact.amplitude) << c.step;
@@ -188,7 +191,8 @@ TEST(PulseOfTurn, SmallRippleAtTheEndStartsNoLobe) {
 }
 
 TEST(PulseOfTurn, PeakAtTheTurnsEndIsTakenAsItIs) {
-  const TurnPoint points[] = {{0.0, -1.0, 0.0, 0.0}, {0.1, 0.0, 0.0, -0.05}, {0.2, 1.0, 0.0, 0.0}, {0.3, 2.0, 0.0, 0.15}};
+  const TurnPoint points[] = {
+      {0.0, -1.0, 0.0, 0.0}, {0.1, 0.0, 0.0, -0.05}, {0.2, 1.0, 0.0, 0.0}, {0.3, 2.0, 0.0, 0.15}};
   const HalfSinePulse pulse = pulseOfTurn(points, 4);
   EXPECT_EQ(pulse.amplitude, 2.0);
   EXPECT_EQ(pulse.peak_time, 0.3);

@@ -78,8 +78,7 @@ TEST(CrankRocker, ReportsEveryLengthThatIsNotPositiveAndFinite) {
 
 TEST(CrankRocker, ScalesFromMicrometresToKilometres) {
   for (double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
-    const Checked<CrankRocker> made =
-        CrankRocker::make({scale * 0.048, scale * 0.150, scale * 0.120, scale * 0.078});
+    const Checked<CrankRocker> made = CrankRocker::make({scale * 0.048, scale * 0.150, scale * 0.120, scale * 0.078});
     ASSERT_TRUE(made.value) << scale;
     EXPECT_NEAR(made.value->ratios().g, 3.125 * 2.5 / 1.625 - 1.0, 1e-14);
   }

@@ -1,5 +1,4 @@
 #include "hammer_loads/linkage/link_motion.h"
-
 #include "support/csv.h"
 #include "support/main.h"
 #include "support/mo100.h"
@@ -63,8 +62,10 @@ TEST(Motion, KeepsAllDigitsNearTheBlowForAnyMachine) {
       worst_u = std::max(worst_u, relativeError(l.rocker.u, at_speed.psi_rate));
       worst_du = std::max(worst_du, relativeError(l.rocker.du, at_speed.psi_accel));
       const Real transmission = at_speed.psi - at_speed.beta;
-      for (double error : {relativeError(l.rocker.sin_psi, sin(at_speed.psi)), relativeError(l.sin_mu, sin(transmission)),
-                           relativeError(l.delta.im, sin(at_speed.beta - exactAngle(angle))), relativeError(l.v, at_speed.beta_rate)}) {
+      for (double error :
+           {relativeError(l.rocker.sin_psi, sin(at_speed.psi)), relativeError(l.sin_mu, sin(transmission)),
+            relativeError(l.delta.im, sin(at_speed.beta - exactAngle(angle))),
+            relativeError(l.v, at_speed.beta_rate)}) {
         worst_sine = std::max(worst_sine, error);
       }
     });

@@ -33,15 +33,16 @@ Gravity gravityOf(const test::Csv& csv, std::size_t row) {
 }
 
 TEST(PinForces, EqualTheReferenceTables) {
-  for (const auto& [name, level] : {std::pair{"mo100_constant_speed.csv", Level::kRocker},
-                                    std::pair{"mo100_linkage.csv", Level::kLinkage}}) {
+  for (const auto& [name, level] :
+       {std::pair{"mo100_constant_speed.csv", Level::kRocker}, std::pair{"mo100_linkage.csv", Level::kLinkage}}) {
     const test::Csv csv = test::dataCsv(name);
     const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
     std::size_t rows = 0;
     for (std::size_t i = 0; i < csv.size(); ++i) {
       const CrankAngle angle = CrankAngle::fromAngle(csv.number(i, "crank_angle_rad"));
       // Where the forces grow as 1/offset, an angle near 2 pi as double moves them by 4.4e-16/offset.
-      const double rounding = angle.side == Side::kBeforeBlow && level == Level::kLinkage ? 4.5e-16 / -angle.offset : 0.0;
+      const double rounding =
+          angle.side == Side::kBeforeBlow && level == Level::kLinkage ? 4.5e-16 / -angle.offset : 0.0;
       const CrankMotion crank{angle, csv.number(i, "crank_speed_rad_s"), csv.number(i, "crank_accel_rad_s2")};
       const PinReactions pins = pinForces(mechanism, level, crank, gravityOf(csv, i), kNearBlow);
       for (const Named& named : kPins) {

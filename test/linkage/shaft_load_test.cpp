@@ -76,8 +76,8 @@ TEST(ShaftLoad, WeightDoesNoWorkOverATurn) {
 }
 
 TEST(ShaftLoad, DriveTorqueEqualsTheReferenceTables) {
-  for (const auto& [name, level] : {std::pair{"mo100_constant_speed.csv", Level::kRocker},
-                                    std::pair{"mo100_linkage.csv", Level::kLinkage}}) {
+  for (const auto& [name, level] :
+       {std::pair{"mo100_constant_speed.csv", Level::kRocker}, std::pair{"mo100_linkage.csv", Level::kLinkage}}) {
     const test::Csv csv = test::dataCsv(name);
     const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
     const double peak = csv.peak("drive_torque_y_Nm");

@@ -118,15 +118,19 @@ TEST(HammerParameters, RefusesAnInertiaAboutTheWrongPoint) {
 }
 
 TEST(HammerParameters, ReportsSeveralProblemsTogetherOneLineEach) {
-  const Lines problems =
-      problemsWith({{"crank_length_m", ""}, {"rod_length_m", "-0.15"}, {"rocker_mass_kg", "heavy"}, {"rod_mass_kg", "-1"}},
-                   "rocker_mas_kg: 35.2\nlevel: 3\nlog_split_mb: 0\n");
+  const Lines problems = problemsWith(
+      {{"crank_length_m", ""}, {"rod_length_m", "-0.15"}, {"rocker_mass_kg", "heavy"}, {"rod_mass_kg", "-1"}},
+      "rocker_mas_kg: 35.2\nlevel: 3\nlog_split_mb: 0\n");
   ASSERT_EQ(problems.size(), 7U);
-  const Lines beginnings{"crank_length_m: missing", "rocker_mass_kg: heavy kg, must be a finite number",
-                         "rod_length_m: -0.15 m, must be > 0", "rod_mass_kg: -1 kg, must be >= 0",
-                         "level: 3, must be one of rocker, linkage", "log_split_mb: 0 MB, must be an integer in [1, ",
+  const Lines beginnings{"crank_length_m: missing",
+                         "rocker_mass_kg: heavy kg, must be a finite number",
+                         "rod_length_m: -0.15 m, must be > 0",
+                         "rod_mass_kg: -1 kg, must be >= 0",
+                         "level: 3, must be one of pulse, rocker, linkage",
+                         "log_split_mb: 0 MB, must be an integer in [1, ",
                          "rocker_mas_kg: unknown key, perhaps rocker_mass_kg was meant"};
-  for (std::size_t i = 0; i < beginnings.size(); ++i) EXPECT_TRUE(beginsWith(problems[i], beginnings[i])) << problems[i];
+  for (std::size_t i = 0; i < beginnings.size(); ++i)
+    EXPECT_TRUE(beginsWith(problems[i], beginnings[i])) << problems[i];
 }
 
 TEST(HammerParameters, ProblemOfSeveralKeysNamesTheFile) {

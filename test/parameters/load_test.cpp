@@ -77,8 +77,9 @@ TEST(Load, LaterFilesReplaceEarlierOnes) {
 TEST(Load, OneHammerKeyMeansThatAllMustBeGiven) {
   const Lines problems = problemsOf("rocker_mass_kg: 40.0\n");
   EXPECT_EQ(problems.size(), hammerKeys().size() - 1);
-  EXPECT_TRUE(std::all_of(problems.begin(), problems.end(),
-                          [](const std::string& line) { return line.find(": missing, must be") != std::string::npos; }));
+  EXPECT_TRUE(std::all_of(problems.begin(), problems.end(), [](const std::string& line) {
+    return line.find(": missing, must be") != std::string::npos;
+  }));
 }
 
 TEST(Load, HammerKeysMayBeSpreadOverFiles) {
@@ -89,7 +90,8 @@ TEST(Load, HammerKeysMayBeSpreadOverFiles) {
 }
 
 TEST(Load, DumpIsStableAndReloadsToTheSame) {
-  const TemporaryFile changes("gravity_m_s2: 9.8123456789012345\nlog_directory: \"C:\\\\a \\\"b\\\"\"\npitch_joints: []\n");
+  const TemporaryFile changes(
+      "gravity_m_s2: 9.8123456789012345\nlog_directory: \"C:\\\\a \\\"b\\\"\"\npitch_joints: []\n");
   const Checked<Settings> settings = loadShippedWith({changes.path()});
   ASSERT_EQ(settings.problems, Lines{});
   EXPECT_EQ(loadShippedWith({changes.path()}).value->yaml, settings.value->yaml);
@@ -154,7 +156,7 @@ struct BadPair {
 
 TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
   const BadPair pairs[] = {
-      {"level: linkage", "level: Linkage", "level: Linkage, must be one of rocker, linkage"},
+      {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage"},
       {"crank_estimator: difference", "crank_estimator: 1",
        "crank_estimator: 1, must be one of mechanism, difference, none"},
       {"crank_joint: c", "crank_joint: [c]", "crank_joint: (a list), must be a text, not empty"},

@@ -29,8 +29,7 @@ TEST(ParameterReader, ReadsEveryType) {
   EXPECT_EQ(reader.choice("g", kChoices), 2);
   reader.reportUnknownKeys();
   EXPECT_EQ(reader.problems(), Lines{});
-  EXPECT_EQ(reader.yaml(),
-            "a: 1.5\nb: 2.0\nc: 7\nd: false\ne: \"word\"\nf: [\"p\", \"q\"]\ng: \"two\"\n");
+  EXPECT_EQ(reader.yaml(), "a: 1.5\nb: 2.0\nc: 7\nd: false\ne: \"word\"\nf: [\"p\", \"q\"]\ng: \"two\"\n");
 }
 
 struct NumberCase {
@@ -42,24 +41,23 @@ struct NumberCase {
 TEST(ParameterReader, JudgesNumbersByTheirRule) {
   const NumberRule any = NumberRule::any(), positive = NumberRule::positive(), not_negative = NumberRule::notNegative();
   const NumberRule within = NumberRule::within(-1.0, 2.5);
-  const NumberCase cases[] = {
-      {"-3", any, nullptr},
-      {"0.001", positive, nullptr},
-      {"0", not_negative, nullptr},
-      {"-1", within, nullptr},
-      {"2.5", within, nullptr},
-      {"0", positive, "k: 0 m, must be a finite number > 0 (x.yaml:1)"},
-      {"-0.5", positive, "k: -0.5 m, must be a finite number > 0 (x.yaml:1)"},
-      {"-1e-9", not_negative, "k: -1e-9 m, must be a finite number >= 0 (x.yaml:1)"},
-      {"2.6", within, "k: 2.6 m, must be a number in [-1.0, 2.5] (x.yaml:1)"},
-      {".nan", within, "k: .nan m, must be a number in [-1.0, 2.5] (x.yaml:1)"},
-      {".nan", any, "k: .nan m, must be a finite number (x.yaml:1)"},
-      {".inf", positive, "k: .inf m, must be a finite number > 0 (x.yaml:1)"},
-      {"1e999", any, "k: 1e999 m, must be a finite number (x.yaml:1)"},
-      {"\"1.5\"", any, "k: \"1.5\" m, must be a finite number (x.yaml:1)"},
-      {"true", any, "k: true m, must be a finite number (x.yaml:1)"},
-      {"[1]", any, "k: (a list) m, must be a finite number (x.yaml:1)"},
-      {"", any, "k: (empty) m, must be a finite number (x.yaml:1)"}};
+  const NumberCase cases[] = {{"-3", any, nullptr},
+                              {"0.001", positive, nullptr},
+                              {"0", not_negative, nullptr},
+                              {"-1", within, nullptr},
+                              {"2.5", within, nullptr},
+                              {"0", positive, "k: 0 m, must be a finite number > 0 (x.yaml:1)"},
+                              {"-0.5", positive, "k: -0.5 m, must be a finite number > 0 (x.yaml:1)"},
+                              {"-1e-9", not_negative, "k: -1e-9 m, must be a finite number >= 0 (x.yaml:1)"},
+                              {"2.6", within, "k: 2.6 m, must be a number in [-1.0, 2.5] (x.yaml:1)"},
+                              {".nan", within, "k: .nan m, must be a number in [-1.0, 2.5] (x.yaml:1)"},
+                              {".nan", any, "k: .nan m, must be a finite number (x.yaml:1)"},
+                              {".inf", positive, "k: .inf m, must be a finite number > 0 (x.yaml:1)"},
+                              {"1e999", any, "k: 1e999 m, must be a finite number (x.yaml:1)"},
+                              {"\"1.5\"", any, "k: \"1.5\" m, must be a finite number (x.yaml:1)"},
+                              {"true", any, "k: true m, must be a finite number (x.yaml:1)"},
+                              {"[1]", any, "k: (a list) m, must be a finite number (x.yaml:1)"},
+                              {"", any, "k: (empty) m, must be a finite number (x.yaml:1)"}};
   for (const NumberCase& c : cases) {
     ParameterReader reader = readerOf(std::string("k: ") + c.text);
     const double read = reader.number("k", "m", c.rule);
@@ -81,9 +79,9 @@ TEST(ParameterReader, RefusesWrongTypesOfEveryKind) {
   EXPECT_EQ(reader.choice("c", kChoices), 1);
   reader.choice("d", kChoices);
   EXPECT_EQ(reader.problems(),
-            (Lines{"i: 1.0 MB, must be an integer in [0, 8] (x.yaml:1)", "j: 9 MB, must be an integer in [0, 8] (x.yaml:2)",
-                   "b: 1, must be true or false (x.yaml:3)", "t: 5, must be a text, not empty (x.yaml:4)",
-                   "u: \"\", must be a text, not empty (x.yaml:5)",
+            (Lines{"i: 1.0 MB, must be an integer in [0, 8] (x.yaml:1)",
+                   "j: 9 MB, must be an integer in [0, 8] (x.yaml:2)", "b: 1, must be true or false (x.yaml:3)",
+                   "t: 5, must be a text, not empty (x.yaml:4)", "u: \"\", must be a text, not empty (x.yaml:5)",
                    "n: (a list), must be a list of different names (x.yaml:6)",
                    "m: (a list), must be a list of different names (x.yaml:7)",
                    "o: a, must be a list of different names (x.yaml:8)", "c: three, must be one of one, two (x.yaml:9)",

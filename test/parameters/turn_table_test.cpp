@@ -1,60 +1,40 @@
 // The command turn_table as its user meets it: what it prints, its errors and exit codes.
-#include <sys/wait.h>
-
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
+#include <map>
 
 #include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/pin_forces.h"
 #include "parameters/hammer_yaml.h"
-#include "parameters/temporary_file.h"
+#include "support/command.h"
 
 namespace hammer_loads {
 namespace {
 
+using test::contentOf;
 using test::hammerYaml;
+using test::linesOf;
+using test::numbersOf;
+using test::Outcome;
 using test::TemporaryFile;
 
-struct Outcome {
-  int exit_code{};
-  std::string out, err;
-};
+Outcome run(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_TURN_TABLE, arguments); }
 
-std::string contentOf(const std::string& path) {
-  std::ostringstream text;
-  std::ifstream stream(path);
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  return text.str();
-}
-
-Outcome run(const std::string& arguments) {
-  const TemporaryFile out({}, ".out"), err({}, ".err");
-  const std::string command =
-      std::string(HAMMER_LOADS_TURN_TABLE) + " " + arguments + " >" + out.path() + " 2>" + err.path();
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contentOf(out.path()), contentOf(err.path())};
-}
-
-std::vector<std::string> linesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-std::vector<double> numbersOf(const std::string& line) {
-  std::vector<double> numbers;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) numbers.push_back(std::stod(cell));
-  return numbers;
+/// `key: value` lines.
+std::map<std::string, double> summaryOf(const std::string& arguments) {
+  std::map<std::string, double> summary;
+  for (const std::string& line : linesOf(run("--summary " + arguments).out)) {
+    const std::size_t colon = line.find(": ");
+    summary[line.substr(0, colon)] = std::stod(line.substr(colon + 2));
+  }
+  return summary;
 }
 
 TEST(TurnTable, SummaryGivesThePapersPulse) {
   const Outcome outcome = run("--speed 31.416 --level rocker --summary");
   EXPECT_EQ(outcome.exit_code, 0);
   const std::vector<std::pair<std::string, double>> right{
-      {"amplitude_N", 40558.0395215}, {"peak_angle_deg", 348.480359663},  {"impulse_Ns", 483.218440034},
-      {"frequency_rad_s", 167.866273972}, {"start_s", 0.181284679239}, {"turn_impulse_x_Ns", 0.0},
+      {"amplitude_N", 40558.0395215},      {"peak_angle_deg", 348.480359663}, {"impulse_Ns", 483.218440034},
+      {"frequency_rad_s", 167.866273972},  {"start_s", 0.181284679239},       {"turn_impulse_x_Ns", 0.0},
       {"turn_impulse_z_Ns", 534.602622037}};
   const std::vector<std::string> lines = linesOf(outcome.out);
   ASSERT_EQ(lines.size(), right.size());
@@ -90,9 +70,9 @@ TEST(TurnTable, RowsAreTheModelsToTwelveDigits) {
   const double g = settings.pipeline.gravity;
   for (std::size_t i = 1; i < 51; ++i) {
     const std::vector<double> row = numbersOf(lines[i]);
-    const HullWrench right =
-        hullWrench(settings.mechanism, Level::kRocker, {CrankAngle::fromAngle(row[0] / 180.0 * std::acos(-1.0)), 20.0, 0.0},
-                   {g * std::sin(0.3), -g * std::cos(0.3)});
+    const HullWrench right = hullWrench(settings.mechanism, Level::kRocker,
+                                        {CrankAngle::fromAngle(row[0] / 180.0 * std::acos(-1.0)), 20.0, 0.0},
+                                        {g * std::sin(0.3), -g * std::cos(0.3)});
     EXPECT_NEAR(row[2], right.force_x, 1e-7);
     EXPECT_NEAR(row[3], right.force_z, 1e-7);
     EXPECT_NEAR(row[4], right.torque_y, 1e-7);
@@ -116,6 +96,80 @@ TEST(TurnTable, TakesParameterFilesInOrder) {
   EXPECT_EQ(linesOf(run("--summary --params " + light.path()).out).at(0), "amplitude_N: 20279.0197608");
 }
 
+TEST(TurnTable, PinsAddsTheModelsPinForcesAndDriveTorque) {
+  const Settings settings = loadFiles(configDirectory(), {}).value.value();
+  const std::string plain = run("--step-deg 10 --level linkage --pitch 0.3").out;
+  const std::vector<std::string> lines = linesOf(run("--step-deg 10 --level linkage --pitch 0.3 --pins").out);
+  ASSERT_EQ(lines.size(), 1U + 37U);
+  EXPECT_EQ(lines[0],
+            "crank_angle_deg,time_s,force_x_N,force_z_N,torque_y_Nm,drive_torque_y_Nm,"
+            "R01_x_N,R01_z_N,R12_x_N,R12_z_N,R23_x_N,R23_z_N,R03_x_N,R03_z_N");
+  const double g = settings.pipeline.gravity;
+  for (std::size_t i = 2; i + 1 < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].rfind(linesOf(plain)[i] + ",", 0), 0U) << lines[i];
+    const std::vector<double> row = numbersOf(lines[i]);
+    const PinReactions right = pinForces(settings.mechanism, Level::kLinkage,
+                                         {CrankAngle::fromAngle(row[0] / 180.0 * std::acos(-1.0)), 31.416, 0.0},
+                                         {g * std::sin(0.3), -g * std::cos(0.3)}, NearBlow(0.01));
+    const double values[] = {right.drive_torque,    right.hull_on_crank.x,  right.hull_on_crank.z,
+                             right.crank_on_rod.x,  right.crank_on_rod.z,   right.rod_on_rocker.x,
+                             right.rod_on_rocker.z, right.hull_on_rocker.x, right.hull_on_rocker.z};
+    for (std::size_t c = 0; c < 9; ++c) EXPECT_NEAR(row[5 + c], values[c], 1e-6) << row[0] << ' ' << c;
+  }
+}
+
+TEST(TurnTable, PinsOfAMasslessRodAreFiniteOnBothSidesOfTheBlow) {
+  const std::vector<std::string> lines = linesOf(run("--step-deg 180 --level rocker --pins").out);
+  ASSERT_EQ(lines.size(), 1U + 3U);
+  const std::vector<double> after = numbersOf(lines[1]), before = numbersOf(lines[3]);
+  // Rows 1e-9 rad after and before the blow of reference mo100_constant_speed.csv.
+  EXPECT_NEAR(after[6], -467.9712728, 1e-6);
+  EXPECT_NEAR(after[7], -557.7064457, 1e-6);
+  EXPECT_NEAR(before[6], -299003.80, 1e-2);
+  EXPECT_NEAR(before[7], -356338.86, 1e-2);
+}
+
+TEST(TurnTable, LevelPulseIsTheHalfSineOfTheNominalTurn) {
+  auto rocker = summaryOf("--level rocker"), pulse = summaryOf("--level pulse");
+  for (const char* key : {"amplitude_N", "impulse_Ns", "frequency_rad_s", "start_s"})
+    EXPECT_NEAR(pulse[key], rocker[key], 1e-11 * rocker[key]) << key;
+  EXPECT_EQ(pulse["turn_impulse_x_Ns"], 0.0);
+  EXPECT_NEAR(pulse["turn_impulse_z_Ns"], rocker["impulse_Ns"], 1e-9);
+  const double w = 31.416, degree = std::acos(-1.0) / 180.0;
+  for (const std::string& line : linesOf(run("--level pulse --step-deg 3").out)) {
+    if (line[0] == 'c') continue;
+    const std::vector<double> row = numbersOf(line);
+    const double right =
+        row[0] * degree / w < pulse["start_s"]
+            ? 0.0
+            : pulse["amplitude_N"] * std::sin(pulse["frequency_rad_s"] * (row[0] * degree / w - pulse["start_s"]));
+    EXPECT_EQ(row[2], 0.0);
+    EXPECT_NEAR(row[3], right, 1e-5) << row[0];  // the summary's 12 digits of start_s
+    EXPECT_EQ(row[4], 0.0);
+  }
+}
+
+TEST(TurnTable, LevelPulseWithWeightHasThePulseOfItsOwnTable) {
+  for (const std::string pitch : {"0.4", "2.9"}) {  // tool down, tool up
+    auto summary = summaryOf("--level pulse --pitch " + pitch);
+    const std::vector<std::string> lines = linesOf(run("--level pulse --step-deg 0.01 --pitch " + pitch).out);
+    double peak = 0.0, peak_angle = 0.0, lobe = 0.0, turn = 0.0, last = 0.0;
+    const double time_step = 0.01 / 180.0 * std::acos(-1.0) / 31.416;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      const std::vector<double> row = numbersOf(lines[i]);
+      if (row[3] > peak) peak = row[3], peak_angle = row[0];
+      if (last < 0.0 && row[3] >= 0.0) lobe = 0.0;
+      if (i > 1) lobe += 0.5 * (last + row[3]) * time_step, turn += 0.5 * (last + row[3]) * time_step;
+      last = row[3];
+    }
+    EXPECT_NEAR(summary["amplitude_N"], peak, 0.01);  // half a step beside the peak: 0.003 N
+    EXPECT_NEAR(summary["peak_angle_deg"], peak_angle, 0.01);
+    EXPECT_NEAR(summary["impulse_Ns"], lobe, 1e-3);
+    EXPECT_NEAR(summary["turn_impulse_z_Ns"], turn, 1e-3);
+    EXPECT_NEAR(summary["frequency_rad_s"], 2.0 * peak / lobe, 1e-3);
+  }
+}
+
 TEST(TurnTable, BadParametersAreNamedAndGiveExitCode1) {
   const TemporaryFile bad(hammerYaml({{"crank_length_m", "-0.048"}, {"rod_mass_kg", "\"4.5\""}}) + "levle: rocker\n");
   const Outcome outcome = run("--params " + bad.path());
@@ -130,9 +184,9 @@ TEST(TurnTable, BadParametersAreNamedAndGiveExitCode1) {
 }
 
 TEST(TurnTable, WrongUsageIsOneLineAndExitCode2) {
-  for (const char* arguments :
-       {"--speed 0", "--speed -1", "--speed nan", "--speed inf", "--speed fast", "--speed", "--step-deg 0", "--step-deg -1",
-        "--step-deg 361", "--step-deg nan", "--level hammer", "--pitch inf", "--no-such-option", "stray", "--params"}) {
+  for (const char* arguments : {"--speed 0", "--speed -1", "--speed nan", "--speed inf", "--speed fast", "--speed",
+                                "--step-deg 0", "--step-deg -1", "--step-deg 361", "--step-deg nan", "--level hammer",
+                                "--pitch inf", "--no-such-option", "stray", "--params"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_EQ(outcome.out, "") << arguments;

@@ -1,12 +1,11 @@
 #include "hammer_loads/simulation/machine_parameters.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/simulation/session.h"
+#include "support/main.h"
 
 namespace hammer_loads::simulation {
 namespace {
@@ -120,7 +119,4 @@ TEST(MachineParameters, OneHammerKeyNeedsThemAll) {
 }  // namespace
 }  // namespace hammer_loads::simulation
 
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}
+HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,8 @@
 #include "hammer_loads/simulation/session.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include "support/main.h"
 
 namespace hammer_loads::simulation {
 namespace {
@@ -174,7 +174,4 @@ TEST(Session, HoldsAtOtherRatesAndCounts) {
 }  // namespace
 }  // namespace hammer_loads::simulation
 
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}
+HAMMER_LOADS_TEST_MAIN

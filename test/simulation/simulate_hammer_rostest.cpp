@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,7 +108,8 @@ TEST(SimulateHammer, ClockRunsForwardToTheEnd) {
 
 /// Exit code and output of a second simulate_hammer.
 std::pair<int, std::string> runWith(const std::string& arguments) {
-  const std::string command = "rosrun hammer_loads simulate_hammer __name:=another " + arguments + " 2>&1";
+  const auto beside = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const std::string command = (beside / "simulate_hammer").string() + " __name:=another " + arguments + " 2>&1";
   FILE* const pipe = popen(command.c_str(), "r");
   std::string output;
   std::array<char, 256> part{};

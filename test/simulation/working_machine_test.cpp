@@ -1,10 +1,10 @@
 #include "hammer_loads/simulation/working_machine.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "support/main.h"
 
 namespace hammer_loads::simulation {
 namespace {
@@ -195,7 +195,4 @@ TEST(WorkingMachine, ImpossibleLinkageIsRefused) {
 }  // namespace
 }  // namespace hammer_loads::simulation
 
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}
+HAMMER_LOADS_TEST_MAIN

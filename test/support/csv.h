@@ -25,6 +25,12 @@ class Csv {
     }
   }
   std::size_t size() const { return rows_.size(); }
+  /// Names in alphabetical order.
+  std::vector<std::string> columns() const {
+    std::vector<std::string> names;
+    for (const auto& [name, place] : columns_) names.push_back(name);
+    return names;
+  }
   const std::string& text(std::size_t row, const std::string& column) const {
     return rows_.at(row).at(columns_.at(column));
   }

@@ -33,7 +33,8 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
   const JointVector soft = modes.stiffness.cwiseSqrt().cwiseInverse();
   JointMatrix scaled = M;
   for (int j = 0; j < n; ++j) scaled.col(j).array() *= soft.array() * soft[j];
-  const Eigen::SelfAdjointEigenSolver<JointMatrix> solver(scaled);
+  Eigen::SelfAdjointEigenSolver<JointMatrix> solver(n);
+  solver.compute(scaled);
   modes.omega.resize(n), modes.shape.resize(n, n);
   for (int k = 0; k < n; ++k) {
     const double inverse_square = solver.eigenvalues()[n - 1 - k];  // lowest frequency first

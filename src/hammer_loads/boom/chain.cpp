@@ -64,9 +64,7 @@ class ChainBuilder {
       : model_(model), request_(request), result_(result) {}
 
   void build() {
-    const std::size_t problems_before = result_.problems.size();
-    findPath();
-    if (result_.problems.size() == problems_before) checkJoints();
+    if (findPath()) checkJoints();
     if (!result_.problems.empty()) return;
     if (!kdl_parser::treeFromUrdfModel(model_, tree_)) {
       result_.problems.push_back("robot_description: cannot be made a tree of rigid bodies");
@@ -79,23 +77,24 @@ class ChainBuilder {
   }
 
  private:
-  void findPath() {
+  bool findPath() {
+    bool found = true;
     for (const std::string& name : {request_.root, request_.tip}) {
-      if (!model_.getLink(name)) {
-        result_.problems.push_back(format("robot_description: link %s: not in the model, must be there", name.c_str()));
-      }
+      if (model_.getLink(name)) continue;
+      result_.problems.push_back(format("robot_description: link %s: not in the model, must be there", name.c_str()));
+      found = false;
     }
-    if (!result_.problems.empty()) return;
+    if (!found) return false;
     urdf::LinkConstSharedPtr link = model_.getLink(request_.tip);
     while (link->name != request_.root && link->parent_joint) {
       path_.push_back(link->parent_joint);
       link = link->getParent();
     }
     std::reverse(path_.begin(), path_.end());
-    if (link->name != request_.root) {
-      result_.problems.push_back(format("robot_description: link %s: hangs on %s, must hang on %s",
-                                        request_.tip.c_str(), link->name.c_str(), request_.root.c_str()));
-    }
+    if (link->name == request_.root) return true;
+    result_.problems.push_back(format("robot_description: link %s: hangs on %s, must hang on %s", request_.tip.c_str(),
+                                      link->name.c_str(), request_.root.c_str()));
+    return false;
   }
 
   void checkJoints() {
@@ -103,8 +102,8 @@ class ChainBuilder {
     for (const urdf::JointConstSharedPtr& joint : path_) {
       if (moves(*joint)) moving.insert(joint->name);
       if (!moves(*joint) && joint->type != urdf::Joint::FIXED) {
-        result_.problems.push_back(format("robot_description: joint %s: must be revolute, continuous, prismatic or fixed",
-                                          joint->name.c_str()));
+        result_.problems.push_back(format("robot_description: joint %s: must be revolute, continuous, prismatic or "
+                                          "fixed", joint->name.c_str()));
       }
       if (joint->mimic) {
         result_.problems.push_back(format("robot_description: joint %s: mimics %s, must move by itself",
@@ -113,8 +112,8 @@ class ChainBuilder {
     }
     const auto count = static_cast<int>(moving.size());
     if (count < 1 || count > kMaxJoints || static_cast<int>(path_.size()) >= kMaxLinks) {
-      result_.problems.push_back(format("robot_description: %d moving joints and %d links from %s to %s, must be 1 to %d "
-                                        "joints and at most %d links", count, static_cast<int>(path_.size()) + 1,
+      result_.problems.push_back(format("robot_description: %d moving joints and %d links from %s to %s, must be 1 to "
+                                        "%d joints and at most %d links", count, static_cast<int>(path_.size()) + 1,
                                         request_.root.c_str(), request_.tip.c_str(), kMaxJoints, kMaxLinks));
     }
     for (const std::string& name : request_.joints) {

@@ -1,7 +1,7 @@
 /// The boom as a chain of rigid links, from the text of a robot description (URDF).
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <kdl/chain.hpp>
 #include <memory>
 #include <optional>

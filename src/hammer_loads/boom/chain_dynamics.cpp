@@ -1,31 +1,50 @@
 #include "hammer_loads/boom/chain_dynamics.h"
 
+#include <kdl/chaindynparam.hpp>
+#include <kdl/chainidsolver_recursive_newton_euler.hpp>
+
 namespace hammer_loads {
 
-ChainDynamics::ChainDynamics(const Chain& chain)
-    : chain_(chain),
-      newton_euler_(chain_.kdl(), KDL::Vector::Zero()),
-      composite_bodies_(chain_.kdl(), KDL::Vector::Zero()),
-      position_(chain_.kdl().getNrOfJoints()),
-      velocity_(chain_.kdl().getNrOfJoints()),
-      acceleration_(chain_.kdl().getNrOfJoints()),
-      torque_(chain_.kdl().getNrOfJoints()),
-      mass_(chain_.kdl().getNrOfJoints()),
-      no_wrenches_(chain_.kdl().getNrOfSegments(), KDL::Wrench::Zero()) {}
+struct ChainDynamics::Solvers {
+  explicit Solvers(const Chain& given)
+      : chain(given),
+        newton_euler(chain.kdl(), KDL::Vector::Zero()),
+        composite_bodies(chain.kdl(), KDL::Vector::Zero()),
+        position(chain.kdl().getNrOfJoints()),
+        velocity(chain.kdl().getNrOfJoints()),
+        acceleration(chain.kdl().getNrOfJoints()),
+        torque(chain.kdl().getNrOfJoints()),
+        mass(chain.kdl().getNrOfJoints()),
+        no_wrenches(chain.kdl().getNrOfSegments(), KDL::Wrench::Zero()) {}
+
+  Chain chain;  ///< keeps alive what the solvers refer to
+  KDL::ChainIdSolver_RNE newton_euler;
+  KDL::ChainDynParam composite_bodies;
+  KDL::JntArray position, velocity, acceleration, torque;
+  KDL::JntSpaceInertiaMatrix mass;
+  KDL::Wrenches no_wrenches;
+};
+
+ChainDynamics::ChainDynamics(const Chain& chain) : solvers_(std::make_unique<Solvers>(chain)) {}
+ChainDynamics::~ChainDynamics() = default;
+ChainDynamics::ChainDynamics(ChainDynamics&&) noexcept = default;
+ChainDynamics& ChainDynamics::operator=(ChainDynamics&&) noexcept = default;
 
 JointVector ChainDynamics::torqueOfMotion(const JointMotion& motion) noexcept {
-  if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return JointVector::Zero(chain_.joints());
-  position_.data = motion.position;
-  velocity_.data = motion.velocity;
-  acceleration_.data = motion.acceleration;
-  newton_euler_.CartToJnt(position_, velocity_, acceleration_, no_wrenches_, torque_);
-  return -torque_.data;
+  Solvers& s = *solvers_;
+  if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return JointVector::Zero(s.chain.joints());
+  s.position.data = motion.position;
+  s.velocity.data = motion.velocity;
+  s.acceleration.data = motion.acceleration;
+  s.newton_euler.CartToJnt(s.position, s.velocity, s.acceleration, s.no_wrenches, s.torque);
+  return -s.torque.data;
 }
 
 JointMatrix ChainDynamics::massMatrix(const JointVector& position) noexcept {
-  position_.data = position;
-  composite_bodies_.JntToMass(position_, mass_);
-  return mass_.data;
+  Solvers& s = *solvers_;
+  s.position.data = position;
+  s.composite_bodies.JntToMass(s.position, s.mass);
+  return s.mass.data;
 }
 
 }  // namespace hammer_loads

@@ -51,8 +51,8 @@ void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
   // Slack for figures given with few digits.
   const double slack = 1e-2 * std::abs(moments[2]);
   if (moments[0] < -1e-9 * std::abs(moments[2]) || moments[0] + moments[1] < moments[2] - slack) {
-    problems.push_back(format("robot_description: inertia of link %s: principal moments %.6g, %.6g, %.6g kg m2, must be "
-                              ">= 0 and the largest at most the sum of the others",
+    problems.push_back(format("robot_description: inertia of link %s: principal moments %.6g, %.6g, %.6g kg m2, must "
+                              "be >= 0 and the largest at most the sum of the others",
                               link.name.c_str(), moments[0], moments[1], moments[2]));
   }
 }

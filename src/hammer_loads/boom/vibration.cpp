@@ -1,5 +1,6 @@
 #include "hammer_loads/boom/vibration.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hammer_loads {
@@ -9,6 +10,7 @@ Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const 
       cylinders_(std::move(cylinders)),
       settings_(settings),
       position_(JointVector::Zero(chain.joints())),
+      last_(position_),
       torque_(JointVector::Zero(chain.joints())) {
   modes_.mass = JointMatrix::Zero(chain.joints(), chain.joints());
   modes_.inertia.resize(chain.joints(), 0);
@@ -16,11 +18,18 @@ Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const 
 }
 
 void Vibration::setPose(const JointVector& position) noexcept {
-  if (posed_ && (position - position_).cwiseAbs().maxCoeff() <= settings_.refresh_angle) return;
+  const JointVector middle = posed_ ? JointVector(0.5 * (last_ + position)) : position;
+  const double step = posed_ ? (position - last_).cwiseAbs().maxCoeff() : 0.0;
+  last_ = position;
+  const JointVector away = middle - position_;
+  const double farthest = away.cwiseAbs().maxCoeff();
+  if (posed_ && farthest <= 0.5 * settings_.refresh_angle) return;
   const bool kept = posed_ && known();
   const JointVector displacement = jointsOf(modes_, x_), velocity = jointsOf(modes_, v_);
-  findModes(dynamics_, cylinders_, position, modes_);
-  position_ = position;
+  // Ahead of a moving boom, so that the modes are as often early as late and phases do not drift.
+  position_ = middle;
+  if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
+  findModes(dynamics_, cylinders_, position_, modes_);
   posed_ = true;
   if (kept) {
     x_ = modalOf(modes_, displacement);

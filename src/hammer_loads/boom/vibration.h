@@ -10,7 +10,7 @@ namespace hammer_loads {
 
 struct VibrationSettings {
   double damping_ratio{};  ///< of every mode [-], in (0, 1)
-  double refresh_angle{};  ///< a joint moved by more since the last modes: new ones [rad], >= 0
+  double refresh_angle{};  ///< new modes for each such move of a joint; theirs is off by half of it [rad], >= 0
 };
 
 /// Joint torques of the hammer over one step, axes and signs as in jointTorqueOfTipLoad() [N m].
@@ -28,7 +28,7 @@ class Vibration {
  public:
   Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings);
 
-  /// Pose from now on. The first call, and each that moved a joint far enough, finds new modes.
+  /// Pose at the end of the step that advance() takes next. Finds new modes when a joint has moved far enough.
   void setPose(const JointVector& position) noexcept;
   /// At rest without load.
   void rest() noexcept;
@@ -57,6 +57,7 @@ class Vibration {
   VibrationSettings settings_;
   BoomModes modes_;
   JointVector position_;  ///< where the modes belong
+  JointVector last_;      ///< as last told
   bool posed_{};
   JointVector x_, v_;     ///< modal displacements and velocities
   JointVector torque_;    ///< of the load at the end of the last step

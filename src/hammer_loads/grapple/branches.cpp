@@ -9,13 +9,14 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kSamples = 8;             ///< > 6: a polynomial of degree 3 in cos and sin needs seven
-constexpr double kNearlyReal = 1e-4;    ///< |Im tan(alpha/2)| of a root that may be real: a double root splits by sqrt(eps)
-constexpr double kParallel = 1e-6;      ///< |w1 x w2|/(|w1||w2|) below which the linear equations do not determine O
-constexpr double kNoLength = 1e-6;      ///< |w| relative to the group's size that counts as zero
+constexpr int kSamples = 8;  ///< > 6: a polynomial of degree 3 in cos and sin needs seven
+constexpr double kNearlyReal =
+    1e-4;                           ///< |Im tan(alpha/2)| of a root that may be real: a double root splits by sqrt(eps)
+constexpr double kParallel = 1e-6;  ///< |w1 x w2|/(|w1||w2|) below which the linear equations do not determine O
+constexpr double kNoLength = 1e-6;  ///< |w| relative to the group's size that counts as zero
 constexpr double kBesideSelfMotion = 1e-2;  ///< [rad]: the quadruple root splits by the fourth root of rounding
-constexpr double kSamePose = 1e-6;      ///< [rad]
-constexpr int kPolishing = 50;          ///< Newton steps: at a double root each halves the error only
+constexpr double kSamePose = 1e-6;          ///< [rad]
+constexpr int kPolishing = 50;              ///< Newton steps: at a double root each halves the error only
 
 /// e(2 pi j/8); any j.
 std::complex<double> unitRoot(int j) {
@@ -55,8 +56,8 @@ using Roots = Eigen::Matrix<std::complex<double>, 6, 1>;
 /// Roots t of F(alpha)(1 + t^2)^3 with alpha = alpha0 + 2 atan t, from samples of F at multiples of 2 pi/8; alpha0 is
 /// opposite the largest sample, so that the leading coefficient is that sample. False if F vanishes everywhere.
 bool halfAngleRoots(const std::array<double, kSamples>& samples, double scale, double& alpha0, Roots& roots) {
-  const auto largest = std::max_element(samples.begin(), samples.end(),
-                                        [](double x, double y) { return std::abs(x) < std::abs(y); });
+  const auto largest =
+      std::max_element(samples.begin(), samples.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
   if (!(std::abs(*largest) > scale)) return false;
   const int j0 = static_cast<int>(largest - samples.begin()) + kSamples / 2;
   alpha0 = 2.0 * kPi / kSamples * j0;

@@ -22,8 +22,9 @@ struct Branches {
 
 /// Enumerates with |OA| fixed: seen from link 2 the pin O satisfies two linear equations for each angle
 /// alpha = theta5 - theta2, and its distance from A leaves a trigonometric polynomial of degree 3 in alpha, solved as a
-/// real polynomial of degree 6 in tan(alpha/2) with companion eigenvalues; Newton then removes their rounding. a = place of
-/// pin A in the grapple frame [m]. No allocation. Poses closer to a fold than some 1e-8 rad may be missed or doubled.
+/// real polynomial of degree 6 in tan(alpha/2) with companion eigenvalues; Newton then removes their rounding. a =
+/// place of pin A in the grapple frame [m]. No allocation. Poses closer to a fold than some 1e-8 rad may be missed or
+/// doubled.
 Branches enumerateBranches(const LeverGroup& group, Planar a) noexcept;
 
 }  // namespace hammer_loads

@@ -10,6 +10,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kPanels = 2048;
+constexpr double kEndTolerance = 1e-9;  ///< [m]: an opening this far outside of the stroke's counts as its end
 
 /// One point of the path; low and high are the extremes of y from the closed end up to it.
 struct PathPoint {
@@ -103,7 +104,8 @@ void addConditioning(const Grapple& grapple, DesignFigures& f) {
     if (better) extreme = {value, slider};
   };
   for (int i = 0; i <= kPanels; ++i) {
-    const double slider = i == kPanels ? f.slider_open : f.slider_closed + (f.slider_open - f.slider_closed) * i / kPanels;
+    const double slider =
+        i == kPanels ? f.slider_open : f.slider_closed + (f.slider_open - f.slider_closed) * i / kPanels;
     const std::optional<GrappleMotion> next = grapple.follow(m, slider);
     if (!next) continue;
     m = *next;
@@ -143,8 +145,9 @@ Checked<double> sliderForOpening(const Grapple& grapple, double opening) {
   const GrappleParameters& p = grapple.parameters();
   double low = p.slider_closed, high = p.slider_open;  // x_P - x is <= 0 at low, >= 0 at high
   GrappleMotion m = *grapple.at(low);
-  const double x = 0.5 * opening, x_low = m.p.re, x_high = grapple.at(high)->p.re;
-  if (!(x >= x_low && x <= x_high)) {
+  const double x_low = m.p.re, x_high = grapple.at(high)->p.re;
+  const double x = std::clamp(0.5 * opening, x_low, x_high);
+  if (!(std::abs(0.5 * opening - x) <= kEndTolerance)) {
     result.problems.push_back(format("opening: %.9g m, must lie between %.9f m (closed) and %.9f m (open)", opening,
                                      2.0 * x_low + 0.0, 2.0 * x_high));
     return result;

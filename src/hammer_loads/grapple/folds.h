@@ -33,6 +33,7 @@ struct BranchEnd {
 /// Follows the curve of poses by its arc length, which stays regular in a fold, from a pose on it with theta1 growing
 /// (sense = +1) or falling (-1) until det J changes sign or theta1 has moved by span [rad]. Angles of the fold to some
 /// 1e-15 divided by the curvature there (Newton on both closures and det J).
-BranchEnd findBranchEnd(const LeverGroup& group, const FirstRocker& rocker, const CurvePoint& start, int sense, double span);
+BranchEnd findBranchEnd(const LeverGroup& group, const FirstRocker& rocker, const CurvePoint& start, int sense,
+                        double span);
 
 }  // namespace hammer_loads

@@ -90,8 +90,8 @@ bool Grapple::step(const GrappleMotion& from, double slider, GrappleMotion& to) 
   if (!(closure.determinant * reference_.determinant > 0.0)) return false;
 
   to = motionOf(slider, *drive, pose, closure);
-  const double mismatch = longer(moved2 - 0.5 * ds * (from.link2.d + to.link2.d),
-                                 moved5 - 0.5 * ds * (from.link5.d + to.link5.d));
+  const double mismatch =
+      longer(moved2 - 0.5 * ds * (from.link2.d + to.link2.d), moved5 - 0.5 * ds * (from.link5.d + to.link5.d));
   return mismatch <= kSlopeMismatch * longer(moved2, moved5) + kSlopeNoise;
 }
 

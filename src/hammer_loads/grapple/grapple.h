@@ -91,7 +91,7 @@ class Grapple {
   GrappleParameters parameters_;
   SliderDrive drive_;
   LeverGroup group_;
-  Planar a_by_h_;            ///< O1A = O1H * a_by_h
+  Planar a_by_h_;  ///< O1A = O1H * a_by_h
   GrappleMotion reference_;
   SliderLimit lower_, upper_;
 };

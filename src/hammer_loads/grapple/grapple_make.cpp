@@ -62,22 +62,32 @@ double apart(double angle, double other) { return std::abs(std::remainder(angle 
 
 const char* nameOf(SliderLimit::Kind kind) noexcept {
   switch (kind) {
-    case SliderLimit::Kind::kDeadPoint: return "dead point";
-    case SliderLimit::Kind::kFold: return "fold";
-    case SliderLimit::Kind::kSingular: break;
+    case SliderLimit::Kind::kDeadPoint:
+      return "dead point";
+    case SliderLimit::Kind::kFold:
+      return "fold";
+    case SliderLimit::Kind::kSingular:
+      break;
   }
   return "crossing of branches";
 }
 
 const char* nameOf(Refusal refusal) noexcept {
   switch (refusal) {
-    case Refusal::kNone: return "accepted";
-    case Refusal::kNotFinite: return "not finite";
-    case Refusal::kOutOfReach: return "out of reach";
-    case Refusal::kAcrossDeadPoint: return "across dead point";
-    case Refusal::kAcrossFold: return "across fold";
-    case Refusal::kOutsideStroke: return "outside stroke";
-    case Refusal::kNotFound: break;
+    case Refusal::kNone:
+      return "accepted";
+    case Refusal::kNotFinite:
+      return "not finite";
+    case Refusal::kOutOfReach:
+      return "out of reach";
+    case Refusal::kAcrossDeadPoint:
+      return "across dead point";
+    case Refusal::kAcrossFold:
+      return "across fold";
+    case Refusal::kOutsideStroke:
+      return "outside stroke";
+    case Refusal::kNotFound:
+      break;
   }
   return "not found";
 }
@@ -101,11 +111,10 @@ bool Grapple::findReference(std::vector<std::string>& problems) {
   const GrappleParameters& p = parameters_;
   const std::optional<DriveMotion> drive = drive_.at(p.reference_slider);
   if (!drive) {
-    problems.push_back(
-        format("reference_slider_m: %.9g m, out of reach: |O1G| = %.9g m, must lie between |gh - o1h| = %.9g m and gh + "
-               "o1h = %.9g m",
-               p.reference_slider, norm(Planar{p.slider_x, p.reference_slider} - p.o1), std::abs(p.gh - p.o1h),
-               p.gh + p.o1h));
+    problems.push_back(format(
+        "reference_slider_m: %.9g m, out of reach: |O1G| = %.9g m, must lie between |gh - o1h| = %.9g m and gh + "
+        "o1h = %.9g m",
+        p.reference_slider, norm(Planar{p.slider_x, p.reference_slider} - p.o1), std::abs(p.gh - p.o1h), p.gh + p.o1h));
     return false;
   }
   const Planar a = p.o1 + arm(*drive);
@@ -126,10 +135,11 @@ bool Grapple::findReference(std::vector<std::string>& problems) {
     return true;
   }
   const char* lead = all.self_motion ? "; and the links can move with the slider held" : "";
-  problems.push_back(format("reference_ab_angle_rad: (%.9g, %.9g) rad with reference_od_angle_rad, must be within %g rad of "
-                            "a pose at reference_slider_m = %.9g m:%s%s",
-                            p.reference_ab, p.reference_od, kReferenceTolerance, p.reference_slider,
-                            found.empty() ? " there is none" : found.c_str(), lead));
+  problems.push_back(
+      format("reference_ab_angle_rad: (%.9g, %.9g) rad with reference_od_angle_rad, must be within %g rad of "
+             "a pose at reference_slider_m = %.9g m:%s%s",
+             p.reference_ab, p.reference_od, kReferenceTolerance, p.reference_slider,
+             found.empty() ? " there is none" : found.c_str(), lead));
   return false;
 }
 
@@ -160,8 +170,9 @@ SliderLimit Grapple::limit(const Reach& reach, const std::array<BranchEnd, 2>& e
 
 void Grapple::checkStroke(std::vector<std::string>& problems) const {
   const GrappleParameters& p = parameters_;
-  const std::pair<const char*, double> named[] = {
-      {"reference_slider_m", p.reference_slider}, {"slider_closed_m", p.slider_closed}, {"slider_open_m", p.slider_open}};
+  const std::pair<const char*, double> named[] = {{"reference_slider_m", p.reference_slider},
+                                                  {"slider_closed_m", p.slider_closed},
+                                                  {"slider_open_m", p.slider_open}};
   for (const auto& [key, slider] : named) {
     if (inside(slider)) continue;
     problems.push_back(format("%s: %.12g m, must lie between the %s at %.13g m and the %s at %.13g m", key, slider,
@@ -174,14 +185,16 @@ void Grapple::checkStroke(std::vector<std::string>& problems) const {
     return;
   }
   if (closed->p.re < -kClosedTolerance) {
-    problems.push_back(format("slider_closed_m: %.12g m, must not put the jaw edge beyond the axis (x = %.6g m): the jaws "
-                              "would overlap",
-                              p.slider_closed, closed->p.re));
+    problems.push_back(
+        format("slider_closed_m: %.12g m, must not put the jaw edge beyond the axis (x = %.6g m): the jaws "
+               "would overlap",
+               p.slider_closed, closed->p.re));
   }
   if (!(open->p.re > closed->p.re)) {
-    problems.push_back(format("slider_open_m: %.12g m, must put the jaw edge farther out (x = %.6g m) than "
-                              "slider_closed_m does (x = %.6g m)",
-                              p.slider_open, open->p.re, closed->p.re));
+    problems.push_back(
+        format("slider_open_m: %.12g m, must put the jaw edge farther out (x = %.6g m) than "
+               "slider_closed_m does (x = %.6g m)",
+               p.slider_open, open->p.re, closed->p.re));
   }
 }
 
@@ -189,8 +202,10 @@ std::string Grapple::explain(Refusal refusal, double slider, const std::string& 
   const GrappleParameters& p = parameters_;
   const std::string given = format("%s: %.12g m, %s: must ", name.c_str(), slider, nameOf(refusal));
   switch (refusal) {
-    case Refusal::kNone: return {};
-    case Refusal::kNotFinite: return given + "be a finite number";
+    case Refusal::kNone:
+      return {};
+    case Refusal::kNotFinite:
+      return given + "be a finite number";
     case Refusal::kOutOfReach:
     case Refusal::kAcrossDeadPoint:
     case Refusal::kAcrossFold:
@@ -199,7 +214,8 @@ std::string Grapple::explain(Refusal refusal, double slider, const std::string& 
     case Refusal::kOutsideStroke:
       return given + format("lie between %.9g m and %.9g m (+- %.3g m)", std::min(p.slider_closed, p.slider_open),
                             std::max(p.slider_closed, p.slider_open), p.slider_margin);
-    case Refusal::kNotFound: break;
+    case Refusal::kNotFound:
+      break;
   }
   return given + "have a pose on the working branch";
 }

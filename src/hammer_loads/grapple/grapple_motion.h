@@ -47,8 +47,8 @@ inline JawMotion rightJaw(const GrappleMotion& m, double velocity, double accele
 
 /// Mirror image of the right jaw.
 inline JawMotion leftJaw(const JawMotion& right) noexcept {
-  return {mirrored(right.edge), mirrored(right.edge_velocity), mirrored(right.edge_acceleration),
-          -right.turning_speed, -right.turning_acceleration};
+  return {mirrored(right.edge), mirrored(right.edge_velocity), mirrored(right.edge_acceleration), -right.turning_speed,
+          -right.turning_acceleration};
 }
 
 /// Direction of a link's first side from +x and its derivative by s.

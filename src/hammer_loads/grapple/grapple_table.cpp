@@ -54,8 +54,8 @@ std::string summaryText(const Grapple& grapple, const DesignFigures& f) {
   number("straight_share_within_3pct", f.straight_share_off);
   number("deviation_first_80pct", f.deviation_first_80);
   number("deviation_whole", f.deviation_whole);
-  for (const auto& [name, limit] : {std::pair<const char*, const SliderLimit&>{"lower", grapple.lowerLimit()},
-                                    {"upper", grapple.upperLimit()}}) {
+  for (const auto& [name, limit] :
+       {std::pair<const char*, const SliderLimit&>{"lower", grapple.lowerLimit()}, {"upper", grapple.upperLimit()}}) {
     text += format("%s_limit_m: %.12g\n%s_limit_kind: %s\n", name, limit.slider, name, nameOf(limit.kind));
   }
   number("least_det_J_m4", f.least_determinant.value);

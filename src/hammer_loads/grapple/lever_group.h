@@ -19,25 +19,25 @@ inline constexpr double kClosureRounding = 8.0 * 2.220446049250313e-16;
 /// One pose of the group; vectors in the grapple frame [m].
 struct GroupPose {
   double theta2{}, theta5{};  ///< directions of AB and OD [rad]
-  Planar b, c;                  ///< from A to B and to C
-  Planar d, e;                  ///< from O to D and to E
-  Planar u, v;                  ///< from B to D and from C to E
+  Planar b, c;                ///< from A to B and to C
+  Planar d, e;                ///< from O to D and to E
+  Planar u, v;                ///< from B to D and from C to E
 };
 
 /// Closures and their derivatives by (theta2, theta5).
 struct Closure {
-  double f1{}, f2{};                      ///< [m2]
-  double j11{}, j12{}, j21{}, j22{};      ///< [m2]
-  double determinant{};                   ///< det J [m4]
+  double f1{}, f2{};                  ///< [m2]
+  double j11{}, j12{}, j21{}, j22{};  ///< [m2]
+  double determinant{};               ///< det J [m4]
 };
 
 /// Derivatives of the pose by theta1, the direction of O1A.
 struct GroupRates {
   double w2{}, w5{};  ///< first derivative of theta2, theta5 [-]
   double z2{}, z5{};  ///< second derivative [1/rad]
-  Planar du, ddu;       ///< derivatives of u [m/rad], [m/rad2]
-  Planar dv, ddv;       ///< derivatives of v
-  Planar dp, ddp;       ///< derivatives of the jaw edge P
+  Planar du, ddu;     ///< derivatives of u [m/rad], [m/rad2]
+  Planar dv, ddv;     ///< derivatives of v
+  Planar dp, ddp;     ///< derivatives of the jaw edge P
 };
 
 /// The group's lengths [m] and the third points of its ternary links in units of their first side.
@@ -57,8 +57,9 @@ class LeverGroup {
   GroupPose pose(Planar a, double theta2, double theta5) const noexcept;
   Closure closure(const GroupPose& pose) const noexcept;
 
-  /// Newton with the analytic Jacobian, steps of at most 0.3 rad; true after a step below 1e-10 rad (quadratic: the next
-  /// one would be rounding) or, beside a fold, once both closures are met to rounding. The closure belongs to the pose.
+  /// Newton with the analytic Jacobian, steps of at most 0.3 rad; true after a step below 1e-10 rad (quadratic: the
+  /// next one would be rounding) or, beside a fold, once both closures are met to rounding. The closure belongs to the
+  /// pose.
   bool solve(Planar a, int most_iterations, GroupPose& pose, Closure& closure) const noexcept;
 
   /// o1a = from O1 to A. Precondition: det J != 0.

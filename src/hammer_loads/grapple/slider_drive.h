@@ -11,9 +11,9 @@ struct GrappleParameters;
 
 /// The drive at one slider position.
 struct DriveMotion {
-  Planar o1h;          ///< from O1 to H [m]
-  double dtheta1{};  ///< dtheta1/ds of rocker 1 [rad/m]
-  double ddtheta1{}; ///< d2theta1/ds2 [rad/m2]
+  Planar o1h;         ///< from O1 to H [m]
+  double dtheta1{};   ///< dtheta1/ds of rocker 1 [rad/m]
+  double ddtheta1{};  ///< d2theta1/ds2 [rad/m2]
 };
 
 /// Slider positions that one assembly of the dyad reaches [m]; at both ends O1, H and G are in line (dead points).

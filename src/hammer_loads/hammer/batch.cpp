@@ -1,8 +1,9 @@
 #include "hammer_loads/hammer/batch.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
-#include <type_traits>
 
 #include "hammer_loads/hammer/link_loads.h"
 
@@ -14,63 +15,67 @@ namespace hammer_loads {
 namespace {
 
 /// States per pass; a multiple of every vector's length, so that all of them go through the same instructions.
-constexpr std::size_t kBlock = 16;
+constexpr std::size_t kBlock = 64;
 
 enum Input { kAngle, kSpeed, kAcceleration, kInputs };
 enum Output {
-  kForceX, kForceZ, kTorqueY, kWrenchOutputs,
-  kR01X = kWrenchOutputs, kR01Z, kR12X, kR12Z, kR23X, kR23Z, kR03X, kR03Z, kDriveTorque, kAllOutputs
-};
-
-struct HalfOffset {
-  double half;  ///< half the offset's size [rad], in [0, pi/2]
-  bool before;
+  kForceX,
+  kForceZ,
+  kTorqueY,
+  kWrenchOutputs,
+  kR01X = kWrenchOutputs,
+  kR01Z,
+  kR12X,
+  kR12Z,
+  kR23X,
+  kR23Z,
+  kR03X,
+  kR03Z,
+  kDriveTorque,
+  kAllOutputs
 };
 
 /// Like CrankAngle::wrapToPi, in operations that every instruction set has: 2 pi in three parts, of which the first two
 /// have 26 and 27 bits, so that their products with the number of turns are exact with and without fma.
-HAMMER_LOADS_INLINE HalfOffset halfOffset(double phi) noexcept {
+HAMMER_LOADS_INLINE double offsetFromBlow(double phi) noexcept {
   constexpr double kInvTwoPi = 0.15915494309189533577;
   constexpr double kRound = 6755399441055744.0;  // 1.5 2^52: adding it rounds to a whole number
   constexpr double kHigh = 0x1.921fb5p+2, kMiddle = 0x1.110b46p-24, kLow = 0x1.1a62633145c07p-52;
   const double turns = (phi * kInvTwoPi + kRound) - kRound;
-  const double offset = ((phi - turns * kHigh) - turns * kMiddle) - turns * kLow;
-  return {0.5 * std::abs(offset), offset < 0.0};
+  return ((phi - turns * kHigh) - turns * kMiddle) - turns * kLow;
 }
 
-/// motion() without branches. With c signed by the side, tan(psi/2) = sigma s/(lambda0 r + lambda3 c) and so on hold on
-/// both sides; before the blow, where c < 0, such sums are formed as quotients that do not cancel.
-HAMMER_LOADS_INLINE Motion motionOfEitherSide(const CrankRocker::Ratios& k, HalfOffset angle) noexcept {
-  const detail::HalfAngleTerms t = detail::halfAngleTerms(k, sineCosinePolynomial(angle.half));
-  const bool before = angle.before;
-  const double a_sum = t.r + k.lambda2 * t.c;
-  const double d = before ? k.sigma * (k.k_cos * t.cc + k.k_sin * t.ss) / t.d : t.d;
-  const double a = before ? k.sigma * ((k.lambda2 - 1.0) * t.ss - k.w0) / a_sum : a_sum;
-  const double sum = before ? t.g_over_z : t.z;         // r + c with c signed
-  const double difference = before ? t.z : t.g_over_z;  // r - c
-  const double pp = k.sigma_squared * t.ss, dd = d * d;
-  const double inv_n = 1.0 / (pp + dd);
-  const double inv_nr = inv_n * t.inv_r;
+/// motion() without branches; c is negative before the blow, where r + lambda2 c and lambda0 r + lambda3 c are then
+/// differences. They cost relative accuracy in proportion to (rho + 1)/(rho - 1), rho^2 = lambda0 lambda2/lambda3:
+/// 6 for MO-100, 60 for a pivot distance of 1.05 crank lengths.
+HAMMER_LOADS_INLINE Motion motionOfEitherSide(const CrankRocker::Ratios& k, double s, double c, double r) noexcept {
+  const double d = k.lambda0 * r + k.lambda3 * c;
+  const double a = r + k.lambda2 * c;
+  const double difference = r - c;
+  const double pp = k.sigma_squared * (s * s);
+  const double n = d * d + pp;  // tan(psi/2) = sigma s/d
+  const double inv_nr = 1.0 / (n * r);
+  const double inv_n = inv_nr * r, inv_r = inv_nr * n;
+  const double factor = k.lambda3_sigma * inv_nr;
   Motion m;
   m.sin_psi_over_s = (2.0 * k.sigma * d) * inv_n;
-  m.cos_psi = (dd - pp) * inv_n;
-  m.u = (k.lambda3_sigma * a) * inv_nr;
-  m.du_over_s = (k.lambda3_sigma * difference) * inv_nr *
-                ((k.lambda03 * a * difference) * inv_nr - (0.5 * k.lambda2 * sum) * (t.inv_r * t.inv_r));
-  m.sin_half = t.s;
-  m.cos_half = before ? -t.c : t.c;
-  m.r = t.r;
-  m.inv_r = t.inv_r;
-  m.sin_psi = t.s * m.sin_psi_over_s;
-  m.du = t.s * m.du_over_s;
+  m.cos_psi = 1.0 - 2.0 * pp * inv_n;
+  m.u = factor * a;
+  m.du_over_s = (factor * difference) *
+                ((k.lambda03 * inv_nr) * (a * difference) - (0.5 * k.lambda2 * (r + c)) * (inv_r * inv_r));
+  m.sin_half = s;
+  m.cos_half = c;
+  m.r = r;
+  m.inv_r = inv_r;
+  m.sin_psi = s * m.sin_psi_over_s;
+  m.du = s * m.du_over_s;
   return m;
 }
 
-HAMMER_LOADS_INLINE HullWrench pulseWrench(const Mechanism& mechanism, const NominalPulse& pulse, HalfOffset angle,
+HAMMER_LOADS_INLINE HullWrench pulseWrench(const Mechanism& mechanism, const NominalPulse& pulse, double offset,
                                            const CrankMotion& crank, Gravity gravity) noexcept {
   constexpr double kTwoPi = 6.283185307179586232;
-  const double size = 2.0 * angle.half;
-  const double left = angle.before ? size : kTwoPi - size;
+  const double left = offset < 0.0 ? -offset : kTwoPi - offset;
   const bool within = left < pulse.length;
   const SineCosine half = sineCosinePolynomial(within ? 0.5 * pulse.frequency * left : 0.0);
   const double sine = 2.0 * half.sine * half.cosine;
@@ -92,20 +97,77 @@ using Results = std::array<double*, kAllOutputs>;
 
 using Block = std::array<double, kBlock>;
 
-/// One block of states, from and to arrays that nothing else can alias.
+/// Input, intermediate and output of one block, where nothing else can alias them.
+struct Workspace {
+  alignas(64) std::array<Block, kInputs> in{};     ///< of a block that is filled up
+  alignas(64) std::array<Block, kAllOutputs> out;  ///< likewise
+  alignas(64) Block sine, cosine;                  ///< of half the crank angle; the cosine is negative before the blow
+  alignas(64) Block r, cos_psi, sin_psi_over_s, u, du_over_s, inv_r;
+};
+
+HAMMER_LOADS_INLINE Motion motionOf(const Workspace& work, std::size_t i) noexcept {
+  Motion m;
+  m.sin_half = work.sine[i];
+  m.cos_half = work.cosine[i];
+  m.inv_r = work.inv_r[i];
+  m.r = work.r[i];
+  m.sin_psi_over_s = work.sin_psi_over_s[i];
+  m.sin_psi = m.sin_half * m.sin_psi_over_s;
+  m.cos_psi = work.cos_psi[i];
+  m.u = work.u[i];
+  m.du_over_s = work.du_over_s[i];
+  m.du = m.sin_half * m.du_over_s;
+  return m;
+}
+
+HAMMER_LOADS_INLINE void computeMotions(const CrankRocker::Ratios& k, const double* angles, Workspace& work) noexcept {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const double offset = offsetFromBlow(angles[i]);
+    const SineCosine half = sineCosinePolynomial(0.5 * std::abs(offset));
+    work.sine[i] = half.sine;
+    work.cosine[i] = std::copysign(half.cosine, offset + 0.0);  // the blow itself, 0 or -0, counts as after it
+    work.r[i] = std::sqrt(k.g + half.cosine * half.cosine);
+  }
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const Motion m = motionOfEitherSide(k, work.sine[i], work.cosine[i], work.r[i]);
+    work.inv_r[i] = m.inv_r;
+    work.sin_psi_over_s[i] = m.sin_psi_over_s;
+    work.cos_psi[i] = m.cos_psi;
+    work.u[i] = m.u;
+    work.du_over_s[i] = m.du_over_s;
+  }
+}
+
+/// One block of states, in several short loops: a CPU then has many states in flight instead of one long chain.
 template <Level level, bool with_pins>
-HAMMER_LOADS_INLINE void computeBlock(const Job& job, const std::array<Block, kInputs>& in,
-                                      std::array<Block, kAllOutputs>& out) noexcept {
+HAMMER_LOADS_INLINE void computeBlock(const Job& job, const Columns& in, const Results& out, Workspace& work) noexcept {
   const CrankRocker::Ratios& ratios = job.mechanism.linkage().ratios();
   const NearBlow near_blow(0.0);
+  const double* angles = in[kAngle];
+  const double* speeds = in[kSpeed];
+  const double* accelerations = in[kAcceleration];
+  double* x = out[kForceX];
+  double* z = out[kForceZ];
+  double* torque = out[kTorqueY];
+  double* r01x = out[kR01X];
+  double* r01z = out[kR01Z];
+  double* r12x = out[kR12X];
+  double* r12z = out[kR12Z];
+  double* r23x = out[kR23X];
+  double* r23z = out[kR23Z];
+  double* r03x = out[kR03X];
+  double* r03z = out[kR03Z];
+  double* drive = out[kDriveTorque];
+  if constexpr (level != Level::kPulse) computeMotions(ratios, angles, work);
+#pragma GCC ivdep
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const HalfOffset angle = halfOffset(in[kAngle][i]);
-    const CrankMotion crank{{}, in[kSpeed][i], in[kAcceleration][i]};
+    const CrankMotion crank{{}, speeds[i], accelerations[i]};
     HullWrench wrench;
     if constexpr (level == Level::kPulse) {
-      wrench = pulseWrench(job.mechanism, job.pulse, angle, crank, job.gravity);
+      wrench = pulseWrench(job.mechanism, job.pulse, offsetFromBlow(angles[i]), crank, job.gravity);
     } else {
-      const Motion m = motionOfEitherSide(ratios, angle);
+      const Motion m = motionOf(work, i);
       const LinkMotion l = linkMotion(ratios, m);
       wrench = level == Level::kLinkage ? hullWrenchLinkage(job.mechanism, l, crank, job.gravity)
                                         : hullWrenchRocker(job.mechanism, m, crank, job.gravity);
@@ -113,33 +175,42 @@ HAMMER_LOADS_INLINE void computeBlock(const Job& job, const std::array<Block, kI
         const PinReactions pins = level == Level::kLinkage
                                       ? pinForcesLinkage(job.mechanism, l, crank, job.gravity, near_blow)
                                       : pinForcesRocker(job.mechanism, l, crank, job.gravity, near_blow);
-        out[kR01X][i] = pins.hull_on_crank.x, out[kR01Z][i] = pins.hull_on_crank.z;
-        out[kR12X][i] = pins.crank_on_rod.x, out[kR12Z][i] = pins.crank_on_rod.z;
-        out[kR23X][i] = pins.rod_on_rocker.x, out[kR23Z][i] = pins.rod_on_rocker.z;
-        out[kR03X][i] = pins.hull_on_rocker.x, out[kR03Z][i] = pins.hull_on_rocker.z;
-        out[kDriveTorque][i] = pins.drive_torque;
+        r01x[i] = pins.hull_on_crank.x, r01z[i] = pins.hull_on_crank.z;
+        r12x[i] = pins.crank_on_rod.x, r12z[i] = pins.crank_on_rod.z;
+        r23x[i] = pins.rod_on_rocker.x, r23z[i] = pins.rod_on_rocker.z;
+        r03x[i] = pins.hull_on_rocker.x, r03z[i] = pins.hull_on_rocker.z;
+        drive[i] = pins.drive_torque;
       }
     }
-    out[kForceX][i] = wrench.force_x, out[kForceZ][i] = wrench.force_z, out[kTorqueY][i] = wrench.torque_y;
+    x[i] = wrench.force_x, z[i] = wrench.force_z;
+    torque[i] = wrench.torque_y;
   }
 }
 
-/// Whole blocks; the last one is filled up, so that its states go through the same instructions.
+/// Whole blocks in place; the rest in a block filled up with zeros, so that it goes through the same instructions.
 template <Level level, bool with_pins>
 HAMMER_LOADS_INLINE void computeAll(const HullModel& model, Gravity gravity, const Columns& in, std::size_t count,
                                     const Results& out) noexcept {
   constexpr std::size_t kOutputs = with_pins ? kAllOutputs : kWrenchOutputs;
   const Job job(model, gravity);
-  alignas(64) std::array<Block, kInputs> block_in{};
-  alignas(64) std::array<Block, kAllOutputs> block_out;
-  const auto computePart = [&](std::size_t done, auto size) {
-    for (std::size_t c = 0; c < kInputs; ++c) std::memcpy(block_in[c].data(), in[c] + done, size * sizeof(double));
-    computeBlock<level, with_pins>(job, block_in, block_out);
-    for (std::size_t c = 0; c < kOutputs; ++c) std::memcpy(out[c] + done, block_out[c].data(), size * sizeof(double));
-  };
+  Workspace work;
+  Columns block_in = in;
+  Results block_out = out;
   std::size_t done = 0;
-  for (; done + kBlock <= count; done += kBlock) computePart(done, std::integral_constant<std::size_t, kBlock>());
-  if (done < count) computePart(done, count - done);
+  for (; done + kBlock <= count; done += kBlock) {
+    computeBlock<level, with_pins>(job, block_in, block_out, work);
+    for (std::size_t c = 0; c < kInputs; ++c) block_in[c] += kBlock;
+    for (std::size_t c = 0; c < kOutputs; ++c) block_out[c] += kBlock;
+  }
+  const std::size_t rest = count - done;
+  if (rest == 0) return;
+  for (std::size_t c = 0; c < kInputs; ++c) {
+    std::memcpy(work.in[c].data(), block_in[c], rest * sizeof(double));
+    block_in[c] = work.in[c].data();
+  }
+  for (std::size_t c = 0; c < kOutputs; ++c) block_out[c] = work.out[c].data();
+  computeBlock<level, with_pins>(job, block_in, block_out, work);
+  for (std::size_t c = 0; c < kOutputs; ++c) std::memcpy(out[c] + done, work.out[c].data(), rest * sizeof(double));
 }
 
 /// By level; level pulse has no pins of its own.
@@ -179,12 +250,15 @@ template <bool with_pins>
 #endif
 
 template <bool with_pins>
-Kernel kernelOfCpu() noexcept {
+Kernel kernelFor(BatchWidth width) noexcept {
 #ifdef HAMMER_LOADS_CPU_CLONES
-  switch (batchWidth()) {
-    case BatchWidth::kAvx512: return computeAvx512<with_pins>;
-    case BatchWidth::kAvx2: return computeAvx2<with_pins>;
-    case BatchWidth::kBaseline: break;
+  switch (std::min(width, batchWidth())) {
+    case BatchWidth::kAvx512:
+      return computeAvx512<with_pins>;
+    case BatchWidth::kAvx2:
+      return computeAvx2<with_pins>;
+    case BatchWidth::kBaseline:
+      break;
   }
 #endif
   return computeBaseline<with_pins>;
@@ -199,8 +273,8 @@ BatchWidth batchWidth() noexcept {
   static const BatchWidth width = [] {
     __builtin_cpu_init();
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                        __builtin_cpu_supports("avx512vl");
+    const bool avx512 =
+        __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
     return avx2 && avx512 ? BatchWidth::kAvx512 : avx2 ? BatchWidth::kAvx2 : BatchWidth::kBaseline;
   }();
   return width;
@@ -209,20 +283,18 @@ BatchWidth batchWidth() noexcept {
 #endif
 }
 
-void hullWrenches(const HullModel& model, const CrankStates& states, Gravity gravity,
-                  const WrenchArrays& wrenches) noexcept {
-  static const Kernel kernel = kernelOfCpu<false>();
+void hullWrenches(const HullModel& model, const CrankStates& states, Gravity gravity, const WrenchArrays& wrenches,
+                  BatchWidth width) noexcept {
   const Results out{wrenches.force_x, wrenches.force_z, wrenches.torque_y};
-  kernel(model, gravity, columnsOf(states), states.count, out);
+  kernelFor<false>(width)(model, gravity, columnsOf(states), states.count, out);
 }
 
 void linkLoads(const HullModel& model, const CrankStates& states, Gravity gravity, const WrenchArrays& wrenches,
-               const PinArrays& pins) noexcept {
-  static const Kernel kernel = kernelOfCpu<true>();
-  const Results out{wrenches.force_x,      wrenches.force_z,     wrenches.torque_y,    pins.hull_on_crank_x,
-                    pins.hull_on_crank_z,  pins.crank_on_rod_x,  pins.crank_on_rod_z,  pins.rod_on_rocker_x,
-                    pins.rod_on_rocker_z,  pins.hull_on_rocker_x, pins.hull_on_rocker_z, pins.drive_torque};
-  kernel(model, gravity, columnsOf(states), states.count, out);
+               const PinArrays& pins, BatchWidth width) noexcept {
+  const Results out{wrenches.force_x,     wrenches.force_z,      wrenches.torque_y,     pins.hull_on_crank_x,
+                    pins.hull_on_crank_z, pins.crank_on_rod_x,   pins.crank_on_rod_z,   pins.rod_on_rocker_x,
+                    pins.rod_on_rocker_z, pins.hull_on_rocker_x, pins.hull_on_rocker_z, pins.drive_torque};
+  kernelFor<true>(width)(model, gravity, columnsOf(states), states.count, out);
 }
 
 }  // namespace hammer_loads

@@ -40,7 +40,7 @@ StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept 
 
 RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept {
   const HullPoint k = rocker.striking_point;
-  const double w = -speed_before;                  // w-, counter-clockwise in (x, z)
+  const double w = -speed_before;                    // w-, counter-clockwise in (x, z)
   const double change = speed_after - speed_before;  // w-(1 + R)
   const double mean = -0.5 * (speed_before + speed_after);
   RockerBlow blow;

@@ -42,8 +42,9 @@ struct StrikingRocker {
 StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept;
 
 /// P1 (1)-(9) for given rocker speeds psi' before and after [rad/s]; -x_K + f |z_K| sgn(w-) > 0 with w- = -psi' before.
-/// Friction opposes the sliding of K before the blow; a face that does not slide (z_K = 0) transmits no impulse along x.
-/// Deviates: P1 (3)-(5), (8), (9) lose the sign of sliding (model.md 5, 7); (10) is the limit z_K -> 0 from one side.
+/// Friction opposes the sliding of K before the blow; a face that does not slide (z_K = 0) transmits no impulse along
+/// x. Deviates: P1 (3)-(5), (8), (9) lose the sign of sliding (model.md 5, 7); (10) is the limit z_K -> 0 from one
+/// side.
 RockerBlow blowInSupport(const StrikingRocker& rocker, double speed_before, double speed_after) noexcept;
 
 /// Centre of mass for which the support gets no impulse [m]; only the sign of the speed before [rad/s] matters.

@@ -26,7 +26,8 @@ struct LinkMomentum {
 };
 
 /// Weight of the moving links as a wrench on the hull. Level rocker: the rocker's alone.
-HAMMER_LOADS_INLINE HullWrench weightWrenchRocker(const Mechanism& mechanism, const Motion& m, Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE HullWrench weightWrenchRocker(const Mechanism& mechanism, const Motion& m,
+                                                  Gravity gravity) noexcept {
   const double mass = mechanism.parameters().rocker_mass;
   return {mass * gravity.x, mass * gravity.z,
           mechanism.rockerFirstMoment() * (m.sin_psi * gravity.x + m.cos_psi * gravity.z)};
@@ -36,7 +37,7 @@ HAMMER_LOADS_INLINE HullWrench weightWrenchRocker(const Mechanism& mechanism, co
 /// rod, friction, motion of the hull. Momentum theorem: no pin force is formed, so nothing is singular at the blow.
 /// Deviates: P0 (1) prints P_tau and M with the sign of the acceleration; inertia opposes it (model.md 7).
 HAMMER_LOADS_INLINE HullWrench hullWrenchRocker(const Mechanism& mechanism, const Motion& m, const CrankMotion& crank,
-                                   Gravity gravity) noexcept {
+                                                Gravity gravity) noexcept {
   const double psi_rate = m.u * crank.speed;
   const double psi_accel = m.du_over_s * (m.sin_half * crank.speed * crank.speed) + m.u * crank.acceleration;
   const double normal = psi_rate * psi_rate;
@@ -48,7 +49,8 @@ HAMMER_LOADS_INLINE HullWrench hullWrenchRocker(const Mechanism& mechanism, cons
   return wrench;
 }
 
-HAMMER_LOADS_INLINE LinkMomentum linkMomentumRocker(const Mechanism& mechanism, const Motion& m, double speed) noexcept {
+HAMMER_LOADS_INLINE LinkMomentum linkMomentumRocker(const Mechanism& mechanism, const Motion& m,
+                                                    double speed) noexcept {
   const double psi_rate = m.u * speed;
   const double size = mechanism.rockerFirstMoment() * psi_rate;
   return {size * m.sin_psi, size * m.cos_psi, mechanism.parameters().rocker_inertia_about_pivot * psi_rate};
@@ -58,26 +60,26 @@ HAMMER_LOADS_INLINE LinkMomentum linkMomentumRocker(const Mechanism& mechanism, 
 /// hull, inertia of motor and flywheel. Momentum theorem in the frame turned by a, where hull x = -re and z = im:
 /// sum m a = C1 e^(i phi)(i e - w^2) + C2 e^(i beta)(...) + C3 e^(i psi)(...); see LinkMoments.
 HAMMER_LOADS_INLINE HullWrench hullWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
-                                    Gravity gravity) noexcept {
+                                                 Gravity gravity) noexcept {
   const LinkMoments& k = mechanism.moments();
   const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
-  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, rocker = k.rocker * l.psi;
-  const Planar crank_rod = crank * q.crank + rod * q.rod;
-  const Planar all = crank_rod + rocker * q.rocker;
-  const Planar first_moment = k.fixed + crank + rod + rocker;
+  const Planar rod = k.rod * l.beta;
+  const Planar crank_rod = k.crank * (l.phi * q.crank) + rod * q.rod;
+  const Planar all = crank_rod + k.rocker * (l.psi * q.rocker);
+  const double weight_moment =
+      realPart(k.fixed, {gravity.z, -gravity.x}) + realPart(weightMoment(k.crank, gravity), l.phi) +
+      (rod.re * gravity.z + rod.im * gravity.x) + k.rocker * (l.psi.re * gravity.z + l.psi.im * gravity.x);
   const Planar coupling = linkCoupling(mechanism, l);
-  // d/dt of the angular momentum about D; A stands at -l0 in the mechanism frame.
-  const double momentum_rate =
-      k.crank_inertia * c.acceleration + k.rod_inertia * q.rod.im +
-      mechanism.parameters().rocker_inertia_about_pivot * q.rocker.im -
-      mechanism.parameters().lengths.pivot_distance *
-          (mechanism.cosComAngle() * crank_rod.im + mechanism.sinComAngle() * crank_rod.re) +
-      coupling.re * (q.rod.im + c.acceleration) + coupling.im * (q.rod.re - q.crank.re);
-  return {k.mass * gravity.x + all.re, k.mass * gravity.z - all.im,
-          first_moment.re * gravity.z + first_moment.im * gravity.x - momentum_rate};
+  // d/dt of the angular momentum about D; A stands at -pivot.
+  const double momentum_rate = k.crank_inertia * c.acceleration + k.rod_inertia * q.rod.im +
+                               mechanism.parameters().rocker_inertia_about_pivot * q.rocker.im -
+                               (k.pivot.re * crank_rod.im - k.pivot.im * crank_rod.re) +
+                               coupling.re * (q.rod.im + c.acceleration) + coupling.im * (q.rod.re - q.crank.re);
+  return {k.mass * gravity.x + all.re, k.mass * gravity.z - all.im, weight_moment - momentum_rate};
 }
 
-HAMMER_LOADS_INLINE LinkMomentum linkMomentumLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed) noexcept {
+HAMMER_LOADS_INLINE LinkMomentum linkMomentumLinkage(const Mechanism& mechanism, const LinkMotion& l,
+                                                     double speed) noexcept {
   const LinkMoments& k = mechanism.moments();
   const double rod_rate = l.v * speed, rocker_rate = l.rocker.u * speed;
   const Planar crank_rod = speed * (k.crank * l.phi) + rod_rate * (k.rod * l.beta);
@@ -85,9 +87,7 @@ HAMMER_LOADS_INLINE LinkMomentum linkMomentumLinkage(const Mechanism& mechanism,
   const double coupling = linkCoupling(mechanism, l).re;
   const double about_d = k.crank_inertia * speed + k.rod_inertia * rod_rate +
                          mechanism.parameters().rocker_inertia_about_pivot * rocker_rate +
-                         coupling * (speed + rod_rate) -
-                         mechanism.parameters().lengths.pivot_distance *
-                             (mechanism.cosComAngle() * crank_rod.re - mechanism.sinComAngle() * crank_rod.im);
+                         coupling * (speed + rod_rate) - (k.pivot.re * crank_rod.re + k.pivot.im * crank_rod.im);
   return {-all.re, all.im, about_d};
 }
 
@@ -99,13 +99,14 @@ inline double movingMass(const Mechanism& mechanism, Level level) noexcept {
 /// Hull wrench at a level of the model (level pulse: as rocker; the half-sine itself is in hull_model.h).
 /// No allocation, no failure for finite input.
 HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, Level level, const CrankMotion& crank,
-                             Gravity gravity) noexcept {
+                                          Gravity gravity) noexcept {
   const Motion m = motion(mechanism.linkage(), crank.angle);
   if (level != Level::kLinkage) return hullWrenchRocker(mechanism, m, crank, gravity);
   return hullWrenchLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), crank, gravity);
 }
 
-HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle, double speed) noexcept {
+HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle,
+                                              double speed) noexcept {
   const Motion m = motion(mechanism.linkage(), angle);
   if (level != Level::kLinkage) return linkMomentumRocker(mechanism, m, speed);
   return linkMomentumLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), speed);

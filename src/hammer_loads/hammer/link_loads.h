@@ -12,8 +12,8 @@ struct LinkLoads {
 };
 
 /// Level pulse: as rocker. No allocation, no failure for finite input.
-HAMMER_LOADS_INLINE LinkLoads linkLoads(const Mechanism& mechanism, Level level, const CrankMotion& crank, Gravity gravity,
-                           const NearBlow& near_blow) noexcept {
+HAMMER_LOADS_INLINE LinkLoads linkLoads(const Mechanism& mechanism, Level level, const CrankMotion& crank,
+                                        Gravity gravity, const NearBlow& near_blow) noexcept {
   const LinkMotion l = linkMotion(mechanism.linkage(), crank.angle);
   if (level != Level::kLinkage) {
     return {hullWrenchRocker(mechanism, l.rocker, crank, gravity),

@@ -49,7 +49,7 @@ void parabolaPeak(const TurnPoint& a, const TurnPoint& b, const TurnPoint& c, Ha
   const double left = (b.force_z - a.force_z) / (b.time - a.time);
   const double right = (c.force_z - b.force_z) / (c.time - b.time);
   const double curvature = (right - left) / (c.time - a.time);
-  if (!(curvature < 0.0)) return;  // three equal values
+  if (!(curvature < 0.0)) return;                             // three equal values
   const double slope = left + curvature * (b.time - a.time);  // at b
   const double shift = -0.5 * slope / curvature;
   pulse.peak_time = b.time + shift;
@@ -74,9 +74,8 @@ HalfSinePulse pulseOfTurn(const TurnPoint* points, std::size_t count) noexcept {
   pulse.turn_impulse_x = last.impulse_x;
   pulse.turn_impulse_z = last.impulse_z;
 
-  const auto top = std::max_element(points, points + count, [](const TurnPoint& a, const TurnPoint& b) {
-    return a.force_z < b.force_z;
-  });
+  const auto top = std::max_element(points, points + count,
+                                    [](const TurnPoint& a, const TurnPoint& b) { return a.force_z < b.force_z; });
   pulse.amplitude = top->force_z;
   pulse.peak_time = top->time;
   if (top != points && top != &last) parabolaPeak(top[-1], top[0], top[1], pulse);
@@ -155,7 +154,8 @@ double refinePeak(const Turn& turn, double phi, double step, double stencil) noe
   const double low = std::max(0.0, phi - step), high = std::min(kTwoPi, phi + step);
   double at = phi;
   for (int i = 0; i < 12; ++i) {
-    const auto [first, second] = slopes(turn, at >= kTwoPi ? CrankAngle{0.0, Side::kBeforeBlow} : Turn::at(at), stencil);
+    const auto [first, second] =
+        slopes(turn, at >= kTwoPi ? CrankAngle{0.0, Side::kBeforeBlow} : Turn::at(at), stencil);
     if (!(second < 0.0)) break;
     const double next = std::clamp(at - first / second, low, high);
     const double change = next - at;

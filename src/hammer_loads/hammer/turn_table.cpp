@@ -1,13 +1,64 @@
 #include "hammer_loads/hammer/turn_table.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "hammer_loads/hammer/batch.h"
+#include "hammer_loads/hammer/evaluate.h"
 #include "hammer_loads/linkage/format.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;  // [rad]
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegree = kPi / 180.0;  // [rad]
+
+/// Results of several states, column by column.
+struct Columns {
+  explicit Columns(std::size_t count) {
+    for (std::vector<double>& column : columns) column.resize(count);
+  }
+  WrenchArrays wrenches() { return {columns[0].data(), columns[1].data(), columns[2].data()}; }
+  PinArrays pins() {
+    return {columns[3].data(), columns[4].data(), columns[5].data(),  columns[6].data(), columns[7].data(),
+            columns[8].data(), columns[9].data(), columns[10].data(), columns[11].data()};
+  }
+  HullWrench wrench(std::size_t i) const { return {columns[0][i], columns[1][i], columns[2][i]}; }
+  PinReactions pin(std::size_t i) const {
+    const auto force = [&](std::size_t c) { return PinForce{columns[c][i], columns[c + 1][i]}; };
+    return {force(3), force(5), force(7), force(9), columns[11][i], false};
+  }
+  std::array<std::vector<double>, 12> columns;
+};
+
+/// Weight along the tool on a half-sine in crank angle; angles are counted back from the blow. S as in HalfSinePulse.
+ConstantSpeedPulse pulseOfHalfSine(const TurnTable& table) {
+  const NominalPulse& nominal = table.model.nominalPulse();
+  const double w = table.speed, turn = 2.0 * kPi;
+  const double sine = nominal.amplitude * w * w;
+  const double weight = table.model.mechanism().parameters().rocker_mass * table.gravity.z;
+  const auto impulseFrom = [&](double left) {
+    const double within = std::min(left, nominal.length);
+    return (sine * (1.0 - std::cos(nominal.frequency * within)) / nominal.frequency + weight * left) / w;
+  };
+  ConstantSpeedPulse result;
+  HalfSinePulse& pulse = result.pulse;
+  pulse.period = pulse.start = turn / w;
+  pulse.turn_impulse_z = weight * pulse.period;
+  if (!(nominal.frequency > 0.0)) return result;
+  result.peak_angle = turn - 0.5 * nominal.length;
+  pulse.peak_time = result.peak_angle / w;
+  pulse.amplitude = sine + weight;
+  pulse.turn_impulse_z = impulseFrom(turn);
+  if (!(pulse.amplitude > 0.0)) return result;
+  const double rise = nominal.length - std::asin(std::max(0.0, -weight / sine)) / nominal.frequency;
+  pulse.impulse = impulseFrom(weight > 0.0 ? turn : std::min(rise, turn));
+  if (!(pulse.impulse > 0.0)) return result;
+  pulse.frequency = 2.0 * pulse.amplitude / pulse.impulse;
+  pulse.start = pulse.period - kPi / pulse.frequency;
+  return result;
+}
 
 }  // namespace
 
@@ -17,24 +68,54 @@ std::size_t rowCount(const TurnTable& table) noexcept {
   return static_cast<std::size_t>(steps) + 1;
 }
 
-TurnRow turnRow(const TurnTable& table, std::size_t index) noexcept {
-  TurnRow row;
-  const bool last = index + 1 == rowCount(table);
-  row.crank_angle = last ? 360.0 : static_cast<double>(index) * table.step;
-  row.time = row.crank_angle * kDegree / table.speed;
-  const bool before_blow = row.crank_angle > 180.0;
-  const CrankAngle angle = before_blow ? CrankAngle{(row.crank_angle - 360.0) * kDegree, Side::kBeforeBlow}
-                                       : CrankAngle{row.crank_angle * kDegree, Side::kAfterBlow};
-  row.wrench = hullWrench(table.mechanism, table.level, {angle, table.speed, 0.0}, table.gravity);
-  return row;
+std::vector<TurnRow> turnRows(const TurnTable& table, std::size_t first, std::size_t most) {
+  const std::size_t rows = rowCount(table);
+  const std::size_t count = first < rows ? std::min(most, rows - first) : 0;
+  std::vector<TurnRow> result(count);
+  std::vector<double> angle(count), speed(count, table.speed), acceleration(count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool last = first + i + 1 == rows;
+    const double degrees = last ? 360.0 : static_cast<double>(first + i) * table.step;
+    result[i].crank_angle = degrees;
+    result[i].time = degrees * kDegree / table.speed;
+    angle[i] = (degrees > 180.0 ? degrees - 360.0 : degrees) * kDegree;
+  }
+  const CrankStates states{angle.data(), speed.data(), acceleration.data(), count};
+  Columns columns(count);
+  if (table.pins) linkLoads(table.model, states, table.gravity, columns.wrenches(), columns.pins());
+  hullWrenches(table.model, states, table.gravity,
+               columns.wrenches());  // last: linkLoads has the rocker's at level pulse
+  for (std::size_t i = 0; i < count; ++i) {
+    result[i].wrench = columns.wrench(i);
+    if (table.pins) result[i].pins = columns.pin(i);
+  }
+  if (first + count == rows && count > 0) {  // the batch takes the blow itself as after it
+    const Evaluation at_blow = evaluate(table.model, {{0.0, Side::kBeforeBlow}, table.speed, 0.0}, table.gravity);
+    result.back().wrench = at_blow.wrench;
+    if (table.pins) result.back().pins = at_blow.pins;
+  }
+  return result;
 }
 
-std::string csvHeader() { return "crank_angle_deg,time_s,force_x_N,force_z_N,torque_y_Nm"; }
+std::string csvHeader(const TurnTable& table) {
+  std::string header = "crank_angle_deg,time_s,force_x_N,force_z_N,torque_y_Nm";
+  if (!table.pins) return header;
+  for (const char* column : kPinColumns) header += "," + std::string(column);
+  return header;
+}
 
-std::string csvLine(const TurnRow& row) {
+std::string csvLine(const TurnTable& table, const TurnRow& row) {
   // + 0.0: no minus before a zero
-  return format("%.12g,%.12g,%.12g,%.12g,%.12g", row.crank_angle, row.time, row.wrench.force_x + 0.0,
-                row.wrench.force_z + 0.0, row.wrench.torque_y + 0.0);
+  std::string line = format("%.12g,%.12g,%.12g,%.12g,%.12g", row.crank_angle, row.time, row.wrench.force_x + 0.0,
+                            row.wrench.force_z + 0.0, row.wrench.torque_y + 0.0);
+  if (!table.pins) return line;
+  for (const double value : pinValues(row.pins)) line += format(",%.12g", value + 0.0);
+  return line;
+}
+
+ConstantSpeedPulse pulseOfTurn(const TurnTable& table) {
+  if (table.model.level() == Level::kPulse) return pulseOfHalfSine(table);
+  return pulseAtConstantSpeed(table.model.mechanism(), table.model.level(), table.speed, table.gravity);
 }
 
 std::string summaryText(const ConstantSpeedPulse& result) {

@@ -3,36 +3,42 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
-#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/linkage/pin_forces.h"
 
 namespace hammer_loads {
 
-/// Refers to the mechanism, which must outlive it.
+/// Refers to the model's mechanism, which must outlive it.
 struct TurnTable {
-  const Mechanism& mechanism;
-  Level level{};
+  HullModel model;
   double speed{};   ///< of the crank [rad/s], > 0
   Gravity gravity;  ///< [m/s2], hull axes
   double step{};    ///< between rows [deg], in [1e-6, 360]
+  bool pins{};      ///< pin forces and drive torque as well; level pulse: the rocker's
 };
 
 struct TurnRow {
   double crank_angle{};  ///< [deg], 0 just after a blow, 360 just before the next
   double time{};         ///< since the blow [s]
   HullWrench wrench;
+  PinReactions pins;  ///< zero unless asked for; near_blow is not told
 };
 
 /// 0, step, 2 step, ... below 360 deg, and 360 deg.
 std::size_t rowCount(const TurnTable& table) noexcept;
-/// index < rowCount(table).
-TurnRow turnRow(const TurnTable& table, std::size_t index) noexcept;
+/// Rows from `first` on, at most `most` of them; fewer at the end, none beyond it. Evaluated together (batch.h).
+std::vector<TurnRow> turnRows(const TurnTable& table, std::size_t first, std::size_t most);
 
 /// Names and units of the columns.
-std::string csvHeader();
+std::string csvHeader(const TurnTable& table);
 /// 12 significant digits.
-std::string csvLine(const TurnRow& row);
+std::string csvLine(const TurnTable& table, const TurnRow& row);
+
+/// The turn's pulse; at level pulse that of the half-sine with the weight on it.
+ConstantSpeedPulse pulseOfTurn(const TurnTable& table);
 /// `key: value` lines, 12 significant digits.
 std::string summaryText(const ConstantSpeedPulse& pulse);
 

@@ -15,7 +15,7 @@ enum class Side { kAfterBlow, kBeforeBlow };
 /// After the blow offset is normally in [0, pi], before it in [-pi, 0]. An offset of the other sign is the smooth
 /// continuation of that side's branch past the blow (needed to find the blow's instant by root search).
 struct CrankAngle {
-  double offset{};                ///< [rad]
+  double offset{};  ///< [rad]
   Side side{Side::kAfterBlow};
 
   /// From an angle of any winding [rad]; the exact blow (0, 2 pi as double, ...) counts as after it.

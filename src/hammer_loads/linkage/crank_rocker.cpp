@@ -28,10 +28,10 @@ Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
   const double l0 = given.pivot_distance, l1 = given.crank, l3 = given.rocker;
   const double miss = given.rod - (l0 + l3 - l1);
   if (!(std::abs(miss) <= kChangePointTolerance * l1)) {
-    result.problems.push_back(
-        format("rod_length_m: impossible linkage: |crank + rod - pivot distance - rocker| = |%.9g + %.9g - %.9g - %.9g| = "
-               "%.6g m, must be <= 1e-3 crank lengths = %.6g m (change-point condition)",
-               l1, given.rod, l0, l3, std::abs(miss), kChangePointTolerance * l1));
+    result.problems.push_back(format(
+        "rod_length_m: impossible linkage: |crank + rod - pivot distance - rocker| = |%.9g + %.9g - %.9g - %.9g| = "
+        "%.6g m, must be <= 1e-3 crank lengths = %.6g m (change-point condition)",
+        l1, given.rod, l0, l3, std::abs(miss), kChangePointTolerance * l1));
   }
   if (!(l1 < l0)) {
     result.problems.push_back(
@@ -68,6 +68,10 @@ Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
   k.lambda3_squared = k.lambda3 * k.lambda3;
   k.lambda03 = k.lambda0 * k.lambda3;
   k.sigma_squared = k.sigma * k.sigma;
+  k.sigma_k_cos = k.sigma * k.k_cos;
+  k.sigma_k_sin = k.sigma * k.k_sin;
+  k.sigma_w0 = k.sigma * k.w0;
+  k.sigma_lambda2_less_1 = k.sigma * (k.lambda2 - 1.0);
   k.lambda3_sigma = k.lambda3 * k.sigma;
   k.lambda3_over_sigma_squared = k.lambda3 / k.sigma_squared;
   result.value = linkage;

@@ -21,7 +21,7 @@ class CrankRocker {
   /// the rod by the difference and notes it; refuses a larger miss, non-positive lengths and a crank that cannot turn.
   static Checked<CrankRocker> make(const LinkLengths& lengths);
 
-  const LinkLengths& lengths() const noexcept { return lengths_; }  ///< rod corrected [m]
+  const LinkLengths& lengths() const noexcept { return lengths_; }   ///< rod corrected [m]
   double rodCorrection() const noexcept { return rod_correction_; }  ///< added to the given rod length [m]
 
   /// Ratios to the crank length and the combinations of them that motion() uses [-]. Differences such as
@@ -35,6 +35,7 @@ class CrankRocker {
     double w0{};                   ///< lambda2 (lambda0 - 1)/lambda0
     double lambda0_squared{}, lambda3_squared{}, lambda03{};  ///< lambda0^2, lambda3^2, lambda0 lambda3
     double sigma_squared{}, lambda3_sigma{}, lambda3_over_sigma_squared{};
+    double sigma_k_cos{}, sigma_k_sin{}, sigma_w0{}, sigma_lambda2_less_1{};  ///< sigma times k_cos, ..., lambda2 - 1
   };
   const Ratios& ratios() const noexcept { return ratios_; }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hammer_loads/linkage/crank_motion.h"
+#include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/motion.h"
 #include "hammer_loads/linkage/planar.h"
@@ -13,14 +14,14 @@ namespace hammer_loads {
 /// A quantity `_over_s` is divided by s = sin(phi/2) without the division: it stays finite and exact at the blow.
 struct LinkMotion {
   Motion rocker;
-  Planar phi;                  ///< crank direction A->B
-  Planar beta;                 ///< rod direction B->C
-  Planar psi;                  ///< rocker direction D->C
-  Planar delta;                ///< e^(i (beta - phi))
+  Planar phi;    ///< crank direction A->B
+  Planar beta;   ///< rod direction B->C
+  Planar psi;    ///< rocker direction D->C
+  Planar delta;  ///< e^(i (beta - phi))
   double sin_delta_over_s{};
   double sin_mu{}, cos_mu{}, sin_mu_over_s{};
-  double v{};                  ///< dbeta/dphi [-]
-  double dv{};                 ///< d2beta/dphi2 [1/rad]
+  double v{};   ///< dbeta/dphi [-]
+  double dv{};  ///< d2beta/dphi2 [1/rad]
   double dv_over_s{};
 };
 
@@ -43,12 +44,10 @@ HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker::Ratios& k, const Mo
   l.sin_mu_over_s = k.two_over_r0_squared * m.r;
   l.sin_mu = s * l.sin_mu_over_s;
   l.cos_mu = 1.0 - k.two_over_r0_squared * s * s;
-  l.beta = l.psi * Planar{l.cos_mu, -l.sin_mu};
-  // beta - phi = psi - (mu + phi)
-  const double sin_sum_over_s = l.sin_mu_over_s * l.phi.re + l.cos_mu * sin_phi_over_s;
-  const double cos_sum = l.cos_mu * l.phi.re - l.sin_mu * l.phi.im;
-  l.sin_delta_over_s = m.sin_psi_over_s * cos_sum - m.cos_psi * sin_sum_over_s;
-  l.delta = {m.cos_psi * cos_sum + m.sin_psi * s * sin_sum_over_s, s * l.sin_delta_over_s};
+  const double sin_beta_over_s = m.sin_psi_over_s * l.cos_mu - m.cos_psi * l.sin_mu_over_s;
+  l.beta = {m.cos_psi * l.cos_mu + m.sin_psi * l.sin_mu, s * sin_beta_over_s};
+  l.sin_delta_over_s = sin_beta_over_s * l.phi.re - l.beta.re * sin_phi_over_s;
+  l.delta = {l.beta.re * l.phi.re + l.beta.im * l.phi.im, s * l.sin_delta_over_s};
   l.v = m.u - c * m.inv_r;
   l.dv_over_s = m.du_over_s + 0.5 * k.g * m.inv_r * m.inv_r * m.inv_r;
   l.dv = s * l.dv_over_s;
@@ -62,19 +61,29 @@ HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker& linkage, CrankAngle
 /// Rod angle beta [rad] in (-pi, pi].
 inline double rodAngle(const LinkMotion& l) noexcept { return std::atan2(l.beta.im, l.beta.re); }
 
-/// What turns each link's direction into its second derivative: d2/dt2 e^(i angle) = e^(i angle) (i angle'' - angle'^2).
+/// What turns each link's direction into its second time derivative.
 struct LinkAccelerations {
   Planar crank, rod, rocker;  ///< i angle'' - angle'^2 [1/s2]
 };
 
-HAMMER_LOADS_INLINE LinkAccelerations linkAccelerations(const LinkMotion& l, double speed, double acceleration) noexcept {
-  const double ww = speed * speed;
-  const Motion& m = l.rocker;
+HAMMER_LOADS_INLINE LinkAccelerations linkAccelerations(const LinkMotion& l, double speed,
+                                                        double acceleration) noexcept {
+  const double ww = speed * speed, sww = l.rocker.sin_half * ww;
+  const double rod_rate = l.v * speed, rocker_rate = l.rocker.u * speed;
   LinkAccelerations q;
   q.crank = {-ww, acceleration};
-  q.rod = {-l.v * l.v * ww, l.dv * ww + l.v * acceleration};
-  q.rocker = {-m.u * m.u * ww, m.du * ww + m.u * acceleration};
+  q.rod = {-rod_rate * rod_rate, l.dv_over_s * sww + l.v * acceleration};
+  q.rocker = {-rocker_rate * rocker_rate, l.rocker.du_over_s * sww + l.rocker.u * acceleration};
   return q;
+}
+
+/// Moment of weight per direction: the first moment c of a link seen from the hull, times e^(i angle), has the moment
+/// re gz + im gx about its pivot, the real part of this times e^(i angle) [N m].
+HAMMER_LOADS_INLINE Planar weightMoment(Planar first_moment, Gravity gravity) noexcept {
+  return first_moment * Planar{gravity.z, -gravity.x};
+}
+HAMMER_LOADS_INLINE double realPart(Planar a, Planar direction) noexcept {
+  return a.re * direction.re - a.im * direction.im;
 }
 
 /// Coupling of crank and rod, l1 m2 rho2 e^(i (beta - phi)) [kg m2]: its real part couples their rates.

@@ -20,7 +20,9 @@ void check(const Rule& rule, std::vector<std::string>& problems) {
   const bool good = std::isfinite(rule.value) && (rule.sign != Sign::kPositive || rule.value > 0.0) &&
                     (rule.sign != Sign::kNotNegative || rule.value >= 0.0);
   if (good) return;
-  const char* allowed = rule.sign == Sign::kPositive ? "> 0 and finite" : rule.sign == Sign::kNotNegative ? ">= 0 and finite" : "finite";
+  const char* allowed = rule.sign == Sign::kPositive      ? "> 0 and finite"
+                        : rule.sign == Sign::kNotNegative ? ">= 0 and finite"
+                                                          : "finite";
   problems.push_back(format("%s: %.9g %s, must be %s", rule.key, rule.value, rule.unit, allowed));
 }
 
@@ -38,7 +40,8 @@ LinkMoments momentsOf(const HammerParameters& p, const CrankRocker::Ratios& rati
   k.crank = p.crank_mass * (crank_com * to_hull) + k.rod_at_b;
   k.rod = p.rod_mass * (rod_com * to_hull);
   k.rocker = p.rocker_mass * p.rocker_com_distance;
-  k.fixed = -(p.crank_mass + p.rod_mass) * p.lengths.pivot_distance * to_hull;
+  k.pivot = p.lengths.pivot_distance * to_hull;
+  k.fixed = -(p.crank_mass + p.rod_mass) * k.pivot;
   k.coupling = p.rod_mass * l1 * rod_com;
   k.crank_inertia = p.crank_inertia_about_com + p.crank_mass * squaredSize(crank_com) + p.rod_mass * l1 * l1;
   k.rod_inertia = p.rod_inertia_about_com + p.rod_mass * squaredSize(rod_com);
@@ -56,29 +59,30 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
   result.problems = linkage.problems;
   result.notes = linkage.notes;
   constexpr double kDegree = 3.14159265358979323846 / 180.0;
-  for (const Rule& rule : {Rule{"rocker_com_distance_m", p.rocker_com_distance, "m", Sign::kPositive},
-                           Rule{"rocker_com_angle_deg", p.rocker_com_angle / kDegree, "deg", Sign::kAny},
-                           Rule{"rocker_mass_kg", p.rocker_mass, "kg", Sign::kPositive},
-                           Rule{"rocker_inertia_about_pivot_kg_m2", p.rocker_inertia_about_pivot, "kg m2", Sign::kPositive},
-                           Rule{"striking_distance_m", p.striking_distance, "m", Sign::kPositive},
-                           Rule{"striking_friction", p.striking_friction, "", Sign::kNotNegative},
-                           Rule{"crank_mass_kg", p.crank_mass, "kg", Sign::kNotNegative},
-                           Rule{"crank_com_along_m", p.crank_com_along, "m", Sign::kAny},
-                           Rule{"crank_com_across_m", p.crank_com_across, "m", Sign::kAny},
-                           Rule{"crank_inertia_about_com_kg_m2", p.crank_inertia_about_com, "kg m2", Sign::kNotNegative},
-                           Rule{"rod_mass_kg", p.rod_mass, "kg", Sign::kNotNegative},
-                           Rule{"rod_com_along_m", p.rod_com_along, "m", Sign::kAny},
-                           Rule{"rod_com_across_m", p.rod_com_across, "m", Sign::kAny},
-                           Rule{"rod_inertia_about_com_kg_m2", p.rod_inertia_about_com, "kg m2", Sign::kNotNegative},
-                           Rule{"drive_inertia_kg_m2", p.drive_inertia, "kg m2", Sign::kPositive}}) {
+  for (const Rule& rule :
+       {Rule{"rocker_com_distance_m", p.rocker_com_distance, "m", Sign::kPositive},
+        Rule{"rocker_com_angle_deg", p.rocker_com_angle / kDegree, "deg", Sign::kAny},
+        Rule{"rocker_mass_kg", p.rocker_mass, "kg", Sign::kPositive},
+        Rule{"rocker_inertia_about_pivot_kg_m2", p.rocker_inertia_about_pivot, "kg m2", Sign::kPositive},
+        Rule{"striking_distance_m", p.striking_distance, "m", Sign::kPositive},
+        Rule{"striking_friction", p.striking_friction, "", Sign::kNotNegative},
+        Rule{"crank_mass_kg", p.crank_mass, "kg", Sign::kNotNegative},
+        Rule{"crank_com_along_m", p.crank_com_along, "m", Sign::kAny},
+        Rule{"crank_com_across_m", p.crank_com_across, "m", Sign::kAny},
+        Rule{"crank_inertia_about_com_kg_m2", p.crank_inertia_about_com, "kg m2", Sign::kNotNegative},
+        Rule{"rod_mass_kg", p.rod_mass, "kg", Sign::kNotNegative},
+        Rule{"rod_com_along_m", p.rod_com_along, "m", Sign::kAny},
+        Rule{"rod_com_across_m", p.rod_com_across, "m", Sign::kAny},
+        Rule{"rod_inertia_about_com_kg_m2", p.rod_inertia_about_com, "kg m2", Sign::kNotNegative},
+        Rule{"drive_inertia_kg_m2", p.drive_inertia, "kg m2", Sign::kPositive}}) {
     check(rule, result.problems);
   }
   const double least_inertia = p.rocker_mass * p.rocker_com_distance * p.rocker_com_distance;
   if (p.rocker_inertia_about_pivot > 0.0 && p.rocker_inertia_about_pivot < least_inertia) {
-    result.problems.push_back(
-        format("rocker_inertia_about_pivot_kg_m2: %.9g kg m2, must be >= rocker mass x centre-of-mass distance^2 = %.9g "
-               "kg m2 (about the pivot D, not about the centre of mass)",
-               p.rocker_inertia_about_pivot, least_inertia));
+    result.problems.push_back(format(
+        "rocker_inertia_about_pivot_kg_m2: %.9g kg m2, must be >= rocker mass x centre-of-mass distance^2 = %.9g "
+        "kg m2 (about the pivot D, not about the centre of mass)",
+        p.rocker_inertia_about_pivot, least_inertia));
   }
   if (!result.problems.empty()) return result;
 

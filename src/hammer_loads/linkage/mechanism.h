@@ -8,39 +8,40 @@ namespace hammer_loads {
 
 /// The hammer file (contract): keys of the same names with the unit appended.
 struct HammerParameters {
-  LinkLengths lengths;                    ///< [m]
-  double rocker_com_distance{};           ///< ls = DS [m], > 0
-  double rocker_com_angle{};              ///< a = angle C-D-S [rad]
-  double rocker_mass{};                   ///< m3 [kg], > 0
-  double rocker_inertia_about_pivot{};    ///< I about D [kg m2], >= m3 ls^2
-  double striking_distance{};             ///< lK = DK, K on line DS [m], > 0
-  double striking_friction{};             ///< f between rocker and tool [-], >= 0
-  double crank_mass{};                    ///< [kg], >= 0
-  double crank_com_along{};               ///< from A towards B [m]
-  double crank_com_across{};              ///< along turned by +90 deg in (xi, eta) [m]
-  double crank_inertia_about_com{};       ///< [kg m2], >= 0
-  double rod_mass{};                      ///< [kg], >= 0
-  double rod_com_along{};                 ///< from B towards C [m]
-  double rod_com_across{};                ///< along turned by +90 deg in (xi, eta) [m]
-  double rod_inertia_about_com{};         ///< [kg m2], >= 0
-  double drive_inertia{};                 ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
+  LinkLengths lengths;                  ///< [m]
+  double rocker_com_distance{};         ///< ls = DS [m], > 0
+  double rocker_com_angle{};            ///< a = angle C-D-S [rad]
+  double rocker_mass{};                 ///< m3 [kg], > 0
+  double rocker_inertia_about_pivot{};  ///< I about D [kg m2], >= m3 ls^2
+  double striking_distance{};           ///< lK = DK, K on line DS [m], > 0
+  double striking_friction{};           ///< f between rocker and tool [-], >= 0
+  double crank_mass{};                  ///< [kg], >= 0
+  double crank_com_along{};             ///< from A towards B [m]
+  double crank_com_across{};            ///< along turned by +90 deg in (xi, eta) [m]
+  double crank_inertia_about_com{};     ///< [kg m2], >= 0
+  double rod_mass{};                    ///< [kg], >= 0
+  double rod_com_along{};               ///< from B towards C [m]
+  double rod_com_across{};              ///< along turned by +90 deg in (xi, eta) [m]
+  double rod_inertia_about_com{};       ///< [kg m2], >= 0
+  double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
 };
 
 /// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism
 /// frame turned by the centre-of-mass angle a, so that hull x = -re and hull z = im (model.md 1).
 struct LinkMoments {
-  double mass{};             ///< m1 + m2 + m3 [kg]
-  Planar crank;              ///< C1 = m1 rho1 + m2 l1, seen from the hull, times e^(i phi) [kg m]
-  Planar rod;                ///< C2 = m2 rho2, seen from the hull, times e^(i beta) [kg m]
-  double rocker{};           ///< C3 = m3 ls, seen from the hull, times e^(i psi) [kg m]
-  Planar fixed;              ///< first moment about D of crank and rod placed at A, seen from the hull [kg m]
-  Planar rod_at_b;           ///< m2 l1, seen from the hull, times e^(i phi): the rod's mass at B [kg m]
-  Planar coupling;           ///< l1 m2 rho2, in the mechanism frame [kg m2]
-  double crank_inertia{};    ///< J1: crank about A with the rod's mass at B [kg m2]
-  double rod_inertia{};      ///< J2: rod about B [kg m2]
-  double rod_force_factor{};   ///< r0^2/(2 l3): s r/l3/sin mu [1/m]
-  double rocker_over_rod{};    ///< l3/l2 [-]
-  double inv_rod_length{};     ///< 1/l2 [1/m]
+  double mass{};              ///< m1 + m2 + m3 [kg]
+  Planar crank;               ///< C1 = m1 rho1 + m2 l1, seen from the hull, times e^(i phi) [kg m]
+  Planar rod;                 ///< C2 = m2 rho2, seen from the hull, times e^(i beta) [kg m]
+  double rocker{};            ///< C3 = m3 ls, seen from the hull, times e^(i psi) [kg m]
+  Planar fixed;               ///< first moment about D of crank and rod placed at A, seen from the hull [kg m]
+  Planar rod_at_b;            ///< m2 l1, seen from the hull, times e^(i phi): the rod's mass at B [kg m]
+  Planar pivot;               ///< from A to D, seen from the hull [m]
+  Planar coupling;            ///< l1 m2 rho2, in the mechanism frame [kg m2]
+  double crank_inertia{};     ///< J1: crank about A with the rod's mass at B [kg m2]
+  double rod_inertia{};       ///< J2: rod about B [kg m2]
+  double rod_force_factor{};  ///< r0^2/(2 l3): s r/l3/sin mu [1/m]
+  double rocker_over_rod{};   ///< l3/l2 [-]
+  double inv_rod_length{};    ///< 1/l2 [1/m]
 };
 
 /// A hammer that can exist. Built once, then only read.

@@ -2,7 +2,7 @@
 ///
 /// Derived in doc/model.md from the half-angle relations of the change-point linkage; they equal P0 (2)-(5) but no term
 /// cancels on either side of the blow. Relative error of u, u' and of the sines near the blow: some 1e-15 (measured
-/// against 60 digits: test/linkage/motion_test.cpp).
+/// against 100 digits: test/linkage/motion_test.cpp).
 #pragma once
 
 #include <cmath>
@@ -17,12 +17,12 @@ namespace hammer_loads {
 /// mu = psi - beta the transmission angle. Rates are per radian of crank angle phi.
 struct Motion {
   double sin_psi{}, cos_psi{};
-  double u{};           ///< dpsi/dphi [-], P0 (4)
-  double du{};          ///< d2psi/dphi2 [1/rad], P0 (5)
-  double sin_half{};    ///< s = sin(phi/2) >= 0 within the turn
-  double cos_half{};    ///< c = cos(phi/2), negative before the blow
-  double r{};           ///< sqrt(lambda2 lambda3/lambda0 - s^2)
-  double inv_r{};       ///< 1/r
+  double u{};               ///< dpsi/dphi [-], P0 (4)
+  double du{};              ///< d2psi/dphi2 [1/rad], P0 (5)
+  double sin_half{};        ///< s = sin(phi/2) >= 0 within the turn
+  double cos_half{};        ///< c = cos(phi/2), negative before the blow
+  double r{};               ///< sqrt(lambda2 lambda3/lambda0 - s^2)
+  double inv_r{};           ///< 1/r
   double sin_psi_over_s{};  ///< sin psi/s, finite at the blow
   double du_over_s{};       ///< u'/s, finite at the blow
 };
@@ -32,7 +32,7 @@ namespace detail {
 /// Terms of both sides of the blow, from s >= 0 and c >= 0, sine and cosine of half the offset's size.
 struct HalfAngleTerms {
   double s, c, ss, cc;
-  double r;             ///< sqrt(g + c^2) = sqrt(r0^2 - s^2), without the difference
+  double r;  ///< sqrt(g + c^2) = sqrt(r0^2 - s^2), without the difference
   double inv_r;
   double z, g_over_z;   ///< r + c, r - c
   double d, d_squared;  ///< lambda0 r + lambda3 c
@@ -77,7 +77,8 @@ HAMMER_LOADS_INLINE Motion motionBeforeBlow(const CrankRocker::Ratios& k, const 
   const double inv_n = 1.0 / (pp + qq);
   const double inv_nr = inv_n * t.inv_r;
   const double a = ((k.lambda2 - 1.0) * t.ss - k.w0) / (t.r + k.lambda2 * t.c) * t.d_squared;
-  const double bracket = (k.lambda03 * a * t.z) * inv_nr - (0.5 * k.lambda2 * k.sigma * t.g_over_z) * (t.inv_r * t.inv_r);
+  const double bracket =
+      (k.lambda03 * a * t.z) * inv_nr - (0.5 * k.lambda2 * k.sigma * t.g_over_z) * (t.inv_r * t.inv_r);
   Motion m;
   m.sin_psi_over_s = (2.0 * t.d * q) * inv_n;
   m.cos_psi = (qq - pp) * inv_n;
@@ -97,7 +98,7 @@ HAMMER_LOADS_INLINE Motion motion(const CrankRocker& linkage, CrankAngle angle) 
   Motion m = before ? detail::motionBeforeBlow(linkage.ratios(), t) : detail::motionAfterBlow(linkage.ratios(), t);
   m.sin_half = t.s;
   m.r = t.r;
-  m.inv_r = t.r * (t.inv_r * t.inv_r);
+  m.inv_r = t.inv_r;
   m.sin_psi = t.s * m.sin_psi_over_s;
   m.du = t.s * m.du_over_s;
   return m;

@@ -24,12 +24,12 @@ struct PinForce {
 };
 
 struct PinReactions {
-  PinForce hull_on_crank;    ///< R01 at A
-  PinForce crank_on_rod;     ///< R12 at B
-  PinForce rod_on_rocker;    ///< R23 at C
-  PinForce hull_on_rocker;   ///< R03 at D
-  double drive_torque{};     ///< BY the drive ON the crank about +y [N m]; inertia of motor and flywheel not included
-  bool near_blow{};          ///< transmission angle below the limit of NearBlow
+  PinForce hull_on_crank;   ///< R01 at A
+  PinForce crank_on_rod;    ///< R12 at B
+  PinForce rod_on_rocker;   ///< R23 at C
+  PinForce hull_on_rocker;  ///< R03 at D
+  double drive_torque{};    ///< BY the drive ON the crank about +y [N m]; inertia of motor and flywheel not included
+  bool near_blow{};         ///< transmission angle below the limit of NearBlow
 };
 
 /// Transmission angle psi - beta below which pin forces are flagged [rad], in (0, pi/2).
@@ -68,7 +68,7 @@ HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, con
   const double mass = mechanism.parameters().rocker_mass;
   const Planar rocker = mechanism.rockerFirstMoment() * l.psi;
   const double weight = rocker.im * gravity.x + rocker.re * gravity.z;
-  const double psi_accel = m.du * ww + m.u * c.acceleration;
+  const double psi_accel = m.du_over_s * (m.sin_half * ww) + m.u * c.acceleration;
 
   // Rod force along B->C times s, positive when the rod pushes the rocker away from B.
   const double with_s = inertia * m.du_over_s * ww, rest = inertia * m.u * c.acceleration - weight;
@@ -96,13 +96,13 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
   const Motion& m = l.rocker;
   const double ww = c.speed * c.speed, e = c.acceleration;
-  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, rocker = k.rocker * l.psi;
+  const Planar rod = k.rod * l.beta;
   const Planar coupling = k.coupling * l.delta;
 
   // Rocker about D: l3 cross(e^(i psi), R23) = s rocker_s + rocker_rest.
   const double inertia = p.rocker_inertia_about_pivot;
   const double rocker_s = inertia * m.du_over_s * ww;
-  const double rocker_rest = inertia * m.u * e - (rocker.im * gravity.x + rocker.re * gravity.z);
+  const double rocker_rest = inertia * m.u * e - k.rocker * (l.psi.re * gravity.z + l.psi.im * gravity.x);
   // Rod about B: -l2 cross(e^(i beta), R23) = s rod_s + rod_rest.
   const double rod_s = (k.rod_inertia * l.dv_over_s + k.coupling.re * l.sin_delta_over_s) * ww;
   const double rod_rest = (k.rod_inertia * l.v + coupling.re) * e + k.coupling.im * l.delta.re * ww -
@@ -111,31 +111,31 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   const double s = detail::divisor(m.sin_half);
   const double across = -(s * rod_s + rod_rest) * k.inv_rod_length;
   const double rod_part = k.rocker_over_rod * l.cos_mu;
-  const double along_s = -((rocker_s + rod_part * rod_s) * s + (rocker_rest + rod_part * rod_rest)) *
-                         (k.rod_force_factor * m.inv_r);
+  const double along_s =
+      -((rocker_s + rod_part * rod_s) * s + (rocker_rest + rod_part * rod_rest)) * (k.rod_force_factor * m.inv_r);
   const double along = along_s / s;
 
   const Planar weight{-gravity.x, gravity.z};  // per mass
   const Planar on_rocker = Planar{along, across} * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
-  const Planar rod_change = rod * q.rod;
-  const Planar on_rod = on_rocker + rod_change + (k.rod_at_b * l.phi) * q.crank - p.rod_mass * weight;
-  const Planar on_crank = on_rocker + rod_change + crank * q.crank - (k.mass - p.rocker_mass) * weight;
+  const Planar above_crank = on_rocker + rod * q.rod;
+  const Planar crank_change = l.phi * q.crank;
+  const Planar on_rod = above_crank + k.rod_at_b * crank_change - p.rod_mass * weight;
+  const Planar on_crank = above_crank + k.crank * crank_change - (k.mass - p.rocker_mass) * weight;
   PinReactions pins;
   pins.rod_on_rocker = detail::toHull(on_rocker);
   pins.crank_on_rod = detail::toHull(on_rod);
   pins.hull_on_crank = detail::toHull(on_crank);
-  pins.hull_on_rocker = detail::toHull(rocker * q.rocker - p.rocker_mass * weight - on_rocker);
+  pins.hull_on_rocker = detail::toHull(k.rocker * (l.psi * q.rocker) - p.rocker_mass * weight - on_rocker);
   // Crank about A, the rod's mass at B counted with it.
-  pins.drive_torque = k.crank_inertia * e - (crank.im * gravity.x + crank.re * gravity.z) +
-                      coupling.re * q.rod.im + coupling.im * q.rod.re +
-                      p.lengths.crank * (along_s * l.sin_delta_over_s + across * l.delta.re);
+  pins.drive_torque = k.crank_inertia * e - realPart(weightMoment(k.crank, gravity), l.phi) + coupling.re * q.rod.im +
+                      coupling.im * q.rod.re + p.lengths.crank * (along_s * l.sin_delta_over_s + across * l.delta.re);
   pins.near_blow = near_blow(l);
   return pins;
 }
 
 /// Pin forces at a level of the model (level pulse: as rocker). No allocation, no failure for finite input.
-HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level level, const CrankMotion& crank, Gravity gravity,
-                              const NearBlow& near_blow) noexcept {
+HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level level, const CrankMotion& crank,
+                                           Gravity gravity, const NearBlow& near_blow) noexcept {
   const LinkMotion l = linkMotion(mechanism.linkage(), crank.angle);
   return level == Level::kLinkage ? pinForcesLinkage(mechanism, l, crank, gravity, near_blow)
                                   : pinForcesRocker(mechanism, l, crank, gravity, near_blow);

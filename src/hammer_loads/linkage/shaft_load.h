@@ -17,8 +17,8 @@ struct ShaftLoad {
   double weight_torque_slope{};  ///< its derivative by the crank angle [N m/rad]
 };
 
-/// Level rocker: I u^2 and the rocker's weight. Neglects mass and inertia of crank and rod (a constant part of them acts
-/// like drive inertia).
+/// Level rocker: I u^2 and the rocker's weight. Neglects mass and inertia of crank and rod (a constant part of them
+/// acts like drive inertia).
 HAMMER_LOADS_INLINE ShaftLoad shaftLoadRocker(const Mechanism& mechanism, const Motion& m, Gravity gravity) noexcept {
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   const double ux = inertia * m.u;
@@ -30,15 +30,16 @@ HAMMER_LOADS_INLINE ShaftLoad shaftLoadRocker(const Mechanism& mechanism, const 
 
 /// Level linkage: kinetic energy w^2/2 (J1 + J2 v^2 + I u^2 + 2 v Re K), K = linkCoupling, and the weight of all links.
 /// Neglects friction and the motion of the hull.
-HAMMER_LOADS_INLINE ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const LinkMotion& l, Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const LinkMotion& l,
+                                               Gravity gravity) noexcept {
   const LinkMoments& k = mechanism.moments();
   const double rocker_inertia = mechanism.parameters().rocker_inertia_about_pivot;
   const Motion& m = l.rocker;
   const Planar coupling = linkCoupling(mechanism, l);
   ShaftLoad load;
   load.inertia = k.crank_inertia + rocker_inertia * m.u * m.u + l.v * (k.rod_inertia * l.v + 2.0 * coupling.re);
-  load.half_inertia_slope = rocker_inertia * m.u * m.du + l.dv * (k.rod_inertia * l.v + coupling.re) -
-                            l.v * (l.v - 1.0) * coupling.im;
+  load.half_inertia_slope =
+      rocker_inertia * m.u * m.du + l.dv * (k.rod_inertia * l.v + coupling.re) - l.v * (l.v - 1.0) * coupling.im;
   // Weight's power per crank speed: with the first moment's rate i M', M' = C1 e^(i phi) + v C2 e^(i beta) + ...
   const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, rocker = k.rocker * l.psi;
   const Planar rate = crank + l.v * rod + m.u * rocker;
@@ -49,7 +50,8 @@ HAMMER_LOADS_INLINE ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const
 }
 
 /// Shaft load at a level of the model (level pulse: as rocker). No allocation, no failure for finite input.
-HAMMER_LOADS_INLINE ShaftLoad shaftLoad(const Mechanism& mechanism, Level level, CrankAngle angle, Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE ShaftLoad shaftLoad(const Mechanism& mechanism, Level level, CrankAngle angle,
+                                        Gravity gravity) noexcept {
   const Motion m = motion(mechanism.linkage(), angle);
   if (level != Level::kLinkage) return shaftLoadRocker(mechanism, m, gravity);
   return shaftLoadLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), gravity);

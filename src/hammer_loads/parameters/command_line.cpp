@@ -6,6 +6,16 @@
 #include "hammer_loads/parameters/yaml_value.h"
 
 namespace hammer_loads {
+namespace {
+
+std::string ruleText(double least, double most) {
+  std::string rule = "a finite number";
+  if (std::isfinite(least)) rule += (least == 0.0 ? " > " : " >= ") + numberText(least);
+  if (std::isfinite(most)) rule += (std::isfinite(least) ? " and <= " : " <= ") + numberText(most);
+  return rule;
+}
+
+}  // namespace
 
 void addParamsOption(CLI::App& app, std::vector<std::string>& files) {
   app.add_option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
@@ -29,15 +39,12 @@ void addLevelOption(CLI::App& app, std::optional<Level>& level) {
 }
 
 CLI::Validator numberWithin(double least, double most, const std::string& unit) {
-  const bool open = least == 0.0;
-  const std::string rule =
-      std::isinf(most) ? std::string("a finite number") + (std::isinf(least) ? "" : open ? " > 0" : " >= " + numberText(least))
-                       : std::string("a number in ") + (open ? "(" : "[") + numberText(least) + ", " + numberText(most) + "]";
   return CLI::Validator(
       [=](std::string& text) {
         const std::optional<double> value = asNumber(YAML::Node(text));
-        const bool good = value && std::isfinite(*value) && *value >= least && *value <= most && !(open && *value == 0.0);
-        return good ? std::string{} : text + (unit.empty() ? "" : " " + unit) + ", must be " + rule;
+        const bool positive = least != 0.0 || (value && *value > 0.0);
+        const bool good = value && std::isfinite(*value) && *value >= least && *value <= most && positive;
+        return good ? std::string{} : text + (unit.empty() ? "" : " " + unit) + ", must be " + ruleText(least, most);
       },
       "");
 }

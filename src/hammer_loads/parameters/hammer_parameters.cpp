@@ -43,8 +43,7 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   const std::size_t problems_before = reader.problems().size();
   HammerParameters parameters;
   // Signs and what keys demand of each other are the mechanism's to judge.
-  for (const HammerKey& key : kHammerKeys)
-    key.field(parameters) = reader.number(key.key, key.unit, NumberRule::any());
+  for (const HammerKey& key : kHammerKeys) key.field(parameters) = reader.number(key.key, key.unit, NumberRule::any());
   constexpr double kDegree = 3.14159265358979323846 / 180.0;
   parameters.rocker_com_angle *= kDegree;
 

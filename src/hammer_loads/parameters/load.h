@@ -16,7 +16,7 @@ struct Settings {
   Mechanism mechanism;
   PipelineSettings pipeline;
   LogSettings log;
-  std::string yaml;  ///< every parameter in force; loading it alone gives the same settings
+  std::string yaml;                ///< every parameter in force; loading it alone gives the same settings
   std::vector<std::string> notes;  ///< accepted peculiarities, one line each
 };
 

@@ -50,8 +50,10 @@ std::optional<ParameterMap> parameterMap(const YAML::Node& node, const std::stri
     }
     const std::string& key = pair.first.Scalar();
     const auto [known, added] = map.emplace(key, Parameter{pair.second, place});
-    if (!added)
-      problems.push_back(onOneLine(key) + ": given twice, must be given once (" + known->second.origin + ", " + place + ")");
+    if (!added) {
+      const std::string places = known->second.origin + ", " + place;
+      problems.push_back(onOneLine(key) + ": given twice, must be given once (" + places + ")");
+    }
   }
   return map;
 }

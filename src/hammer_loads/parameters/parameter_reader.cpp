@@ -10,10 +10,14 @@ namespace {
 
 std::string ruleText(NumberRule rule) {
   switch (rule.kind) {
-    case NumberRule::Kind::kAny: return "a finite number";
-    case NumberRule::Kind::kPositive: return "a finite number > 0";
-    case NumberRule::Kind::kNotNegative: return "a finite number >= 0";
-    case NumberRule::Kind::kWithin: break;
+    case NumberRule::Kind::kAny:
+      return "a finite number";
+    case NumberRule::Kind::kPositive:
+      return "a finite number > 0";
+    case NumberRule::Kind::kNotNegative:
+      return "a finite number >= 0";
+    case NumberRule::Kind::kWithin:
+      break;
   }
   return "a number in [" + numberText(rule.least) + ", " + numberText(rule.most) + "]";
 }
@@ -21,10 +25,14 @@ std::string ruleText(NumberRule rule) {
 bool obeys(NumberRule rule, double value) {
   if (!std::isfinite(value)) return false;
   switch (rule.kind) {
-    case NumberRule::Kind::kAny: return true;
-    case NumberRule::Kind::kPositive: return value > 0.0;
-    case NumberRule::Kind::kNotNegative: return value >= 0.0;
-    case NumberRule::Kind::kWithin: break;
+    case NumberRule::Kind::kAny:
+      return true;
+    case NumberRule::Kind::kPositive:
+      return value > 0.0;
+    case NumberRule::Kind::kNotNegative:
+      return value >= 0.0;
+    case NumberRule::Kind::kWithin:
+      break;
   }
   return value >= rule.least && value <= rule.most;
 }

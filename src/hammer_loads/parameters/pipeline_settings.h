@@ -19,8 +19,8 @@ enum class CrankEstimator {
   kNone,        ///< zero, as P0 assumes
 };
 
-constexpr std::array<std::pair<const char*, Level>, 2> kLevelNames{
-    {{"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
+constexpr std::array<std::pair<const char*, Level>, 3> kLevelNames{
+    {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
 constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorNames{
     {{"mechanism", CrankEstimator::kMechanism},
      {"difference", CrankEstimator::kDifference},

@@ -60,8 +60,7 @@ std::optional<bool> asBoolean(const YAML::Node& value) {
 
 std::optional<std::string> asText(const YAML::Node& value) {
   if (!value.IsScalar()) return std::nullopt;
-  const bool means_something_else =
-      isPlain(value) && (value.Scalar().empty() || asNumber(value) || asBoolean(value));
+  const bool means_something_else = isPlain(value) && (value.Scalar().empty() || asNumber(value) || asBoolean(value));
   if (means_something_else) return std::nullopt;
   return value.Scalar();
 }

@@ -55,6 +55,7 @@ std::vector<std::string> BagLog::start() {
   Checked<std::string> directory = findLogDirectory(settings_.directory);
   problems.insert(problems.end(), directory.problems.begin(), directory.problems.end());
   if (!problems.empty()) return problems;
+  if (std::string problem = LogFile::prepare(); !problem.empty()) return {problem};
 
   const std::uint64_t free = disk_.free_space(*directory.value);
   if (free < settings_.min_free_space) {

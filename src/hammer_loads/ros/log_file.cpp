@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 namespace hammer_loads {
@@ -42,13 +43,36 @@ void silenceOthers(int descriptor) noexcept {
   if (null >= 0) ::close(null);
 }
 
-/// Bags that must not be touched again: see LogFile::abandon.
-std::vector<rosbag::Bag*>& abandonedBags() {
-  static auto* bags = new std::vector<rosbag::Bag*>;
-  return *bags;
+/// Bags that are never destroyed.
+class KeptBags {
+ public:
+  static void add(std::unique_ptr<rosbag::Bag> bag) { list().push_back(bag.release()); }
+  static bool isEmpty() { return list().empty(); }
+
+ private:
+  static std::vector<rosbag::Bag*>& list() {
+    static auto* bags = new std::vector<rosbag::Bag*>;
+    return *bags;
+  }
+};
+
+/// Every bag loads a plugin when it is made and unloads it when it is destroyed; two threads at it at once crash.
+std::mutex& pluginMutex() {
+  static std::mutex mutex;
+  return mutex;
 }
 
 }  // namespace
+
+std::string LogFile::prepare() {
+  const std::lock_guard<std::mutex> lock(pluginMutex());
+  try {
+    if (KeptBags::isEmpty()) KeptBags::add(std::make_unique<rosbag::Bag>());
+  } catch (const std::exception& exception) {
+    return std::string("log: rosbag cannot be used: ") + exception.what();
+  }
+  return {};
+}
 
 LogFile::LogFile(LogName name, std::uint32_t chunk_size) : name_(std::move(name)), chunk_size_(chunk_size) {}
 
@@ -79,12 +103,16 @@ std::optional<LogFault> LogFile::guarded(Action action) noexcept {
 void LogFile::abandon() noexcept {
   is_open_ = false;
   silenceOthers(name_.descriptor());
-  if (bag_) abandonedBags().push_back(bag_.release());
+  const std::lock_guard<std::mutex> lock(pluginMutex());
+  if (bag_) KeptBags::add(std::move(bag_));
 }
 
 std::optional<LogFault> LogFile::open() {
   return guarded([this] {
-    bag_ = std::make_unique<rosbag::Bag>();
+    {
+      const std::lock_guard<std::mutex> lock(pluginMutex());
+      bag_ = std::make_unique<rosbag::Bag>();
+    }
     bag_->open(name_.active(), rosbag::bagmode::Write);
     bag_->setCompression(rosbag::compression::LZ4);
     bag_->setChunkThreshold(chunk_size_);
@@ -173,7 +201,10 @@ void LogFile::closeChunk() {
 std::optional<LogFault> LogFile::close() {
   auto fault = guarded([this] { bag_->close(); });
   if (fault) return fault;
-  bag_.reset();
+  {
+    const std::lock_guard<std::mutex> lock(pluginMutex());
+    bag_.reset();
+  }
   is_open_ = false;
   struct stat found {};
   if (fstat(name_.descriptor(), &found) == 0) {

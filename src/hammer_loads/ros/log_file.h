@@ -37,6 +37,10 @@ class LogFile {
   /// A chunk is closed when its first message is this old: a kill loses no more, plus what waits in the queue [s].
   static constexpr std::chrono::milliseconds kChunkPeriod{500};
 
+  /// Once before the first file, in the thread that sets up the process: keeps rosbag's plugin loaded, since loading and
+  /// unloading beside other threads that load plugins ends in crashes. Empty or what is wrong.
+  static std::string prepare();
+
   /// chunk_size: a chunk is closed at the latest with this many bytes before compression.
   LogFile(LogName name, std::uint32_t chunk_size);
   LogFile(const LogFile&) = delete;
@@ -52,6 +56,7 @@ class LogFile {
   std::optional<LogFault> close();
 
   std::uint64_t size() const noexcept { return size_; }  ///< on disk without the open chunk [byte]
+  std::uint64_t allocated() const noexcept { return allocated_; }  ///< taken on the disk, ahead of the data too [byte]
   /// As it is called now.
   const std::string& path() const noexcept { return is_complete_ ? name_.final() : name_.active(); }
   bool isOpen() const noexcept { return is_open_; }

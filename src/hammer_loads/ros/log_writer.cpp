@@ -137,8 +137,9 @@ void LogWriter::keepHouse(Clock::time_point now) {
   if (repeat_ && now - opened_ > LogFile::kChunkPeriod) repeatLatched(nullptr);
   if (!file_) return;
   auto fault = file_->closeChunkInTime(now);
-  if (!fault && now >= next_check_) {
+  if (!fault && (now >= next_check_ || file_->allocated() != checked_allocation_)) {
     next_check_ = now + kDiskCheckInterval;
+    checked_allocation_ = file_->allocated();
     fault = checkDisk();
     if (!fault) report(LogState::kRecording, "");
   }

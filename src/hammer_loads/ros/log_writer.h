@@ -90,6 +90,7 @@ class LogWriter {
   bool quit_{};
   bool repeat_{};  // latched messages still to be repeated in this file
   Clock::time_point opened_{}, next_check_{};
+  std::uint64_t checked_allocation_{};  // of the file when the disk was looked at last [byte]
   std::vector<Latched> latched_;
   std::deque<ClosedFile> closed_;  // oldest first
   std::uint64_t closed_size_{};    // of them together [byte]

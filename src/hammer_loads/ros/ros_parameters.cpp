@@ -29,15 +29,22 @@ YAML::Node mapNode(XmlRpc::XmlRpcValue& map) {
 
 YAML::Node yamlFromXmlRpc(XmlRpc::XmlRpcValue value) {
   switch (value.getType()) {
-    case XmlRpc::XmlRpcValue::TypeBoolean: return YAML::Node(static_cast<bool>(value) ? "true" : "false");
-    case XmlRpc::XmlRpcValue::TypeInt: return YAML::Node(std::to_string(static_cast<int>(value)));
-    case XmlRpc::XmlRpcValue::TypeDouble: return numberNode(static_cast<double>(value));
-    case XmlRpc::XmlRpcValue::TypeString: return textNode(static_cast<std::string>(value));
-    case XmlRpc::XmlRpcValue::TypeArray: return listNode(value);
-    case XmlRpc::XmlRpcValue::TypeStruct: return mapNode(value);
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return YAML::Node(static_cast<bool>(value) ? "true" : "false");
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return YAML::Node(std::to_string(static_cast<int>(value)));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return numberNode(static_cast<double>(value));
+    case XmlRpc::XmlRpcValue::TypeString:
+      return textNode(static_cast<std::string>(value));
+    case XmlRpc::XmlRpcValue::TypeArray:
+      return listNode(value);
+    case XmlRpc::XmlRpcValue::TypeStruct:
+      return mapNode(value);
     case XmlRpc::XmlRpcValue::TypeInvalid:
     case XmlRpc::XmlRpcValue::TypeDateTime:
-    case XmlRpc::XmlRpcValue::TypeBase64: break;
+    case XmlRpc::XmlRpcValue::TypeBase64:
+      break;
   }
   return YAML::Node(YAML::NodeType::Null);  // nothing here has a date or binary data
 }

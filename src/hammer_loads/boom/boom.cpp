@@ -1,0 +1,108 @@
+#include "hammer_loads/boom/boom.h"
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "hammer_loads/linkage/format.h"
+
+namespace hammer_loads {
+namespace {
+
+void checkParameters(const BoomParameters& p, std::vector<std::string>& problems) {
+  const auto check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
+    if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g %s, must be %s", key, value, unit, rule));
+  };
+  check("bulk_modulus_Pa", p.bulk_modulus, "Pa", p.bulk_modulus > 0.0, "a finite number > 0");
+  const double zeta = p.vibration.damping_ratio;
+  check("damping_ratio", zeta, "", zeta > 0.0 && zeta < 1.0, "> 0 and < 1");
+  check("mode_refresh_angle_rad", p.vibration.refresh_angle, "rad", p.vibration.refresh_angle >= 0.0,
+        "a finite number >= 0");
+  check("rigid_tolerance", p.rigid_tolerance, "", p.rigid_tolerance > 0.0, "a finite number > 0");
+  const Supports& s = p.supports;
+  check("support_front_x_m", s.front_x, "m", s.front_x > s.rear_x,
+        format("> support_rear_x_m = %.9g m", s.rear_x).c_str());
+  check("support_front_half_width_m", s.front_half_width, "m", s.front_half_width > 0.0, "a finite number > 0");
+  check("support_rear_x_m", s.rear_x, "m", true, "a finite number");
+  check("support_rear_half_width_m", s.rear_half_width, "m", s.rear_half_width > 0.0, "a finite number > 0");
+}
+
+}  // namespace
+
+Checked<Boom> Boom::make(const std::string& urdf_text, const BoomParameters& parameters) {
+  Checked<Boom> result;
+  checkParameters(parameters, result.problems);
+  const Checked<Chain> chain = Chain::make(urdf_text, parameters.chain);
+  result.problems.insert(result.problems.end(), chain.problems.begin(), chain.problems.end());
+  result.notes = chain.notes;
+  if (!chain.value) return result;
+
+  std::vector<Cylinder> cylinders;
+  std::set<std::string> spanned;
+  for (const CylinderParameters& given : parameters.cylinders) {
+    const Checked<Cylinder> cylinder = Cylinder::make(given, parameters.bulk_modulus, *chain.value);
+    result.problems.insert(result.problems.end(), cylinder.problems.begin(), cylinder.problems.end());
+    if (cylinder.value) cylinders.push_back(*cylinder.value);
+    if (!spanned.insert(given.joint).second) {
+      result.problems.push_back(format("%s_joint: %s, has a cylinder already, must have at most one",
+                                       given.name.c_str(), given.joint.c_str()));
+    }
+  }
+  if (result.problems.empty()) result.value = Boom(*chain.value, std::move(cylinders), parameters);
+  return result;
+}
+
+Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, const BoomParameters& parameters)
+    : chain_(chain),
+      cylinders_(std::move(cylinders)),
+      parameters_(parameters),
+      dynamics_(chain),
+      vibration_(chain, cylinders_, parameters.vibration) {
+  const JointVector zero = JointVector::Zero(chain.joints());
+  move({zero, zero, zero}, Eigen::Vector3d::Zero());
+}
+
+void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
+  position_ = motion.position;
+  g_B_ = g_B;
+  forwardKinematics(chain_, position_, pose_);
+  weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
+  motion_ = dynamics_.torqueOfMotion(motion);
+}
+
+void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
+  move(motion, g_B);
+  vibration_.setPose(position_);
+}
+
+Boom::TipVibration Boom::tipVibration() const noexcept {
+  const Jacobian J = tipJacobian(pose_);
+  return {J * vibration_.displacement(), J * vibration_.velocity(), J * vibration_.acceleration()};
+}
+
+ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {
+  const Jacobian J = tipJacobian(pose_);
+  return reducedAtTip(vibration_.modes(), J.topRows<3>().transpose() * direction);
+}
+
+void Boom::loads(const Wrench& w_tip, bool rigid, JointLoads& result) const noexcept {
+  result.hammer = hammerTorque(w_tip);
+  result.weight = weight_;
+  result.motion = motion_;
+  if (rigid) {
+    result.vibration.setZero(chain_.joints());
+  } else {
+    result.vibration = vibration_.torque();
+  }
+  result.total = result.hammer + result.weight + result.motion + result.vibration;
+  for (std::size_t i = 0; i < cylinders_.size(); ++i) {
+    const Cylinder& cylinder = cylinders_[i];
+    result.cylinder[i] = cylinder.load(cylinder.at(position_[cylinder.joint()]), result.total[cylinder.joint()]);
+  }
+}
+
+HoldDown Boom::holdDown(const Wrench& w_mean) const noexcept {
+  return hammer_loads::holdDown(chain_, pose_, position_, cylinders_, parameters_.supports, w_mean, g_B_);
+}
+
+}  // namespace hammer_loads

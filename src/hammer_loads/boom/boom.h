@@ -1,0 +1,85 @@
+/// The boom as one: from its motion and the hammer's wrench to the loads of joints and cylinders.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/chain_pose.h"
+#include "hammer_loads/boom/hold_down.h"
+#include "hammer_loads/boom/vibration.h"
+
+namespace hammer_loads {
+
+/// The boom file; keys of the same names with the unit appended. Physical values have no defaults.
+struct BoomParameters {
+  ChainRequest chain;                        ///< root_link, tip_link; joints are those of the cylinders
+  std::vector<CylinderParameters> cylinders; ///< at most one per joint
+  double bulk_modulus{};                     ///< of oil with hose and air [Pa], > 0
+  VibrationSettings vibration;
+  Supports supports;                         ///< [m]
+  double rigid_tolerance{};                  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
+};
+
+/// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the joint
+/// forward. What holds the joint - a cylinder - gives the opposite of the total.
+struct JointLoads {
+  JointVector hammer;     ///< J^T w, as on a rigid boom
+  JointVector weight;     ///< of the links
+  JointVector motion;     ///< inertia of the links as the boom moves
+  JointVector vibration;  ///< inertia of the links as the boom vibrates; zero for a rigid boom
+  JointVector total;      ///< sum of the four
+  std::array<CylinderLoad, kMaxJoints> cylinder;  ///< of the total, index as in Boom::cylinders()
+};
+
+/// Per sample: move() when the boom moved, advance() for the vibration if wanted, then loads(). After make() nothing
+/// allocates, throws or fails for finite input.
+class Boom {
+ public:
+  /// Every problem of description and boom file at once, one line each.
+  static Checked<Boom> make(const std::string& urdf_text, const BoomParameters& parameters);
+
+  /// Joint motion of the chain's joints, g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level base.
+  void move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
+  /// Also brings the vibration to this pose: only then modes are found.
+  void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
+
+  const ChainPose& pose() const noexcept { return pose_; }
+  /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
+  Eigen::Vector3d gravityAtTip() const noexcept { return pose_.tip().linear().transpose() * g_B_; }
+  JointVector hammerTorque(const Wrench& w_tip) const noexcept { return jointTorqueOfTipLoad(pose_, w_tip); }
+
+  Vibration& vibration() noexcept { return vibration_; }
+  const Vibration& vibration() const noexcept { return vibration_; }
+  /// Displacement, velocity and acceleration of the tip by vibration: linear, then angular; axes of the tip
+  /// [m, rad and 1/s, 1/s2 of them].
+  struct TipVibration {
+    Eigen::Matrix<double, 6, 1> displacement, velocity, acceleration;
+  };
+  TipVibration tipVibration() const noexcept;
+  /// Along a unit vector in the tip's axes, at the pose of the modes.
+  ReducedHull reducedHull(const Eigen::Vector3d& direction) const noexcept;
+
+  /// w_tip: load of the hammer on the tip, the whole wrench. rigid: without vibration.
+  void loads(const Wrench& w_tip, bool rigid, JointLoads& result) const noexcept;
+  /// Whether weight and cylinders hold the hull down against a mean load of the hammer on the tip.
+  HoldDown holdDown(const Wrench& w_mean) const noexcept;
+
+  const Chain& chain() const noexcept { return chain_; }
+  const std::vector<Cylinder>& cylinders() const noexcept { return cylinders_; }
+  const BoomParameters& parameters() const noexcept { return parameters_; }
+
+ private:
+  Boom(const Chain& chain, std::vector<Cylinder> cylinders, const BoomParameters& parameters);
+
+  Chain chain_;
+  std::vector<Cylinder> cylinders_;
+  BoomParameters parameters_;
+  ChainDynamics dynamics_;
+  Vibration vibration_;
+  ChainPose pose_;
+  JointVector position_, weight_, motion_;
+  Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,22 @@
+/// The boom file: cylinders, damping, supports; every key required.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/boom.h"
+
+namespace hammer_loads {
+
+class ParameterReader;
+
+/// `cylinders` names them; the keys of each begin with its name. Usable only if the reader got no problem; what values
+/// demand of each other and of the chain is Boom::make()'s to judge.
+BoomParameters readBoomParameters(ParameterReader& reader);
+
+/// A boom alone from the text of its description and files; a later file's key replaces an earlier one's. Unknown keys
+/// are problems.
+Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files);
+
+}  // namespace hammer_loads

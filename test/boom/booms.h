@@ -1,0 +1,167 @@
+/// The shipped boom, random poses, and a hand-made planar chain with its description.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/boom/read_boom.h"
+#include "hammer_loads/linkage/format.h"
+
+namespace hammer_loads::test {
+
+inline std::string sourceFile(const std::string& path) { return std::string(HAMMER_LOADS_TEST_DATA) + "/../../" + path; }
+
+inline std::string textOf(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error("cannot read " + path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+inline std::string shippedUrdf() { return textOf(sourceFile("urdf/eo2621_mo100.urdf")); }
+
+inline BoomParameters shippedBoomParameters() {
+  const std::string file = sourceFile("config/boom_eo2621.yaml");
+  Checked<Boom> boom = loadBoom(shippedUrdf(), {file});
+  if (!boom.value) throw std::runtime_error(boom.problems.front());
+  return boom.value->parameters();
+}
+
+inline Boom shippedBoom() {
+  Checked<Boom> boom = Boom::make(shippedUrdf(), shippedBoomParameters());
+  if (!boom.value) throw std::runtime_error(boom.problems.front());
+  return std::move(*boom.value);
+}
+
+inline double between(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<>(low, high)(random);
+}
+
+inline Eigen::Vector3d randomVector(std::mt19937& random, double size) {
+  return {between(random, -size, size), between(random, -size, size), between(random, -size, size)};
+}
+
+inline Wrench randomWrench(std::mt19937& random) { return {randomVector(random, 5e4), randomVector(random, 1e4)}; }
+
+/// Any angles where the limits allow them, else within them.
+inline JointVector randomPosition(const Chain& chain, std::mt19937& random) {
+  JointVector q(chain.joints());
+  for (int j = 0; j < chain.joints(); ++j) {
+    q[j] = between(random, std::max(chain.lower()[j], -3.0), std::min(chain.upper()[j], 3.0));
+  }
+  return q;
+}
+
+inline JointVector joints(std::initializer_list<double> values) {
+  JointVector q(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), q.data());
+  return q;
+}
+
+/// Swing, boom, arm, hammer: arm steep, hull vertical.
+inline JointVector workingPosition() { return joints({0.2, -0.35, 1.20, -0.85}); }
+
+/// Links in a vertical plane, joints about +y; x + i z as a complex number, so that a turn by q about +y is e^(-iq).
+/// Newton and Euler written down for each body from the tip to the base.
+template <std::size_t N>
+struct PlanarChain {
+  using Complex = std::complex<double>;
+  struct Link {
+    Complex to_next;   ///< next joint (tip for the last) from this link's joint, in its frame [m]
+    Complex com;       ///< [m]
+    double mass{};     ///< [kg]
+    double inertia{};  ///< about the centre of mass, about y [kg m2]
+  };
+  std::array<Link, N> links;
+  double gravity{9.80665};
+
+  using Joints = std::array<double, N>;
+
+  /// Moment about +y of a force at r.
+  static double moment(Complex r, Complex f) { return r.imag() * f.real() - r.real() * f.imag(); }
+
+  /// Torques of all loads on the joints, so minus those that the drives must give. Load on the tip in its axes.
+  Joints loads(const Joints& q, const Joints& qd, const Joints& qdd, Complex tip_force, double tip_torque) const {
+    const Complex i(0.0, 1.0);
+    std::array<Complex, N> turn, acceleration;
+    std::array<double, N> spin;
+    Complex joint_acceleration = 0.0;
+    double angle = 0.0, rate = 0.0, spin_rate = 0.0;
+    for (std::size_t k = 0; k < N; ++k) {
+      angle += q[k], rate += qd[k], spin_rate += qdd[k];
+      turn[k] = std::exp(-i * angle);
+      const Complex factor = -i * spin_rate - rate * rate;
+      acceleration[k] = joint_acceleration + factor * turn[k] * links[k].com;
+      joint_acceleration += factor * turn[k] * links[k].to_next;
+      spin[k] = spin_rate;
+    }
+    Complex force = -tip_force * turn[N - 1];  // by link k on link k + 1
+    double torque = -tip_torque;
+    Joints result{};
+    for (std::size_t k = N; k-- > 0;) {
+      const Complex inertia_force = links[k].mass * (acceleration[k] + i * gravity);
+      torque += moment(turn[k] * links[k].to_next, force) + moment(turn[k] * links[k].com, inertia_force) +
+                links[k].inertia * spin[k];
+      force += inertia_force;
+      result[k] = -torque;
+    }
+    return result;
+  }
+
+  /// Column k: minus the loads of a unit acceleration of joint k, at rest and without weight.
+  Eigen::Matrix<double, N, N> massMatrix(const Joints& q) const {
+    PlanarChain weightless = *this;
+    weightless.gravity = 0.0;
+    Eigen::Matrix<double, N, N> M;
+    for (std::size_t k = 0; k < N; ++k) {
+      Joints unit{};
+      unit[k] = 1.0;
+      const Joints column = weightless.loads(q, {}, unit, 0.0, 0.0);
+      for (std::size_t r = 0; r < N; ++r) M(static_cast<int>(r), static_cast<int>(k)) = -column[r];
+    }
+    return M;
+  }
+
+  /// Its description, joints j0, j1, ..., tip link `tip`.
+  std::string urdf() const {
+    std::string text = "<robot name=\"planar\"><link name=\"base_link\"/>";
+    std::string parent = "base_link";
+    Complex origin = 0.0;
+    for (std::size_t k = 0; k <= N; ++k) {
+      const bool tip = k == N;
+      const std::string name = tip ? "tip" : format("link%zu", k);
+      text += format("<joint name=\"j%zu\" type=\"%s\"><parent link=\"%s\"/><child link=\"%s\"/>"
+                     "<origin xyz=\"%.17g 0 %.17g\"/><axis xyz=\"0 1 0\"/></joint>",
+                     k, tip ? "fixed" : "continuous", parent.c_str(), name.c_str(), origin.real(), origin.imag());
+      text += "<link name=\"" + name + "\">";
+      if (!tip) {
+        text += format("<inertial><origin xyz=\"%.17g 0 %.17g\"/><mass value=\"%.17g\"/>", links[k].com.real(),
+                       links[k].com.imag(), links[k].mass);
+        text += format("<inertia ixx=\"%.17g\" ixy=\"0\" ixz=\"0\" iyy=\"%.17g\" iyz=\"0\" izz=\"%.17g\"/></inertial>",
+                       links[k].inertia, links[k].inertia, links[k].inertia);
+        origin = links[k].to_next;
+      }
+      text += "</link>";
+      parent = name;
+    }
+    return text + "</robot>";
+  }
+
+  static PlanarChain random(std::mt19937& random) {
+    const auto complex = [&] { return Complex(between(random, -1.5, 3.0), between(random, -1.0, 1.0)); };
+    PlanarChain chain;
+    for (Link& link : chain.links) {
+      link = {complex(), complex(), between(random, 20.0, 500.0), between(random, 5.0, 300.0)};
+    }
+    return chain;
+  }
+};
+
+}  // namespace hammer_loads::test

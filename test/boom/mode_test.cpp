@@ -1,0 +1,232 @@
+#include "hammer_loads/boom/mode.h"
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <vector>
+
+#include "hammer_loads/linkage/format.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+using Real = boost::multiprecision::cpp_bin_float_50;
+constexpr double kPi = 3.14159265358979323846;
+
+/// Impulse, step, ramp and parabola by the closed forms in 50 digits.
+std::array<double, 4> exactResponse(const Mode& mode, double time) {
+  const Real w = mode.omega, zeta = mode.zeta, t = time;
+  const Real root = sqrt(1 - zeta * zeta), decay = exp(-zeta * w * t);
+  const Real s = sin(root * w * t), c = cos(root * w * t);
+  const Real impulse = decay * s / (root * w);
+  const Real step = (1 - decay * (c + zeta / root * s)) / (w * w);
+  const Real ramp = (t - 2 * zeta * w * step - impulse) / (w * w);
+  const Real parabola = (t * t / 2 - 2 * zeta * w * ramp - step) / (w * w);
+  return {impulse.convert_to<double>(), step.convert_to<double>(), ramp.convert_to<double>(),
+          parabola.convert_to<double>()};
+}
+
+TEST(ModeResponse, EqualsFiftyDigitsForEveryStep) {
+  double worst = 0.0;
+  for (double zeta : {0.0, 1e-3, 0.05, 0.4, 0.95}) {
+    for (double wt = 1e-6; wt < 500.0; wt *= 1.37) {
+      const Mode mode{23.7, zeta};
+      const double t = wt / mode.omega;
+      const ModeResponse got = responseAt(mode, t);
+      const auto expected = exactResponse(mode, t);
+      // Size: what the same would be without the swinging parts.
+      const std::array<double, 4> value{got.impulse, got.step, got.ramp, got.parabola};
+      const double w = mode.omega;
+      const std::array<double, 4> size{std::min(t, 1.0 / w), std::min(t * t / 2.0, 1.0 / (w * w)),
+                                       std::min(t * t * t / 6.0, t / (w * w)),
+                                       std::min(std::pow(t, 4) / 24.0, t * t / (2.0 * w * w))};
+      for (std::size_t i = 0; i < 4; ++i) {
+        // Argument of sine and cosine: half an ulp of wt.
+        const double tolerance = (wt > 1.0 ? 8.0 + wt : 8.0) * 2.3e-16;
+        const double error = std::abs(value[i] - expected[i]) / size[i];
+        EXPECT_LT(error, 4.0 * tolerance) << "zeta " << zeta << " wt " << wt << " term " << i;
+        if (wt <= 10.0) worst = std::max(worst, error);
+      }
+    }
+  }
+  RecordProperty("worst", format("%.2g", worst));
+}
+
+TEST(ModeResponse, FreeJointHasNoFrequency) {
+  const ModeResponse r = responseAt({0.0, 0.05}, 3.0);
+  EXPECT_DOUBLE_EQ(r.impulse, 3.0);
+  EXPECT_DOUBLE_EQ(r.step, 4.5);
+  EXPECT_DOUBLE_EQ(r.ramp, 4.5);
+  EXPECT_DOUBLE_EQ(r.parabola, 3.375);
+}
+
+TEST(ModeAdvance, ManySmallStepsEqualOneLarge) {
+  std::mt19937 random(31);
+  std::uniform_real_distribution<> between(-1.0, 1.0);
+  for (int i = 0; i < 200; ++i) {
+    const Mode mode{std::exp(3.0 * between(random) + 2.0), 0.5 + 0.49 * between(random)};
+    const double h = std::exp(3.0 * between(random) - 3.0);
+    const double from = between(random), to = between(random);
+    const ModeState start{between(random) / mode.omega, between(random)};
+    const ModeState whole = advanced(mode, start, {from, to, 0.5 * (from + to)}, h);
+    ModeState parts = start;
+    constexpr int kParts = 16;
+    for (int k = 0; k < kParts; ++k) {
+      const double a = from + (to - from) * k / kParts, b = from + (to - from) * (k + 1) / kParts;
+      parts = advanced(mode, parts, {a, b, 0.5 * (a + b)}, h / kParts);
+    }
+    const double size = std::hypot(start.v, mode.omega * start.x) + std::min(h, 1.0 / mode.omega);
+    EXPECT_NEAR(whole.x * mode.omega, parts.x * mode.omega, 2e-14 * size);
+    EXPECT_NEAR(whole.v, parts.v, 2e-14 * size);
+  }
+}
+
+TEST(ModeAdvance, ParabolaKeepsMeanAndEnds) {
+  // A heavy slow mode feels the impulse only: v = mean h, whatever the ends.
+  const ModeState after = advanced({1e-9, 0.05}, {}, {3.0, -8.0, 5.0}, 0.01);
+  EXPECT_NEAR(after.v, 0.05, 1e-12);
+  // Exact for a parabola in time: t^2 over [1, 2] is 1, 4 at the ends and 7/3 in the mean.
+  const Mode mode{12.0, 0.07};
+  ModeState state = advanced(mode, {}, {0.0, 1.0, 1.0 / 3.0}, 1.0);
+  state = advanced(mode, state, {1.0, 4.0, 7.0 / 3.0}, 1.0);
+  const ModeState whole = advanced(mode, {}, {0.0, 4.0, 4.0 / 3.0}, 2.0);
+  EXPECT_NEAR(state.x, whole.x, 1e-15);
+  EXPECT_NEAR(state.v, whole.v, 1e-14);
+}
+
+/// Duhamel's integral, Gauss-Legendre: int f(s) e^(-zeta w (t - s)) sin(root w (t - s))/(root w) ds.
+double duhamel(const Mode& mode, double mu, double t) {
+  static const std::array<double, 8> node{0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863,
+                                          0.6178762444026437484, 0.7554044083550030338, 0.8656312023878317438,
+                                          0.9445750230732325760, 0.9894009349916499325};
+  static const std::array<double, 8> weight{0.1894506104550684963, 0.1826034150449235889, 0.1691565193950025382,
+                                            0.1495959888165767320, 0.1246289712555338720, 0.0951585116824927848,
+                                            0.0622535239386478929, 0.0271524594117540949};
+  const double end = std::min(t, kPi / mu), root = std::sqrt(1.0 - mode.zeta * mode.zeta);
+  constexpr int kPanels = 40;
+  long double sum = 0.0L;
+  for (int p = 0; p < kPanels; ++p) {
+    const double middle = end * (p + 0.5) / kPanels, half = 0.5 * end / kPanels;
+    for (std::size_t i = 0; i < 8; ++i) {
+      for (double side : {-1.0, 1.0}) {
+        const double s = middle + side * half * node[i];
+        sum += half * weight[i] * std::sin(mu * s) * std::exp(-mode.zeta * mode.omega * (t - s)) *
+               std::sin(root * mode.omega * (t - s)) / (root * mode.omega);
+      }
+    }
+  }
+  return static_cast<double>(sum);
+}
+
+TEST(HalfSine, ClosedFormEqualsDuhamelsIntegral) {
+  double worst = 0.0;
+  for (double omega : {3.0, 25.0, 160.0, 168.0, 700.0}) {
+    const Mode mode{omega, 0.05};
+    const double mu = 168.0, length = kPi / mu;
+    double peak = 0.0;
+    std::vector<double> error;
+    for (double t = 0.02 * length; t < 4.0 * length; t += 0.06 * length) {
+      const double got = halfSineResponse(mode, 1.0, mu, t).x;
+      peak = std::max(peak, std::abs(got));
+      error.push_back(std::abs(got - duhamel(mode, mu, t)));
+    }
+    worst = std::max(worst, *std::max_element(error.begin(), error.end()) / peak);
+  }
+  RecordProperty("worst", format("%.2g", worst));
+  EXPECT_LT(worst, 1e-12);
+}
+
+/// Steps with force linear between samples, the pulse over `steps` of them, and the response after twice the pulse.
+ModeState stepped(const Mode& mode, double mu, int steps) {
+  const double h = kPi / mu / steps;
+  ModeState state;
+  for (int k = 0; k < 2 * steps; ++k) {
+    const double from = k <= steps ? std::sin(kPi * k / steps) : 0.0;
+    const double to = k + 1 < steps ? std::sin(kPi * (k + 1) / steps) : 0.0;
+    state = advanced(mode, state, {from, to, 0.5 * (from + to)}, h);
+  }
+  return state;
+}
+
+TEST(HalfSine, SteppingConvergesToTheClosedForm) {
+  // Exact for the polygon through the samples; the polygon's own error is a series in h^2, which Richardson removes.
+  double worst = 0.0;
+  for (double omega : {3.0, 25.0, 160.0}) {
+    const Mode mode{omega, 0.05};
+    const double mu = 168.0;
+    std::array<std::array<double, 2>, 6> row;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const ModeState state = stepped(mode, mu, 8 << i);
+      row[i] = {state.x, state.v};
+    }
+    const ModeState exact = halfSineResponse(mode, 1.0, mu, 2.0 * kPi / mu);
+    const double size = std::hypot(exact.v, omega * exact.x);
+    // Second order: four times less for half the step.
+    EXPECT_NEAR(std::abs(row[2][1] - exact.v) / std::abs(row[3][1] - exact.v), 4.0, 0.1);
+    for (std::size_t level = 1; level < row.size(); ++level) {
+      const double factor = std::pow(4.0, static_cast<double>(level));
+      for (std::size_t i = row.size() - 1; i >= level; --i) {
+        for (std::size_t c = 0; c < 2; ++c) row[i][c] = (factor * row[i][c] - row[i - 1][c]) / (factor - 1.0);
+      }
+    }
+    worst = std::max({worst, std::abs(row.back()[0] - exact.x) * omega / size, std::abs(row.back()[1] - exact.v) / size});
+  }
+  RecordProperty("worst", format("%.2g", worst));
+  EXPECT_LT(worst, 1e-12);
+}
+
+TEST(HalfSine, ImpulseTimesFrequencyDecidesForAShortPulse) {
+  // Impulse 2/mu on a slow mode: velocity 2/mu, displacement 2/(mu omega) a quarter period later.
+  const Mode mode{6.0, 1e-6};
+  const double mu = 3000.0;
+  const ModeState after = halfSineResponse(mode, 1.0, mu, kPi / mu);
+  EXPECT_NEAR(after.v, 2.0 / mu, 1e-5 * 2.0 / mu);
+  const ModeState quarter = halfSineResponse(mode, 1.0, mu, 0.5 * kPi / mu + 0.5 * kPi / mode.omega);
+  EXPECT_NEAR(quarter.x, 2.0 / (mu * mode.omega), 1e-4 * 2.0 / (mu * mode.omega));
+}
+
+double energy(const Mode& mode, const ModeState& s) { return 0.5 * (s.v * s.v + mode.omega * mode.omega * s.x * s.x); }
+
+TEST(ModeAdvance, EnergyNeverGrowsWithoutForceWhateverTheStep) {
+  std::mt19937 random(32);
+  std::uniform_real_distribution<> between(-1.0, 1.0);
+  for (double zeta : {1e-4, 0.01, 0.05, 0.7}) {
+    for (int i = 0; i < 200; ++i) {
+      const Mode mode{std::exp(3.0 * between(random) + 2.0), zeta};
+      ModeState state{between(random), mode.omega * between(random)};
+      double before = energy(mode, state);
+      for (int k = 0; k < 300; ++k) {
+        const double h = std::exp(9.0 * between(random)) / mode.omega;  // 1e-4 to 8000 radians
+        state = advanced(mode, state, {}, h);
+        const double now = energy(mode, state);
+        ASSERT_LE(now, before * (1.0 + 4.0 * 2.3e-16) + 1e-300);
+        before = now;
+      }
+    }
+  }
+}
+
+TEST(ModeAdvance, StepsOfAHundredPeriodsStayBounded) {
+  const Mode mode{300.0, 0.02};
+  const double h = 100.0 * 2.0 * kPi / mode.omega;
+  std::mt19937 random(33);
+  std::uniform_real_distribution<> between(-1.0, 1.0);
+  ModeState state;
+  double force = 0.0;
+  for (int k = 0; k < 100000; ++k) {
+    const double next = between(random);
+    state = advanced(mode, state, {force, next, 0.5 * (force + next)}, h);
+    force = next;
+    // Static displacement of a unit force, with room for an overshoot.
+    ASSERT_LT(std::abs(state.x), 2.0 / (mode.omega * mode.omega));
+    ASSERT_LT(std::abs(state.v), 2.0 / mode.omega);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,140 @@
+#include <urdf_parser/urdf_parser.h>
+
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl_parser/kdl_parser.hpp>
+
+#include "boom/booms.h"
+#include "hammer_loads/linkage/link_motion.h"
+#include "hammer_loads/parameters/hammer_parameters.h"
+#include "hammer_loads/parameters/parameter_reader.h"
+#include "support/main.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+/// The shipped description as TF would draw it.
+class Model : public testing::Test {
+ protected:
+  Model() : model_(urdf::parseURDF(test::shippedUrdf())) {
+    if (!model_ || !kdl_parser::treeFromUrdfModel(*model_, tree_)) throw std::runtime_error("cannot read the URDF");
+  }
+
+  /// Pose of a link, joints not named at zero.
+  KDL::Frame frame(const std::string& link, const std::map<std::string, double>& angles = {}) const {
+    KDL::Chain chain;
+    EXPECT_TRUE(tree_.getChain("base_link", link, chain)) << link;
+    KDL::Frame X = KDL::Frame::Identity();
+    for (const KDL::Segment& segment : chain.segments) {
+      const auto angle = angles.find(segment.getJoint().getName());
+      X = X * segment.pose(angle == angles.end() ? 0.0 : angle->second);
+    }
+    return X;
+  }
+  double mass(const std::string& link) const {
+    const urdf::InertialSharedPtr inertial = model_->getLink(link)->inertial;
+    return inertial ? inertial->mass : 0.0;
+  }
+
+  urdf::ModelInterfaceSharedPtr model_;
+  KDL::Tree tree_;
+};
+
+Mechanism shippedMechanism() {
+  std::vector<std::string> problems, notes;
+  ParameterReader reader(*readParameterFile(test::sourceFile("config/hammer_mo100.yaml"), problems));
+  return *readMechanism(reader, notes);
+}
+
+TEST_F(Model, AllFramesAreAlignedAtZero) {
+  for (const auto& [name, link] : model_->links_) {
+    if (name == "base_link") continue;
+    EXPECT_TRUE(KDL::Equal(frame(name).M, KDL::Rotation::Identity(), 1e-15)) << name;
+  }
+}
+
+TEST_F(Model, HullPitchIsTheSumOfThePitchJoints) {
+  const double boom = -0.31, arm = 1.27, hammer = -0.44;
+  const KDL::Frame X = frame("hammer_hull", {{"boom_joint", boom}, {"arm_joint", arm}, {"hammer_joint", hammer}});
+  EXPECT_TRUE(KDL::Equal(X.M, KDL::Rotation::RotY(boom + arm + hammer), 1e-15));
+  const KDL::Frame swung = frame("swing_link", {{"swing_joint", 0.4}});
+  EXPECT_TRUE(KDL::Equal(swung.M, KDL::Rotation::RotZ(0.4), 1e-15));
+}
+
+TEST_F(Model, PinsMeetAllAroundTheTurn) {
+  const Mechanism mechanism = shippedMechanism();
+  const LinkLengths& l = mechanism.parameters().lengths;
+  const double a = mechanism.parameters().rocker_com_angle;
+  /// Point at radius e^(i angle) of the mechanism frame from a pin, in hull axes (model.md 1).
+  const auto direction = [&](double angle) {
+    const double xi = std::cos(angle), eta = std::sin(angle);
+    return KDL::Vector(-(std::cos(a) * xi + std::sin(a) * eta), 0.0, -std::sin(a) * xi + std::cos(a) * eta);
+  };
+  const KDL::Frame X_hull = frame("hammer_hull").Inverse();
+  for (int degree = 0; degree <= 720; degree += 3) {
+    const double phi = degree * test::kPi / 180.0;
+    const LinkMotion motion = linkMotion(mechanism.linkage(), CrankAngle::fromAngle(phi));
+    const double psi = rockerAngle(motion.rocker), beta = rodAngle(motion);
+    const std::map<std::string, double> angles{
+        {"hammer_crank_joint", phi}, {"hammer_rod_joint", beta - phi}, {"hammer_rocker_joint", psi}};
+    // Pins by the description: link frame, then along the link at zero.
+    const KDL::Frame crank = X_hull * frame("hammer_crank", angles), rod = X_hull * frame("hammer_rod", angles);
+    const KDL::Frame rocker = X_hull * frame("hammer_rocker", angles);
+    const KDL::Vector at_zero = direction(0.0);
+    const KDL::Vector C_rod = rod * (l.rod * at_zero), C_rocker = rocker * (l.rocker * at_zero);
+    EXPECT_TRUE(KDL::Equal(C_rod, C_rocker, 1e-14)) << degree;
+    // And by the equations of model.md 1.
+    const KDL::Vector A = -l.pivot_distance * direction(0.0);
+    EXPECT_TRUE(KDL::Equal(crank.p, A, 1e-14));
+    EXPECT_TRUE(KDL::Equal(rod.p, A + l.crank * direction(phi), 1e-14)) << degree;
+    EXPECT_TRUE(KDL::Equal(rocker.p, KDL::Vector::Zero(), 1e-14));
+    EXPECT_TRUE(KDL::Equal(C_rocker, l.rocker * direction(psi), 1e-14)) << degree;
+    // Centre of mass of the rocker: -ls along x at the blow, S = ls (-cos psi, sin psi) in (x, z).
+    const KDL::Vector S = rocker * KDL::Vector(-0.106, 0.0, 0.0);
+    EXPECT_TRUE(KDL::Equal(S, KDL::Vector(-0.106 * std::cos(psi), 0.0, 0.106 * std::sin(psi)), 1e-14)) << degree;
+  }
+}
+
+TEST_F(Model, ToolIsOnTheStrikingLine) {
+  const KDL::Frame tool = frame("hammer_hull").Inverse() * frame("hammer_tool");
+  EXPECT_NEAR(tool.p.x(), -shippedMechanism().parameters().striking_distance, 1e-4);
+  EXPECT_LT(tool.p.z(), 0.0);
+}
+
+TEST_F(Model, HasThePublishedFigures) {
+  const double hammer = mass("hammer_link") + mass("hammer_hull") + mass("hammer_tool");
+  EXPECT_NEAR(hammer, 400.0, 1.0);
+  constexpr double kBucket = 300.0;
+  EXPECT_NEAR(mass("body") + mass("swing_link") + mass("boom_link") + mass("arm_link") + kBucket, 6100.0, 1.0);
+  // Moving links count once: in the hull.
+  for (const char* link : {"hammer_crank", "hammer_rod", "hammer_rocker"}) EXPECT_EQ(mass(link), 0.0);
+  const urdf::JointLimitsSharedPtr swing = model_->getJoint("swing_joint")->limits;
+  EXPECT_NEAR(swing->upper - swing->lower, 160.0 * test::kPi / 180.0, 1e-3);
+  // Deepest: boom down, arm and hammer straight below.
+  const double boom = model_->getJoint("boom_joint")->limits->upper, arm = 0.5 * test::kPi - boom;
+  const KDL::Frame tool =
+      frame("hammer_tool", {{"boom_joint", boom}, {"arm_joint", arm}, {"hammer_joint", -0.5 * test::kPi}});
+  EXPECT_LE(tool.p.z(), -3.4);
+  EXPECT_GE(tool.p.z(), -4.25);
+  EXPECT_LE(arm, model_->getJoint("arm_joint")->limits->upper);
+}
+
+TEST_F(Model, StaysWithinThePublishedSize) {
+  for (const urdf::VisualSharedPtr& visual : model_->getLink("body")->visual_array) {
+    const urdf::Vector3& p = visual->origin.position;
+    double x = 0.0, y = 0.0, z = 0.0;
+    if (const auto box = std::dynamic_pointer_cast<urdf::Box>(visual->geometry)) {
+      x = box->dim.x, y = box->dim.y, z = box->dim.z;
+    } else if (const auto wheel = std::dynamic_pointer_cast<urdf::Cylinder>(visual->geometry)) {
+      x = z = 2.0 * wheel->radius, y = wheel->length;
+    }
+    EXPECT_LE(std::abs(p.y) + 0.5 * y, 1.1 + 1e-9);
+    EXPECT_LE(p.z + 0.5 * z, 3.8);
+    EXPECT_GE(p.x - 0.5 * x, -6.48);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,245 @@
+#include <Eigen/Eigenvalues>
+#include <boost/numeric/odeint.hpp>
+
+#include "boom/booms.h"
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/shaft_load.h"
+#include "support/main.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::kPi;
+using test::PlanarChain;
+
+/// Pitch joints of the shipped boom as the hand-made planar chain; KDL only tells the figures.
+PlanarChain<3> planarBoom(const Chain& chain) {
+  PlanarChain<3> planar;
+  planar.gravity = 0.0;
+  for (int j = 0; j < 3; ++j) {
+    const int first = chain.linkBeyond(j + 1), end = j < 2 ? chain.linkBeyond(j + 2) : chain.links();
+    auto& link = planar.links[static_cast<std::size_t>(j)];
+    // Bodies fixed to each other as one; frames are aligned.
+    KDL::Vector offset = KDL::Vector::Zero();
+    KDL::RigidBodyInertia body = KDL::RigidBodyInertia::Zero();
+    for (int i = first; i < end; ++i) {
+      const KDL::Segment& segment = chain.kdl().getSegment(static_cast<unsigned>(i - 1));
+      if (i > first) offset += segment.pose(0.0).p;
+      body = body + KDL::Frame(offset) * segment.getInertia();
+    }
+    link.mass = body.getMass();
+    link.com = {body.getCOG().x(), body.getCOG().z()};
+    link.inertia = body.getRotationalInertia().data[4] - link.mass * std::norm(link.com);
+    const KDL::Vector next =
+        end < chain.links() ? chain.kdl().getSegment(static_cast<unsigned>(end - 1)).pose(0.0).p : offset;
+    link.to_next = {next.x(), next.z()};
+  }
+  return planar;
+}
+
+/// Crank with a steady torque, and the boom vibrating under it while its pose moves: everything smooth between blows.
+/// M from the hand-made chain, C = 2 zeta M sqrt(M^-1 K), K and poses as given.
+class Reference {
+ public:
+  using State = std::vector<double>;  // crank offset, crank speed, 3 displacements, 3 velocities, time
+  enum Index { kOffset, kSpeed, kDisplacement, kVelocity = 5, kTime = 8, kSize };
+
+  Reference(const Boom& boom, double amplitude)
+      : mechanism_(test::mechanismOf(test::mo100Parameters())), boom_(boom), planar_(planarBoom(boom.chain())),
+        amplitude_(amplitude) {
+    state_[kSpeed] = 13.5;
+  }
+
+  /// Slow motion of the pitch joints, as joint_states would tell; swing is held.
+  JointVector position(double time) const {
+    return test::workingPosition() + amplitude_ * test::joints({0.0, std::sin(1.3 * time), std::sin(1.9 * time + 0.4),
+                                                                std::sin(1.1 * time - 0.3)});
+  }
+  double crankAcceleration(const State& y) const {
+    const Motion m = motion(mechanism_.linkage(), angle(y));
+    const ShaftLoad load = shaftLoadRocker(mechanism_, m, {});
+    return (kTorque - load.half_inertia_slope * y[kSpeed] * y[kSpeed]) / (kDriveInertia + load.inertia);
+  }
+  /// On the hull, without weight.
+  Wrench wrench(const State& y) const {
+    const CrankMotion crank{angle(y), y[kSpeed], crankAcceleration(y)};
+    const HullWrench w = hullWrench(mechanism_, Level::kRocker, crank, {});
+    return {Eigen::Vector3d(w.force_x, 0.0, w.force_z), Eigen::Vector3d(0.0, w.torque_y, 0.0)};
+  }
+  /// Minus the wrench's impulse [N s, N m s].
+  Wrench momentum(const State& y) const {
+    const LinkMomentum p = linkMomentum(mechanism_, Level::kRocker, angle(y), y[kSpeed]);
+    return {Eigen::Vector3d(p.x, 0.0, p.z), Eigen::Vector3d(0.0, p.about_d, 0.0)};
+  }
+
+  /// To `time`; `blow` is called with the state on either side of a blow.
+  template <typename Blow>
+  void advanceTo(double time, const Blow& blow) {
+    for (;;) {
+      State ahead = state_;
+      integrate(ahead, time - ahead[kTime], false);
+      if (ahead[kOffset] < 2.0 * kPi) {
+        state_ = ahead;
+        return;
+      }
+      // The blow lies within: there with the crank's angle as the independent variable.
+      integrate(state_, 2.0 * kPi - state_[kOffset], true);
+      before_blow_ = true;
+      state_[kOffset] = 0.0;
+      const State before = state_;
+      blow(before, true);
+      before_blow_ = false;
+      blow(before, false);
+    }
+  }
+  const State& state() const { return state_; }
+  Eigen::Vector3d displacement() const { return Eigen::Vector3d(&state_[kDisplacement]); }
+  Eigen::Vector3d velocity() const { return Eigen::Vector3d(&state_[kVelocity]); }
+  /// Torque that vibration adds: -M x''.
+  Eigen::Vector3d torque() const {
+    State rate(kSize);
+    this->rate(state_, rate);
+    return -massMatrix(state_[kTime]) * Eigen::Vector3d(&rate[kVelocity]);
+  }
+
+ private:
+  static constexpr double kTorque = 165.0, kDriveInertia = 0.8;
+
+  CrankAngle angle(const State& y) const {
+    if (before_blow_) return {0.0, Side::kBeforeBlow};
+    // Past half a turn the nearest blow is the one ahead; beyond it, its smooth continuation.
+    return y[kOffset] > kPi ? CrankAngle{y[kOffset] - 2.0 * kPi, Side::kBeforeBlow}
+                            : CrankAngle{y[kOffset], Side::kAfterBlow};
+  }
+  Eigen::Matrix3d massMatrix(double time) const {
+    const JointVector q = position(time);
+    return planar_.massMatrix({q[1], q[2], q[3]});
+  }
+  void rate(const State& y, State& dy) const {
+    const JointVector q = position(y[kTime]);
+    const Eigen::Matrix3d M = massMatrix(y[kTime]);
+    Eigen::Vector3d K;
+    for (int i = 0; i < 3; ++i) {
+      const Cylinder& cylinder = boom_.cylinders()[static_cast<std::size_t>(i)];
+      K[i] = cylinder.jointStiffness(cylinder.at(q[cylinder.joint()]));
+    }
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(K.asDiagonal().toDenseMatrix(), M);
+    const Eigen::Matrix3d shape = solver.eigenvectors();  // shape^T M shape = 1
+    const double zeta = boom_.parameters().vibration.damping_ratio;
+    const Eigen::Matrix3d C =
+        M * shape * (2.0 * zeta * solver.eigenvalues().cwiseSqrt()).asDiagonal() * shape.transpose() * M;
+    const Wrench w = wrench(y);
+    // Load torques by the hand-made chain: at rest, weightless, so J^T w alone.
+    const auto Q = planar_.loads({q[1], q[2], q[3]}, {}, {}, {w.force.x(), w.force.z()}, w.torque.y());
+    const Eigen::Vector3d x(&y[kDisplacement]), v(&y[kVelocity]);
+    const Eigen::Vector3d acceleration = M.ldlt().solve(Eigen::Vector3d(Q.data()) - C * v - K.cwiseProduct(x));
+    dy[kOffset] = y[kSpeed];
+    dy[kSpeed] = crankAcceleration(y);
+    for (std::size_t i = 0; i < 3; ++i) {
+      dy[kDisplacement + i] = v[static_cast<int>(i)];
+      dy[kVelocity + i] = acceleration[static_cast<int>(i)];
+    }
+    dy[kTime] = 1.0;
+  }
+  /// Over a span of time, or of crank angle.
+  void integrate(State& y, double span, bool by_angle) const {
+    using namespace boost::numeric::odeint;
+    const auto system = [&](const State& now, State& dy, double) {
+      rate(now, dy);
+      if (!by_angle) return;
+      for (double& entry : dy) entry /= now[kSpeed];
+    };
+    const auto stepper = make_controlled(1e-15, 1e-10, runge_kutta_fehlberg78<State>());
+    integrate_adaptive(stepper, system, y, 0.0, span, 0.1 * span);
+  }
+
+  Mechanism mechanism_;
+  const Boom& boom_;
+  PlanarChain<3> planar_;
+  double amplitude_;
+  bool before_blow_{};
+  State state_ = State(kSize);
+};
+
+struct Errors {
+  double displacement{}, torque{};            ///< largest over the session, of their peaks
+  double peak_displacement{}, peak_torque{};  ///< [rad], [N m]
+  int blows{};
+};
+
+/// A session sampled at `rate`, each step ended and begun at a blow.
+Errors session(double rate, double amplitude, bool with_mean) {
+  Boom boom = test::shippedBoom();
+  Reference reference(boom, amplitude);
+  boom.vibration().setPose(reference.position(0.0));
+  const JointVector still = JointVector::Zero(4);
+  Errors errors;
+  TorqueStep torque;
+  double time = 0.0, span_start = 0.0;
+  boom.moveCompliant({reference.position(0.0), still, still}, Eigen::Vector3d::Zero());
+  torque.from = boom.hammerTorque(reference.wrench(reference.state()));
+  Wrench momentum = reference.momentum(reference.state());
+  const auto step = [&](const Reference::State& y) {
+    const double h = y[Reference::kTime] - span_start;
+    torque.to = boom.hammerTorque(reference.wrench(y));
+    const Wrench now = reference.momentum(y);
+    torque.mean = with_mean ? boom.hammerTorque({(momentum.force - now.force) / h, (momentum.torque - now.torque) / h})
+                            : JointVector(0.5 * (torque.from + torque.to));
+    boom.vibration().advance(h, torque);
+  };
+  const auto begin = [&](const Reference::State& y) {
+    span_start = y[Reference::kTime];
+    torque.from = boom.hammerTorque(reference.wrench(y));
+    momentum = reference.momentum(y);
+  };
+  double worst_displacement = 0.0, worst_torque = 0.0;
+  while (time < 2.5) {
+    time += 1.0 / rate;
+    boom.moveCompliant({reference.position(time), still, still}, Eigen::Vector3d::Zero());
+    reference.advanceTo(time, [&](const Reference::State& y, bool before) {
+      before ? step(y) : begin(y);
+      errors.blows += before ? 1 : 0;
+    });
+    step(reference.state());
+    begin(reference.state());
+    const JointVector x = boom.vibration().displacement(), t = boom.vibration().torque();
+    const Eigen::Vector3d exact_x = reference.displacement(), exact_t = reference.torque();
+    worst_displacement = std::max(worst_displacement, (x.tail<3>() - exact_x).cwiseAbs().maxCoeff());
+    worst_torque = std::max(worst_torque, (t.tail<3>() - exact_t).cwiseAbs().maxCoeff());
+    errors.peak_displacement = std::max(errors.peak_displacement, exact_x.cwiseAbs().maxCoeff());
+    errors.peak_torque = std::max(errors.peak_torque, exact_t.cwiseAbs().maxCoeff());
+  }
+  errors.displacement = worst_displacement / errors.peak_displacement;
+  errors.torque = worst_torque / errors.peak_torque;
+  return errors;
+}
+
+/// Every bound of the session, with the largest error found.
+void expectWithin(const Errors& errors, double bound) {
+  EXPECT_LE(errors.displacement, bound);
+  EXPECT_LE(errors.torque, bound);
+  EXPECT_GE(errors.blows, 10);
+  EXPECT_GT(errors.peak_displacement, 1e-3);
+  testing::Test::RecordProperty("displacement", format("%.2g", errors.displacement));
+  testing::Test::RecordProperty("torque", format("%.2g", errors.torque));
+}
+
+constexpr double kMoving = 0.1;  // [rad], up to 0.19 rad/s
+
+// Forces linear between samples: as good as the samples' polygon follows the pulse.
+TEST(VibrationSession, SteadyPoseAt1000Hz) { expectWithin(session(1000.0, 0.0, false), 1e-3); }
+TEST(VibrationSession, SteadyPoseAt200Hz) { expectWithin(session(200.0, 0.0, false), 1e-2); }
+TEST(VibrationSession, MovingPoseAt1000Hz) { expectWithin(session(1000.0, kMoving, false), 1e-3); }
+TEST(VibrationSession, MovingPoseAt200Hz) { expectWithin(session(200.0, kMoving, false), 1e-2); }
+
+// With the exact mean of the wrench from the links' momentum no impulse is lost: far better, whatever the rate.
+TEST(VibrationSession, SteadyPoseAt1000HzWithMeans) { expectWithin(session(1000.0, 0.0, true), 1e-6); }
+TEST(VibrationSession, SteadyPoseAt200HzWithMeans) { expectWithin(session(200.0, 0.0, true), 2e-4); }
+TEST(VibrationSession, MovingPoseAt1000HzWithMeans) { expectWithin(session(1000.0, kMoving, true), 1e-3); }
+TEST(VibrationSession, MovingPoseAt200HzWithMeans) { expectWithin(session(200.0, kMoving, true), 2e-3); }
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

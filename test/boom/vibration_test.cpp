@@ -1,0 +1,224 @@
+#include "hammer_loads/boom/vibration.h"
+
+#include "boom/booms.h"
+#include "hammer_loads/boom/rigid_error.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+const JointVector kZero = JointVector::Zero(4);
+
+class ShippedBoom : public testing::Test {
+ protected:
+  ShippedBoom() : boom_(test::shippedBoom()) { pose(test::workingPosition()); }
+  void pose(const JointVector& q) { boom_.moveCompliant({q, kZero, kZero}, Eigen::Vector3d::Zero()); }
+  Vibration& vibration() { return boom_.vibration(); }
+  const BoomModes& modes() { return boom_.vibration().modes(); }
+  void steadyLoad(double step, const JointVector& torque) { vibration().advance(step, {torque, torque, torque}); }
+
+  Boom boom_;
+  const Wrench push_{Eigen::Vector3d(2e3, 0.0, 8e3), Eigen::Vector3d(0.0, -500.0, 0.0)};
+};
+
+TEST_F(ShippedBoom, ModesSolveTheEquationOfMotion) {
+  std::mt19937 random(41);
+  for (int i = 0; i < 100; ++i) {
+    // The lead ahead of a moving boom does not matter here: the matrices tell their own pose.
+    pose(test::randomPosition(boom_.chain(), random));
+    const BoomModes& m = modes();
+    ASSERT_EQ(m.count, 3);
+    const Eigen::Matrix3d M = m.mass.bottomRightCorner<3, 3>(), S = m.shape;
+    const Eigen::Matrix3d K = m.stiffness.asDiagonal();
+    EXPECT_LT((S.transpose() * M * S - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    const Eigen::Vector3d omega = m.omega;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d residual = K * S.col(k) - omega[k] * omega[k] * M * S.col(k);
+      EXPECT_LT(residual.norm(), 1e-11 * (K * S.col(k)).norm());
+      if (k > 0) EXPECT_GE(omega[k], omega[k - 1]);
+    }
+  }
+}
+
+TEST_F(ShippedBoom, VibratesAtAFewHertz) {
+  EXPECT_GT(modes().omega[0] / (2.0 * kPi), 1.0);
+  EXPECT_LT(modes().omega[0] / (2.0 * kPi), 6.0);
+  EXPECT_EQ(modes().joint[0], *boom_.chain().jointIndex("boom_joint"));
+}
+
+TEST_F(ShippedBoom, CylindersCarryWhatTheyHold) {
+  // hammer + vibration = K x + C x' of the joints that have a cylinder.
+  const JointVector from = boom_.hammerTorque(push_), to = -0.3 * from;
+  vibration().advance(0.013, {from, to, 0.5 * (from + to)});
+  const BoomModes& m = modes();
+  const Eigen::Vector3d x = vibration().displacement().tail<3>(), v = vibration().velocity().tail<3>();
+  const Eigen::Matrix3d M = m.mass.bottomRightCorner<3, 3>(), S = m.shape;
+  const Eigen::Vector3d damping = 2.0 * boom_.parameters().vibration.damping_ratio * m.omega;
+  const Eigen::Vector3d held = m.stiffness.cwiseProduct(x) + M * S * damping.asDiagonal() * S.transpose() * M * v;
+  const JointVector carried = to + vibration().torque();
+  EXPECT_LT((carried.tail<3>() - held).norm(), 1e-11 * held.norm());
+  EXPECT_EQ(vibration().displacement()[0], 0.0);
+  // Acceleration is what is left over M; the held swing joint feels the coupling only.
+  EXPECT_LT((vibration().torque() + m.mass * vibration().acceleration()).norm(), 1e-11 * held.norm());
+}
+
+TEST_F(ShippedBoom, ComesToRestWhereTheOilHoldsTheLoad) {
+  const JointVector torque = boom_.hammerTorque(push_);
+  for (int i = 0; i < 10; ++i) steadyLoad(3.0, torque);
+  const Eigen::Vector3d expected = torque.tail<3>().cwiseQuotient(modes().stiffness);
+  EXPECT_LT((vibration().displacement().tail<3>() - expected).norm(), 1e-12 * expected.norm());
+  EXPECT_LT(vibration().torque().norm(), 1e-9 * torque.norm());
+}
+
+TEST_F(ShippedBoom, StrikeGivesTheImpulseAsMomentum) {
+  const JointVector impulse = test::joints({3.0, -20.0, 14.0, 5.0});
+  vibration().strike(impulse);
+  const Eigen::Vector3d momentum = modes().mass.bottomRightCorner<3, 3>() * vibration().velocity().tail<3>();
+  EXPECT_LT((momentum - impulse.tail<3>()).norm(), 1e-12 * impulse.norm());
+  EXPECT_TRUE(vibration().displacement().isZero(0.0));
+}
+
+TEST_F(ShippedBoom, EnergyNeverGrowsWithoutLoad) {
+  std::mt19937 random(42);
+  steadyLoad(0.02, boom_.hammerTorque(push_));
+  double before = vibration().energy();
+  EXPECT_GT(before, 0.0);
+  for (int i = 0; i < 2000; ++i) {
+    steadyLoad(std::exp(test::between(random, -9.0, 1.0)), kZero);
+    const double now = vibration().energy();
+    ASSERT_LE(now, before * (1.0 + 1e-15) + 1e-300);
+    before = now;
+  }
+}
+
+TEST_F(ShippedBoom, EnergyComesBackWithThePose) {
+  // A slowly moving pose takes and gives energy (with omega); back where it was, none was made. Damping next to none.
+  VibrationSettings settings = boom_.parameters().vibration;
+  settings.damping_ratio = 1e-9;
+  Vibration free(boom_.chain(), boom_.cylinders(), settings);
+  free.setPose(test::workingPosition());
+  free.strike(test::joints({0.0, 500.0, 0.0, 0.0}));
+  const double start = free.energy();
+  const double omega = free.modes().omega[0];
+  double least = start, most = start, softest = omega, hardest = omega;
+  constexpr int kSteps = 40000;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double sway = 0.25 * std::sin(2.0 * kPi * i / kSteps);
+    free.setPose(test::workingPosition() + test::joints({0.0, sway, -sway, 0.5 * sway}));
+    free.advance(1e-3, {kZero, kZero, kZero});
+    least = std::min(least, free.energy()), most = std::max(most, free.energy());
+    softest = std::min(softest, free.modes().omega[0]), hardest = std::max(hardest, free.modes().omega[0]);
+  }
+  EXPECT_NEAR(free.energy(), start, 0.02 * start);
+  EXPECT_GT(least, start * softest / omega * 0.9);
+  EXPECT_LT(most, start * hardest / omega * 1.1);
+  EXPECT_GT(hardest / softest, 1.05);
+}
+
+TEST_F(ShippedBoom, HugeStepsStayBounded) {
+  std::mt19937 random(43);
+  const double step = 100.0 * 2.0 * kPi / modes().omega[2];
+  const JointVector size = boom_.hammerTorque(push_);
+  JointVector torque = kZero;
+  const double softest = size.tail<3>().norm() / modes().stiffness.minCoeff();
+  for (int i = 0; i < 20000; ++i) {
+    const JointVector next = test::between(random, -1.0, 1.0) * size;
+    vibration().advance(step, {torque, next, 0.5 * (torque + next)});
+    torque = next;
+    ASSERT_LT(vibration().displacement().norm(), 10.0 * softest);
+  }
+}
+
+TEST_F(ShippedBoom, TipMovesAsTheJointsTellIt) {
+  steadyLoad(0.05, boom_.hammerTorque(push_));
+  const Boom::TipVibration tip = boom_.tipVibration();
+  const Pose before = boom_.pose().tip();
+  // Small displacement by forward kinematics, scaled up by 1/h.
+  const double h = 1e-6;
+  boom_.move({test::workingPosition() + h * vibration().displacement(), kZero, kZero}, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d moved = before.linear().transpose() * (boom_.pose().tip().translation() - before.translation()) / h;
+  EXPECT_LT((tip.displacement.head<3>() - moved).norm(), 1e-5 * moved.norm());
+  // In the plane of the boom: no displacement across, turning about y by the sum of the joints'.
+  EXPECT_NEAR(tip.displacement[1], 0.0, 1e-15);
+  EXPECT_NEAR(tip.displacement[4], vibration().displacement().sum(), 1e-15);
+  EXPECT_NEAR(tip.velocity[4], vibration().velocity().sum(), 1e-13);
+  EXPECT_NEAR(tip.acceleration[4], vibration().acceleration().sum(), 1e-10);
+}
+
+TEST_F(ShippedBoom, ReducedMassAndStiffnessAtTheHull) {
+  for (const Eigen::Vector3d& direction : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()}) {
+    const ReducedHull reduced = boom_.reducedHull(direction);
+    vibration().rest();
+    // An impulse of 1 N s along it moves the hull along it at 1/mass; a steady 1 N by 1/stiffness.
+    const JointVector unit = boom_.hammerTorque({direction, Eigen::Vector3d::Zero()});
+    vibration().strike(unit);
+    EXPECT_NEAR(direction.dot(boom_.tipVibration().velocity.head<3>()) * reduced.mass, 1.0, 1e-11);
+    vibration().rest();
+    for (int i = 0; i < 10; ++i) steadyLoad(5.0, unit);
+    EXPECT_NEAR(direction.dot(boom_.tipVibration().displacement.head<3>()) * reduced.stiffness, 1.0, 1e-9);
+    EXPECT_GT(reduced.mass, 50.0);
+    EXPECT_LT(reduced.mass, 6100.0);
+  }
+  // Nothing that vibrates moves it sideways.
+  EXPECT_TRUE(std::isinf(boom_.reducedHull(Eigen::Vector3d::UnitY()).stiffness) ||
+              boom_.reducedHull(Eigen::Vector3d::UnitY()).stiffness > 1e30);
+}
+
+TEST_F(ShippedBoom, KnowsNothingAtADeadPoint) {
+  BoomParameters parameters = boom_.parameters();
+  CylinderParameters& p = parameters.cylinders[0];
+  p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0, p.closed_length = 1.5, p.stroke = 0.6;
+  Checked<Boom> made = Boom::make(test::shippedUrdf(), parameters);
+  ASSERT_TRUE(made.value) << made.problems.front();
+  Boom& boom = *made.value;
+  const JointVector torque = test::joints({0.0, 1e4, 2e3, 1e3});
+  const auto at = [&](double angle) {
+    boom.moveCompliant({test::joints({0.0, angle, 1.2, -0.8}), kZero, kZero}, Eigen::Vector3d::Zero());
+  };
+  at(0.4), at(0.4);
+  boom.vibration().advance(0.02, {torque, torque, torque});
+  EXPECT_TRUE(boom.vibration().known());
+  EXPECT_GT(boom.vibration().energy(), 0.0);
+  at(0.0), at(0.0);
+  EXPECT_FALSE(boom.vibration().known());
+  EXPECT_TRUE(boom.vibration().modes().dead_point);
+  boom.vibration().advance(0.02, {torque, torque, torque});
+  EXPECT_TRUE(boom.vibration().displacement().isZero(0.0));
+  EXPECT_TRUE(boom.vibration().torque().isZero(0.0));
+  EXPECT_EQ(boom.vibration().energy(), 0.0);
+  JointLoads loads;
+  boom.loads({}, false, loads);
+  EXPECT_TRUE(loads.cylinder[0].dead_point);
+  EXPECT_FALSE(loads.cylinder[1].dead_point);
+  at(0.4), at(0.4);
+  EXPECT_TRUE(boom.vibration().known());
+  EXPECT_EQ(boom.vibration().energy(), 0.0);
+}
+
+TEST_F(ShippedBoom, RigidErrorFollowsPulseLength) {
+  const JointVector torque = boom_.hammerTorque({Eigen::Vector3d(0.0, 0.0, 8e3), Eigen::Vector3d::Zero()});
+  const double zeta = boom_.parameters().vibration.damping_ratio;
+  const auto error = [&](double length) { return rigidError(modes(), zeta, torque, length); };
+  const double period = 2.0 * kPi / modes().omega[0];
+  EXPECT_LT(error(200.0 * period), 0.01);       // slow: static
+  EXPECT_NEAR(error(0.0005 * period), 1.0, 0.02);  // short: the boom hardly moves, nothing is carried
+  EXPECT_GT(error(0.018), 0.5);                 // the MO-100's pulse: rigid is wrong
+  EXPECT_EQ(error(0.0), 0.0);
+  EXPECT_EQ(rigidError(modes(), zeta, kZero, 0.018), 0.0);
+
+  // Against stepping through the pulse.
+  const double length = 0.05, h = length / 2000.0;
+  double worst = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto at = [&](int k) { return JointVector(k < 2000 ? torque * std::sin(kPi * k / 2000.0) : 0.0 * torque); };
+    vibration().advance(h, {at(i), at(i + 1), 0.5 * (at(i) + at(i + 1))});
+    worst = std::max(worst, vibration().torque().cwiseAbs().maxCoeff());
+  }
+  EXPECT_NEAR(error(length), worst / torque.cwiseAbs().maxCoeff(), 0.01 * error(length));
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

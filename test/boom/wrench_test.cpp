@@ -1,0 +1,85 @@
+#include "hammer_loads/boom/wrench.h"
+
+#include <random>
+
+#include "boom/booms.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+/// The rotation is the doubles nearest to one, so that its own error does not blur the shift's.
+Pose randomPose(std::mt19937& random) {
+  Pose X = Pose::Identity();
+  X.linear() = Eigen::Quaternion<long double>(test::between(random, -1, 1), test::between(random, -1, 1),
+                                              test::between(random, -1, 1), test::between(random, -1, 1))
+                   .normalized()
+                   .toRotationMatrix()
+                   .cast<double>();
+  X.translation() = test::randomVector(random, 5.0);
+  return X;
+}
+
+TEST(WrenchShift, ForceAtALeverGivesItsMoment) {
+  // 20 kN along z, 2.5 m ahead in x: -50 kN m about y; the moment arm that tf2 0.7.6 leaves out.
+  Pose X_QP = Pose::Identity();
+  X_QP.translation() = Eigen::Vector3d(2.5, 0.0, 0.0);
+  const Wrench w_Q = shifted(X_QP, {Eigen::Vector3d(0.0, 0.0, 20e3), Eigen::Vector3d::Zero()});
+  EXPECT_EQ(w_Q.force, Eigen::Vector3d(0.0, 0.0, 20e3));
+  EXPECT_EQ(w_Q.torque, Eigen::Vector3d(0.0, -50e3, 0.0));
+}
+
+TEST(WrenchShift, PureCoupleIsOnlyTurned) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Pose X = randomPose(random);
+    const Eigen::Vector3d couple = test::randomVector(random, 1e4);
+    const Wrench w = shifted(X, {Eigen::Vector3d::Zero(), couple});
+    EXPECT_EQ(w.force, Eigen::Vector3d::Zero());
+    EXPECT_EQ(w.torque, X.linear() * couple);
+    Pose no_turn = Pose::Identity();
+    no_turn.translation() = X.translation();
+    EXPECT_EQ(shifted(no_turn, {Eigen::Vector3d::Zero(), couple}).torque, couple);
+  }
+}
+
+TEST(WrenchShift, ThereAndBackIsTheSame) {
+  std::mt19937 random(2);
+  double worst = 0.0;
+  for (int i = 0; i < 10000; ++i) {
+    const Pose X = randomPose(random);
+    const Wrench w = test::randomWrench(random);
+    const Wrench back = shifted(X.inverse(), shifted(X, w));
+    const double force = w.force.norm(), torque = w.torque.norm() + X.translation().norm() * force;
+    worst = std::max({worst, (back.force - w.force).norm() / force, (back.torque - w.torque).norm() / torque});
+  }
+  RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
+  EXPECT_LT(worst, 1e-15);
+}
+
+TEST(WrenchShift, EqualsTheMatrixAndConservesPower) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Pose X = randomPose(random);
+    const Wrench w = test::randomWrench(random);
+    Eigen::Matrix<double, 6, 1> stacked;
+    stacked << w.force, w.torque;
+    const Eigen::Matrix<double, 6, 1> by_matrix = shiftMatrix(X) * stacked;
+    const Wrench by_function = shifted(X, w);
+    EXPECT_LT((by_matrix.head<3>() - by_function.force).norm(), 1e-15 * w.force.norm());
+    const double size = w.torque.norm() + X.translation().norm() * w.force.norm();
+    EXPECT_LT((by_matrix.tail<3>() - by_function.torque).norm(), 2e-15 * size);
+
+    // A rigid body has one power, whichever point and axes: f v + t omega.
+    const Eigen::Vector3d v_P = test::randomVector(random, 2.0), omega_P = test::randomVector(random, 2.0);
+    const Eigen::Vector3d omega_Q = X.linear() * omega_P;
+    const Eigen::Vector3d v_Q = X.linear() * v_P - omega_Q.cross(X.translation());
+    const double power = w.force.dot(v_P) + w.torque.dot(omega_P);
+    EXPECT_NEAR(by_function.force.dot(v_Q) + by_function.torque.dot(omega_Q), power, 1e-13 * size);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,213 @@
+#include "hammer_loads/hammer/batch.h"
+
+#include <array>
+#include <vector>
+
+#include "hammer_loads/hammer/link_loads.h"
+#include "support/counting_new.h"
+#include "support/main.h"
+#include "support/mo100.h"
+#include "support/newton_euler.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::Real;
+
+constexpr Gravity kGravity{2.5, -9.4};
+constexpr std::size_t kColumns = 12;
+
+/// States and results in plain arrays.
+struct Table {
+  std::vector<double> angle, speed, acceleration;
+  std::vector<std::vector<double>> out;
+
+  void add(double phi, double w, double e) { angle.push_back(phi), speed.push_back(w), acceleration.push_back(e); }
+  std::size_t size() const { return angle.size(); }
+  CrankStates states(std::size_t from, std::size_t count) const {
+    return {angle.data() + from, speed.data() + from, acceleration.data() + from, count};
+  }
+  WrenchArrays wrenches(std::size_t from) { return {at(0, from), at(1, from), at(2, from)}; }
+  PinArrays pins(std::size_t from) {
+    return {at(3, from), at(4, from), at(5, from),  at(6, from), at(7, from),
+            at(8, from), at(9, from), at(10, from), at(11, from)};
+  }
+  double* at(std::size_t column, std::size_t from) { return out[column].data() + from; }
+  void compute(const HullModel& model, bool with_pins, BatchWidth width = BatchWidth::kAvx512) {
+    out.assign(kColumns, std::vector<double>(size(), -1.0));
+    if (with_pins) {
+      linkLoads(model, states(0, size()), kGravity, wrenches(0), pins(0), width);
+    } else {
+      hullWrenches(model, states(0, size()), kGravity, wrenches(0), width);
+    }
+  }
+};
+
+Table randomTable(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<> angle(-40.0, 40.0), speed(-60.0, 60.0), acceleration(-2000.0, 2000.0);
+  Table table;
+  for (std::size_t i = 0; i < count; ++i) table.add(angle(random), speed(random), acceleration(random));
+  return table;
+}
+
+std::array<double, kColumns> scalarRow(const HullModel& model, const CrankMotion& crank) {
+  const HullWrench w = hullWrench(model, crank, kGravity);
+  const PinReactions p = pinForces(model.mechanism(), model.level(), crank, kGravity, NearBlow(0.01));
+  return {w.force_x,         w.force_z,          w.torque_y,         p.hull_on_crank.x,
+          p.hull_on_crank.z, p.crank_on_rod.x,   p.crank_on_rod.z,   p.rod_on_rocker.x,
+          p.rod_on_rocker.z, p.hull_on_rocker.x, p.hull_on_rocker.z, p.drive_torque};
+}
+
+constexpr BatchWidth kWidths[] = {BatchWidth::kBaseline, BatchWidth::kAvx2, BatchWidth::kAvx512};
+
+TEST(Batch, EqualsTheScalarCallAtEveryLevelAndWidth) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  for (BatchWidth width : kWidths) {
+    for (Level level : {Level::kPulse, Level::kRocker, Level::kLinkage}) {
+      const HullModel model(mechanism, level);
+      for (bool with_pins : {false, true}) {
+        if (with_pins && level == Level::kPulse) continue;
+        Table table = randomTable(1001, 81);
+        table.compute(model, with_pins, width);
+        for (std::size_t i = 0; i < table.size(); ++i) {
+          const CrankMotion crank{CrankAngle::fromAngle(table.angle[i]), table.speed[i], table.acceleration[i]};
+          const std::array<double, kColumns> right = scalarRow(model, crank);
+          for (std::size_t c = 0; c < (with_pins ? kColumns : 3); ++c) {
+            // Of the state's own size, as forces may grow next to the blow.
+            const double size = 1e4 + std::abs(right[c]) + (c < 3 ? 0.0 : std::abs(right[7]));
+            EXPECT_NEAR(table.out[c][i], right[c], 1e-13 * size) << i << " column " << c;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Batch, DoesNotDependOnTheCut) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  std::mt19937 random(82);
+  for (BatchWidth width : kWidths) {
+    for (Level level : {Level::kPulse, Level::kRocker, Level::kLinkage}) {
+      const HullModel model(mechanism, level);
+      Table whole = randomTable(1000, 83), parts = whole;
+      whole.compute(model, true, width);
+      for (int trial = 0; trial < 20; ++trial) {
+        parts.out.assign(kColumns, std::vector<double>(parts.size(), 0.0));
+        for (std::size_t from = 0; from < parts.size();) {
+          const std::size_t count = std::min<std::size_t>(parts.size() - from, 1 + random() % (trial < 5 ? 7 : 200));
+          linkLoads(model, parts.states(from, count), kGravity, parts.wrenches(from), parts.pins(from), width);
+          from += count;
+        }
+        EXPECT_EQ(parts.out, whole.out) << "bit for bit";
+      }
+    }
+  }
+}
+
+TEST(Batch, WritesExactlyTheGivenStates) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kRocker);
+  for (std::size_t count : {0u, 1u, 3u, 63u, 64u, 65u, 130u}) {
+    Table table = randomTable(200, 84);
+    table.out.assign(kColumns, std::vector<double>(200, -7.0));
+    linkLoads(model, table.states(5, count), kGravity, table.wrenches(5), table.pins(5));
+    for (const std::vector<double>& column : table.out) {
+      EXPECT_EQ(column[4], -7.0);
+      EXPECT_EQ(column[5 + count], -7.0);
+      if (count > 0) {
+        EXPECT_NE(column[5], -7.0);
+        EXPECT_NE(column[4 + count], -7.0);
+      }
+    }
+  }
+}
+
+double relativeError(double x, double z, const test::Vector& exact) {
+  const test::Vector miss{Real(x) - exact.x, Real(z) - exact.y};
+  return static_cast<double>(sqrt(dot(miss, miss) / dot(exact, exact)));
+}
+
+TEST(Batch, KeepsItsDigitsNearTheBlow) {
+  std::mt19937 random(85);
+  for (BatchWidth width : kWidths) {
+    for (int i = 0; i < 4; ++i) {
+      const HammerParameters p = i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random);
+      const Mechanism mechanism = test::mechanismOf(p);
+      for (Level level : {Level::kRocker, Level::kLinkage}) {
+        Table table;
+        for (int decade = 1; decade <= 12; ++decade) {
+          for (double sign : {-1.7, 1.7}) table.add(sign * std::pow(10.0, -decade), 30.0, decade % 2 ? 0.0 : 400.0);
+        }
+        table.compute(HullModel(mechanism, level), true, width);
+        const test::NewtonEuler exact(p, level);
+        double worst = 0.0;
+        for (std::size_t k = 0; k < table.size(); ++k) {
+          const test::Reference right =
+              exact.at(CrankAngle::fromOffset(table.angle[k]), 30.0, table.acceleration[k], kGravity);
+          const auto& o = table.out;
+          worst = std::max({worst, relativeError(o[0][k], o[1][k], right.hull_force),
+                            relativeError(o[3][k], o[4][k], right.r01), relativeError(o[5][k], o[6][k], right.r12),
+                            relativeError(o[7][k], o[8][k], right.r23), relativeError(o[9][k], o[10][k], right.r03)});
+        }
+        EXPECT_LE(worst, 1e-13);
+        if (width == batchWidth())
+          std::printf("batch near the blow, machine %d level %d: %.2e\n", i, static_cast<int>(level), worst);
+      }
+    }
+  }
+}
+
+TEST(Batch, TakesAnyWinding) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kRocker);
+  Table table;
+  for (double turns : {-1e7, -1e3, -3.0, -1.0, 0.0, 1.0, 2.0, 1e3, 1e7}) {
+    for (double offset : {-3.0, -0.3, -1e-9, 1e-9, 0.2, 3.1}) table.add(turns * 2.0 * test::kPi + offset, 25.0, 100.0);
+  }
+  table.compute(model, false);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const HullWrench right = hullWrench(model, {CrankAngle::fromAngle(table.angle[i]), 25.0, 100.0}, kGravity);
+    EXPECT_NEAR(table.out[0][i], right.force_x, 1e-13 * 4e4) << table.angle[i];
+    EXPECT_NEAR(table.out[1][i], right.force_z, 1e-13 * 4e4) << table.angle[i];
+  }
+}
+
+TEST(Batch, CountsTheBlowItselfAsAfterIt) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kRocker);
+  Table table;
+  table.add(0.0, 30.0, 0.0);
+  table.add(-0.0, 30.0, 0.0);
+  table.add(-1e-300, 30.0, 0.0);
+  table.compute(model, false);
+  const double after = hullWrench(model, {{0.0, Side::kAfterBlow}, 30.0, 0.0}, kGravity).force_x;
+  const double before = hullWrench(model, {{0.0, Side::kBeforeBlow}, 30.0, 0.0}, kGravity).force_x;
+  EXPECT_NEAR(table.out[0][0], after, 1e-13 * std::abs(before));
+  EXPECT_EQ(table.out[0][0], table.out[0][1]);
+  EXPECT_NEAR(table.out[0][2], before, 1e-13 * std::abs(before));
+  EXPECT_GT(std::abs(after - before), 1000.0);
+}
+
+TEST(Batch, NeverAllocates) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  const HullModel model(mechanism, Level::kLinkage);
+  Table table = randomTable(777, 86);
+  table.compute(model, true);
+  const std::size_t before = test::allocations;
+  linkLoads(model, table.states(0, 777), kGravity, table.wrenches(0), table.pins(0));
+  hullWrenches(model, table.states(0, 777), kGravity, table.wrenches(0));
+  const CrankMotion crank{CrankAngle::fromAngle(3.0), 30.0, 1.0};
+  const LinkLoads loads = linkLoads(mechanism, Level::kLinkage, crank, kGravity, NearBlow(0.01));
+  EXPECT_EQ(test::allocations, before);
+  EXPECT_EQ(loads.wrench.force_x, hullWrench(model, crank, kGravity).force_x);
+  EXPECT_EQ(loads.pins.drive_torque,
+            pinForces(mechanism, Level::kLinkage, crank, kGravity, NearBlow(0.01)).drive_torque);
+  const std::vector<double> proof(10);
+  EXPECT_GT(test::allocations, before) << "the counter works";
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,50 @@
+#include "hammer_loads/linkage/half_angle_sine.h"
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+using Real = boost::multiprecision::cpp_bin_float_50;
+
+TEST(HalfAngleSine, PolynomialsAreExactToRounding) {
+  double worst_sine = 0.0, worst_cosine = 0.0;
+  for (int i = -16600; i <= 16600; ++i) {
+    const double h = kLargestHalfAngle * i / 16600.0;
+    const SineCosine got = sineCosinePolynomial(h);
+    if (i != 0) worst_sine = std::max(worst_sine, static_cast<double>(abs(Real(got.sine) / sin(Real(h)) - 1)));
+    worst_cosine = std::max(worst_cosine, static_cast<double>(abs(Real(got.cosine) - cos(Real(h)))));
+  }
+  EXPECT_LE(worst_sine, 3e-16);
+  EXPECT_LE(worst_cosine, 3e-16);
+  std::printf("worst error: sine %.2e relative, cosine %.2e\n", worst_sine, worst_cosine);
+}
+
+TEST(HalfAngleSine, KeepsRelativeAccuracyNearZero) {
+  for (double h = 1.0; h > 1e-300; h *= 0.37) {
+    EXPECT_NEAR(static_cast<double>(Real(sineCosinePolynomial(h).sine) / sin(Real(h))), 1.0, 2.3e-16) << h;
+  }
+  EXPECT_EQ(sineCosinePolynomial(0.0).sine, 0.0);
+  EXPECT_EQ(sineCosinePolynomial(0.0).cosine, 1.0);
+}
+
+TEST(HalfAngleSine, IsOddAndEven) {
+  for (double h = 0.01; h < 1.66; h += 0.037) {
+    EXPECT_EQ(sineCosinePolynomial(-h).sine, -sineCosinePolynomial(h).sine);
+    EXPECT_EQ(sineCosinePolynomial(-h).cosine, sineCosinePolynomial(h).cosine);
+  }
+}
+
+TEST(HalfAngleSine, ServesAnyAngle) {
+  for (double h : {-100.0, -2.0, -1.66, 1.5, 1.67, 3.0, 1e6}) {
+    EXPECT_NEAR(sineCosineOfHalf(h).sine, std::sin(h), 3e-16);
+    EXPECT_NEAR(sineCosineOfHalf(h).cosine, std::cos(h), 3e-16);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,211 @@
+/// The live node as its users see it; run against the node and against the nodelet.
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <gtest/gtest.h>
+#include <hammer_loads/Blow.h>
+#include <hammer_loads/Pulse.h>
+#include <hammer_loads/RunInfo.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <mutex>
+
+#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kDeadline = 20.0;  // [s] of wall time for what takes milliseconds
+
+sensor_msgs::JointState crankMessage(const ros::Time& stamp, double angle, double speed) {
+  sensor_msgs::JointState m;
+  m.header.stamp = stamp;
+  m.name = {"hammer_crank_joint"};
+  m.position = {angle};
+  m.velocity = {speed};
+  return m;
+}
+
+class NodeTest : public testing::Test {
+ protected:
+  NodeTest() {
+    crank_ = node_.advertise<sensor_msgs::JointState>("crank", 10000);
+    joints_ = node_.advertise<sensor_msgs::JointState>("joint_states", 1000);
+    wrench_ = node_.subscribe<geometry_msgs::WrenchStamped>(
+        "hammer_loads/hull_wrench", 20000, [this](const auto& m) { wrenches_.push_back(*m); });
+    blow_ = node_.subscribe<Blow>("hammer_loads/blow", 100, [this](const auto& m) { blows_.push_back(*m); });
+    pulse_ = node_.subscribe<Pulse>("hammer_loads/pulse", 100, [this](const auto& m) { pulses_.push_back(*m); });
+    info_ = node_.subscribe<RunInfo>("hammer_loads/run_info", 1, [this](const auto& m) { run_info_ = *m; });
+    diagnostics_ = node_.subscribe<diagnostic_msgs::DiagnosticArray>("/diagnostics", 100, [this](const auto& m) {
+      for (const auto& status : m->status) statuses_[status.name] = status;
+    });
+    EXPECT_TRUE(eventually([this] {
+      return crank_.getNumSubscribers() > 0 && joints_.getNumSubscribers() > 0 && wrench_.getNumPublishers() > 0 &&
+             blow_.getNumPublishers() > 0 && pulse_.getNumPublishers() > 0;
+    })) << "the node must be there";
+    // Samples of an earlier test count in the node: begin well behind them.
+    static double next_start = 1000.0;
+    start_ = ros::Time(next_start += 1000.0);
+  }
+
+  /// Spins until a condition holds or the deadline passes.
+  static bool eventually(const std::function<bool()>& condition) {
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kDeadline);
+    while (!condition()) {
+      if (ros::WallTime::now() > deadline || !ros::ok()) return false;
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
+    }
+    return true;
+  }
+
+  /// Publishes n samples of steady rotation after `start_` and waits for a wrench of each.
+  ::testing::AssertionResult goodSamplesPass(int n) {
+    const std::size_t before = wrenches_.size();
+    for (int i = 0; i < n; ++i) {
+      crank_.publish(crankMessage(start_ + ros::Duration(time_), 5.0 * time_, 5.0));
+      time_ += 1e-3;
+    }
+    if (!eventually([&] { return wrenches_.size() >= before + static_cast<std::size_t>(n); }))
+      return ::testing::AssertionFailure() << wrenches_.size() - before << " of " << n << " wrenches";
+    return ::testing::AssertionSuccess();
+  }
+
+  std::string diagnostic(const std::string& key) {
+    for (const auto& [name, status] : statuses_) {
+      if (name.find("crank") == std::string::npos) continue;
+      for (const auto& value : status.values) {
+        if (value.key == key) return value.value;
+      }
+    }
+    return {};
+  }
+
+  ros::NodeHandle node_;
+  ros::Publisher crank_, joints_;
+  ros::Subscriber wrench_, blow_, pulse_, info_, diagnostics_;
+  std::vector<geometry_msgs::WrenchStamped> wrenches_;
+  std::vector<Blow> blows_;
+  std::vector<Pulse> pulses_;
+  std::optional<RunInfo> run_info_;
+  std::map<std::string, diagnostic_msgs::DiagnosticStatus> statuses_;
+  ros::Time start_;
+  double time_{};
+};
+
+TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 4.0;
+  machine.start_stamp = static_cast<std::int64_t>(start_.toNSec());
+  const simulation::Session session = simulation::recordSession(machine);
+  const Settings settings = *loadFiles(configDirectory(), {}).value;
+  Pipeline pipeline(settings.mechanism, settings.pipeline);
+  std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+  sensor_msgs::JointState joints;
+  joints.name = names;
+  joints.position = {0.1, 0.2, 0.3, -0.35};
+  joints_.publish(joints);
+  pipeline.boomJoints(names, joints.position);
+  ASSERT_TRUE(eventually([&] { return joints_.getNumSubscribers() > 0; }));
+  std::vector<Loads> expected;
+  std::size_t blows = 0;
+  for (const auto& reading : session.crank) {
+    ros::Time stamp;
+    stamp.fromNSec(static_cast<std::uint64_t>(reading.stamp));
+    crank_.publish(crankMessage(stamp, reading.angle, *reading.speed));
+    expected.push_back(pipeline.crankSample(reading.stamp, {reading.angle, reading.speed}));
+    blows += expected.back().turn_ends;
+  }
+  ASSERT_TRUE(eventually([&] { return wrenches_.size() >= expected.size() && blows_.size() >= blows; }))
+      << wrenches_.size() << " of " << expected.size();
+  ASSERT_EQ(wrenches_.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_EQ(static_cast<StampNs>(wrenches_[i].header.stamp.toNSec()), expected[i].stamp);
+    ASSERT_EQ(wrenches_[i].header.frame_id, "hammer_hull");
+    // The joint states may arrive after the first samples: they differ by the weight of another pitch.
+    ASSERT_NEAR(wrenches_[i].wrench.force.z, expected[i].wrench.force_z, i < 1500 ? 30.0 : 0.5) << i;
+    ASSERT_EQ(wrenches_[i].wrench.force.y, 0.0);
+  }
+  EXPECT_GE(blows, 5u);
+  EXPECT_EQ(blows_.size(), blows);
+  EXPECT_EQ(pulses_.size(), blows - 1) << "the first blow ends no whole turn";
+  EXPECT_GT(pulses_.back().amplitude_N, 5000.0);
+  EXPECT_NEAR(blows_.back().energy_J, session.blows.back().strike.energy, 0.02 * blows_.back().energy_J);
+  EXPECT_GT(blows_.back().mean_press_force_N, 500.0);
+}
+
+TEST_F(NodeTest, RefusesEachBadSampleCountsItAndTakesTheNextGoodOne) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto at = [&](double time) { return start_ + ros::Duration(time); };
+  sensor_msgs::JointState foreign = crankMessage(at(0), 0, 0), bare = foreign;
+  foreign.name = {"wheel"};
+  bare.position.clear();
+  const std::vector<std::pair<std::string, std::function<sensor_msgs::JointState()>>> bad{
+      {"not finite", [&] { return crankMessage(at(time_), kNan, 5.0); }},
+      {"implausible", [&] { return crankMessage(at(time_), 5.0 * time_, 1e6); }},
+      {"out of order", [&] { return crankMessage(at(time_ - 0.05), 5.0 * time_, 5.0); }},
+      {"duplicate", [&] { return crankMessage(at(time_ - 1e-3), 5.0 * time_, 5.0); }},
+      {"missing joint", [&] { return foreign; }},
+      {"short array", [&] { return bare; }}};
+  for (const auto& [reason, message] : bad) {
+    SCOPED_TRACE(reason);
+    ASSERT_TRUE(goodSamplesPass(20));
+    const std::string key = "refused: " + reason;
+    ASSERT_TRUE(eventually([&] { return !diagnostic(key).empty(); }));
+    const auto count = std::stoul(diagnostic(key));
+    const std::size_t before = wrenches_.size();
+    crank_.publish(message());
+    EXPECT_TRUE(eventually([&] { return std::stoul(diagnostic(key)) == count + 1; }));
+    EXPECT_EQ(wrenches_.size(), before);
+    ASSERT_TRUE(goodSamplesPass(20));
+  }
+}
+
+TEST_F(NodeTest, SaysWhenTheCrankIsStaleAndGoesOnWhenItIsBack) {
+  ASSERT_TRUE(goodSamplesPass(20));
+  const auto stale = [&] {
+    for (const auto& [name, status] : statuses_) {
+      if (status.message.find("stale") != std::string::npos && status.level == diagnostic_msgs::DiagnosticStatus::ERROR)
+        return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(eventually(stale));
+  const std::size_t before = wrenches_.size();
+  time_ += 10.0;
+  ASSERT_TRUE(goodSamplesPass(20));
+  EXPECT_EQ(wrenches_.size(), before + 20);
+  statuses_.clear();
+  EXPECT_TRUE(eventually([&] { return !statuses_.empty(); }));
+}
+
+TEST_F(NodeTest, TakesAnglesWithoutSpeeds) {
+  const std::size_t before = wrenches_.size();
+  for (int i = 0; i < 50; ++i) {
+    sensor_msgs::JointState m = crankMessage(start_ + ros::Duration(1e-3 * i), 0.5 + 0.02 * i, 0.0);
+    m.velocity.clear();
+    crank_.publish(m);
+  }
+  EXPECT_TRUE(eventually([&] { return wrenches_.size() >= before + 49; })) << "all but the first, whose speed is unknown";
+}
+
+TEST_F(NodeTest, ExplainsItselfInRunInfo) {
+  ASSERT_TRUE(eventually([&] { return run_info_.has_value(); }));
+  EXPECT_NE(run_info_->parameters_yaml.find("rocker_mass_kg"), std::string::npos);
+  EXPECT_FALSE(run_info_->version.empty());
+  EXPECT_FALSE(run_info_->revision.empty());
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "node_rostest");
+  ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""The node as a process: its exit codes, its errors, its log after an ordinary end."""
+import glob
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rosbag
+import rosgraph
+import roslib.packages
+import rospy
+import rostest
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import JointState
+
+DEADLINE = 20.0  # [s] for what takes a second at most
+DATA = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'data')
+
+
+def eventually(condition):
+    deadline = time.monotonic() + DEADLINE
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        rospy.rostime.wallsleep(0.01)
+    return True
+
+
+def command(name):
+    """A program of this package, built or installed."""
+    return roslib.packages.find_node('hammer_loads', name)[0]
+
+
+class NodeProcess:
+    """hammer_loads_node under a name of its own."""
+
+    def __init__(self, name, parameters):
+        self.name = name
+        for key, value in parameters.items():
+            rospy.set_param('/%s/%s' % (name, key), value)
+        self.process = subprocess.Popen(
+            [command('hammer_loads_node'), '__name:=' + name, 'crank:=/%s/crank' % name,
+             'joint_states:=/%s/joints' % name],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+
+    def end(self, sign=signal.SIGINT):
+        self.process.send_signal(sign)
+        out, err = self.process.communicate(timeout=DEADLINE)
+        return self.process.returncode, out, err
+
+    def wait(self):
+        out, err = self.process.communicate(timeout=DEADLINE)
+        return self.process.returncode, out, err
+
+
+class ProcessTest(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+
+    def tearDown(self):
+        shutil.rmtree(self.directory, ignore_errors=True)
+
+    def published_topics(self, name):
+        published = rosgraph.Master('/test').getSystemState()[0]
+        return [topic for topic, _ in published if topic.startswith('/%s/' % name)]
+
+    def expect_refused(self, name, parameters, *words):
+        parameters.setdefault('log_enabled', False)
+        code, _, err = NodeProcess(name, parameters).wait()
+        self.assertEqual(code, 1, err)
+        for word in words:
+            self.assertIn(word, err)
+        self.assertEqual(self.published_topics(name), [])
+        return err
+
+    def test_wrong_parameters_are_told_together_and_end_the_node(self):
+        err = self.expect_refused('bad_values', {'stale_after_s': -1.0, 'level': 'finest', 'no_such_key': 1},
+                                  'stale_after_s', 'level', 'no_such_key')
+        self.assertEqual(len(err.strip().splitlines()), 3, err)
+
+    def test_a_text_where_a_number_is_wanted(self):
+        self.expect_refused('bad_type', {'gravity_m_s2': 'heavy'}, 'gravity_m_s2', 'heavy')
+
+    def test_an_incomplete_hammer(self):
+        self.expect_refused('incomplete', {'rocker_mass_kg': 35.2}, 'crank_length_m', 'rod_mass_kg')
+
+    def test_a_log_directory_that_cannot_be(self):
+        self.expect_refused('bad_log', {'log_enabled': True, 'log_directory': '/proc/no/such'}, 'log_directory')
+
+    def publish_session(self, name, seconds):
+        """Replays the start of the 1 kHz session and waits for each wrench."""
+        wrenches = []
+        subscriber = rospy.Subscriber('/%s/hull_wrench' % name, WrenchStamped, lambda m: wrenches.append(m),
+                                      queue_size=None, tcp_nodelay=True)
+        crank = rospy.Publisher('/%s/crank' % name, JointState, queue_size=100000)
+        joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=10000)
+        self.assertTrue(eventually(lambda: crank.get_num_connections() > 0 and joints.get_num_connections() > 0 and
+                                   subscriber.get_num_connections() > 0))
+        sent = 0
+        with rosbag.Bag(os.path.join(DATA, 'mo100_1khz.bag')) as bag:
+            first = None
+            for topic, message, stamp in bag.read_messages():
+                first = first or stamp
+                if (stamp - first).to_sec() > seconds:
+                    break
+                if topic == '/hammer/crank':
+                    crank.publish(message)
+                    sent += 1
+                else:
+                    joints.publish(message)
+        self.assertTrue(eventually(lambda: len(wrenches) >= sent), '%d of %d' % (len(wrenches), sent))
+        return sent
+
+    def log_after(self, name, sign):
+        node = NodeProcess(name, {'log_enabled': True, 'log_directory': self.directory, 'log_min_free_mb': 0})
+        sent = self.publish_session(name, 4.0)
+        code, out, err = node.end(sign)
+        self.assertEqual(code, 0, err)
+        bags = glob.glob(self.directory + '/*')
+        self.assertEqual(len(bags), 1, bags)
+        self.assertTrue(bags[0].endswith('.bag'), bags)
+        return bags[0], sent
+
+    def test_the_log_is_whole_after_sigint_and_sigterm(self):
+        for name, sign in (('log_int', signal.SIGINT), ('log_term', signal.SIGTERM)):
+            path, sent = self.log_after(name, sign)
+            subprocess.run(['rosbag', 'check', path], check=True, stdout=subprocess.DEVNULL)
+            info = subprocess.run(['rosbag', 'info', path], check=True, stdout=subprocess.PIPE,
+                                  universal_newlines=True).stdout
+            self.assertIn('compression:  lz4', info)
+            with rosbag.Bag(path) as bag:
+                topics = {t: i.message_count for t, i in bag.get_type_and_topic_info().topics.items()}
+            self.assertEqual(topics['/%s/crank' % name], sent)
+            self.assertEqual(topics['/%s/hull_wrench' % name], sent)
+            self.assertEqual(topics['/%s/run_info' % name], 1)
+            self.assertGreater(topics['/%s/joints' % name], 100)
+            os.remove(path)
+
+    def test_process_bag_over_the_log_gives_the_logged_outputs_bit_for_bit(self):
+        name = 'log_again'
+        path, _ = self.log_after(name, signal.SIGINT)
+        again = os.path.join(self.directory, 'again.bag')
+        parameters = os.path.join(self.directory, 'in_force.yaml')
+        with rosbag.Bag(path) as bag:
+            for _, message, _ in bag.read_messages(topics=['/%s/run_info' % name]):
+                with open(parameters, 'w') as file:
+                    file.write(message.parameters_yaml)
+        subprocess.run([command('process_bag'), path, again, '--params', parameters, '--crank-topic', '/%s/crank' % name,
+                        '--joint-states-topic', '/%s/joints' % name, '--output-prefix', '/' + name], check=True)
+
+        def outputs(bag_path):
+            with rosbag.Bag(bag_path) as bag:
+                return [(topic, time.to_nsec(), raw[1])
+                        for topic, raw, time in bag.read_messages(raw=True)
+                        if topic not in ('/%s/crank' % name, '/%s/joints' % name)]
+
+        logged, repeated = sorted(outputs(path)), sorted(outputs(again))
+        self.assertGreater(len(logged), 7000)
+        self.assertEqual(len(logged), len(repeated))
+        self.assertTrue(all(a == b for a, b in zip(logged, repeated)))
+
+
+if __name__ == '__main__':
+    rospy.init_node('process_rostest')
+    rostest.rosrun('hammer_loads', 'process', ProcessTest, sys.argv)
