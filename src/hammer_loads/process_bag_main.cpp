@@ -36,6 +36,7 @@ int run(int argc, const char* const* argv) {
   app.add_option("--crank-topic", job.crank_topic)->capture_default_str();
   app.add_option("--joint-states-topic", job.joint_topic)->capture_default_str();
   app.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
+  app.add_flag("--pins", job.pins, "pin forces as well");
   if (const auto code = parse(app, argc, argv)) return *code;
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;

@@ -7,19 +7,20 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "hammer_loads/ros/bag_processing.h"
 #include "hammer_loads/ros/loads_flow.h"
 #include "support/csv.h"
 #include "support/main.h"
-#include "support/session_errors.h"
+#include "hammer_loads/accuracy/session_errors.h"
 
 namespace hammer_loads {
 namespace {
 
 namespace fs = std::filesystem;
-using test::BlowAt;
-using test::WrenchAt;
+using accuracy::BlowAt;
+using accuracy::WrenchAt;
 
 constexpr double kStart = 1700000000.0;  // [s] of both sessions
 
@@ -70,6 +71,7 @@ struct Output {
 
 Output outputOf(const std::string& path) {
   Output output;
+  std::map<double, Pulse> pulses;
   rosbag::Bag bag(path);
   for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
     if (const auto w = item.instantiate<geometry_msgs::WrenchStamped>()) {
@@ -77,9 +79,14 @@ Output outputOf(const std::string& path) {
     } else if (const auto b = item.instantiate<Blow>()) {
       output.blows.push_back({sinceStart(b->header.stamp), b->energy_J, b->tool_impulse_z_Ns});
     } else if (const auto p = item.instantiate<Pulse>()) {
-      output.blows.back().turn_peak = p->amplitude_N;  // follows the blow that ends its turn
-      output.blows.back().turn_impulse_z = p->turn_impulse_z_Ns;
+      pulses[sinceStart(p->header.stamp)] = *p;
     }
+  }
+  for (BlowAt& blow : output.blows) {
+    const auto pulse = pulses.find(blow.time);  // stamped with the blow that ends its turn
+    if (pulse == pulses.end()) continue;
+    blow.turn_peak = pulse->second.amplitude_N;
+    blow.turn_impulse_z = pulse->second.turn_impulse_z_Ns;
   }
   return output;
 }
@@ -117,8 +124,8 @@ TEST_P(RecordedSession, StaysWithinTheBounds) {
   const Truth truth = truthOf(session);
   const Output output = outputOf(path("out.bag"));
   EXPECT_EQ(output.wrenches.size(), counts_.accepted);
-  const test::Judged judged{3.0, truth.wrenches.back().time - 3.0, endsOfDropOuts(truth.wrenches)};
-  const auto e = test::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);
+  const accuracy::Judged judged{3.0, truth.wrenches.back().time - 3.0, endsOfDropOuts(truth.wrenches)};
+  const auto e = accuracy::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);
   EXPECT_LE(e.rms_x, bounds.rms);
   EXPECT_LE(e.rms_z, bounds.rms);
   EXPECT_LE(e.rms_torque, bounds.rms);

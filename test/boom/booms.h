@@ -15,7 +15,9 @@
 
 namespace hammer_loads::test {
 
-inline std::string sourceFile(const std::string& path) { return std::string(HAMMER_LOADS_TEST_DATA) + "/../../" + path; }
+inline std::string sourceFile(const std::string& path) {
+  return std::string(HAMMER_LOADS_TEST_DATA) + "/../../" + path;
+}
 
 inline std::string textOf(const std::string& path) {
   std::ifstream file(path);
@@ -137,9 +139,10 @@ struct PlanarChain {
     for (std::size_t k = 0; k <= N; ++k) {
       const bool tip = k == N;
       const std::string name = tip ? "tip" : format("link%zu", k);
-      text += format("<joint name=\"j%zu\" type=\"%s\"><parent link=\"%s\"/><child link=\"%s\"/>"
-                     "<origin xyz=\"%.17g 0 %.17g\"/><axis xyz=\"0 1 0\"/></joint>",
-                     k, tip ? "fixed" : "continuous", parent.c_str(), name.c_str(), origin.real(), origin.imag());
+      text += format(
+          "<joint name=\"j%zu\" type=\"%s\"><parent link=\"%s\"/><child link=\"%s\"/>"
+          "<origin xyz=\"%.17g 0 %.17g\"/><axis xyz=\"0 1 0\"/></joint>",
+          k, tip ? "fixed" : "continuous", parent.c_str(), name.c_str(), origin.real(), origin.imag());
       text += "<link name=\"" + name + "\">";
       if (!tip) {
         text += format("<inertial><origin xyz=\"%.17g 0 %.17g\"/><mass value=\"%.17g\"/>", links[k].com.real(),

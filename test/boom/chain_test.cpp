@@ -12,8 +12,9 @@ namespace {
 
 using test::joints;
 
-const char* const kMass = "<inertial><mass value=\"7\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>"
-                          "</inertial>";
+const char* const kMass =
+    "<inertial><mass value=\"7\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>"
+    "</inertial>";
 
 std::string link(const std::string& name, const std::string& inside = kMass) {
   return "<link name=\"" + name + "\">" + inside + "</link>";
@@ -31,7 +32,8 @@ std::string robot(const std::string& inside) { return "<robot name=\"r\">" + ins
 std::string oddRobot() {
   return robot(
       link("base", "") + link("a") + link("b") + link("c") + link("tip", "") + link("beside") + link("loose") +
-      joint("turn", "continuous", "base", "a", "<origin xyz=\"0.1 0.2 0.3\" rpy=\"0.3 -0.2 1\"/><axis xyz=\"1 2 -0.5\"/>") +
+      joint("turn", "continuous", "base", "a",
+            "<origin xyz=\"0.1 0.2 0.3\" rpy=\"0.3 -0.2 1\"/><axis xyz=\"1 2 -0.5\"/>") +
       joint("slide", "prismatic", "a", "b", "<origin xyz=\"0.5 0 -0.3\" rpy=\"1.3 0.2 0\"/><axis xyz=\"0 0.6 0.8\"/>") +
       joint("hinge", "revolute", "b", "c", "<origin xyz=\"0 1 0\" rpy=\"0 0 0.4\"/><axis xyz=\"0 1 0\"/>") +
       joint("end", "fixed", "c", "tip", "<origin xyz=\"0.7 0.1 0\" rpy=\"0 0.5 0\"/>") +
@@ -111,9 +113,11 @@ struct Bad {
 void expectProblems(const Bad& bad) {
   const Checked<Chain> made = Chain::make(bad.urdf, bad.request);
   EXPECT_FALSE(made.value) << bad.what;
-  ASSERT_EQ(made.problems.size(), bad.problems.size()) << bad.what << ": " << (made.problems.empty() ? "" : made.problems[0]);
+  ASSERT_EQ(made.problems.size(), bad.problems.size())
+      << bad.what << ": " << (made.problems.empty() ? "" : made.problems[0]);
   for (std::size_t i = 0; i < bad.problems.size(); ++i) {
-    EXPECT_EQ(made.problems[i].rfind("robot_description: " + bad.problems[i], 0), 0U) << bad.what << ": " << made.problems[i];
+    EXPECT_EQ(made.problems[i].rfind("robot_description: " + bad.problems[i], 0), 0U)
+        << bad.what << ": " << made.problems[i];
     EXPECT_EQ(made.problems[i].find('\n'), std::string::npos) << bad.what;
   }
 }
@@ -121,8 +125,9 @@ void expectProblems(const Bad& bad) {
 TEST(Chain, SaysWhatIsWrong) {
   const std::string two = link("base_link", "") + link("hammer_hull");
   const std::string hinge = joint("j", "revolute", "base_link", "hammer_hull");
-  const std::string negative = link("hammer_hull", "<inertial><mass value=\"-3\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
-                                                   "iyy=\"1\" iyz=\"0\" izz=\"3\"/></inertial>");
+  const std::string negative = link("hammer_hull",
+                                    "<inertial><mass value=\"-3\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+                                    "iyy=\"1\" iyz=\"0\" izz=\"3\"/></inertial>");
   std::string many = link("base_link", "") + link("l0", "");
   many += joint("j0", "continuous", "base_link", "l0");
   for (int i = 1; i < 9; ++i) {
@@ -134,16 +139,41 @@ TEST(Chain, SaysWhatIsWrong) {
            Bad{"cut off", robot(two + hinge).substr(0, 200), {}, {"cannot be read: "}},
            Bad{"two roots", robot(two), {}, {"cannot be read: "}},
            Bad{"tip missing", robot(two + hinge), {"base_link", "hull", {}}, {"link hull: not in the model"}},
-           Bad{"both missing", robot(two + hinge), {"b", "t", {}}, {"link b: not in the model", "link t: not in the model"}},
-           Bad{"wrong way", robot(two + hinge), {"hammer_hull", "base_link", {}}, {"link base_link: hangs on base_link, must hang on hammer_hull"}},
-           Bad{"joint missing", robot(two + hinge), {"base_link", "hammer_hull", {"boom_joint"}}, {"joint boom_joint: not in the model"}},
-           Bad{"joint beside", robot(two + hinge + link("x") + joint("k", "revolute", "base_link", "x")), {"base_link", "hammer_hull", {"k"}}, {"joint k: not a moving joint between base_link and hammer_hull"}},
+           Bad{"both missing",
+               robot(two + hinge),
+               {"b", "t", {}},
+               {"link b: not in the model", "link t: not in the model"}},
+           Bad{"wrong way",
+               robot(two + hinge),
+               {"hammer_hull", "base_link", {}},
+               {"link base_link: hangs on base_link, must hang on hammer_hull"}},
+           Bad{"joint missing",
+               robot(two + hinge),
+               {"base_link", "hammer_hull", {"boom_joint"}},
+               {"joint boom_joint: not in the model"}},
+           Bad{"joint beside",
+               robot(two + hinge + link("x") + joint("k", "revolute", "base_link", "x")),
+               {"base_link", "hammer_hull", {"k"}},
+               {"joint k: not a moving joint between base_link and hammer_hull"}},
            Bad{"nothing moves", robot(two + joint("j", "fixed", "base_link", "hammer_hull")), {}, {"0 moving joints"}},
            Bad{"too many", robot(many), {"base_link", "l8", {}}, {"9 moving joints"}},
-           Bad{"floats", robot(two + joint("j", "floating", "base_link", "hammer_hull")), {}, {"joint j: must be revolute", "0 moving joints"}},
-           Bad{"mimics", robot(two + joint("j", "revolute", "base_link", "hammer_hull", "<mimic joint=\"j\"/>")), {}, {"joint j: mimics j"}},
-           Bad{"negative mass", robot(link("base_link", "") + negative + hinge), {}, {"mass of link hammer_hull: -3 kg, must be >= 0", "inertia of link hammer_hull: principal moments 1, 1, 3"}},
-           Bad{"massless", robot(link("base_link", "") + link("hammer_hull", "") + hinge), {}, {"mass beyond joint j: 0 kg, must be > 0"}},
+           Bad{"floats",
+               robot(two + joint("j", "floating", "base_link", "hammer_hull")),
+               {},
+               {"joint j: must be revolute", "0 moving joints"}},
+           Bad{"mimics",
+               robot(two + joint("j", "revolute", "base_link", "hammer_hull", "<mimic joint=\"j\"/>")),
+               {},
+               {"joint j: mimics j"}},
+           Bad{"negative mass",
+               robot(link("base_link", "") + negative + hinge),
+               {},
+               {"mass of link hammer_hull: -3 kg, must be >= 0",
+                "inertia of link hammer_hull: principal moments 1, 1, 3"}},
+           Bad{"massless",
+               robot(link("base_link", "") + link("hammer_hull", "") + hinge),
+               {},
+               {"mass beyond joint j: 0 kg, must be > 0"}},
        }) {
     expectProblems(bad);
   }

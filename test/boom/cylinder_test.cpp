@@ -68,8 +68,8 @@ TEST_F(Cylinders, ForceDoesTheOppositeWorkOfTheLoad) {
 }
 
 TEST_F(Cylinders, TriangleByHand) {
-  // Base 2 m below the boom's pivot, rod 1 m along the boom: a right angle at zero, L = sqrt 5, arm -2/sqrt 5 (the boom's
-  // joint grows downwards, towards the base).
+  // Base 2 m below the boom's pivot, rod 1 m along the boom: a right angle at zero, L = sqrt 5, arm -2/sqrt 5 (the
+  // boom's joint grows downwards, towards the base).
   CylinderParameters p = parameters_.cylinders[0];
   p.base_x = 0.25, p.base_z = 0.40 - 2.0, p.rod_x = 1.0, p.rod_z = 0.0;
   p.closed_length = 1.6, p.stroke = 1.4;
@@ -89,8 +89,8 @@ TEST_F(Cylinders, StiffnessIsThatOfTheTrappedOil) {
   const double rod_area = bore_area - pi / 4.0 * p.rod_diameter * p.rod_diameter;
   const double bore_volume = p.bore_hose_volume + bore_area * 0.3 * p.stroke;
   const double rod_volume = p.rod_hose_volume + rod_area * 0.7 * p.stroke;
-  const double force = kBulkModulus * bore_area * dL / bore_volume * bore_area +
-                       kBulkModulus * rod_area * dL / rod_volume * rod_area;
+  const double force =
+      kBulkModulus * bore_area * dL / bore_volume * bore_area + kBulkModulus * rod_area * dL / rod_volume * rod_area;
   EXPECT_NEAR(cylinder.stiffness(length) * dL, force, 1e-12 * force);
   const CylinderPosition at = cylinder.at(-0.35);
   EXPECT_DOUBLE_EQ(cylinder.jointStiffness(at), cylinder.stiffness(at.length) * at.arm * at.arm);
@@ -135,7 +135,8 @@ TEST_F(Cylinders, SaysWhatIsWrong) {
             "boom_cylinder_rod_diameter_m: 0.2 m, must be < boom_cylinder_bore_m = 0.11 m");
   EXPECT_EQ(problem([](auto& p) { p.closed_length = 0.6; }),
             "boom_cylinder_closed_length_m: 0.6 m, must be > boom_cylinder_stroke_m = 0.65 m");
-  EXPECT_EQ(problem([](auto& p) { p.base_x = std::nan(""); }), "boom_cylinder_base_x_m: nan m, must be a finite number");
+  EXPECT_EQ(problem([](auto& p) { p.base_x = std::nan(""); }),
+            "boom_cylinder_base_x_m: nan m, must be a finite number");
   EXPECT_EQ(problem([](auto& p) { p.bore_hose_volume = 0.0; }),
             "boom_cylinder_bore_hose_volume_m3: 0 m3, must be a finite number > 0");
   EXPECT_EQ(problem([](auto& p) { p.joint = "knee_joint"; }),
@@ -144,9 +145,11 @@ TEST_F(Cylinders, SaysWhatIsWrong) {
             "boom_cylinder_joint: boom_joint, an anchor lies on its axis, must be beside it");
   CylinderParameters far = good;
   far.rod_x = 2.4;
-  EXPECT_EQ(problem([](auto& p) { p.rod_x = 2.4; }),
-            format("boom_cylinder_closed_length_m: 0.79 m, cannot close the triangle: at boom_joint = -0.95 rad its length "
-                   "must be %.6g m, from closed to open are 0.79 to 1.44 m", length(far, -0.95)));
+  EXPECT_EQ(
+      problem([](auto& p) { p.rod_x = 2.4; }),
+      format("boom_cylinder_closed_length_m: 0.79 m, cannot close the triangle: at boom_joint = -0.95 rad its length "
+             "must be %.6g m, from closed to open are 0.79 to 1.44 m",
+             length(far, -0.95)));
 }
 
 TEST_F(Cylinders, BothSignsOfTheJointAxisGiveOneForce) {

@@ -1,9 +1,8 @@
 #include "hammer_loads/boom/mode.h"
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
 #include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <random>
 #include <vector>
 
@@ -172,7 +171,8 @@ TEST(HalfSine, SteppingConvergesToTheClosedForm) {
         for (std::size_t c = 0; c < 2; ++c) row[i][c] = (factor * row[i][c] - row[i - 1][c]) / (factor - 1.0);
       }
     }
-    worst = std::max({worst, std::abs(row.back()[0] - exact.x) * omega / size, std::abs(row.back()[1] - exact.v) / size});
+    worst =
+        std::max({worst, std::abs(row.back()[0] - exact.x) * omega / size, std::abs(row.back()[1] - exact.v) / size});
   }
   RecordProperty("worst", format("%.2g", worst));
   EXPECT_LT(worst, 1e-12);

@@ -46,7 +46,9 @@ class Reference {
   enum Index { kOffset, kSpeed, kDisplacement, kVelocity = 5, kTime = 8, kSize };
 
   Reference(const Boom& boom, double amplitude)
-      : mechanism_(test::mechanismOf(test::mo100Parameters())), boom_(boom), planar_(planarBoom(boom.chain())),
+      : mechanism_(test::mechanismOf(test::mo100Parameters())),
+        boom_(boom),
+        planar_(planarBoom(boom.chain())),
         amplitude_(amplitude) {
     state_[kSpeed] = 13.5;
   }

@@ -36,7 +36,7 @@ TEST_F(ShippedBoom, ModesSolveTheEquationOfMotion) {
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d residual = K * S.col(k) - omega[k] * omega[k] * M * S.col(k);
       EXPECT_LT(residual.norm(), 1e-11 * (K * S.col(k)).norm());
-      if (k > 0) EXPECT_GE(omega[k], omega[k - 1]);
+      EXPECT_GE(omega[k], omega[std::max(k - 1, 0)]);
     }
   }
 }
@@ -137,7 +137,8 @@ TEST_F(ShippedBoom, TipMovesAsTheJointsTellIt) {
   // Small displacement by forward kinematics, scaled up by 1/h.
   const double h = 1e-6;
   boom_.move({test::workingPosition() + h * vibration().displacement(), kZero, kZero}, Eigen::Vector3d::Zero());
-  const Eigen::Vector3d moved = before.linear().transpose() * (boom_.pose().tip().translation() - before.translation()) / h;
+  const Eigen::Vector3d moved =
+      before.linear().transpose() * (boom_.pose().tip().translation() - before.translation()) / h;
   EXPECT_LT((tip.displacement.head<3>() - moved).norm(), 1e-5 * moved.norm());
   // In the plane of the boom: no displacement across, turning about y by the sum of the joints'.
   EXPECT_NEAR(tip.displacement[1], 0.0, 1e-15);
@@ -163,6 +164,20 @@ TEST_F(ShippedBoom, ReducedMassAndStiffnessAtTheHull) {
   // Nothing that vibrates moves it sideways.
   EXPECT_TRUE(std::isinf(boom_.reducedHull(Eigen::Vector3d::UnitY()).stiffness) ||
               boom_.reducedHull(Eigen::Vector3d::UnitY()).stiffness > 1e30);
+}
+
+TEST_F(ShippedBoom, BeginsAnewAfterAGap) {
+  steadyLoad(0.02, boom_.hammerTorque(push_));
+  vibration().rest();
+  EXPECT_EQ(vibration().energy(), 0.0);
+  EXPECT_TRUE(vibration().torque().isZero(0.0));
+  // Far from where it was: modes of exactly that pose, as of a boom just made.
+  const JointVector far = test::joints({0.0, 0.1, 0.9, -0.4});
+  pose(far);
+  Boom fresh = test::shippedBoom();
+  fresh.moveCompliant({far, kZero, kZero}, Eigen::Vector3d::Zero());
+  EXPECT_EQ(modes().omega, fresh.vibration().modes().omega);
+  EXPECT_EQ(vibration().energy(), 0.0);
 }
 
 TEST_F(ShippedBoom, KnowsNothingAtADeadPoint) {
@@ -201,17 +216,21 @@ TEST_F(ShippedBoom, RigidErrorFollowsPulseLength) {
   const double zeta = boom_.parameters().vibration.damping_ratio;
   const auto error = [&](double length) { return rigidError(modes(), zeta, torque, length); };
   const double period = 2.0 * kPi / modes().omega[0];
-  EXPECT_LT(error(200.0 * period), 0.01);       // slow: static
+  EXPECT_LT(error(200.0 * period), 0.01);          // slow: static
   EXPECT_NEAR(error(0.0005 * period), 1.0, 0.02);  // short: the boom hardly moves, nothing is carried
-  EXPECT_GT(error(0.018), 0.5);                 // the MO-100's pulse: rigid is wrong
+  EXPECT_GT(error(0.018), 0.5);                    // the MO-100's pulse: rigid is wrong
   EXPECT_EQ(error(0.0), 0.0);
+  const Wrench peak{Eigen::Vector3d(0.0, 0.0, 8e3), Eigen::Vector3d::Zero()};
+  EXPECT_FALSE(boom_.rigidVerdict(peak, 0.018).suffices);
+  EXPECT_EQ(boom_.rigidVerdict(peak, 0.018).error, error(0.018));
+  EXPECT_TRUE(boom_.rigidVerdict(peak, 200.0 * period).suffices);
   EXPECT_EQ(rigidError(modes(), zeta, kZero, 0.018), 0.0);
 
   // Against stepping through the pulse.
   const double length = 0.05, h = length / 2000.0;
   double worst = 0.0;
   for (int i = 0; i < 20000; ++i) {
-    const auto at = [&](int k) { return JointVector(k < 2000 ? torque * std::sin(kPi * k / 2000.0) : 0.0 * torque); };
+    const auto at = [&](int k) { return JointVector((k < 2000 ? std::sin(kPi * k / 2000.0) : 0.0) * torque); };
     vibration().advance(h, {at(i), at(i + 1), 0.5 * (at(i) + at(i + 1))});
     worst = std::max(worst, vibration().torque().cwiseAbs().maxCoeff());
   }

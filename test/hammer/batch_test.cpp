@@ -158,6 +158,29 @@ TEST(Batch, KeepsItsDigitsNearTheBlow) {
   }
 }
 
+TEST(Batch, LosesDigitsOnlyAsThePivotsComeNearTheCranksLength) {
+  for (const auto& [pivot_distance, batch_bound] :
+       {std::pair{1.5, 2e-14}, std::pair{1.1, 5e-14}, std::pair{1.02, 2e-13}}) {
+    HammerParameters p = test::mo100LinkageParameters();
+    p.lengths = {0.048, 0.048 * (pivot_distance + 1.5), 0.120, 0.048 * pivot_distance};
+    const Mechanism mechanism = test::mechanismOf(p);
+    const HullModel model(mechanism, Level::kLinkage);
+    const test::NewtonEuler exact(p, Level::kLinkage);
+    Table table;
+    for (int decade = 1; decade <= 12; ++decade) {
+      for (double sign : {-1.3, 1.3}) table.add(sign * std::pow(10.0, -decade), 30.0, 0.0);
+    }
+    table.compute(model, false);
+    for (std::size_t k = 0; k < table.size(); ++k) {
+      const CrankMotion crank{CrankAngle::fromAngle(table.angle[k]), 30.0, 0.0};
+      const test::Reference right = exact.at(crank.angle, 30.0, 0.0, kGravity);
+      const HullWrench scalar = hullWrench(model, crank, kGravity);
+      EXPECT_LE(relativeError(table.out[0][k], table.out[1][k], right.hull_force), batch_bound) << pivot_distance;
+      EXPECT_LE(relativeError(scalar.force_x, scalar.force_z, right.hull_force), 1e-14) << pivot_distance;
+    }
+  }
+}
+
 TEST(Batch, TakesAnyWinding) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const HullModel model(mechanism, Level::kRocker);

@@ -5,63 +5,19 @@
 #include "support/counting_new.h"
 #include "support/main.h"
 #include "support/mo100.h"
-#include "support/session_errors.h"
+#include "hammer_loads/accuracy/session_run.h"
 
 namespace hammer_loads {
 namespace {
 
 using simulation::MachineSettings;
 using simulation::Session;
-using test::BlowAt;
-using test::WrenchAt;
 
 const std::vector<std::string> kCrank{"hammer_crank_joint"};
-
-struct RunResult {
-  std::vector<WrenchAt> wrenches;
-  std::vector<BlowAt> blows;
-  IntakeCounts counts;
-};
 
 const Settings& shippedSettings() {
   static const Settings settings = *loadFiles(configDirectory(), {}).value;
   return settings;
-}
-
-/// Reads a simulated session into a pipeline, joint states in their place between the crank samples.
-RunResult runSession(const Session& session, std::int64_t start, const Mechanism& mechanism, const PipelineSettings& settings) {
-  Pipeline pipeline(mechanism, settings);
-  const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
-  std::size_t next_joints = 0;
-  RunResult run;
-  for (const auto& reading : session.crank) {
-    for (; next_joints < session.joints.size() && session.joints[next_joints].stamp <= reading.stamp; ++next_joints) {
-      const auto& position = session.joints[next_joints].position;
-      pipeline.boomJoints(names, {position.begin(), position.end()});
-    }
-    const Loads& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
-    const double time = 1e-9 * static_cast<double>(reading.stamp - start);
-    for (std::size_t i = 0; i < loads.turn_ends; ++i) {
-      const TurnEnd& end = loads.ends[i];
-      BlowAt blow{1e-9 * static_cast<double>(end.stamp - start), end.blow.energy, end.blow.tool_impulse_z};
-      if (end.pulse) blow.turn_peak = end.pulse->amplitude, blow.turn_impulse_z = end.pulse->turn_impulse_z;
-      run.blows.push_back(blow);
-    }
-    if (!loads.refusal) run.wrenches.push_back({time, loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y});
-  }
-  run.counts = pipeline.counts();
-  return run;
-}
-
-test::SessionErrors errorsOf(const Session& session, const MachineSettings& machine, const RunResult& run, double two_turns) {
-  std::vector<WrenchAt> truth;
-  for (const auto& t : session.truth) truth.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y});
-  std::vector<BlowAt> blows;
-  for (const auto& b : session.blows)
-    blows.push_back({b.time, b.strike.energy, b.strike.tool_impulse, b.turn_peak_force_z, b.turn_impulse_z});
-  test::Judged judged{3.0, machine.duration - 3.0, {}, two_turns};
-  for (const auto& gap : machine.crank.drop_outs) judged.drop_outs.push_back(gap.to);
-  return sessionErrors(run.wrenches, truth, run.blows, blows, judged);
 }
 
 struct Bounds {
@@ -70,7 +26,7 @@ struct Bounds {
 constexpr Bounds k1kHz{1000.0, 0.0025, 0.012, 0.006, 1e-3, 0.02};
 constexpr Bounds k100Hz{100.0, 0.004, 0.02, 0.012, 1.5e-3, 0.025};
 
-void expectWithin(const test::SessionErrors& e, const Bounds& bounds) {
+void expectWithin(const accuracy::SessionErrors& e, const Bounds& bounds) {
   EXPECT_LE(e.rms_x, bounds.rms);
   EXPECT_LE(e.rms_z, bounds.rms);
   EXPECT_LE(e.rms_torque, bounds.rms);
@@ -112,9 +68,9 @@ TEST_P(UnseenSessions, StayWithinTheBounds) {
     HammerParameters hammer = machine.hammer;
     hammer.drive_inertia = GetParam().inertia_guess * machine.drive.inertia;
     const Session session = simulation::recordSession(machine);
-    const RunResult run = runSession(session, machine.start_stamp, test::mechanismOf(hammer), shippedSettings().pipeline);
+    const accuracy::SessionRun run = accuracy::runSession(session, machine.start_stamp, test::mechanismOf(hammer), shippedSettings().pipeline);
     SCOPED_TRACE(bounds.rate);
-    expectWithin(errorsOf(session, machine, run, 0.5), bounds);
+    expectWithin(accuracy::judge(run, session, machine), bounds);
   }
 }
 
@@ -131,7 +87,7 @@ TEST(Pipeline, AfterADropOutNothingIsTenPercentWrong) {
       machine.drive.stop_time = 7.4;
       machine.crank.drop_outs = {{6.0 + 0.05 * static_cast<double>(seed), 6.0 + 0.05 * static_cast<double>(seed) + gap}};
       const Session session = simulation::recordSession(machine);
-      const RunResult run = runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), shippedSettings().pipeline);
+      const accuracy::SessionRun run = accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), shippedSettings().pipeline);
       double peak = 0, worst = 0;
       std::size_t next = 0;
       for (const auto& t : session.truth) {
@@ -151,10 +107,10 @@ TEST(Pipeline, ThePapersAssumptionOfConstantSpeedIsThirtyPercentWrong) {
   const Session session = simulation::recordSession(machine);
   PipelineSettings settings = shippedSettings().pipeline;
   settings.crank_estimator = CrankEstimator::kNone;
-  const auto none = errorsOf(session, machine, runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), 0.5);
+  const auto none = accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), session, machine);
   EXPECT_GT(none.turn_peak, 0.25);
   settings.crank_estimator = CrankEstimator::kDifference;
-  const auto diff = errorsOf(session, machine, runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), 0.5);
+  const auto diff = accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), session, machine);
   EXPECT_GT(diff.rms_z, 0.03);
 }
 

@@ -68,7 +68,7 @@ TEST_F(LogTest, KillLosesAtMostTheLastSecond) {
         entries = readBag(file);
     EXPECT_EQ(onTopic(entries, "/run_info").size(), 1u);
     for (std::size_t k = 0; k < std::size(kEvery); ++k) {
-        const auto kept = onTopic(entries, "/t" + std::to_string(k));
+      const auto kept = onTopic(entries, "/t" + std::to_string(k));
       for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i].time, at(i * kEvery[k]));  // no hole
       const double lost = 1e-3 * static_cast<double>(kEvery[k] * (counts[p].written[k] - kept.size()));
       EXPECT_LE(lost, 1.0) << "process " << p << " topic " << k << " kept " << kept.size();

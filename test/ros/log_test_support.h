@@ -65,14 +65,17 @@ struct Entry {
   }
 };
 
+/// Which wrench(i) it is.
+inline std::size_t number(const Entry& entry) { return entry.as<geometry_msgs::WrenchStamped>().header.seq; }
+
 /// In time order, as every tool reads it. Throws if the bag is not whole.
 inline std::vector<Entry> readBag(const std::string& path) {
   rosbag::Bag bag(path, rosbag::bagmode::Read);
   std::vector<Entry> entries;
   for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
-    Entry entry{message.getTopic(),           message.getDataType(), message.getMD5Sum(),
-                message.getMessageDefinition(), message.getCallerId(), message.getTime(),
-                message.isLatching(),         std::vector<std::uint8_t>(message.size())};
+    Entry entry{
+        message.getTopic(),    message.getDataType(), message.getMD5Sum(),  message.getMessageDefinition(),
+        message.getCallerId(), message.getTime(),     message.isLatching(), std::vector<std::uint8_t>(message.size())};
     ros::serialization::OStream stream(entry.bytes.data(), message.size());
     message.write(stream);
     entries.push_back(std::move(entry));
@@ -108,7 +111,8 @@ class LogTest : public ::testing::Test {
     std::vector<std::pair<long, std::string>> found;
     for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
       const std::string name = entry.path().string();
-      if (name.size() < ending.size() || name.compare(name.size() - ending.size(), ending.size(), ending) != 0) continue;
+      if (name.size() < ending.size() || name.compare(name.size() - ending.size(), ending.size(), ending) != 0)
+        continue;
       found.emplace_back(std::atol(name.c_str() + name.rfind('_') + 1), name);
     }
     std::sort(found.begin(), found.end());

@@ -1,6 +1,7 @@
 /// A bag played under simulated time gives what process_bag makes of it.
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -49,12 +50,12 @@ TEST(Replay, LosesNoSampleAndEqualsProcessBag) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
   ASSERT_EQ(live.size(), expected.size());
   EXPECT_EQ(messages, expected.size()) << "none doubled";
-  // Joint angles may arrive on the other side of a sample: weight times their change within one message (20 ms at
-  // 0.06 rad/s), and what the filter makes of it.
-  constexpr double kPitchStep = 1.3e-3, kWeight = 35.2 * 9.80665;
+  // Joint angles may arrive on the other side of a sample: weight times their change from message to message (20 ms at
+  // 0.06 rad/s); played four times as fast, a busy machine may deliver them some messages late.
+  constexpr double kPitchStep = 1.3e-3, kWeight = 35.2 * 9.80665, kMessagesLate = 5.0;
   for (const auto& [stamp, wrench] : expected) {
-    ASSERT_NEAR(live.at(stamp).force.z, wrench.force.z, 3.0 * kWeight * kPitchStep) << stamp;
-    ASSERT_NEAR(live.at(stamp).force.x, wrench.force.x, 3.0 * kWeight * kPitchStep) << stamp;
+    ASSERT_NEAR(live.at(stamp).force.z, wrench.force.z, kMessagesLate * kWeight * kPitchStep) << stamp;
+    ASSERT_NEAR(live.at(stamp).force.x, wrench.force.x, kMessagesLate * kWeight * kPitchStep) << stamp;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "hammer_loads/boom/rigid_error.h"
 #include "hammer_loads/linkage/format.h"
 
 namespace hammer_loads {
@@ -11,20 +12,20 @@ namespace {
 
 void checkParameters(const BoomParameters& p, std::vector<std::string>& problems) {
   const auto check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
-    if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g %s, must be %s", key, value, unit, rule));
+    if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g%s, must be %s", key, value, unit, rule));
   };
-  check("bulk_modulus_Pa", p.bulk_modulus, "Pa", p.bulk_modulus > 0.0, "a finite number > 0");
+  check("bulk_modulus_Pa", p.bulk_modulus, " Pa", p.bulk_modulus > 0.0, "a finite number > 0");
   const double zeta = p.vibration.damping_ratio;
   check("damping_ratio", zeta, "", zeta > 0.0 && zeta < 1.0, "> 0 and < 1");
-  check("mode_refresh_angle_rad", p.vibration.refresh_angle, "rad", p.vibration.refresh_angle >= 0.0,
+  check("mode_refresh_angle_rad", p.vibration.refresh_angle, " rad", p.vibration.refresh_angle >= 0.0,
         "a finite number >= 0");
   check("rigid_tolerance", p.rigid_tolerance, "", p.rigid_tolerance > 0.0, "a finite number > 0");
   const Supports& s = p.supports;
-  check("support_front_x_m", s.front_x, "m", s.front_x > s.rear_x,
+  check("support_front_x_m", s.front_x, " m", s.front_x > s.rear_x,
         format("> support_rear_x_m = %.9g m", s.rear_x).c_str());
-  check("support_front_half_width_m", s.front_half_width, "m", s.front_half_width > 0.0, "a finite number > 0");
-  check("support_rear_x_m", s.rear_x, "m", true, "a finite number");
-  check("support_rear_half_width_m", s.rear_half_width, "m", s.rear_half_width > 0.0, "a finite number > 0");
+  check("support_front_half_width_m", s.front_half_width, " m", s.front_half_width > 0.0, "a finite number > 0");
+  check("support_rear_x_m", s.rear_x, " m", true, "a finite number");
+  check("support_rear_half_width_m", s.rear_half_width, " m", s.rear_half_width > 0.0, "a finite number > 0");
 }
 
 }  // namespace
@@ -99,6 +100,12 @@ void Boom::loads(const Wrench& w_tip, bool rigid, JointLoads& result) const noex
     const Cylinder& cylinder = cylinders_[i];
     result.cylinder[i] = cylinder.load(cylinder.at(position_[cylinder.joint()]), result.total[cylinder.joint()]);
   }
+}
+
+RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {
+  const double error =
+      rigidError(vibration_.modes(), parameters_.vibration.damping_ratio, hammerTorque(w_peak), pulse_length);
+  return {error, error <= parameters_.rigid_tolerance};
 }
 
 HoldDown Boom::holdDown(const Wrench& w_mean) const noexcept {

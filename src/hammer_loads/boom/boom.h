@@ -13,23 +13,29 @@ namespace hammer_loads {
 
 /// The boom file; keys of the same names with the unit appended. Physical values have no defaults.
 struct BoomParameters {
-  ChainRequest chain;                        ///< root_link, tip_link; joints are those of the cylinders
-  std::vector<CylinderParameters> cylinders; ///< at most one per joint
-  double bulk_modulus{};                     ///< of oil with hose and air [Pa], > 0
+  ChainRequest chain;                         ///< root_link, tip_link; joints are those of the cylinders
+  std::vector<CylinderParameters> cylinders;  ///< at most one per joint
+  double bulk_modulus{};                      ///< of oil with hose and air [Pa], > 0
   VibrationSettings vibration;
-  Supports supports;                         ///< [m]
-  double rigid_tolerance{};                  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
+  Supports supports;         ///< [m]
+  double rigid_tolerance{};  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
-/// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the joint
-/// forward. What holds the joint - a cylinder - gives the opposite of the total.
+/// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the
+/// joint forward. What holds the joint - a cylinder - gives the opposite of the total.
 struct JointLoads {
-  JointVector hammer;     ///< J^T w, as on a rigid boom
-  JointVector weight;     ///< of the links
-  JointVector motion;     ///< inertia of the links as the boom moves
-  JointVector vibration;  ///< inertia of the links as the boom vibrates; zero for a rigid boom
-  JointVector total;      ///< sum of the four
+  JointVector hammer;                             ///< J^T w, as on a rigid boom
+  JointVector weight;                             ///< of the links
+  JointVector motion;                             ///< inertia of the links as the boom moves
+  JointVector vibration;                          ///< inertia of the links as the boom vibrates; zero for a rigid boom
+  JointVector total;                              ///< sum of the four
   std::array<CylinderLoad, kMaxJoints> cylinder;  ///< of the total, index as in Boom::cylinders()
+};
+
+/// Whether the boom may be taken as rigid for a pulse.
+struct RigidVerdict {
+  double error{};   ///< rigidError() of the pulse [-]
+  bool suffices{};  ///< it is within rigid_tolerance
 };
 
 /// Per sample: move() when the boom moved, advance() for the vibration if wanted, then loads(). After make() nothing
@@ -60,8 +66,12 @@ class Boom {
   /// Along a unit vector in the tip's axes, at the pose of the modes.
   ReducedHull reducedHull(const Eigen::Vector3d& direction) const noexcept;
 
-  /// w_tip: load of the hammer on the tip, the whole wrench. rigid: without vibration.
+  /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
+  /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. rigid: without
+  /// vibration.
   void loads(const Wrench& w_tip, bool rigid, JointLoads& result) const noexcept;
+  /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
+  RigidVerdict rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept;
   /// Whether weight and cylinders hold the hull down against a mean load of the hammer on the tip.
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 

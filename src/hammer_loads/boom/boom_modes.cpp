@@ -54,7 +54,8 @@ JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) 
 
 JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept {
   JointVector joints = JointVector::Zero(modes.mass.rows());
-  for (int i = 0; i < modes.count; ++i) joints[modes.joint[static_cast<std::size_t>(i)]] = modes.shape.row(i).dot(modal);
+  for (int i = 0; i < modes.count; ++i)
+    joints[modes.joint[static_cast<std::size_t>(i)]] = modes.shape.row(i).dot(modal);
   return joints;
 }
 

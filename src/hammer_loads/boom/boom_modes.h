@@ -15,14 +15,14 @@ namespace hammer_loads {
 /// Neglects: flexibility of links, pins, machine and ground; stiffness from weight and from the cylinders' pre-load;
 /// oil moving between chambers (valves shut); forces from the boom's slow motion on its vibration.
 struct BoomModes {
-  int count{};                             ///< modes = joints with a cylinder; 0 at a dead point
-  bool dead_point{};                       ///< some cylinder does not hold its joint: there are no modes
-  std::array<int, kMaxJoints> joint{};     ///< index in the chain of the joints that vibrate
-  JointVector stiffness;                   ///< K of those [N m/rad]
-  JointMatrix mass;                        ///< M of all joints [kg m2]
-  JointVector omega;                       ///< natural frequencies [rad/s]
-  JointMatrix shape;                       ///< of the joints that vibrate, per mode; shape^T M shape = 1 [1/sqrt(kg m2)]
-  JointMatrix inertia;                     ///< M shape, of all joints, per mode [sqrt(kg m2)]
+  int count{};                          ///< modes = joints with a cylinder; 0 at a dead point
+  bool dead_point{};                    ///< some cylinder does not hold its joint: there are no modes
+  std::array<int, kMaxJoints> joint{};  ///< index in the chain of the joints that vibrate
+  JointVector stiffness;                ///< K of those [N m/rad]
+  JointMatrix mass;                     ///< M of all joints [kg m2]
+  JointVector omega;                    ///< natural frequencies [rad/s]
+  JointMatrix shape;                    ///< of the joints that vibrate, per mode; shape^T M shape = 1 [1/sqrt(kg m2)]
+  JointMatrix inertia;                  ///< M shape, of all joints, per mode [sqrt(kg m2)]
 };
 
 /// Modes at a pose; at most one cylinder per joint. No allocation.
@@ -41,8 +41,8 @@ struct ReducedHull {
   double stiffness{};  ///< 1/(d^T J K^-1 J^T d) [N/m]
 };
 
-/// Along a direction through the tip's origin: tip_velocity = that velocity per joint rate, d^T J [m]. Infinite where the
-/// vibrating joints do not move the hull along it.
+/// Along a direction through the tip's origin: tip_velocity = that velocity per joint rate, d^T J [m]. Infinite where
+/// the vibrating joints do not move the hull along it.
 ReducedHull reducedAtTip(const BoomModes& modes, const JointVector& tip_velocity) noexcept;
 
 }  // namespace hammer_loads

@@ -5,6 +5,7 @@
 #include <kdl_parser/kdl_parser.hpp>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "hammer_loads/boom/urdf_text.h"
 #include "hammer_loads/linkage/format.h"
@@ -38,8 +39,9 @@ ChainLink toLink(const KDL::Segment& segment) {
   link.sine = link.cosine = Eigen::Matrix3d::Zero();
   link.slide = link.axis = Eigen::Vector3d::Zero();
   link.body = {segment.getInertia().getMass(), toEigen(segment.getInertia().getCOG())};
+  // None is how KDL 1.4 and 1.5 both call a fixed joint.
   const KDL::Joint::JointType type = segment.getJoint().getType();
-  if (type == KDL::Joint::Fixed) return link;
+  if (type == KDL::Joint::None) return link;
   link.axis = toEigen(segment.getJoint().JointAxis());
   link.prismatic = type == KDL::Joint::TransAxis;
   if (link.prismatic) {
@@ -102,8 +104,10 @@ class ChainBuilder {
     for (const urdf::JointConstSharedPtr& joint : path_) {
       if (moves(*joint)) moving.insert(joint->name);
       if (!moves(*joint) && joint->type != urdf::Joint::FIXED) {
-        result_.problems.push_back(format("robot_description: joint %s: must be revolute, continuous, prismatic or "
-                                          "fixed", joint->name.c_str()));
+        result_.problems.push_back(
+            format("robot_description: joint %s: must be revolute, continuous, prismatic or "
+                   "fixed",
+                   joint->name.c_str()));
       }
       if (joint->mimic) {
         result_.problems.push_back(format("robot_description: joint %s: mimics %s, must move by itself",
@@ -112,9 +116,11 @@ class ChainBuilder {
     }
     const auto count = static_cast<int>(moving.size());
     if (count < 1 || count > kMaxJoints || static_cast<int>(path_.size()) >= kMaxLinks) {
-      result_.problems.push_back(format("robot_description: %d moving joints and %d links from %s to %s, must be 1 to "
-                                        "%d joints and at most %d links", count, static_cast<int>(path_.size()) + 1,
-                                        request_.root.c_str(), request_.tip.c_str(), kMaxJoints, kMaxLinks));
+      result_.problems.push_back(
+          format("robot_description: %d moving joints and %d links from %s to %s, must be 1 to "
+                 "%d joints and at most %d links",
+                 count, static_cast<int>(path_.size()) + 1, request_.root.c_str(), request_.tip.c_str(), kMaxJoints,
+                 kMaxLinks));
     }
     for (const std::string& name : request_.joints) {
       if (moving.count(name) != 0) continue;
@@ -127,17 +133,17 @@ class ChainBuilder {
   void addLinks() {
     for (const urdf::JointConstSharedPtr& joint : path_) in_chain_.insert(joint->child_link_name);
     in_chain_.insert(request_.root);
-    const KDL::SegmentMap::const_iterator root = tree_.getSegment(request_.root);
+    const auto root = tree_.getSegment(request_.root);
     ChainLink base = toLink(KDL::Segment(request_.root));
     const KDL::RigidBodyInertia base_body = ownBody(*model_.getLink(request_.root)) + fixedNeighbours(root);
     base.body = {base_body.getMass(), toEigen(base_body.getCOG())};
-    data_.links.push_back(base);
+    data_.links.push_back(std::move(base));
     data_.lower.resize(0), data_.upper.resize(0);
     for (const urdf::JointConstSharedPtr& joint : path_) addLink(*joint);
   }
 
   void addLink(const urdf::Joint& joint) {
-    const KDL::SegmentMap::const_iterator element = tree_.getSegment(joint.child_link_name);
+    const auto element = tree_.getSegment(joint.child_link_name);
     const KDL::Segment& bare = GetTreeElementSegment(element->second);
     data_.kdl.addSegment(KDL::Segment(bare.getName(), bare.getJoint(), bare.getFrameToTip(),
                                       bare.getInertia() + fixedNeighbours(element)));
@@ -169,7 +175,7 @@ class ChainBuilder {
       const KDL::Segment& segment = GetTreeElementSegment(child->second);
       if (in_chain_.count(segment.getName()) != 0) continue;
       const KDL::RigidBodyInertia body = segment.getInertia() + fixedNeighbours(child);
-      if (segment.getJoint().getType() == KDL::Joint::Fixed) {
+      if (segment.getJoint().getType() == KDL::Joint::None) {
         sum = sum + segment.pose(0.0) * body;
       } else if (body.getMass() > 0.0) {
         result_.notes.push_back(format("robot_description: link %s: %.6g kg move beside the chain and are not counted",
@@ -183,7 +189,7 @@ class ChainBuilder {
   void checkMassBeyondJoints() {
     const int last = data_.link_beyond.back();
     double mass = 0.0;
-    for (std::size_t i = static_cast<std::size_t>(last); i < data_.links.size(); ++i) mass += data_.links[i].body.mass;
+    for (auto i = static_cast<std::size_t>(last); i < data_.links.size(); ++i) mass += data_.links[i].body.mass;
     if (mass > 0.0) return;
     result_.problems.push_back(format("robot_description: mass beyond joint %s: %.6g kg, must be > 0",
                                       data_.joint_names.back().c_str(), mass));

@@ -22,12 +22,13 @@ struct ChainRequest {
 
 /// A body's mass and where it acts.
 struct PointMass {
-  double mass{};                                     ///< [kg]
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();       ///< centre of mass from a frame's origin in its axes [m]
+  double mass{};                                ///< [kg]
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< centre of mass from a frame's origin in its axes [m]
 };
 
-/// A link of the chain and how it hangs on the one before. With q its joint's position, in the frame P of the one before:
-/// R_PL = steady + sin q sine + cos q cosine, p_PL = origin + q slide. The terms that a joint does not have are zero.
+/// A link of the chain and how it hangs on the one before. With q its joint's position, in the frame P of the one
+/// before: R_PL = steady + sin q sine + cos q cosine, p_PL = origin + q slide. The terms that a joint does not have are
+/// zero.
 struct ChainLink {
   std::string name;
   int joint{-1};  ///< index of its moving joint; -1: fixed

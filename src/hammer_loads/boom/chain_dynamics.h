@@ -15,8 +15,9 @@ class ChainDynamics {
   ChainDynamics(ChainDynamics&&) noexcept;
   ChainDynamics& operator=(ChainDynamics&&) noexcept;
 
-  /// Torque on the joints from the links' inertia as the boom moves: -(M q'' + c(q, q')) [N m], without weight. Positive
-  /// drives the joint forward, as in jointTorqueOfTipLoad(). Recursive Newton-Euler; nothing is computed at rest.
+  /// Torque on the joints from the links' inertia as the boom moves: -(M q'' + c(q, q')) [N m], without weight.
+  /// Positive drives the joint forward, as in jointTorqueOfTipLoad(). Recursive Newton-Euler; nothing is computed at
+  /// rest.
   JointVector torqueOfMotion(const JointMotion& motion) noexcept;
 
   /// Mass matrix M(q) [kg m2], symmetric, positive definite. Composite rigid bodies.

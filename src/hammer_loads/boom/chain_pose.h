@@ -11,9 +11,9 @@ namespace hammer_loads {
 /// Frames of the links and axes of the joints in the root's frame B.
 struct ChainPose {
   int links{}, joints{};
-  std::array<Pose, kMaxLinks> X_BL;               ///< pose of each link, index as in Chain
-  std::array<Eigen::Vector3d, kMaxJoints> axis_B; ///< unit vector of each joint
-  std::array<Eigen::Vector3d, kMaxJoints> p_BJ_B; ///< a point on each joint's axis [m]
+  std::array<Pose, kMaxLinks> X_BL;                ///< pose of each link, index as in Chain
+  std::array<Eigen::Vector3d, kMaxJoints> axis_B;  ///< unit vector of each joint
+  std::array<Eigen::Vector3d, kMaxJoints> p_BJ_B;  ///< a point on each joint's axis [m]
   std::array<bool, kMaxJoints> prismatic{};
 
   const Pose& tip() const noexcept { return X_BL[static_cast<std::size_t>(links - 1)]; }

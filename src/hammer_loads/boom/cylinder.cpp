@@ -32,7 +32,8 @@ void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems)
   check("rod_hose_volume_m3", p.rod_hose_volume, "m3", p.rod_hose_volume > 0.0, positive);
   check("relief_pressure_Pa", p.relief_pressure, "Pa", p.relief_pressure > 0.0, positive);
   if (!problems.empty()) return;
-  check("rod_diameter_m", p.rod_diameter, "m", p.rod_diameter < p.bore, format("< %s_bore_m = %.9g m", name, p.bore).c_str());
+  check("rod_diameter_m", p.rod_diameter, "m", p.rod_diameter < p.bore,
+        format("< %s_bore_m = %.9g m", name, p.bore).c_str());
   check("closed_length_m", p.closed_length, "m", p.closed_length > p.stroke,
         format("> %s_stroke_m = %.9g m", name, p.stroke).c_str());
 }
@@ -96,10 +97,10 @@ void Cylinder::checkReach(const Chain& chain, std::vector<std::string>& problems
     if (miss > worst) worst = miss, worst_angle = angle, worst_length = length;
   }
   if (worst > 0.0) {
-    problems.push_back(format("%s_closed_length_m: %.9g m, cannot close the triangle: at %s = %.6g rad its length must be "
-                              "%.6g m, from closed to open are %.6g to %.6g m",
-                              name, parameters_.closed_length, joint, worst_angle, worst_length,
-                              parameters_.closed_length, open));
+    problems.push_back(
+        format("%s_closed_length_m: %.9g m, cannot close the triangle: at %s = %.6g rad its length must be "
+               "%.6g m, from closed to open are %.6g to %.6g m",
+               name, parameters_.closed_length, joint, worst_angle, worst_length, parameters_.closed_length, open));
   }
 }
 

@@ -10,16 +10,16 @@ namespace hammer_loads {
 /// As the boom file gives it; keys are `NAME_` and the names beside each member.
 struct CylinderParameters {
   std::string name;
-  std::string joint;               ///< joint: the moving revolute joint that it spans
-  double base_x{}, base_z{};       ///< base_x_m, base_z_m: anchor on the link before the joint, in its frame [m]
-  double rod_x{}, rod_z{};         ///< rod_x_m, rod_z_m: anchor on the link beyond, in its frame [m]
-  double bore{};                   ///< bore_m: diameter of the piston [m], > 0
-  double rod_diameter{};           ///< rod_diameter_m [m], > 0, < bore
-  double closed_length{};          ///< closed_length_m: between anchors, rod in [m], > stroke
-  double stroke{};                 ///< stroke_m [m], > 0
-  double bore_hose_volume{};       ///< bore_hose_volume_m3: oil trapped beside the piston's sweep, hose included, > 0
-  double rod_hose_volume{};        ///< rod_hose_volume_m3, > 0
-  double relief_pressure{};        ///< relief_pressure_Pa: highest pressure that the chambers hold, > 0
+  std::string joint;          ///< joint: the moving revolute joint that it spans
+  double base_x{}, base_z{};  ///< base_x_m, base_z_m: anchor on the link before the joint, in its frame [m]
+  double rod_x{}, rod_z{};    ///< rod_x_m, rod_z_m: anchor on the link beyond, in its frame [m]
+  double bore{};              ///< bore_m: diameter of the piston [m], > 0
+  double rod_diameter{};      ///< rod_diameter_m [m], > 0, < bore
+  double closed_length{};     ///< closed_length_m: between anchors, rod in [m], > stroke
+  double stroke{};            ///< stroke_m [m], > 0
+  double bore_hose_volume{};  ///< bore_hose_volume_m3: oil trapped beside the piston's sweep, hose included, > 0
+  double rod_hose_volume{};   ///< rod_hose_volume_m3, > 0
+  double relief_pressure{};   ///< relief_pressure_Pa: highest pressure that the chambers hold, > 0
 };
 
 /// Length and leverage at a joint angle.
@@ -40,13 +40,13 @@ struct CylinderLoad {
 /// own compression.
 class Cylinder {
  public:
-  /// Arms below this share of the triangle's shorter fixed side are a dead point: the force would be 50 times the torque
-  /// over that side.
+  /// Arms below this share of the triangle's shorter fixed side are a dead point: the force would be 50 times the
+  /// torque over that side.
   static constexpr double kDeadPointRatio = 0.02;
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, and a triangle
-  /// that needs the cylinder shorter than closed or longer than open within the joint's limits. bulk_modulus: of oil with
-  /// hose and air [Pa].
+  /// that needs the cylinder shorter than closed or longer than open within the joint's limits. bulk_modulus: of oil
+  /// with hose and air [Pa].
   static Checked<Cylinder> make(const CylinderParameters& parameters, double bulk_modulus, const Chain& chain);
 
   const CylinderParameters& parameters() const noexcept { return parameters_; }
@@ -61,8 +61,8 @@ class Cylinder {
   /// Neglects the pre-load's share, force times d2L/dq2.
   double jointStiffness(const CylinderPosition& position) const noexcept;
 
-  double boreArea() const noexcept { return bore_area_; }  ///< pushes [m2]
-  double rodArea() const noexcept { return rod_area_; }    ///< pulls [m2]
+  double boreArea() const noexcept { return bore_area_; }                                    ///< pushes [m2]
+  double rodArea() const noexcept { return rod_area_; }                                      ///< pulls [m2]
   double greatestPush() const noexcept { return parameters_.relief_pressure * bore_area_; }  ///< [N]
   double greatestPull() const noexcept { return parameters_.relief_pressure * rod_area_; }   ///< [N]
 
@@ -75,8 +75,8 @@ class Cylinder {
   int joint_{};
   double bulk_modulus_{};
   double bore_area_{}, rod_area_{};
-  double shorter_side_{};                   ///< of the two from the joint's axis to the anchors [m]
-  double steady_{}, cosine_{}, sine_{};     ///< L^2 = steady + cosine cos q + sine sin q [m2]
+  double shorter_side_{};                ///< of the two from the joint's axis to the anchors [m]
+  double steady_{}, cosine_{}, sine_{};  ///< L^2 = steady + cosine cos q + sine sin q [m2]
 };
 
 }  // namespace hammer_loads

@@ -5,8 +5,8 @@
 
 namespace hammer_loads {
 
-constexpr int kMaxJoints = 8;   ///< moving joints of a chain
-constexpr int kMaxLinks = 16;   ///< links of a chain, its root included
+constexpr int kMaxJoints = 8;  ///< moving joints of a chain
+constexpr int kMaxLinks = 16;  ///< links of a chain, its root included
 
 /// One entry per moving joint, from the root to the tip.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;

@@ -22,7 +22,7 @@ class FirstError : public console_bridge::OutputHandler {
   void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override {
     if (text_.empty() && level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) text_ = text;
   }
-  std::string oneLine() const {
+  [[nodiscard]] std::string oneLine() const {
     std::string line = text_.empty() ? "it is no URDF" : text_;
     for (char& letter : line) {
       if (static_cast<unsigned char>(letter) < ' ') letter = ' ';
@@ -37,8 +37,8 @@ class FirstError : public console_bridge::OutputHandler {
 void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
   const urdf::Inertial& body = *link.inertial;
   if (!(body.mass >= 0.0) || !std::isfinite(body.mass)) {
-    problems.push_back(format("robot_description: mass of link %s: %.9g kg, must be >= 0 and finite", link.name.c_str(),
-                              body.mass));
+    problems.push_back(
+        format("robot_description: mass of link %s: %.9g kg, must be >= 0 and finite", link.name.c_str(), body.mass));
   }
   Eigen::Matrix3d inertia;
   inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz, body.izz;
@@ -51,9 +51,10 @@ void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
   // Slack for figures given with few digits.
   const double slack = 1e-2 * std::abs(moments[2]);
   if (moments[0] < -1e-9 * std::abs(moments[2]) || moments[0] + moments[1] < moments[2] - slack) {
-    problems.push_back(format("robot_description: inertia of link %s: principal moments %.6g, %.6g, %.6g kg m2, must "
-                              "be >= 0 and the largest at most the sum of the others",
-                              link.name.c_str(), moments[0], moments[1], moments[2]));
+    problems.push_back(
+        format("robot_description: inertia of link %s: principal moments %.6g, %.6g, %.6g kg m2, must "
+               "be >= 0 and the largest at most the sum of the others",
+               link.name.c_str(), moments[0], moments[1], moments[2]));
   }
 }
 

@@ -43,6 +43,7 @@ void Vibration::rest() noexcept {
   x_.setZero(modes_.count);
   v_.setZero(modes_.count);
   torque_.setZero();
+  posed_ = false;
 }
 
 void Vibration::advance(double step, const TorqueStep& torque) noexcept {

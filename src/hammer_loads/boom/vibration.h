@@ -13,7 +13,7 @@ struct VibrationSettings {
   double refresh_angle{};  ///< new modes for each such move of a joint; theirs is off by half of it [rad], >= 0
 };
 
-/// Joint torques of the hammer over one step, axes and signs as in jointTorqueOfTipLoad() [N m].
+/// Joint torques of the hammer over one step, signs as in jointTorqueOfTipLoad() [N m].
 struct TorqueStep {
   JointVector from, to;  ///< at the step's ends; where the load jumps (a blow), end a step there and begin anew
   JointVector mean;      ///< over the step; linear between the ends makes it their mean
@@ -30,7 +30,7 @@ class Vibration {
 
   /// Pose at the end of the step that advance() takes next. Finds new modes when a joint has moved far enough.
   void setPose(const JointVector& position) noexcept;
-  /// At rest without load.
+  /// At rest without load, as after a gap in the samples; the next setPose() begins anew.
   void rest() noexcept;
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
   void advance(double step, const TorqueStep& torque) noexcept;
@@ -59,8 +59,8 @@ class Vibration {
   JointVector position_;  ///< where the modes belong
   JointVector last_;      ///< as last told
   bool posed_{};
-  JointVector x_, v_;     ///< modal displacements and velocities
-  JointVector torque_;    ///< of the load at the end of the last step
+  JointVector x_, v_;   ///< modal displacements and velocities
+  JointVector torque_;  ///< of the load at the end of the last step
 };
 
 }  // namespace hammer_loads

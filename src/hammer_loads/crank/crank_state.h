@@ -8,8 +8,6 @@
 
 namespace hammer_loads {
 
-constexpr double kTwoPi = 6.283185307179586232;
-
 /// Unwound crank position: 2 pi * blow + angle.offset [rad]. Keeping the whole turns apart means that days of work cost
 /// no precision. `blow` counts passages of the blow; the nearest one is at offset 0.
 struct CrankPosition {

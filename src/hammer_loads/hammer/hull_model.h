@@ -31,7 +31,6 @@ class HullModel {
 
 /// Crank angle left until the next forward blow [rad], exact near it.
 inline double angleToBlow(CrankAngle angle) noexcept {
-  constexpr double kTwoPi = 6.283185307179586232;
   return angle.side == Side::kBeforeBlow ? -angle.offset : kTwoPi - angle.offset;
 }
 

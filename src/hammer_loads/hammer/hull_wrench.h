@@ -63,19 +63,18 @@ HAMMER_LOADS_INLINE HullWrench hullWrenchLinkage(const Mechanism& mechanism, con
                                                  Gravity gravity) noexcept {
   const LinkMoments& k = mechanism.moments();
   const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
-  const Planar rod = k.rod * l.beta;
-  const Planar crank_rod = k.crank * (l.phi * q.crank) + rod * q.rod;
+  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta;
+  const Planar crank_rod = crank * q.crank + rod * q.rod;
   const Planar all = crank_rod + k.rocker * (l.psi * q.rocker);
-  const double weight_moment =
-      realPart(k.fixed, {gravity.z, -gravity.x}) + realPart(weightMoment(k.crank, gravity), l.phi) +
-      (rod.re * gravity.z + rod.im * gravity.x) + k.rocker * (l.psi.re * gravity.z + l.psi.im * gravity.x);
+  const Planar first_moment = k.fixed + crank + rod + k.rocker * l.psi;
   const Planar coupling = linkCoupling(mechanism, l);
   // d/dt of the angular momentum about D; A stands at -pivot.
   const double momentum_rate = k.crank_inertia * c.acceleration + k.rod_inertia * q.rod.im +
                                mechanism.parameters().rocker_inertia_about_pivot * q.rocker.im -
                                (k.pivot.re * crank_rod.im - k.pivot.im * crank_rod.re) +
                                coupling.re * (q.rod.im + c.acceleration) + coupling.im * (q.rod.re - q.crank.re);
-  return {k.mass * gravity.x + all.re, k.mass * gravity.z - all.im, weight_moment - momentum_rate};
+  return {k.mass * gravity.x + all.re, k.mass * gravity.z - all.im,
+          first_moment.re * gravity.z + first_moment.im * gravity.x - momentum_rate};
 }
 
 HAMMER_LOADS_INLINE LinkMomentum linkMomentumLinkage(const Mechanism& mechanism, const LinkMotion& l,

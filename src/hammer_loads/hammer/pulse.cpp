@@ -12,7 +12,6 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kTwoPi = 2.0 * kPi;
 /// A lobe of Fz counts when it reaches this part of the peak.
 constexpr double kLeastLobe = 0.1;
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "hammer_loads/linkage/crank_motion.h"
-#include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/motion.h"
 #include "hammer_loads/linkage/planar.h"
@@ -26,7 +25,7 @@ struct LinkMotion {
 };
 
 HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker::Ratios& k, const Motion& m) noexcept {
-  const double s = m.sin_half, c = m.cos_half;
+  const double s = m.sin_half, c = m.cos_half, ss = s * s;
   LinkMotion l;
   l.rocker.sin_psi = m.sin_psi;  // one by one: copied as a block they would stay in memory
   l.rocker.cos_psi = m.cos_psi;
@@ -39,17 +38,17 @@ HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker::Ratios& k, const Mo
   l.rocker.sin_psi_over_s = m.sin_psi_over_s;
   l.rocker.du_over_s = m.du_over_s;
   const double sin_phi_over_s = 2.0 * c;
-  l.phi = {1.0 - 2.0 * s * s, s * sin_phi_over_s};
+  l.phi = {1.0 - 2.0 * ss, s * sin_phi_over_s};
   l.psi = {m.cos_psi, m.sin_psi};
   l.sin_mu_over_s = k.two_over_r0_squared * m.r;
   l.sin_mu = s * l.sin_mu_over_s;
-  l.cos_mu = 1.0 - k.two_over_r0_squared * s * s;
+  l.cos_mu = 1.0 - k.two_over_r0_squared * ss;
   const double sin_beta_over_s = m.sin_psi_over_s * l.cos_mu - m.cos_psi * l.sin_mu_over_s;
   l.beta = {m.cos_psi * l.cos_mu + m.sin_psi * l.sin_mu, s * sin_beta_over_s};
   l.sin_delta_over_s = sin_beta_over_s * l.phi.re - l.beta.re * sin_phi_over_s;
   l.delta = {l.beta.re * l.phi.re + l.beta.im * l.phi.im, s * l.sin_delta_over_s};
   l.v = m.u - c * m.inv_r;
-  l.dv_over_s = m.du_over_s + 0.5 * k.g * m.inv_r * m.inv_r * m.inv_r;
+  l.dv_over_s = m.du_over_s + (0.5 * k.g) * m.inv_r * (m.inv_r * m.inv_r);
   l.dv = s * l.dv_over_s;
   return l;
 }
@@ -75,15 +74,6 @@ HAMMER_LOADS_INLINE LinkAccelerations linkAccelerations(const LinkMotion& l, dou
   q.rod = {-rod_rate * rod_rate, l.dv_over_s * sww + l.v * acceleration};
   q.rocker = {-rocker_rate * rocker_rate, l.rocker.du_over_s * sww + l.rocker.u * acceleration};
   return q;
-}
-
-/// Moment of weight per direction: the first moment c of a link seen from the hull, times e^(i angle), has the moment
-/// re gz + im gx about its pivot, the real part of this times e^(i angle) [N m].
-HAMMER_LOADS_INLINE Planar weightMoment(Planar first_moment, Gravity gravity) noexcept {
-  return first_moment * Planar{gravity.z, -gravity.x};
-}
-HAMMER_LOADS_INLINE double realPart(Planar a, Planar direction) noexcept {
-  return a.re * direction.re - a.im * direction.im;
 }
 
 /// Coupling of crank and rod, l1 m2 rho2 e^(i (beta - phi)) [kg m2]: its real part couples their rates.

@@ -47,11 +47,8 @@ inline double transmissionAngle(const LinkMotion& l) noexcept { return std::atan
 
 namespace detail {
 
-/// s, but never zero: what does not vanish with s is divided by 1e-290 at the blow itself.
-HAMMER_LOADS_INLINE double divisor(double s) noexcept {
-  constexpr double kTiny = 1e-290;
-  return std::abs(s) < kTiny ? kTiny : s;
-}
+/// Added to s before it divides: too small to change any other s, it leaves a number at the blow itself.
+constexpr double kLeastSine = 1e-290;
 
 /// From the frame turned by a (LinkMoments) to hull axes.
 constexpr PinForce toHull(Planar f) noexcept { return {-f.re, f.im}; }
@@ -72,7 +69,7 @@ HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, con
 
   // Rod force along B->C times s, positive when the rod pushes the rocker away from B.
   const double with_s = inertia * m.du_over_s * ww, rest = inertia * m.u * c.acceleration - weight;
-  const double s = detail::divisor(m.sin_half);
+  const double s = m.sin_half + detail::kLeastSine;
   const double along = -(with_s * s + rest) * (mechanism.moments().rod_force_factor * m.inv_r) / s;
   const Planar rod = along * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
   PinReactions pins;
@@ -96,7 +93,7 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
   const Motion& m = l.rocker;
   const double ww = c.speed * c.speed, e = c.acceleration;
-  const Planar rod = k.rod * l.beta;
+  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta;
   const Planar coupling = k.coupling * l.delta;
 
   // Rocker about D: l3 cross(e^(i psi), R23) = s rocker_s + rocker_rest.
@@ -108,7 +105,7 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   const double rod_rest = (k.rod_inertia * l.v + coupling.re) * e + k.coupling.im * l.delta.re * ww -
                           (rod.im * gravity.x + rod.re * gravity.z);
   // R23 = (along + i across) e^(i beta); along has the divisor sin mu.
-  const double s = detail::divisor(m.sin_half);
+  const double s = m.sin_half + detail::kLeastSine;
   const double across = -(s * rod_s + rod_rest) * k.inv_rod_length;
   const double rod_part = k.rocker_over_rod * l.cos_mu;
   const double along_s =
@@ -118,16 +115,15 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   const Planar weight{-gravity.x, gravity.z};  // per mass
   const Planar on_rocker = Planar{along, across} * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
   const Planar above_crank = on_rocker + rod * q.rod;
-  const Planar crank_change = l.phi * q.crank;
-  const Planar on_rod = above_crank + k.rod_at_b * crank_change - p.rod_mass * weight;
-  const Planar on_crank = above_crank + k.crank * crank_change - (k.mass - p.rocker_mass) * weight;
+  const Planar on_rod = above_crank + (k.rod_at_b * l.phi) * q.crank - p.rod_mass * weight;
+  const Planar on_crank = above_crank + crank * q.crank - (k.mass - p.rocker_mass) * weight;
   PinReactions pins;
   pins.rod_on_rocker = detail::toHull(on_rocker);
   pins.crank_on_rod = detail::toHull(on_rod);
   pins.hull_on_crank = detail::toHull(on_crank);
   pins.hull_on_rocker = detail::toHull(k.rocker * (l.psi * q.rocker) - p.rocker_mass * weight - on_rocker);
   // Crank about A, the rod's mass at B counted with it.
-  pins.drive_torque = k.crank_inertia * e - realPart(weightMoment(k.crank, gravity), l.phi) + coupling.re * q.rod.im +
+  pins.drive_torque = k.crank_inertia * e - (crank.im * gravity.x + crank.re * gravity.z) + coupling.re * q.rod.im +
                       coupling.im * q.rod.re + p.lengths.crank * (along_s * l.sin_delta_over_s + across * l.delta.re);
   pins.near_blow = near_blow(l);
   return pins;

@@ -23,6 +23,8 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", kNotNegative);
   s.initial_torque_deviation = reader.number("initial_torque_deviation_rad_s2", "rad/s2", kPositive);
   s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", kNotNegative);
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  s.near_blow = kDegree * reader.number("near_blow_deg", "deg", NumberRule::within(0.0, 89.0));
   s.stale_after = reader.number("stale_after_s", "s", kPositive);
   s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", kPositive);
   s.withhold_above = reader.number("withhold_above", "", kPositive);

@@ -41,6 +41,7 @@ struct PipelineSettings {
   double inertia_walk{};                  ///< relative to the drive inertia [1/sqrt(s)], >= 0
   double initial_torque_deviation{};      ///< of the net torque per rocker inertia about D [rad/s2], > 0
   double initial_inertia_deviation{};     ///< relative to the drive inertia [-], >= 0
+  double near_blow{};                     ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
   double stale_after{};                   ///< no crank sample for longer: nothing is published [s], > 0
   double max_crank_speed{};               ///< a faster sample is implausible [rad/s], > 0
   double withhold_above{};                ///< predicted error of the wrench over the turn's peak [-], > 0

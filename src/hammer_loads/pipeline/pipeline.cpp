@@ -45,6 +45,7 @@ double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSe
 Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings)
     : mechanism_(mechanism),
       settings_(settings),
+      hull_model_(mechanism_, settings.level),
       tracker_(makeTracker(mechanism_, settings)),
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
       gravity_(gravityAtPitch(settings.gravity, settings.hull_pitch)),
@@ -98,7 +99,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
   loads_.crank = tracker_->estimate();
   last_position_ = loads_.crank.position;
   if (!settled()) return refuse(Refusal::kUnsettled);
-  loads_.wrench = hullWrench(mechanism_, settings_.level,
+  loads_.wrench = hullWrench(hull_model_,
                              {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, gravity_);
   ++counts_.accepted;
   return loads_;
@@ -128,7 +129,7 @@ double Pipeline::wrenchDeviation() const noexcept {
   const auto force = [&](double angle, double speed, double acceleration) noexcept {
     CrankAngle moved = at.position.angle;
     moved.offset += angle;
-    return hullWrench(mechanism_, settings_.level, {moved, at.speed + speed, at.acceleration + acceleration}, gravity_)
+    return hullWrench(hull_model_, {moved, at.speed + speed, at.acceleration + acceleration}, gravity_)
         .force_z;
   };
   constexpr double kStep[] = {1e-5, 1e-3, 1e-2};
@@ -140,9 +141,9 @@ double Pipeline::wrenchDeviation() const noexcept {
 
 TurnInstant Pipeline::instant(double time, const CrankEstimate& crank) const noexcept {
   const CrankAngle angle = crank.position.angle;
-  const HullWrench weight = hullWrench(mechanism_, settings_.level, {angle, 0.0, 0.0}, gravity_);
-  return {time, hullWrench(mechanism_, settings_.level, {angle, crank.speed, crank.acceleration}, gravity_),
-          linkMomentum(mechanism_, settings_.level, angle, crank.speed), weight.force_x, weight.force_z};
+  const HullWrench weight = hullWrench(hull_model_, {angle, 0.0, 0.0}, gravity_);
+  return {time, hullWrench(hull_model_, {angle, crank.speed, crank.acceleration}, gravity_),
+          linkMomentum(hull_model_, angle, crank.speed), weight.force_x, weight.force_z};
 }
 
 /// Points of the turn in (from, to] [s] after the last but one sample.
@@ -208,7 +209,7 @@ void Pipeline::endTurn(double time) noexcept {
   TurnEnd end;
   end.stamp = stamp;
   end.turn = turns_;
-  end.blow = blowAtCrankSpeed(mechanism_, tracker_->between(time).speed);
+  end.blow = blowAtCrankSpeed(mechanism_, settings_.level, tracker_->between(time).speed);
   end.pulse = turn_.end(instant(origin + time, before));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
   end.mean_press_force = last_blow_ ? end.blow.tool_impulse_z / seconds(stamp - *last_blow_)

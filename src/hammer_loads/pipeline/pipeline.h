@@ -10,7 +10,7 @@
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/hammer/blow.h"
-#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/pulse.h"
 #include "hammer_loads/parameters/pipeline_settings.h"
 #include "hammer_loads/pipeline/hull_pitch.h"
@@ -69,6 +69,7 @@ class Pipeline {
   const CrankTracker& tracker() const noexcept { return *tracker_; }
   const std::optional<StampNs>& lastAccepted() const noexcept { return intake_.last(); }
   const Mechanism& mechanism() const noexcept { return mechanism_; }
+  Gravity gravity() const noexcept { return gravity_; }  ///< in hull axes, by the latest pitch
   const PipelineSettings& settings() const noexcept { return settings_; }
 
  private:
@@ -84,6 +85,7 @@ class Pipeline {
 
   Mechanism mechanism_;
   PipelineSettings settings_;
+  HullModel hull_model_;
   std::unique_ptr<CrankTracker> tracker_;
   HullPitch hull_pitch_;
   Gravity gravity_;

@@ -10,8 +10,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMb = 1e6;
-constexpr std::uint64_t kLeastSplit = 64'000;           // [byte]
-constexpr std::uint64_t kMostQueue = 4'000'000'000;     // [byte]
+constexpr std::uint64_t kLeastSplit = 64'000;        // [byte]
+constexpr std::uint64_t kMostQueue = 4'000'000'000;  // [byte]
 
 double mb(std::uint64_t bytes) { return static_cast<double>(bytes) / kMb; }
 
@@ -35,16 +35,14 @@ std::vector<std::string> BagLog::settingProblems() const {
                        "', must be a file name's beginning: 1 to 200 characters, no /, not . first");
   }
   if (settings_.split_size < kLeastSplit) {
-    problems.push_back(
-        format("log_split_mb: %.9g MB, must be >= %.9g MB", mb(settings_.split_size), mb(kLeastSplit)));
+    problems.push_back(format("log_split_mb: %.9g MB, must be >= %.9g MB", mb(settings_.split_size), mb(kLeastSplit)));
   }
   if (settings_.total_size != 0 && settings_.total_size / 2 < settings_.split_size) {
     problems.push_back(format("log_total_mb: %.9g MB, must be 0 (no limit) or >= 2 x log_split_mb = %.9g MB",
                               mb(settings_.total_size), 2.0 * mb(settings_.split_size)));
   }
   if (settings_.queue_size > kMostQueue) {
-    problems.push_back(
-        format("log_queue_mb: %.9g MB, must be <= %.9g MB", mb(settings_.queue_size), mb(kMostQueue)));
+    problems.push_back(format("log_queue_mb: %.9g MB, must be <= %.9g MB", mb(settings_.queue_size), mb(kMostQueue)));
   }
   return problems;
 }

@@ -70,7 +70,7 @@ class BagLog {
 
   const LogSettings settings_;
   const LogDisk disk_;
-  std::uint64_t session_{};       // of the current recording; 0: none is wanted
+  std::uint64_t session_{};  // of the current recording; 0: none is wanted
   std::uint64_t last_session_{};
   mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads
   std::deque<LogTopic> topics_;

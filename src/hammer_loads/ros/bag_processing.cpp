@@ -15,7 +15,7 @@ namespace {
 
 class BagSink final : public LoadsSink {
  public:
-  BagSink(rosbag::Bag& bag, const std::string& prefix) : bag_(bag), prefix_(prefix + "/") {}
+  BagSink(rosbag::Bag& bag, const BagJob& job) : bag_(bag), prefix_(job.output_prefix + "/"), pins_(job.pins) {}
 
   void runInfo(const RunInfo& message, const ros::Time& record_time) override {
     const auto header = boost::make_shared<ros::M_string>();
@@ -32,6 +32,9 @@ class BagSink final : public LoadsSink {
   void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "mechanism", record_time, message);
   }
+  void pinForces(const PinForces& message, const ros::Time& record_time) override {
+    bag_.write(prefix_ + "pin_forces", record_time, message);
+  }
   void blow(const Blow& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "blow", record_time, message);
   }
@@ -39,11 +42,13 @@ class BagSink final : public LoadsSink {
     bag_.write(prefix_ + "pulse", record_time, message);
   }
   bool wantsMechanism() const override { return true; }
+  bool wantsPinForces() const override { return pins_; }
   bool wantsTurns() const override { return true; }
 
  private:
   rosbag::Bag& bag_;
   std::string prefix_;
+  bool pins_;
 };
 
 /// Removes the unfinished output unless it was given its final name.
@@ -116,7 +121,7 @@ std::string processBag(const BagJob& job, const Settings& settings, const std::f
   }
 
   try {
-    BagSink sink(output, job.output_prefix);
+    BagSink sink(output, job);
     LoadsFlow flow(settings, sink);
     process(input, job, flow, progress);
     counts = flow.pipeline().counts();

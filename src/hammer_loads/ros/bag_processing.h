@@ -15,6 +15,7 @@ struct BagJob {
   std::string crank_topic{"/hammer/crank"};
   std::string joint_topic{"/joint_states"};
   std::string output_prefix{"/hammer_loads"};
+  bool pins{};  ///< pin forces as well
 };
 
 /// Reads the input's messages in their order of arrival and writes every output at the record time of the input that

@@ -7,8 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint32_t kInputQueue = 10000;  // ten seconds at 1 kHz: a stalled machine loses no sample
-constexpr std::uint32_t kOutputQueue = 1000;
+constexpr std::uint32_t kQueue = 10000;  // ten seconds at 1 kHz, in and out: a stalled machine loses nothing
 
 }  // namespace
 
@@ -16,10 +15,11 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
                                  std::unique_ptr<BagLog> log)
     : flow_(settings, *this),
       log_(std::move(log)),
-      hull_wrench_(private_node.advertise<geometry_msgs::WrenchStamped>("hull_wrench", kOutputQueue)),
-      mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kOutputQueue)),
-      blow_(private_node.advertise<Blow>("blow", kOutputQueue)),
-      pulse_(private_node.advertise<Pulse>("pulse", kOutputQueue)),
+      hull_wrench_(private_node.advertise<geometry_msgs::WrenchStamped>("hull_wrench", kQueue)),
+      mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kQueue)),
+      pin_forces_(private_node.advertise<PinForces>("pin_forces", kQueue)),
+      blow_(private_node.advertise<Blow>("blow", kQueue)),
+      pulse_(private_node.advertise<Pulse>("pulse", kQueue)),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       diagnostics_(node, private_node, flow_.pipeline(), log_.get()) {
   RunInfo info = flow_.runInfoMessage();
@@ -27,8 +27,8 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
   run_info_.publish(info);
   const auto no_delay = ros::TransportHints().tcpNoDelay();
   // Joint states first: where both arrive on one topic, a sample's own pitch counts for it.
-  joint_states_ = node.subscribe("joint_states", kInputQueue, &HammerLoadsNode::onJointStates, this, no_delay);
-  crank_ = node.subscribe("crank", kInputQueue, &HammerLoadsNode::onCrank, this, no_delay);
+  joint_states_ = node.subscribe("joint_states", kQueue, &HammerLoadsNode::onJointStates, this, no_delay);
+  crank_ = node.subscribe("crank", kQueue, &HammerLoadsNode::onCrank, this, no_delay);
   one_topic_ = joint_states_.getTopic() == crank_.getTopic();
 }
 
@@ -78,11 +78,16 @@ void HammerLoadsNode::mechanism(const sensor_msgs::JointState& message, const ro
   send(mechanism_, message, record_time);
 }
 
+void HammerLoadsNode::pinForces(const PinForces& message, const ros::Time&) { pin_forces_.publish(message); }
+
 void HammerLoadsNode::blow(const Blow& message, const ros::Time& record_time) { send(blow_, message, record_time); }
 
 void HammerLoadsNode::pulse(const Pulse& message, const ros::Time& record_time) { send(pulse_, message, record_time); }
 
 bool HammerLoadsNode::wantsMechanism() const { return log_ || mechanism_.getNumSubscribers() > 0; }
+
+/// Not logged: they follow from the logged mechanism and would be the largest part of the log.
+bool HammerLoadsNode::wantsPinForces() const { return pin_forces_.getNumSubscribers() > 0; }
 
 bool HammerLoadsNode::wantsTurns() const {
   return log_ || blow_.getNumSubscribers() > 0 || pulse_.getNumSubscribers() > 0;

@@ -1,6 +1,6 @@
 #include "hammer_loads/ros/loads_flow.h"
 
-#include "hammer_loads/linkage/link_motion.h"
+#include "hammer_loads/linkage/pin_forces.h"
 
 namespace hammer_loads {
 namespace {
@@ -26,7 +26,7 @@ LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink)
   run_info_.revision = HAMMER_LOADS_REVISION;
   run_info_.parameters_yaml = settings.yaml;
   run_info_.notes = settings.notes;
-  for (std_msgs::Header* header : {&wrench_.header, &mechanism_.header, &blow_.header, &pulse_.header})
+  for (std_msgs::Header* header : {&wrench_.header, &mechanism_.header, &pin_forces_.header, &blow_.header, &pulse_.header})
     header->frame_id = kHullFrame;
   mechanism_.name = {settings.pipeline.crank_joint, "hammer_rod_joint", "hammer_rocker_joint"};
   mechanism_.position.resize(mechanism_.name.size());
@@ -59,6 +59,7 @@ void LoadsFlow::crank(const sensor_msgs::JointState& message, const ros::Time& r
   wrench_.wrench.torque.y = loads.wrench.torque_y;
   sink_.hullWrench(wrench_, record_time);
   if (sink_.wantsMechanism()) publishMechanism(loads, record_time);
+  if (sink_.wantsPinForces()) publishPinForces(loads, record_time);
 }
 
 void LoadsFlow::publishMechanism(const Loads& loads, const ros::Time& record_time) {
@@ -67,6 +68,29 @@ void LoadsFlow::publishMechanism(const Loads& loads, const ros::Time& record_tim
   mechanism_.position = {crankAngle(loads.crank.position.angle), rodAngle(links), rockerAngle(links.rocker)};
   mechanism_.velocity = {loads.crank.speed, links.v * loads.crank.speed, links.rocker.u * loads.crank.speed};
   sink_.mechanism(mechanism_, record_time);
+}
+
+void LoadsFlow::publishPinForces(const Loads& loads, const ros::Time& record_time) {
+  const Mechanism& mechanism = pipeline_.mechanism();
+  const PipelineSettings& settings = pipeline_.settings();
+  const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
+  const PinReactions pins = pinForces(mechanism, settings.level, crank, pipeline_.gravity(), NearBlow(settings.near_blow));
+  pin_forces_.header.stamp = timeOf(loads.stamp);
+  pin_forces_.crank_angle_rad = crankAngle(crank.angle);
+  pin_forces_.crank_speed_rad_s = crank.speed;
+  pin_forces_.crank_acceleration_rad_s2 = crank.acceleration;
+  pin_forces_.force_a_x_N = pins.hull_on_crank.x;
+  pin_forces_.force_a_z_N = pins.hull_on_crank.z;
+  pin_forces_.force_b_x_N = pins.crank_on_rod.x;
+  pin_forces_.force_b_z_N = pins.crank_on_rod.z;
+  pin_forces_.force_c_x_N = pins.rod_on_rocker.x;
+  pin_forces_.force_c_z_N = pins.rod_on_rocker.z;
+  pin_forces_.force_d_x_N = pins.hull_on_rocker.x;
+  pin_forces_.force_d_z_N = pins.hull_on_rocker.z;
+  pin_forces_.drive_torque_Nm = pins.drive_torque;
+  pin_forces_.transmission_angle_rad = transmissionAngle(linkMotion(mechanism.linkage(), crank.angle));
+  pin_forces_.near_blow = pins.near_blow;
+  sink_.pinForces(pin_forces_, record_time);
 }
 
 void LoadsFlow::publishTurnEnd(const TurnEnd& end, const ros::Time& record_time) {

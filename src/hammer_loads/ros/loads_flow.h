@@ -3,6 +3,7 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <hammer_loads/Blow.h>
+#include <hammer_loads/PinForces.h>
 #include <hammer_loads/Pulse.h>
 #include <hammer_loads/RunInfo.h>
 #include <sensor_msgs/JointState.h>
@@ -21,10 +22,12 @@ class LoadsSink {
   virtual void runInfo(const RunInfo& message, const ros::Time& record_time) = 0;
   virtual void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) = 0;
   virtual void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) = 0;
+  virtual void pinForces(const PinForces& message, const ros::Time& record_time) = 0;
   virtual void blow(const Blow& message, const ros::Time& record_time) = 0;
   virtual void pulse(const Pulse& message, const ros::Time& record_time) = 0;
   /// What nobody takes is not computed.
   virtual bool wantsMechanism() const = 0;
+  virtual bool wantsPinForces() const = 0;
   virtual bool wantsTurns() const = 0;
 };
 
@@ -45,12 +48,14 @@ class LoadsFlow {
   void beginRun(const ros::Time& record_time);
   void publishTurnEnd(const TurnEnd& end, const ros::Time& record_time);
   void publishMechanism(const Loads& loads, const ros::Time& record_time);
+  void publishPinForces(const Loads& loads, const ros::Time& record_time);
 
   Pipeline pipeline_;
   LoadsSink& sink_;
   RunInfo run_info_;
   geometry_msgs::WrenchStamped wrench_;
   sensor_msgs::JointState mechanism_;
+  PinForces pin_forces_;
   Blow blow_;
   Pulse pulse_;
   bool run_begun_{};

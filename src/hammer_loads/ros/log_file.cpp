@@ -16,10 +16,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint64_t kMiB = 1024 * 1024;
-constexpr std::uint64_t kAllocationStep = 4 * kMiB;
-constexpr std::uint64_t kMostHeld = 4 * kMiB;
-constexpr std::uint64_t kSlack = 64 * 1024;          // file header, buffers of stdio
+constexpr std::uint64_t kAllocationStep = 4'000'000;
+constexpr std::uint64_t kMostHeld = 4'000'000;
+constexpr std::uint64_t kSlack = 64'000;             // file header, buffers of stdio
 constexpr std::uint64_t kMessageOverhead = 160;      // headers and index entry of one message, incompressible
 constexpr std::uint64_t kConnectionOverhead = 1024;  // of a connection record beside its texts
 constexpr std::uint64_t kChunkOverhead = 256;        // of a chunk and its entry in the index, beside its connections

@@ -30,15 +30,15 @@ struct LogDisk {
   std::function<std::uint64_t(const std::string& directory)> free_space{freeSpace};  ///< [byte]
 };
 
-/// Belongs to one thread. After a fault the file is either still open, then it can be closed in good order, or given up.
+/// Belongs to one thread. After a fault the file is either still open, then it can be closed in order, or given up.
 class LogFile {
  public:
   using Clock = std::chrono::steady_clock;
   /// A chunk is closed when its first message is this old: a kill loses no more, plus what waits in the queue [s].
   static constexpr std::chrono::milliseconds kChunkPeriod{500};
 
-  /// Once before the first file, in the thread that sets up the process: keeps rosbag's plugin loaded, since loading and
-  /// unloading beside other threads that load plugins ends in crashes. Empty or what is wrong.
+  /// Once before the first file, in the thread that sets up the process: keeps rosbag's plugin loaded,
+  /// since loading and unloading it beside other threads that do so ends in crashes. Empty or what is wrong.
   static std::string prepare();
 
   /// chunk_size: a chunk is closed at the latest with this many bytes before compression.
@@ -55,7 +55,7 @@ class LogFile {
   /// Index, final name.
   std::optional<LogFault> close();
 
-  std::uint64_t size() const noexcept { return size_; }  ///< on disk without the open chunk [byte]
+  std::uint64_t size() const noexcept { return size_; }            ///< on disk without the open chunk [byte]
   std::uint64_t allocated() const noexcept { return allocated_; }  ///< taken on the disk, ahead of the data too [byte]
   /// As it is called now.
   const std::string& path() const noexcept { return is_complete_ ? name_.final() : name_.active(); }
@@ -83,7 +83,7 @@ class LogFile {
   bool is_open_{};
   bool is_complete_{};
   std::uint64_t size_{};
-  std::uint64_t size_bound_{};  // size can be no more once all is flushed [byte]
+  std::uint64_t size_bound_{};   // size can be no more once all is flushed [byte]
   std::uint64_t index_bound_{};  // the index written by close() can be no more [byte]
   std::uint64_t raw_{};          // since chunks were last closed by time [byte]
   std::uint64_t allocated_{};    // of the file on the disk [byte]

@@ -1,14 +1,14 @@
 /// Bounded queue of serialised messages from one thread to one other: no lock, no allocation, no system call.
 #pragma once
 
+#include <ros/time.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <new>
 #include <vector>
-
-#include <ros/time.h>
 
 #include "hammer_loads/ros/log_topic.h"
 

@@ -35,7 +35,7 @@ struct LogTopicCounts {
 
 /// All of it at once.
 struct LogHealth : LogStatus {
-  double queue_fill{};  ///< share of the queue in use [0..1]
+  double queue_fill{};                 ///< share of the queue in use [0..1]
   std::vector<LogTopicCounts> topics;  ///< in order of first appearance
   std::uint64_t messages_written{};    ///< sum over topics
   std::uint64_t messages_dropped{};    ///< sum over topics

@@ -23,8 +23,8 @@ struct LogTopic {
   const std::size_t index;  ///< order of first appearance
   const std::string name;
   const LogType type;
-  const bool latched;        ///< last message repeated at the start of every file
-  const std::string caller;  ///< node that published it; empty: of no interest
+  const bool latched;                    ///< last message repeated at the start of every file
+  const std::string caller;              ///< node that published it; empty: of no interest
   std::atomic<std::uint64_t> written{};  ///< messages handed to a bag; repeats are not counted
   std::atomic<std::uint64_t> refused{};  ///< messages lost because the queue was full or the type was another
   std::atomic<std::uint64_t> unsaved{};  ///< messages lost in the queue because the log stopped for a fault

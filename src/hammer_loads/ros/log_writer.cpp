@@ -11,14 +11,14 @@ namespace hammer_loads {
 namespace {
 
 constexpr std::size_t kMostOrders = 1000;
-constexpr std::uint64_t kChunkSize = 768 * 1024;        // rosbag's own [byte]
+constexpr std::uint64_t kChunkSize = 786'432;           // rosbag's own [byte]
 constexpr std::chrono::milliseconds kLookInterval{10};  // the producing thread need not wake this one
 constexpr std::chrono::seconds kDiskCheckInterval{1};
 
 }  // namespace
 
-LogWriter::LogWriter(const LogSettings& settings, const LogDisk& disk, LogQueue& queue)
-    : settings_(settings), disk_(disk), queue_(queue), thread_(&LogWriter::run, this) {}
+LogWriter::LogWriter(LogSettings settings, LogDisk disk, LogQueue& queue)
+    : settings_(std::move(settings)), disk_(std::move(disk)), queue_(queue), thread_(&LogWriter::run, this) {}
 
 LogWriter::~LogWriter() {
   LogOrder quit;
@@ -152,10 +152,9 @@ std::optional<LogFault> LogWriter::checkDisk() {
   const std::uint64_t free = disk_.free_space(directory_);
   if (free >= settings_.min_free_space) return {};
   constexpr double kMb = 1e6;
-  return LogFault{LogState::kDiskFull,
-                  format("%.1f MB free in %.300s, log_min_free_mb: %.1f MB must stay free",
-                         static_cast<double>(free) / kMb, directory_.c_str(),
-                         static_cast<double>(settings_.min_free_space) / kMb)};
+  return LogFault{LogState::kDiskFull, format("%.1f MB free in %.300s, log_min_free_mb: %.1f MB must stay free",
+                                              static_cast<double>(free) / kMb, directory_.c_str(),
+                                              static_cast<double>(settings_.min_free_space) / kMb)};
 }
 
 void LogWriter::begin(LogName name) {
@@ -234,8 +233,8 @@ void LogWriter::latch(LogOrder& order) {
   order.topic->written.fetch_add(1, std::memory_order_relaxed);
   if (repeat_) return;  // comes with the others
   auto& bytes = place->bytes;
-  auto fault = file_->write(*order.topic, order.time, bytes.data(), static_cast<std::uint32_t>(bytes.size()),
-                            Clock::now());
+  auto fault =
+      file_->write(*order.topic, order.time, bytes.data(), static_cast<std::uint32_t>(bytes.size()), Clock::now());
   if (fault) stopFor(std::move(*fault));
 }
 

@@ -36,7 +36,7 @@ struct LogOrder {
 /// Only the constructor, the destructor, post(), status() and faultySession() are for other threads.
 class LogWriter {
  public:
-  LogWriter(const LogSettings& settings, const LogDisk& disk, LogQueue& queue);
+  LogWriter(LogSettings settings, LogDisk disk, LogQueue& queue);
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
   /// Carries out all orders, writes all messages, closes the file.

@@ -14,10 +14,10 @@ class NormalNoise {
 
   /// Standard normal deviate; always consumes two numbers of the generator.
   double operator()() noexcept {
-    constexpr double kTwoPi = 6.283185307179586232;
+    constexpr double kFullTurn = 6.283185307179586232;
     const double u = 1.0 - uniform();  // (0, 1]
     const double v = uniform();
-    return std::sqrt(-2.0 * std::log(u)) * std::cos(kTwoPi * v);
+    return std::sqrt(-2.0 * std::log(u)) * std::cos(kFullTurn * v);
   }
 
  private:

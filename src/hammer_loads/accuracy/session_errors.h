@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace hammer_loads::test {
+namespace hammer_loads::accuracy {
 
 /// Wrench of a sample [N, N, N m], time since the session's start [s].
 struct WrenchAt {
@@ -83,4 +83,4 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
   return e;
 }
 
-}  // namespace hammer_loads::test
+}  // namespace hammer_loads::accuracy

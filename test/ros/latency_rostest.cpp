@@ -1,0 +1,103 @@
+/// Time from publishing a crank sample to receiving its wrench, beside a bare relay of the same sample in the same run.
+#include <geometry_msgs/WrenchStamped.h>
+#include <gtest/gtest.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <vector>
+
+namespace hammer_loads {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kSamples = 4000;
+constexpr std::chrono::microseconds kPeriod{1000};
+
+struct Latencies {
+  std::vector<double> microseconds;
+  double at(double part) {
+    std::sort(microseconds.begin(), microseconds.end());
+    return microseconds.at(static_cast<std::size_t>(part * static_cast<double>(microseconds.size() - 1)));
+  }
+};
+
+class LatencyTest : public testing::Test {
+ protected:
+  LatencyTest() {
+    const auto hints = ros::TransportHints().tcpNoDelay();
+    crank_ = node_.advertise<sensor_msgs::JointState>("crank", kSamples);
+    wrench_ = node_.subscribe<geometry_msgs::WrenchStamped>(
+        "hammer_loads/hull_wrench", kSamples,
+        [this](const geometry_msgs::WrenchStamped::ConstPtr& m) { arrived(m->header.stamp, node_latency_); }, {}, hints);
+    relay_ = node_.subscribe<sensor_msgs::JointState>(
+        "relayed", kSamples,
+        [this](const sensor_msgs::JointState::ConstPtr& m) { arrived(m->header.stamp, relay_latency_); }, {}, hints);
+  }
+
+  void arrived(const ros::Time& stamp, Latencies& latencies) {
+    const auto sent = sent_.find(stamp.toNSec());
+    if (sent == sent_.end()) return;
+    latencies.microseconds.push_back(std::chrono::duration<double, std::micro>(Clock::now() - sent->second).count());
+  }
+
+  template <typename Condition>
+  bool eventually(Condition condition, double seconds = 20.0) {
+    const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+    while (!condition() && Clock::now() < deadline) ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
+    return condition();
+  }
+
+  ros::NodeHandle node_;
+  ros::Publisher crank_;
+  ros::Subscriber wrench_, relay_;
+  std::map<std::uint64_t, Clock::time_point> sent_;
+  Latencies node_latency_, relay_latency_;
+};
+
+TEST_F(LatencyTest, TheNodeAddsLittleToABareRelay) {
+  ASSERT_TRUE(eventually([this] { return crank_.getNumSubscribers() >= 2 && wrench_.getNumPublishers() > 0; }));
+  sensor_msgs::JointState sample;
+  sample.header.stamp = ros::Time(900.0);
+  sample.name = {"hammer_crank_joint"};
+  sample.position.resize(1);
+  sample.velocity = {5.0};
+  crank_.publish(sample);  // the relay advertises at its first message
+  ASSERT_TRUE(eventually([this] { return relay_.getNumPublishers() > 0; }));
+  Clock::time_point due = Clock::now();
+  for (int i = 0; i < kSamples; ++i) {
+    due += kPeriod;
+    while (Clock::now() < due) {
+      const double left = std::chrono::duration<double>(due - Clock::now()).count();
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(std::max(0.0, left)));
+    }
+    sample.header.stamp = ros::Time(1000.0 + 1e-3 * i);
+    sample.position[0] = 5e-3 * i;
+    sent_[sample.header.stamp.toNSec()] = Clock::now();
+    crank_.publish(sample);
+  }
+  EXPECT_TRUE(eventually([this] {
+    return node_latency_.microseconds.size() == kSamples && relay_latency_.microseconds.size() == kSamples;
+  })) << node_latency_.microseconds.size() << " wrenches, " << relay_latency_.microseconds.size() << " relayed";
+  ASSERT_FALSE(node_latency_.microseconds.empty());
+  ASSERT_FALSE(relay_latency_.microseconds.empty());
+  std::printf("latency at 1 kHz, us, median / 99 %% / 99.9 %%: node %.0f / %.0f / %.0f, relay %.0f / %.0f / %.0f\n",
+              node_latency_.at(0.5), node_latency_.at(0.99), node_latency_.at(0.999), relay_latency_.at(0.5),
+              relay_latency_.at(0.99), relay_latency_.at(0.999));
+  EXPECT_LT(node_latency_.at(0.5), 2.0 * relay_latency_.at(0.5) + 1000.0) << "the millisecond is for a loaded machine";
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "latency_rostest");
+  ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}
