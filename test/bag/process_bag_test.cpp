@@ -136,8 +136,10 @@ TEST_P(RecordedSession, StaysWithinTheBounds) {
   EXPECT_EQ(e.missed_blows, 0);
   EXPECT_EQ(e.extra_blows, 0);
   EXPECT_GT(e.blows, 50);
-  RecordProperty("figures", "rms x " + std::to_string(e.rms_x) + " z " + std::to_string(e.rms_z) + " peak " +
-                                std::to_string(e.turn_peak) + " impulse " + std::to_string(e.turn_impulse));
+  // For the README: scripts/update_readme.
+  std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n", bounds.session,
+              100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque, 100 * e.turn_peak,
+              100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sessions, RecordedSession,

@@ -132,7 +132,7 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
     expected.push_back(pipeline.crankSample(reading.stamp, {reading.angle, reading.speed}));
     blows += expected.back().turn_ends;
   }
-  ASSERT_TRUE(eventually([&] { return wrenches_.size() >= expected.size() && blows_.size() >= blows; }))
+  ASSERT_TRUE(eventually([&] { return wrenches_.size() >= expected.size() && blows_.size() >= blows && pulses_.size() + 1 >= blows; }))
       << wrenches_.size() << " of " << expected.size();
   ASSERT_EQ(wrenches_.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
