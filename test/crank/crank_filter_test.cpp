@@ -15,7 +15,7 @@ CrankFilterSettings settings() {
   s.angle_resolution = kCount;
   s.speed_noise = 0.3;
   s.torque_walk = 74.0;
-  s.speed_walk = 0.5;
+  s.speed_walk = 0.3;
   s.inertia_walk = 5e-4;
   s.initial_torque_deviation = 300.0;
   s.initial_inertia_deviation = 0.3;
@@ -63,6 +63,28 @@ TEST_F(CrankFilterTest, IdentifiesTheInertiaFromAGuessFiftyPercentWrong) {
       run(f, shortSession(speed, 1000.0, 0.6), [](const CrankFilter&, const simulation::CrankTruth&) {});
       EXPECT_NEAR(f.state().drive_inertia, 0.6, 0.012) << guess << ' ' << speed;
     }
+  }
+}
+
+/// Before the work begins the weight turns the crank back onto the tool, which stops it dead: no inertia explains that.
+TEST_F(CrankFilterTest, ADeadStopOnTheToolTeachesNothingOfTheInertia) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    simulation::MachineSettings machine = simulation::workingMo100();
+    machine.duration = 5.0;
+    machine.drive.stop_time = 100.0;
+    machine.seed = seed;
+    const simulation::Session session = simulation::recordSession(machine);
+    CrankFilter f = filter(1.4 * machine.drive.inertia);
+    f.setGravity({0.0, -machine.gravity});
+    double before_work = 0.0, stopped = 0.0;
+    run(f, session, [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
+      if (truth.time > 1.4) return;
+      before_work = at.state().drive_inertia;
+      stopped += truth.speed == 0.0;
+    });
+    ASSERT_GT(stopped, 100.0) << "the session must hold the stop";
+    EXPECT_NEAR(before_work / machine.drive.inertia, 1.4, 0.1) << seed;
+    EXPECT_NEAR(f.state().drive_inertia / machine.drive.inertia, 1.0, 0.03) << seed;
   }
 }
 

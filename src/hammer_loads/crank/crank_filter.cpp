@@ -13,7 +13,9 @@ constexpr double kDoubtfulAngle = 0.3;   // [rad] predicted deviation from which
 constexpr double kJump = 0.5;            // [rad] innovation that no working machine makes between two samples
 constexpr double kNoiseStep = 2e-3;      // [s] step over which the process noise is spread
 constexpr double kMaxInertiaChange = 0.3;   // of the logarithm by one sample: beyond it the linearisation is worth nothing
-constexpr double kInertiaRange = 20.0;      // times the first guess either way: no drawing is further off
+constexpr double kInertiaRange = 10.0;      // times the first guess either way: no drawing is further off
+constexpr double kLearnSpeed = 5.0;         // [rad/s]: a slower crank is moved by friction and stopped by the tool
+constexpr double kRelearn = 0.05;           // relative deviation of the inertia after what it cannot explain
 constexpr double kSoundSpeeds = 2.0;        // times the largest plausible speed: more is a diverged filter
 constexpr double kSpeedNoiseGain = 0.005;   // per sample: the noise of measured speeds is learned within some 200
 constexpr double kNearCounts = 4.0;         // counts from the blow within which the encoder decides its side
@@ -89,14 +91,21 @@ void CrankFilter::correct(Eigen::Index row, double innovation, double variance) 
   covariance_.noalias() -= column * (column.transpose() / total);
 }
 
+/// The coming correction teaches nothing of the inertia.
+void CrankFilter::forgetInertiaCoupling() noexcept {
+  covariance_.topRightCorner<3, 1>().setZero();
+  covariance_.bottomLeftCorner<1, 3>().setZero();
+}
+
 void CrankFilter::correctAngle(double innovation) noexcept {
   const double variance = encoder_.variance() + square(settings_.angle_noise);
   const double squared = innovation * innovation;
   if (squared > kWiden * (covariance_(kAngle, kAngle) + variance)) {
     const double factor = (0.25 * squared - variance) / covariance_(kAngle, kAngle);
     covariance_.topLeftCorner<3, 3>() *= factor;
-    covariance_.topRightCorner<3, 1>().setZero();
-    covariance_.bottomLeftCorner<1, 3>().setZero();
+    forgetInertiaCoupling();
+    // What does not fit may be the inertia itself: leave it room to be learned again.
+    covariance_(kInertia, kInertia) = std::max(covariance_(kInertia, kInertia), square(kRelearn));
   }
   correct(kAngle, innovation, variance);
 }
@@ -156,6 +165,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   before_covariance_ = last_covariance;
   step_ = dt;
   outlier_seen_ = false;
+  if (std::abs(now_.speed) < kLearnSpeed) forgetInertiaCoupling();
   correctAngle(innovation);
   if (sample.speed) correctSpeed(*sample.speed);
   respectCount(sample.angle);

@@ -56,6 +56,7 @@ class CrankFilter final : public CrankTracker {
  private:
   Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept;
   void predict(double dt, ShaftState& state, ShaftLoad& load, ShaftMatrix& covariance) const noexcept;
+  void forgetInertiaCoupling() noexcept;
   void correctAngle(double innovation) noexcept;
   void correctSpeed(double measured) noexcept;
   void correct(Eigen::Index row, double innovation, double variance) noexcept;

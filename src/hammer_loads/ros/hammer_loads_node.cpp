@@ -46,11 +46,12 @@ void HammerLoadsNode::onCrank(const JointStateEvent& event) {
   flow_.crank(*event.getConstMessage(), record_time);
 }
 
-/// Arrival time, made strictly increasing so that a log read back in time order is in the order of arrival. Time that
-/// runs back (a bag that loops, a simulation that starts again) begins anew.
+/// Arrival time, made strictly increasing so that a log read back in time order is in the order of arrival. Simulated
+/// time that runs back (a bag that loops, a simulation that starts again) begins anew; a wall clock that is set back
+/// changes nothing, for header stamps are the only time of the pipeline.
 ros::Time HammerLoadsNode::recordTime(const JointStateEvent& event) {
   const ros::Time arrival = event.getReceiptTime();
-  if (arrival < last_arrival_) {
+  if (arrival < last_arrival_ && ros::Time::isSimTime()) {
     flow_.reset();
     if (log_) log_->split();
     last_record_ = ros::Time();
