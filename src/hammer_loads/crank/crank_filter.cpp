@@ -13,7 +13,8 @@ constexpr double kDoubtfulAngle = 0.3;   // [rad] predicted deviation from which
 constexpr double kJump = 0.5;            // [rad] innovation that no working machine makes between two samples
 constexpr double kNoiseStep = 2e-3;      // [s] step over which the process noise is spread
 constexpr double kMaxInertiaChange = 0.3;   // of the logarithm by one sample: beyond it the linearisation is worth nothing
-constexpr double kInertiaRange = 10.0;      // times the first guess either way: no drawing is further off
+constexpr double kLeastInertia = 0.1;       // of the first guess: no drawing is further off
+constexpr double kMostInertia = 1000.0;     // times the first guess: a crank held at constant speed looks that heavy
 constexpr double kLearnSpeed = 5.0;         // [rad/s]: a slower crank is moved by friction and stopped by the tool
 constexpr double kRelearn = 0.05;           // relative deviation of the inertia after what it cannot explain
 constexpr double kSoundSpeeds = 2.0;        // times the largest plausible speed: more is a diverged filter
@@ -87,7 +88,7 @@ void CrankFilter::correct(Eigen::Index row, double innovation, double variance) 
   now_.speed += change[kSpeed];
   now_.torque += change[kTorque];
   const double inertia = now_.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
-  now_.drive_inertia = std::clamp(inertia, first_guess_ / kInertiaRange, first_guess_ * kInertiaRange);
+  now_.drive_inertia = std::clamp(inertia, first_guess_ * kLeastInertia, first_guess_ * kMostInertia);
   covariance_.noalias() -= column * (column.transpose() / total);
 }
 

@@ -14,6 +14,7 @@ namespace {
 constexpr double kTrackStep = 1.25e-3;    // [s] between points of a turn at most: 15 of them in the MO-100's pulse
 constexpr double kBlowSpeed = 1.0;        // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
 constexpr double kSideOfBlow = 1e-7;      // [s] before and after the blow where its two sides are looked at
+constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
 
 std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
@@ -96,6 +97,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
     if (tracking == Tracking::kContinued && want_turns_) followTurn(verdict.step);
   }
   intake_.accept(stamp);
+  speed_measured_ = sample.speed.has_value();
   loads_.crank = tracker_->estimate();
   last_position_ = loads_.crank.position;
   if (!settled()) return refuse(Refusal::kUnsettled);
@@ -110,6 +112,7 @@ void Pipeline::restart() noexcept {
   last_blow_.reset();
   furthest_blow_ = tracker_->estimate().position.blowsPassed();
   unsettled_ = true;
+  samples_since_restart_ = 0;
   ++counts_.restarts;
 }
 
@@ -117,6 +120,7 @@ void Pipeline::restart() noexcept {
 bool Pipeline::settled() noexcept {
   if (!unsettled_) return true;
   if (!tracker_->hasSpeed()) return false;
+  if (peak_force_ > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;
   if (peak_force_ > 0.0 && kSettledDeviations * wrenchDeviation() > settings_.withhold_above * peak_force_) return false;
   unsettled_ = false;
   return true;

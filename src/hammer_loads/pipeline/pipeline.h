@@ -101,6 +101,8 @@ class Pipeline {
   double peak_force_{};                    ///< of the last whole turn [N], 0 before the first
   bool want_turns_{true};
   bool unsettled_{};
+  bool speed_measured_{};
+  int samples_since_restart_{};
 };
 
 }  // namespace hammer_loads
