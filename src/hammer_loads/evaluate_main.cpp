@@ -29,9 +29,7 @@ int run(int argc, const char* const* argv) {
   const std::vector<std::string> problems = evaluateTable(model, std::cin, std::cout);
   for (const std::string& problem : problems) std::cerr << "stdin: " << problem << '\n';
   if (!problems.empty()) return kExitFailure;
-  if (std::cout.flush()) return 0;
-  std::cerr << "stdout: cannot be written\n";
-  return kExitFailure;
+  return finishOutput();
 }
 
 }  // namespace

@@ -35,9 +35,7 @@ int run(int argc, const char* const* argv) {
   const std::optional<std::string> problem = printTable(*grapple.value, request, std::cout);
   if (problem) std::cerr << *problem << '\n';
   if (problem) return kExitFailure;
-  if (std::cout.flush()) return 0;
-  std::cerr << "stdout: cannot be written\n";
-  return kExitFailure;
+  return finishOutput();
 }
 
 }  // namespace

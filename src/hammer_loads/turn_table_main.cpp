@@ -47,9 +47,7 @@ int run(int argc, const char* const* argv) {
       for (const TurnRow& row : turnRows(table, i, kRowsAtOnce)) std::cout << csvLine(table, row) << '\n';
     }
   }
-  if (std::cout.flush()) return 0;
-  std::cerr << "stdout: cannot be written\n";
-  return kExitFailure;
+  return finishOutput();
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "hammer_loads/ros/loads_flow.h"
 #include "support/csv.h"
 #include "support/main.h"
-#include "hammer_loads/accuracy/session_errors.h"
+#include "support/session_bounds.h"
 
 namespace hammer_loads {
 namespace {
@@ -110,41 +110,33 @@ class ProcessBag : public testing::Test {
   IntakeCounts counts_;
 };
 
-struct Bounds {
+struct SessionCase {
   const char* session;
-  double rms, peak, impulse, blow_time, energy;
+  test::SessionBounds bounds;
 };
 
-class RecordedSession : public ProcessBag, public testing::WithParamInterface<std::tuple<Bounds, double>> {};
+class RecordedSession : public ProcessBag, public testing::WithParamInterface<std::tuple<SessionCase, double>> {};
 
 TEST_P(RecordedSession, StaysWithinTheBounds) {
-  const auto& [bounds, inertia_factor] = GetParam();
-  const std::string session = bounds.session;
+  const auto& [session_case, inertia_factor] = GetParam();
+  const std::string session = session_case.session;
   ASSERT_EQ(process(data(session + ".bag"), path("out.bag"), inertia_factor), "");
   const Truth truth = truthOf(session);
   const Output output = outputOf(path("out.bag"));
   EXPECT_EQ(output.wrenches.size(), counts_.accepted);
   const accuracy::Judged judged{3.0, truth.wrenches.back().time - 3.0, endsOfDropOuts(truth.wrenches)};
   const auto e = accuracy::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);
-  EXPECT_LE(e.rms_x, bounds.rms);
-  EXPECT_LE(e.rms_z, bounds.rms);
-  EXPECT_LE(e.rms_torque, bounds.rms);
-  EXPECT_LE(e.turn_peak, bounds.peak);
-  EXPECT_LE(e.turn_impulse, bounds.impulse);
-  EXPECT_LE(e.blow_time, bounds.blow_time);
-  EXPECT_LE(e.energy, bounds.energy);
-  EXPECT_EQ(e.missed_blows, 0);
-  EXPECT_EQ(e.extra_blows, 0);
+  test::expectWithin(e, session_case.bounds);
   EXPECT_GT(e.blows, 50);
   // For the README: scripts/update_readme.
-  std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n", bounds.session,
+  std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n", session_case.session,
               100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque, 100 * e.turn_peak,
               100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sessions, RecordedSession,
-                         testing::Combine(testing::Values(Bounds{"mo100_1khz", 0.0025, 0.012, 0.006, 1e-3, 0.02},
-                                                          Bounds{"mo100_100hz", 0.004, 0.02, 0.012, 1.5e-3, 0.025}),
+                         testing::Combine(testing::Values(SessionCase{"mo100_1khz", test::kBounds1kHz},
+                                                          SessionCase{"mo100_100hz", test::kBounds100Hz}),
                                           testing::Values(1.0, 0.5, 1.5)));
 
 TEST_F(ProcessBag, IsByteIdenticalOnASecondRunAndFast) {

@@ -58,10 +58,7 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
 Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {
   Checked<Boom> result;
   ParameterMap parameters;
-  for (const std::string& file : files) {
-    const std::optional<ParameterMap> read = readParameterFile(file, result.problems);
-    if (read) merge(*read, parameters);
-  }
+  addFiles(files, parameters, result.problems);
   if (!result.problems.empty()) return result;
   ParameterReader reader(std::move(parameters));
   const BoomParameters given = readBoomParameters(reader);

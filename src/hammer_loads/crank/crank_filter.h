@@ -49,7 +49,6 @@ class CrankFilter final : public CrankTracker {
   const ShaftState& state() const noexcept { return now_; }
   /// Covariance of (angle, speed, torque, logarithm of drive inertia) at the last accepted sample.
   const ShaftMatrix& covariance() const noexcept { return covariance_; }
-  const ShaftModel& model() const noexcept { return model_; }
   const Encoder& encoder() const noexcept { return encoder_; }
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
 

@@ -60,10 +60,7 @@ std::optional<Grapple> readGrapple(ParameterReader& reader) {
 Checked<Grapple> loadGrapple(const std::vector<std::string>& files) {
   Checked<Grapple> result;
   ParameterMap parameters;
-  for (const std::string& file : files) {
-    const std::optional<ParameterMap> read = readParameterFile(file, result.problems);
-    if (read) merge(*read, parameters);
-  }
+  addFiles(files, parameters, result.problems);
   if (!result.problems.empty()) return result;
   ParameterReader reader(std::move(parameters));
   result.value = readGrapple(reader);

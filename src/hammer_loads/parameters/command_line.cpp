@@ -61,6 +61,12 @@ std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
   }
 }
 
+int finishOutput() {
+  if (std::cout.flush()) return 0;
+  std::cerr << "stdout: cannot be written\n";
+  return kExitFailure;
+}
+
 std::optional<Settings> loadOrReport(const std::vector<std::string>& files) {
   Checked<Settings> settings = loadFiles(configDirectory(), files);
   for (const std::string& problem : settings.problems) std::cerr << problem << '\n';

@@ -25,6 +25,9 @@ CLI::Validator numberWithin(double least, double most, const std::string& unit);
 /// Nothing when the command may go on, else the exit code (0 after --help).
 std::optional<int> parse(CLI::App& app, int argc, const char* const* argv);
 
+/// Exit code of a command that has written its result to stdout; tells when that cannot be written.
+int finishOutput();
+
 /// Settings from files over the shipped ones; every problem and note on stderr, one line each.
 std::optional<Settings> loadOrReport(const std::vector<std::string>& files);
 

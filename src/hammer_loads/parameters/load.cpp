@@ -17,17 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Adds the files' keys to `parameters`, in order. False when one could not be read at all.
-bool addFiles(const std::vector<std::string>& files, ParameterMap& parameters, std::vector<std::string>& problems) {
-  bool all_read = true;
-  for (const std::string& file : files) {
-    const std::optional<ParameterMap> read = readParameterFile(file, problems);
-    if (read) merge(*read, parameters);
-    all_read = all_read && read.has_value();
-  }
-  return all_read;
-}
-
 Checked<Settings> settingsFrom(ParameterMap parameters) {
   Checked<Settings> result;
   ParameterReader reader(std::move(parameters));

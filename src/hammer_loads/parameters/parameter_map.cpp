@@ -79,4 +79,14 @@ void merge(const ParameterMap& over, ParameterMap& base) {
   for (const auto& [key, parameter] : over) base.insert_or_assign(key, parameter);
 }
 
+bool addFiles(const std::vector<std::string>& files, ParameterMap& parameters, std::vector<std::string>& problems) {
+  bool all_read = true;
+  for (const std::string& file : files) {
+    const std::optional<ParameterMap> read = readParameterFile(file, problems);
+    if (read) merge(*read, parameters);
+    all_read = all_read && read.has_value();
+  }
+  return all_read;
+}
+
 }  // namespace hammer_loads

@@ -28,4 +28,7 @@ std::optional<ParameterMap> readParameterFile(const std::string& file, std::vect
 /// Adds `over` to `base`; a key of both takes the value of `over`.
 void merge(const ParameterMap& over, ParameterMap& base);
 
+/// Adds the files' keys to `parameters`, in order. False when one could not be read at all.
+bool addFiles(const std::vector<std::string>& files, ParameterMap& parameters, std::vector<std::string>& problems);
+
 }  // namespace hammer_loads

@@ -67,7 +67,6 @@ class Pipeline {
   const IntakeCounts& counts() const noexcept { return counts_; }
   const HullPitch& hullPitch() const noexcept { return hull_pitch_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }
-  const std::optional<StampNs>& lastAccepted() const noexcept { return intake_.last(); }
   const Mechanism& mechanism() const noexcept { return mechanism_; }
   Gravity gravity() const noexcept { return gravity_; }  ///< in hull axes, by the latest pitch
   const PipelineSettings& settings() const noexcept { return settings_; }
