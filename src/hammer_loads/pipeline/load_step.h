@@ -1,0 +1,28 @@
+/// The hammer's load over the step between two crank samples, cut where blows lie.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "hammer_loads/hammer/hull_wrench.h"
+
+namespace hammer_loads {
+
+/// A part of the step in which no blow lies. Wrenches come from motion of the links relative to the hull: without their
+/// weight, without what the hull's own motion does to them.
+struct LoadPiece {
+  double duration{};       ///< [s] >= 0
+  HullWrench from, to;     ///< at its ends
+  HullWrench mean;         ///< over it, exact by the momentum difference
+  bool ends_in_blow{};
+  double blow_x{};         ///< impulse of that blow BY the rocker ON the hull at D [N s]
+  double blow_z{};         ///< likewise [N s]
+};
+
+/// The pieces of one step in order of time; none after a restart, when the step before the sample is not known.
+struct LoadStep {
+  std::size_t count{};
+  std::array<LoadPiece, 5> pieces;
+};
+
+}  // namespace hammer_loads
