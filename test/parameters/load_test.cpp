@@ -156,7 +156,12 @@ struct BadPair {
 
 TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
   const BadPair pairs[] = {
-      {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage"},
+      {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage, auto"},
+      {"level: auto", "tolerance: 0", "tolerance: 0, must be a finite number > 0"},
+      {"output: mean", "output: median", "output: median, must be one of instantaneous, mean"},
+      {"output_rate_Hz: 50", "output_rate_Hz: -1", "output_rate_Hz: -1 Hz, must be a finite number in [0, 100000]"},
+      {"torque_deviation_part: 1", "torque_deviation_part: 2",
+       "torque_deviation_part: 2, must be a finite number in [0, 1]"},
       {"crank_estimator: difference", "crank_estimator: 1",
        "crank_estimator: 1, must be one of mechanism, difference, none"},
       {"crank_joint: c", "crank_joint: [c]", "crank_joint: (a list), must be a text, not empty"},
@@ -177,6 +182,19 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
     EXPECT_EQ(problemsOf(pair.good), Lines{}) << pair.good;
     EXPECT_EQ(problemsOf(pair.bad), Lines{std::string(pair.problem) + " (FILE:1)"});
   }
+}
+
+TEST(Load, LevelAutoIsChosenAtStartAndTold) {
+  const auto loaded = [](const std::string& text) {
+    const test::TemporaryFile file(text);
+    return *loadFiles(configDirectory(), {file.name()}).value;
+  };
+  const Settings strict = loaded("{level: auto, tolerance: 1.0e-6}"), loose = loaded("{level: auto, tolerance: 0.5}");
+  EXPECT_EQ(strict.pipeline.level, Level::kLinkage);
+  EXPECT_EQ(loose.pipeline.level, Level::kRocker);
+  ASSERT_EQ(loose.notes.size(), 1U);
+  EXPECT_EQ(loose.notes[0].find("level auto: rocker is the cheapest within tolerance 50 % of the peak"), 0U);
+  EXPECT_TRUE(loaded("{level: rocker}").notes.empty());
 }
 
 TEST(Load, ConfigDirectoryHoldsTheShippedFiles) {

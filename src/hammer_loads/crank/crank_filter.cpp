@@ -201,17 +201,18 @@ CrankEstimate CrankFilter::between(double dt) const noexcept {
   return {state.position, state.speed, acceleration(model_(state.position.angle), state)};
 }
 
-Eigen::Matrix3d CrankFilter::covarianceBetween(double dt) const noexcept {
-  if (dt >= step_) return motionCovariance();
+Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) const noexcept {
+  if (dt >= step_) return motionCovariance(torque_part);
   ShaftState state = before_;
   ShaftLoad load = model_(state.position.angle);
   ShaftMatrix covariance = before_covariance_;
   predict(dt, state, load, covariance);
-  return motionCovarianceOf(state, covariance);
+  return motionCovarianceOf(state, covariance, torque_part);
 }
 
 /// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.
-Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept {
+Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance,
+                                                double torque_part) const noexcept {
   const ShaftLoad load = model_(state.position.angle);
   const double inv = 1.0 / (state.drive_inertia + load.inertia);
   constexpr double kStep = 1e-5;  // [rad]: error 1e-10 by curvature, 1e-11 by rounding, both relative
@@ -222,7 +223,7 @@ Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const S
   jacobian(0, kAngle) = jacobian(1, kSpeed) = 1.0;
   jacobian(2, kAngle) = (acceleration(model_(high), state) - acceleration(model_(low), state)) / (2.0 * kStep);
   jacobian(2, kSpeed) = -2.0 * load.half_inertia_slope * state.speed * inv;
-  jacobian(2, kTorque) = inv;
+  jacobian(2, kTorque) = inv * torque_part;
   jacobian(2, kInertia) = -acceleration(load, state) * state.drive_inertia * inv;
   return jacobian * covariance * jacobian.transpose();
 }

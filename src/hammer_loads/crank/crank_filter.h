@@ -42,8 +42,10 @@ class CrankFilter final : public CrankTracker {
     return {now_.position, now_.speed, acceleration(load_, now_)};
   }
   CrankEstimate between(double dt) const noexcept override;
-  Eigen::Matrix3d covarianceBetween(double dt) const noexcept override;
-  Eigen::Matrix3d motionCovariance() const noexcept override { return motionCovarianceOf(now_, covariance_); }
+  Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
+  Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
+    return motionCovarianceOf(now_, covariance_, torque_part);
+  }
   bool hasSpeed() const noexcept override { return has_speed_; }
 
   const ShaftState& state() const noexcept { return now_; }
@@ -53,7 +55,8 @@ class CrankFilter final : public CrankTracker {
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
 
  private:
-  Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept;
+  Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance,
+                                     double torque_part) const noexcept;
   void predict(double dt, ShaftState& state, ShaftLoad& load, ShaftMatrix& covariance) const noexcept;
   void forgetInertiaCoupling() noexcept;
   void correctAngle(double innovation) noexcept;

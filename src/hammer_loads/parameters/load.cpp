@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "hammer_loads/hammer/choose_level.h"
 #include "hammer_loads/parameters/hammer_parameters.h"
 #include "hammer_loads/parameters/parameter_reader.h"
 
@@ -21,11 +22,17 @@ Checked<Settings> settingsFrom(ParameterMap parameters) {
   Checked<Settings> result;
   ParameterReader reader(std::move(parameters));
   const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes);
-  const PipelineSettings pipeline = readPipelineSettings(reader);
+  PipelineSettings pipeline = readPipelineSettings(reader);
   const LogSettings log = readLogSettings(reader);
   reader.reportUnknownKeys();
   result.problems = reader.problems();
-  if (mechanism && result.problems.empty()) result.value = Settings{*mechanism, pipeline, log, reader.yaml(), {}};
+  if (!mechanism || !result.problems.empty()) return result;
+  if (pipeline.choose_level) {
+    const LevelChoice choice = chooseLevel(*mechanism, pipeline.tolerance, pipeline.turn_rate, pipeline.gravity);
+    pipeline.level = choice.level;
+    result.notes.push_back(describe(choice));
+  }
+  result.value = Settings{*mechanism, pipeline, log, reader.yaml(), {}};
   return result;
 }
 

@@ -9,7 +9,13 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   constexpr NumberRule kPositive = NumberRule::positive();
   constexpr NumberRule kNotNegative = NumberRule::notNegative();
   PipelineSettings s;
-  s.level = reader.choice("level", kLevelNames);
+  const std::optional<Level> level = reader.choice("level", kLevelChoices);
+  s.choose_level = !level;
+  s.level = level.value_or(Level::kLinkage);
+  s.tolerance = reader.number("tolerance", "", kPositive);
+  s.turn_rate = reader.number("turn_rate_Hz", "Hz", kPositive);
+  s.output = reader.choice("output", kOutputNames);
+  s.output_rate = reader.number("output_rate_Hz", "Hz", NumberRule::within(0.0, 1e5));
   s.crank_estimator = reader.choice("crank_estimator", kCrankEstimatorNames);
   s.crank_joint = reader.text("crank_joint");
   s.pitch_joints = reader.names("pitch_joints");
@@ -23,6 +29,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", kNotNegative);
   s.initial_torque_deviation = reader.number("initial_torque_deviation_rad_s2", "rad/s2", kPositive);
   s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", kNotNegative);
+  s.torque_deviation_part = reader.number("torque_deviation_part", "", NumberRule::within(0.0, 1.0));
   constexpr double kDegree = 3.14159265358979323846 / 180.0;
   s.near_blow = kDegree * reader.number("near_blow_deg", "deg", NumberRule::within(0.0, 89.0));
   s.stale_after = reader.number("stale_after_s", "s", kPositive);

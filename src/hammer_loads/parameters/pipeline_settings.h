@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,15 @@ enum class CrankEstimator {
   kNone,        ///< zero, as P0 assumes
 };
 
+/// What the published hull wrench is.
+enum class OutputKind {
+  kInstantaneous,  ///< at the stamp
+  kMean,           ///< over the time since the output before: no impulse is lost at any rate
+};
+
+/// The words that `level` may be; auto takes the cheapest level within `tolerance`.
+constexpr std::array<std::pair<const char*, std::optional<Level>>, 4> kLevelChoices{
+    {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}, {"auto", std::nullopt}}};
 constexpr std::array<std::pair<const char*, Level>, 3> kLevelNames{
     {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
 constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorNames{
@@ -26,8 +36,16 @@ constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorN
      {"difference", CrankEstimator::kDifference},
      {"none", CrankEstimator::kNone}}};
 
+constexpr std::array<std::pair<const char*, OutputKind>, 2> kOutputNames{
+    {{"instantaneous", OutputKind::kInstantaneous}, {"mean", OutputKind::kMean}}};
+
 struct PipelineSettings {
-  Level level{};
+  Level level{};                          ///< in force; where it was `auto`, the one chosen
+  bool choose_level{};                    ///< the file says `auto`
+  double tolerance{};                     ///< of the wrench's peak, for `auto` [-], > 0
+  double turn_rate{};                     ///< of the working turn by which `auto` judges [Hz], > 0
+  OutputKind output{};
+  double output_rate{};                   ///< of hull_wrench [Hz]; 0: one per crank sample
   CrankEstimator crank_estimator{};
   std::string crank_joint;                ///< joint whose position is the crank angle
   std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
@@ -41,6 +59,7 @@ struct PipelineSettings {
   double inertia_walk{};                  ///< relative to the drive inertia [1/sqrt(s)], >= 0
   double initial_torque_deviation{};      ///< of the net torque per rocker inertia about D [rad/s2], > 0
   double initial_inertia_deviation{};     ///< relative to the drive inertia [-], >= 0
+  double torque_deviation_part{};         ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
   double near_blow{};                     ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
   double stale_after{};                   ///< no crank sample for longer: nothing is published [s], > 0
   double max_crank_speed{};               ///< a faster sample is implausible [rad/s], > 0

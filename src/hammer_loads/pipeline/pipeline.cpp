@@ -7,6 +7,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/plain_tracker.h"
+#include "hammer_loads/pipeline/step_impulse.h"
 
 namespace hammer_loads {
 namespace {
@@ -50,7 +51,9 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings)
       tracker_(makeTracker(mechanism_, settings)),
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
       gravity_(gravityAtPitch(settings.gravity, settings.hull_pitch)),
-      intake_(settings.max_crank_speed, settings.stale_after) {
+      intake_(settings.max_crank_speed, settings.stale_after),
+      step_(*tracker_),
+      outputs_(hull_model_, step_, settings) {
   tracker_->setGravity(gravity_);
 }
 
@@ -88,26 +91,41 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
 
   if (verdict.order == Intake::Order::kFirst) {
     tracker_->start(sample);
+    loads_.crank = tracker_->estimate();
     epoch_ = stamp;
     restart();
   } else {
     const Tracking tracking = tracker_->update(verdict.step, sample);
     if (tracking == Tracking::kOutlier) return refuse(Refusal::kImplausible);
     if (tracking == Tracking::kRestarted) restart();
-    if (tracking == Tracking::kContinued && want_turns_) followTurn(verdict.step);
+    loads_.crank = tracker_->estimate();
+    if (tracking == Tracking::kContinued) {
+      step_.take(*intake_.last(), verdict.step, last_position_);
+      if (want_turns_) followTurn();
+    }
   }
   intake_.accept(stamp);
   speed_measured_ = sample.speed.has_value();
-  loads_.crank = tracker_->estimate();
   last_position_ = loads_.crank.position;
   if (!settled()) return refuse(Refusal::kUnsettled);
   loads_.wrench = hullWrench(hull_model_,
                              {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, gravity_);
+  outputs_.sample(stamp, loads_.crank, loads_.wrench, gravity_);
   ++counts_.accepted;
   return loads_;
 }
 
+void Pipeline::reset() noexcept {
+  intake_.reset();
+  turn_.abandon();
+  last_blow_.reset();
+  step_.forget();
+  outputs_.forget();
+}
+
 void Pipeline::restart() noexcept {
+  step_.forget();
+  outputs_.forget();
   turn_.abandon();
   last_blow_.reset();
   furthest_blow_ = tracker_->estimate().position.blowsPassed();
@@ -121,26 +139,28 @@ bool Pipeline::settled() noexcept {
   if (!unsettled_) return true;
   if (!tracker_->hasSpeed()) return false;
   if (peak_force_ > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;
-  if (peak_force_ > 0.0 && kSettledDeviations * wrenchDeviation() > settings_.withhold_above * peak_force_) return false;
+  if (peak_force_ > 0.0) {
+    const double deviation =
+        hullDeviation(hull_model_, loads_.crank, gravity_, tracker_->motionCovariance(1.0)).wrench.force_z;
+    if (kSettledDeviations * deviation > settings_.withhold_above * peak_force_) return false;
+  }
   unsettled_ = false;
   return true;
 }
 
-/// Standard deviation of the force along the tool [N], by differences of the wrench.
-double Pipeline::wrenchDeviation() const noexcept {
-  const Eigen::Matrix3d covariance = tracker_->motionCovariance();
-  const CrankEstimate& at = loads_.crank;
-  const auto force = [&](double angle, double speed, double acceleration) noexcept {
-    CrankAngle moved = at.position.angle;
-    moved.offset += angle;
-    return hullWrench(hull_model_, {moved, at.speed + speed, at.acceleration + acceleration}, gravity_)
-        .force_z;
-  };
-  constexpr double kStep[] = {1e-5, 1e-3, 1e-2};
-  const Eigen::Vector3d gradient{(force(kStep[0], 0, 0) - force(-kStep[0], 0, 0)) / (2.0 * kStep[0]),
-                                 (force(0, kStep[1], 0) - force(0, -kStep[1], 0)) / (2.0 * kStep[1]),
-                                 (force(0, 0, kStep[2]) - force(0, 0, -kStep[2])) / (2.0 * kStep[2])};
-  return std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
+HullDeviation Pipeline::deviation(const HullOutput& output) noexcept {
+  const bool at_sample = output.stamp == loads_.stamp;
+  const Eigen::Matrix3d covariance =
+      at_sample ? tracker_->motionCovariance(settings_.torque_deviation_part)
+                : tracker_->covarianceBetween(seconds(output.stamp - step_.start()), settings_.torque_deviation_part);
+  HullDeviation result = hullDeviation(hull_model_, output.crank, gravity_, covariance);
+  if (settings_.output != OutputKind::kMean) return result;
+  const HullWrench momentum = momentumDeviation(hull_model_, output.crank, covariance);
+  const HullWrench allowed = (1.0 / output.interval) * (last_momentum_deviation_ + momentum);
+  last_momentum_deviation_ = momentum;
+  result.wrench = {std::fmin(result.wrench.force_x, allowed.force_x), std::fmin(result.wrench.force_z, allowed.force_z),
+                   std::fmin(result.wrench.torque_y, allowed.torque_y)};
+  return result;
 }
 
 TurnInstant Pipeline::instant(double time, const CrankEstimate& crank) const noexcept {
@@ -150,77 +170,46 @@ TurnInstant Pipeline::instant(double time, const CrankEstimate& crank) const noe
           linkMomentum(hull_model_, angle, crank.speed), weight.force_x, weight.force_z};
 }
 
-/// Points of the turn in (from, to] [s] after the last but one sample.
+/// Points of the turn in (from, to] [s] after the step's start.
 void Pipeline::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
-  const double origin = seconds(*intake_.last() - epoch_);
+  const double origin = seconds(step_.start() - epoch_);
   const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kTrackStep)));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
-    turn_.add(instant(origin + time, tracker_->between(time)));
+    turn_.add(instant(origin + time, step_.at(time)));
   }
 }
 
-void Pipeline::followTurn(double step) noexcept {
-  const CrankEstimate now = tracker_->estimate();
-  const std::int64_t passed_before = last_position_.blowsPassed(), passed_now = now.position.blowsPassed();
-  if (passed_now < passed_before) turn_.abandon();
+void Pipeline::followTurn() noexcept {
+  if (loads_.crank.position.blowsPassed() < last_position_.blowsPassed()) turn_.abandon();
   double from = 0.0;
-  for (std::int64_t blow = passed_before + 1; blow <= passed_now; ++blow) {
-    if (blow <= furthest_blow_) continue;
-    furthest_blow_ = blow;
-    const double time = timeOfBlow(blow, step);
-    if (tracker_->between(time).speed < kBlowSpeed) continue;
-    recordTo(from, std::max(from, time - kSideOfBlow));
-    endTurn(time);
-    from = time + kSideOfBlow;
+  for (const CrankStep::Passage& passage : step_) {
+    if (!passage.forward || passage.blow <= furthest_blow_) continue;
+    furthest_blow_ = passage.blow;
+    if (passage.speed < kBlowSpeed) continue;
+    recordTo(from, std::max(from, passage.time - kSideOfBlow));
+    endTurn(passage);
+    from = passage.time + kSideOfBlow;
   }
-  recordTo(from, step);
+  recordTo(from, step_.length());
 }
 
-/// Root of the position by bracketing false position (Illinois) [s after the last but one sample].
-double Pipeline::timeOfBlow(std::int64_t blow, double step) const noexcept {
-  const CrankPosition at_blow{blow, {0.0, Side::kAfterBlow}};
-  double low = 0.0, high = step;
-  double f_low = difference(tracker_->between(low).position, at_blow);
-  double f_high = difference(tracker_->between(high).position, at_blow);
-  constexpr double kAngleTolerance = 1e-11;  // [rad]: some 1e-12 s
-  int kept = 0;  // which end stayed last time: +1 high, -1 low
-  for (int i = 0; i < 60 && f_high > kAngleTolerance && f_low < -kAngleTolerance; ++i) {
-    const double time = (low * f_high - high * f_low) / (f_high - f_low);
-    const double f = difference(tracker_->between(time).position, at_blow);
-    if (f < 0.0) {
-      low = time, f_low = f;
-      if (kept == 1) f_high *= 0.5;
-      kept = 1;
-    } else {
-      high = time, f_high = f;
-      if (kept == -1) f_low *= 0.5;
-      kept = -1;
-    }
-  }
-  return f_high <= -f_low ? high : low;
-}
-
-void Pipeline::endTurn(double time) noexcept {
-  const StampNs stamp = *intake_.last() + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
-  const double origin = seconds(*intake_.last() - epoch_);
-  CrankEstimate before = tracker_->between(std::max(0.0, time - kSideOfBlow));
-  CrankEstimate after = tracker_->between(time + kSideOfBlow);
-  before.position.angle = {0.0, Side::kBeforeBlow};
-  after.position.angle = {0.0, Side::kAfterBlow};
+void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
+  const StampNs stamp = step_.start() + static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
+  const double time = seconds(step_.start() - epoch_) + passage.time;
   ++turns_;
   TurnEnd end;
   end.stamp = stamp;
   end.turn = turns_;
-  end.blow = blowAtCrankSpeed(mechanism_, settings_.level, tracker_->between(time).speed);
-  end.pulse = turn_.end(instant(origin + time, before));
+  end.blow = blowAtCrankSpeed(mechanism_, settings_.level, passage.speed);
+  end.pulse = turn_.end(instant(time, step_.besides(passage, Side::kBeforeBlow)));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
   end.mean_press_force = last_blow_ ? end.blow.tool_impulse_z / seconds(stamp - *last_blow_)
                                     : std::numeric_limits<double>::quiet_NaN();
   if (loads_.turn_ends < loads_.ends.size()) loads_.ends[loads_.turn_ends++] = end;
   last_blow_ = stamp;
-  turn_.begin(instant(origin + time, after));
+  turn_.begin(instant(time, step_.besides(passage, Side::kAfterBlow)));
 }
 
 }  // namespace hammer_loads

@@ -13,8 +13,12 @@
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/pulse.h"
 #include "hammer_loads/parameters/pipeline_settings.h"
+#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/hull_deviation.h"
+#include "hammer_loads/pipeline/hull_outputs.h"
 #include "hammer_loads/pipeline/hull_pitch.h"
 #include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/pipeline/load_step.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
 
 namespace hammer_loads {
@@ -33,7 +37,7 @@ struct Loads {
   StampNs stamp{};
   std::optional<Refusal> refusal;  ///< if set, crank and wrench are void (the turn ends are not)
   CrankEstimate crank;
-  HullWrench wrench;
+  HullWrench wrench;               ///< at the sample
   std::size_t turn_ends{};         ///< how many of `ends` are meant; more than one only for sparse samples
   std::array<TurnEnd, 4> ends;
 };
@@ -61,8 +65,12 @@ class Pipeline {
                           const std::vector<double>& velocities) noexcept;
   /// A crank sample. The result is valid until the next call. No allocation.
   const Loads& crankSample(StampNs stamp, const CrankSample& sample) noexcept;
+  /// The hull wrench as it is to be published: call after each sample until false. By default once per accepted sample.
+  bool nextOutput(HullOutput& output) noexcept { return outputs_.next(output); }
+  /// Of the output just taken. For a mean that of its end or, if less, what the momentum's at both ends allows.
+  HullDeviation deviation(const HullOutput& output) noexcept;
   /// Time jumped: begin anew with the next sample; what was learned about the machine is kept.
-  void reset() noexcept { intake_.reset(), turn_.abandon(), last_blow_.reset(); }
+  void reset() noexcept;
 
   const IntakeCounts& counts() const noexcept { return counts_; }
   const HullPitch& hullPitch() const noexcept { return hull_pitch_; }
@@ -75,11 +83,9 @@ class Pipeline {
   const Loads& refuse(Refusal refusal) noexcept;
   void restart() noexcept;
   bool settled() noexcept;
-  double wrenchDeviation() const noexcept;
-  void followTurn(double step) noexcept;
+  void followTurn() noexcept;
   void recordTo(double from, double to) noexcept;
-  double timeOfBlow(std::int64_t blow, double step) const noexcept;
-  void endTurn(double time_of_blow) noexcept;
+  void endTurn(const CrankStep::Passage& passage) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
 
   Mechanism mechanism_;
@@ -89,6 +95,9 @@ class Pipeline {
   HullPitch hull_pitch_;
   Gravity gravity_;
   Intake intake_;
+  CrankStep step_;
+  HullOutputs outputs_;
+  HullWrench last_momentum_deviation_;  ///< at the last output whose deviation was asked for
   IntakeCounts counts_;
   Loads loads_;
   TurnRecorder turn_;

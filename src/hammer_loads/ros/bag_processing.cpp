@@ -29,6 +29,9 @@ class BagSink final : public LoadsSink {
   void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "hull_wrench", record_time, message);
   }
+  void hullLoads(const HullLoads& message, const ros::Time& record_time) override {
+    bag_.write(prefix_ + "hull_loads", record_time, message);
+  }
   void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "mechanism", record_time, message);
   }
@@ -41,6 +44,7 @@ class BagSink final : public LoadsSink {
   void pulse(const Pulse& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "pulse", record_time, message);
   }
+  bool wantsHullLoads() const override { return true; }
   bool wantsMechanism() const override { return true; }
   bool wantsPinForces() const override { return pins_; }
   bool wantsTurns() const override { return true; }

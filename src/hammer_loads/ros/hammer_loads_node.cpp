@@ -16,12 +16,13 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
     : flow_(settings, *this),
       log_(std::move(log)),
       hull_wrench_(private_node.advertise<geometry_msgs::WrenchStamped>("hull_wrench", kQueue)),
+      hull_loads_(private_node.advertise<HullLoads>("hull_loads", kQueue)),
       mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kQueue)),
       pin_forces_(private_node.advertise<PinForces>("pin_forces", kQueue)),
       blow_(private_node.advertise<Blow>("blow", kQueue)),
       pulse_(private_node.advertise<Pulse>("pulse", kQueue)),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
-      diagnostics_(node, private_node, flow_.pipeline(), log_.get()) {
+      diagnostics_(node, private_node, flow_.pipeline(), log_.get(), settings.notes) {
   RunInfo info = flow_.runInfoMessage();
   info.header.stamp = ros::Time::now();
   run_info_.publish(info);
@@ -75,6 +76,10 @@ void HammerLoadsNode::hullWrench(const geometry_msgs::WrenchStamped& message, co
   send(hull_wrench_, message, record_time);
 }
 
+void HammerLoadsNode::hullLoads(const HullLoads& message, const ros::Time& record_time) {
+  send(hull_loads_, message, record_time);
+}
+
 void HammerLoadsNode::mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   send(mechanism_, message, record_time);
 }
@@ -84,6 +89,8 @@ void HammerLoadsNode::pinForces(const PinForces& message, const ros::Time&) { pi
 void HammerLoadsNode::blow(const Blow& message, const ros::Time& record_time) { send(blow_, message, record_time); }
 
 void HammerLoadsNode::pulse(const Pulse& message, const ros::Time& record_time) { send(pulse_, message, record_time); }
+
+bool HammerLoadsNode::wantsHullLoads() const { return log_ || hull_loads_.getNumSubscribers() > 0; }
 
 bool HammerLoadsNode::wantsMechanism() const { return log_ || mechanism_.getNumSubscribers() > 0; }
 

@@ -15,8 +15,8 @@
 
 namespace hammer_loads {
 
-/// Topics as in the contract: in `crank`, `joint_states`; out `~hull_wrench`, `~mechanism`, `~pin_forces`, `~blow`, `~pulse`, `~run_info`
-/// (latched), /diagnostics. One wrench per accepted crank sample, with the sample's stamp.
+/// Topics as in the contract: in `crank`, `joint_states`; out `~hull_wrench`, `~hull_loads`, `~mechanism`, `~pin_forces`, `~blow`,
+/// `~pulse`, `~run_info` (latched), /diagnostics. By default one wrench per accepted crank sample, with its stamp.
 class HammerLoadsNode final : private LoadsSink {
  public:
   /// log: null when nothing shall be logged.
@@ -32,10 +32,12 @@ class HammerLoadsNode final : private LoadsSink {
 
   void runInfo(const RunInfo& message, const ros::Time& record_time) override;
   void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) override;
+  void hullLoads(const HullLoads& message, const ros::Time& record_time) override;
   void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) override;
   void pinForces(const PinForces& message, const ros::Time& record_time) override;
   void blow(const Blow& message, const ros::Time& record_time) override;
   void pulse(const Pulse& message, const ros::Time& record_time) override;
+  bool wantsHullLoads() const override;
   bool wantsMechanism() const override;
   bool wantsPinForces() const override;
   bool wantsTurns() const override;
@@ -45,7 +47,7 @@ class HammerLoadsNode final : private LoadsSink {
 
   LoadsFlow flow_;
   std::unique_ptr<BagLog> log_;
-  ros::Publisher hull_wrench_, mechanism_, pin_forces_, blow_, pulse_, run_info_;
+  ros::Publisher hull_wrench_, hull_loads_, mechanism_, pin_forces_, blow_, pulse_, run_info_;
   ros::Subscriber joint_states_, crank_;
   bool one_topic_{};       ///< crank and joint states arrive on the same topic
   ros::Time last_arrival_;

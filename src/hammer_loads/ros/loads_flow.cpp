@@ -26,8 +26,11 @@ LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink)
   run_info_.revision = HAMMER_LOADS_REVISION;
   run_info_.parameters_yaml = settings.yaml;
   run_info_.notes = settings.notes;
-  for (std_msgs::Header* header : {&wrench_.header, &mechanism_.header, &pin_forces_.header, &blow_.header, &pulse_.header})
+  for (std_msgs::Header* header : {&wrench_.header, &hull_loads_.header, &mechanism_.header, &pin_forces_.header,
+                                   &blow_.header, &pulse_.header})
     header->frame_id = kHullFrame;
+  for (const auto& [name, level] : kLevelNames)
+    if (level == settings.pipeline.level) hull_loads_.level = name;
   mechanism_.name = {settings.pipeline.crank_joint, "hammer_rod_joint", "hammer_rocker_joint"};
   mechanism_.position.resize(mechanism_.name.size());
   mechanism_.velocity.resize(mechanism_.name.size());
@@ -52,14 +55,45 @@ void LoadsFlow::crank(const sensor_msgs::JointState& message, const ros::Time& r
   const Loads& loads =
       pipeline_.crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
   for (std::size_t i = 0; i < loads.turn_ends; ++i) publishTurnEnd(loads.ends[i], record_time);
+  HullOutput output;
+  while (pipeline_.nextOutput(output)) publishOutput(output, record_time);
   if (loads.refusal) return;
-  wrench_.header.stamp = message.header.stamp;
-  wrench_.wrench.force.x = loads.wrench.force_x;
-  wrench_.wrench.force.z = loads.wrench.force_z;
-  wrench_.wrench.torque.y = loads.wrench.torque_y;
-  sink_.hullWrench(wrench_, record_time);
   if (sink_.wantsMechanism()) publishMechanism(loads, record_time);
   if (sink_.wantsPinForces()) publishPinForces(loads, record_time);
+}
+
+void LoadsFlow::publishOutput(const HullOutput& output, const ros::Time& record_time) {
+  wrench_.header.stamp = timeOf(output.stamp);
+  wrench_.wrench.force.x = output.wrench.force_x;
+  wrench_.wrench.force.z = output.wrench.force_z;
+  wrench_.wrench.torque.y = output.wrench.torque_y;
+  sink_.hullWrench(wrench_, record_time);
+  if (sink_.wantsHullLoads()) publishHullLoads(output, record_time);
+}
+
+void LoadsFlow::publishHullLoads(const HullOutput& output, const ros::Time& record_time) {
+  const HullDeviation deviation = pipeline_.deviation(output);
+  const CrankAngle angle = output.crank.position.angle;
+  hull_loads_.header.stamp = wrench_.header.stamp;
+  hull_loads_.force_x_N = output.wrench.force_x;
+  hull_loads_.force_z_N = output.wrench.force_z;
+  hull_loads_.torque_y_Nm = output.wrench.torque_y;
+  hull_loads_.force_x_deviation_N = deviation.wrench.force_x;
+  hull_loads_.force_z_deviation_N = deviation.wrench.force_z;
+  hull_loads_.torque_y_deviation_Nm = deviation.wrench.torque_y;
+  hull_loads_.crank_angle_rad = crankAngle(angle);
+  hull_loads_.crank_speed_rad_s = output.crank.speed;
+  hull_loads_.crank_acceleration_rad_s2 = output.crank.acceleration;
+  hull_loads_.crank_angle_deviation_rad = deviation.angle;
+  hull_loads_.crank_speed_deviation_rad_s = deviation.speed;
+  hull_loads_.crank_acceleration_deviation_rad_s2 = deviation.acceleration;
+  hull_loads_.interval_s = output.interval;
+  hull_loads_.flags = 0;
+  if (output.interval > 0.0) hull_loads_.flags |= HullLoads::FLAG_MEAN;
+  if (!pipeline_.hullPitch().known()) hull_loads_.flags |= HullLoads::FLAG_PITCH_UNKNOWN;
+  const LinkMotion links = linkMotion(pipeline_.mechanism().linkage(), angle);
+  if (transmissionAngle(links) < pipeline_.settings().near_blow) hull_loads_.flags |= HullLoads::FLAG_NEAR_BLOW;
+  sink_.hullLoads(hull_loads_, record_time);
 }
 
 void LoadsFlow::publishMechanism(const Loads& loads, const ros::Time& record_time) {

@@ -3,6 +3,7 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <hammer_loads/Blow.h>
+#include <hammer_loads/HullLoads.h>
 #include <hammer_loads/PinForces.h>
 #include <hammer_loads/Pulse.h>
 #include <hammer_loads/RunInfo.h>
@@ -21,11 +22,13 @@ class LoadsSink {
   virtual ~LoadsSink() = default;
   virtual void runInfo(const RunInfo& message, const ros::Time& record_time) = 0;
   virtual void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) = 0;
+  virtual void hullLoads(const HullLoads& message, const ros::Time& record_time) = 0;
   virtual void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) = 0;
   virtual void pinForces(const PinForces& message, const ros::Time& record_time) = 0;
   virtual void blow(const Blow& message, const ros::Time& record_time) = 0;
   virtual void pulse(const Pulse& message, const ros::Time& record_time) = 0;
   /// What nobody takes is not computed.
+  virtual bool wantsHullLoads() const = 0;
   virtual bool wantsMechanism() const = 0;
   virtual bool wantsPinForces() const = 0;
   virtual bool wantsTurns() const = 0;
@@ -46,6 +49,8 @@ class LoadsFlow {
 
  private:
   void beginRun(const ros::Time& record_time);
+  void publishOutput(const HullOutput& output, const ros::Time& record_time);
+  void publishHullLoads(const HullOutput& output, const ros::Time& record_time);
   void publishTurnEnd(const TurnEnd& end, const ros::Time& record_time);
   void publishMechanism(const Loads& loads, const ros::Time& record_time);
   void publishPinForces(const Loads& loads, const ros::Time& record_time);
@@ -54,6 +59,7 @@ class LoadsFlow {
   LoadsSink& sink_;
   RunInfo run_info_;
   geometry_msgs::WrenchStamped wrench_;
+  HullLoads hull_loads_;
   sensor_msgs::JointState mechanism_;
   PinForces pin_forces_;
   Blow blow_;

@@ -21,11 +21,12 @@ std::uint64_t refusedTotal(const IntakeCounts& counts) {
 }  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const Pipeline& pipeline,
-                                 const BagLog* log)
-    : pipeline_(pipeline), log_(log), updater_(node, private_node) {
+                                 const BagLog* log, const std::vector<std::string>& notes)
+    : pipeline_(pipeline), log_(log), notes_(notes), updater_(node, private_node) {
   updater_.setHardwareID("none");
   updater_.add("crank", this, &NodeDiagnostics::describeCrank);
   updater_.add("hull pitch", this, &NodeDiagnostics::describePitch);
+  updater_.add("model", this, &NodeDiagnostics::describeModel);
   updater_.add("log", this, &NodeDiagnostics::describeLog);
   // Wall time: a stopped /clock is one of the things to report.
   timer_ = node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
@@ -80,6 +81,12 @@ void NodeDiagnostics::describePitch(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("refused: not finite", pitch.refused());
   if (last_joint_states_ != Clock::time_point{})
     status.add("age of the last joint states [s]", secondsBetween(last_joint_states_, Clock::now()));
+}
+
+void NodeDiagnostics::describeModel(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  for (const auto& [name, level] : kLevelNames)
+    if (level == pipeline_.settings().level) status.summaryf(DiagnosticStatus::OK, "level %s", name);
+  for (const std::string& note : notes_) status.add("note", note);
 }
 
 void NodeDiagnostics::describeLog(diagnostic_updater::DiagnosticStatusWrapper& status) {
