@@ -1,8 +1,34 @@
 #include "hammer_loads/parameters/pipeline_settings.h"
 
+#include <algorithm>
+
+#include "hammer_loads/linkage/format.h"
 #include "hammer_loads/parameters/parameter_reader.h"
 
 namespace hammer_loads {
+namespace {
+
+/// Fit to be a part of a topic's name.
+bool namesATopic(const std::string& link) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '/'; };
+  return letter(link.front()) && link.back() != '/' && std::all_of(link.begin(), link.end(), allowed);
+}
+
+void readBoom(ParameterReader& reader, PipelineSettings& s) {
+  s.boom = reader.choice("boom", kBoomModelNames);
+  s.boom_acceleration = reader.choice("boom_acceleration", kBoomAccelerationNames);
+  s.joint_max_age = reader.number("joint_max_age_s", "s", NumberRule::positive());
+  s.boom_wrench_links = reader.names("boom_wrench_links");
+  for (const std::string& link : s.boom_wrench_links) {
+    if (namesATopic(link)) continue;
+    reader.addProblem(format("boom_wrench_links: %s, must be names of a letter first, then letters, digits, _ and /",
+                             link.c_str()));
+  }
+  s.tf_max_wait = reader.number("tf_max_wait_s", "s", NumberRule::positive());
+}
+
+}  // namespace
 
 PipelineSettings readPipelineSettings(ParameterReader& reader) {
   constexpr NumberRule kAny = NumberRule::any();
@@ -35,6 +61,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.stale_after = reader.number("stale_after_s", "s", kPositive);
   s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", kPositive);
   s.withhold_above = reader.number("withhold_above", "", kPositive);
+  readBoom(reader, s);
   return s;
 }
 

@@ -38,6 +38,26 @@ constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorN
 
 constexpr std::array<std::pair<const char*, OutputKind>, 2> kOutputNames{
     {{"instantaneous", OutputKind::kInstantaneous}, {"mean", OutputKind::kMean}}};
+/// How the boom answers the hammer.
+enum class BoomModel {
+  kNone,       ///< nothing of it is computed
+  kRigid,      ///< it follows its joint states alone
+  kCompliant,  ///< it also vibrates on the oil of its cylinders
+  kAuto,       ///< compliant unless rigid is within rigid_tolerance for the last turn's pulse
+};
+
+/// What the boom's own acceleration is taken for.
+enum class BoomAcceleration {
+  kNone,        ///< zero
+  kDifference,  ///< of the joints' velocities
+};
+
+constexpr std::array<std::pair<const char*, BoomModel>, 4> kBoomModelNames{{{"none", BoomModel::kNone},
+                                                                            {"rigid", BoomModel::kRigid},
+                                                                            {"compliant", BoomModel::kCompliant},
+                                                                            {"auto", BoomModel::kAuto}}};
+constexpr std::array<std::pair<const char*, BoomAcceleration>, 2> kBoomAccelerationNames{
+    {{"none", BoomAcceleration::kNone}, {"difference", BoomAcceleration::kDifference}}};
 
 struct PipelineSettings {
   Level level{};                          ///< in force; where it was `auto`, the one chosen
@@ -64,6 +84,11 @@ struct PipelineSettings {
   double stale_after{};                   ///< no crank sample for longer: nothing is published [s], > 0
   double max_crank_speed{};               ///< a faster sample is implausible [rad/s], > 0
   double withhold_above{};                ///< predicted error of the wrench over the turn's peak [-], > 0
+  BoomModel boom{};
+  BoomAcceleration boom_acceleration{};
+  double joint_max_age{};                      ///< between a crank sample and a joint's nearest state [s], > 0
+  std::vector<std::string> boom_wrench_links;  ///< links and TF frames at which the hull wrench is told as well
+  double tf_max_wait{};                        ///< of a wrench for the transform to its frame [s], > 0
 };
 
 /// Usable only if the reader got no problem.
