@@ -21,24 +21,28 @@ int run(int argc, const char* const* argv) {
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;
 
+  std::ofstream file;
+  if (!json_file.empty()) file.open(json_file);  // before the computing, which takes a minute
+  const auto complain = [&] {
+    std::cerr << json_file << ": cannot be written\n";
+    return kExitFailure;
+  };
+  if (!file) return complain();
+
   std::string json;
   if (only != "sessions") {
     const std::vector<accuracy::PriceRow> prices = accuracy::priceTable(*settings);
     std::cout << accuracy::markdown(prices) << std::flush;
-    json += "\"prices\": " + accuracy::json(prices);
+    json = "\"prices\": " + accuracy::json(prices);
   }
   if (only != "prices") {
     const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(*settings);
-    std::cout << (only.empty() ? "\n" : "") << "### Simulated sessions\n\n" << accuracy::markdown(sessions);
+    std::cout << "\n### Simulated sessions\n\n" << accuracy::markdown(sessions);
     json += (json.empty() ? "" : ",\n") + ("\"sessions\": " + accuracy::json(sessions));
   }
   if (const int code = finishOutput()) return code;
-  if (json_file.empty()) return 0;
-  std::ofstream file(json_file);
-  file << '{' << json << "}\n";
-  if (file.flush()) return 0;
-  std::cerr << json_file << ": cannot be written\n";
-  return kExitFailure;
+  if (!json_file.empty() && !(file << '{' << json << "}\n").flush()) return complain();
+  return 0;
 }
 
 }  // namespace

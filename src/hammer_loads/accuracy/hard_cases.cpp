@@ -1,6 +1,7 @@
 #include "hammer_loads/accuracy/hard_cases.h"
 
 #include <cmath>
+#include <initializer_list>
 
 #include "hammer_loads/linkage/crank_angle.h"
 
@@ -11,9 +12,9 @@ constexpr double kPaperSpeed = 31.416;  // [rad/s], P0
 const Gravity kGravity{9.80665 * std::sin(0.3), -9.80665 * std::cos(0.3)};
 
 /// side: +1 after, -1 before the blow.
-void addNearBlow(double side, std::vector<double>& angles) {
+void addNearBlow(double side, std::initializer_list<double> digits, std::vector<double>& angles) {
   for (int decade = 1; decade <= 12; ++decade) {
-    for (const double digit : {1.0, 2.7, 6.1}) {
+    for (const double digit : digits) {
       const double offset = digit * std::pow(10.0, -decade);
       angles.push_back(side > 0.0 ? offset : kTwoPi - offset);
     }
@@ -51,10 +52,10 @@ std::vector<double> turnAngles(std::size_t count) {
 
 std::vector<HardCase> hardCases(const HammerParameters& hammer) {
   std::vector<double> before, after, everywhere = turnAngles(48);
-  addNearBlow(-1.0, before);
-  addNearBlow(1.0, after);
-  everywhere.insert(everywhere.end(), before.begin(), before.end());
-  everywhere.insert(everywhere.end(), after.begin(), after.end());
+  addNearBlow(-1.0, {1.0, 2.7, 6.1}, before);
+  addNearBlow(1.0, {1.0, 2.7, 6.1}, after);
+  addNearBlow(-1.0, {2.7}, everywhere);
+  addNearBlow(1.0, {2.7}, everywhere);
   return {{"regular turn", hammer, kPaperSpeed, 0.0, kGravity, turnAngles(240)},
           {"before the blow", hammer, kPaperSpeed, 0.0, kGravity, before},
           {"after the blow", hammer, kPaperSpeed, 0.0, kGravity, after},

@@ -19,8 +19,8 @@ struct HardCase {
   std::vector<double> angles;   ///< in (0, 2 pi) [rad]; meant is exactly the number stored
 };
 
-/// The first is the regular turn. Speed and gravity are P0's 31.416 rad/s and a hull pitched by 0.3 rad where nothing
-/// else is said; near the blow offsets of 1, 2.7 and 6.1 times 1e-1 to 1e-12 rad.
+/// The first is the regular turn, two are offsets of 1, 2.7 and 6.1 times 1e-1 to 1e-12 rad before and after the blow,
+/// the others have both, coarser. P0's 31.416 rad/s and a hull pitched by 0.3 rad where nothing else is said.
 std::vector<HardCase> hardCases(const HammerParameters& hammer);
 
 /// Angles of a whole turn, evenly spaced, none at the blow.

@@ -6,7 +6,7 @@
 namespace hammer_loads::accuracy {
 namespace {
 
-constexpr std::size_t kPeakAngles = 72;
+constexpr std::size_t kPeakAngles = 48;
 constexpr double kNoNumber = std::numeric_limits<double>::infinity();
 
 double sizeOf(const Vector& v) { return static_cast<double>(sqrt(dot(v, v))); }

@@ -11,8 +11,8 @@ struct Cost {
   double spread{};  ///< distance of the quartiles over the median [-]
 };
 
-constexpr double kLeastRepeat = 4e6;  ///< a repeat lasts at least so long [ns of processor time]
-constexpr int kRepeats = 31;
+constexpr double kLeastRepeat = 2e6;  ///< a repeat lasts at least so long [ns of processor time]
+constexpr int kRepeats = 25;
 constexpr int kWarmUps = 3;           ///< repeats before the first that counts
 
 /// A pass makes `evaluations` of them; a repeat makes as many passes as its length needs.
