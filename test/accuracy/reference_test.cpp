@@ -19,7 +19,8 @@ TEST_P(NewtonEulerTest, EqualsTheTables) {
     const double g = csv.number(i, "gravity_m_s2"), pitch = csv.number(i, "hull_pitch_rad");
     const Real angle(csv.text(i, "crank_angle_rad"));
     // Numbers of the tables have 20 digits, their forces may grow as 1/offset; lengths there are decimal, here doubles.
-    const double offset = static_cast<double>(min(angle, 2 * accuracy::realPi() - angle));
+    const Real left = 2 * accuracy::realPi() - angle;
+    const double offset = static_cast<double>(angle < left ? angle : left);
     const double tolerance = 1e-14 + 1e-19 / offset;
     const accuracy::Reference r =
         exact.at(angle, Real(csv.text(i, "crank_speed_rad_s")), Real(csv.text(i, "crank_accel_rad_s2")),
