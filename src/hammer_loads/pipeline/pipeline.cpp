@@ -5,9 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/plain_tracker.h"
-#include "hammer_loads/pipeline/step_impulse.h"
+#include "hammer_loads/pipeline/make_tracker.h"
 
 namespace hammer_loads {
 namespace {
@@ -17,26 +15,6 @@ constexpr double kBlowSpeed = 1.0;        // [rad/s] of the crank: slower, it cr
 constexpr double kSideOfBlow = 1e-7;      // [s] before and after the blow where its two sides are looked at
 constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
-
-std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
-  if (s.crank_estimator != CrankEstimator::kMechanism) {
-    const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
-                                                                         : PlainTracker::Acceleration::kDifference;
-    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution);
-  }
-  const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
-  CrankFilterSettings filter;
-  filter.angle_resolution = s.crank_angle_resolution;
-  filter.angle_noise = s.crank_angle_noise;
-  filter.speed_noise = s.crank_speed_noise;
-  filter.torque_walk = s.torque_walk * inertia;
-  filter.speed_walk = s.speed_walk;
-  filter.inertia_walk = s.inertia_walk;
-  filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
-  filter.initial_inertia_deviation = s.initial_inertia_deviation;
-  filter.max_speed = s.max_crank_speed;
-  return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia, filter);
-}
 
 Gravity gravityAtPitch(double g, double pitch) noexcept { return {g * std::sin(pitch), -g * std::cos(pitch)}; }
 
