@@ -27,10 +27,8 @@ class NodeDiagnostics {
 
   void describeCrank(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describePitch(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describeLog(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const Pipeline& pipeline_;
-  const BagLog* log_;
   Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
   IntakeCounts last_counts_;
   diagnostic_updater::Updater updater_;
