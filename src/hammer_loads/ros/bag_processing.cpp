@@ -104,6 +104,8 @@ BagReport write(rosbag::Bag& input, const BagInputs& inputs, rosbag::Bag& output
 
 std::string processBag(const BagJob& job, const Settings& settings, const std::function<void(double)>& progress,
                        BagReport& report) {
+  if (job.grapple && job.grapple_prefix == job.output_prefix)
+    return "--grapple-prefix: " + job.grapple_prefix + ", must differ from --output-prefix";
   rosbag::Bag input;
   BagInputs inputs;
   try {
