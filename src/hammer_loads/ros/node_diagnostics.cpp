@@ -4,6 +4,7 @@
 #include <string>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/ros/log_diagnostics.h"
 
 namespace hammer_loads {
 namespace {
@@ -22,12 +23,12 @@ std::uint64_t refusedTotal(const IntakeCounts& counts) {
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const Pipeline& pipeline,
                                  const BagLog* log, const std::vector<std::string>& notes)
-    : pipeline_(pipeline), log_(log), notes_(notes), updater_(node, private_node) {
+    : pipeline_(pipeline), notes_(notes), updater_(node, private_node) {
   updater_.setHardwareID("none");
   updater_.add("crank", this, &NodeDiagnostics::describeCrank);
   updater_.add("hull pitch", this, &NodeDiagnostics::describePitch);
   updater_.add("model", this, &NodeDiagnostics::describeModel);
-  updater_.add("log", this, &NodeDiagnostics::describeLog);
+  updater_.add("log", [log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ = node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
 }
@@ -87,32 +88,6 @@ void NodeDiagnostics::describeModel(diagnostic_updater::DiagnosticStatusWrapper&
   for (const auto& [name, level] : kLevelNames)
     if (level == pipeline_.settings().level) status.summaryf(DiagnosticStatus::OK, "level %s", name);
   for (const std::string& note : notes_) status.add("note", note);
-}
-
-void NodeDiagnostics::describeLog(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  if (log_ == nullptr) {
-    status.summary(DiagnosticStatus::OK, "off by log_enabled");
-    return;
-  }
-  const LogHealth health = log_->health();
-  switch (health.state) {
-    case LogState::kOff: status.summary(DiagnosticStatus::OK, "stopped on request"); break;
-    case LogState::kRecording: status.summary(DiagnosticStatus::OK, "recording"); break;
-    case LogState::kDiskFull: status.summary(DiagnosticStatus::ERROR, "stopped: " + health.reason); break;
-    case LogState::kFailed: status.summary(DiagnosticStatus::ERROR, "failed: " + health.reason); break;
-  }
-  if (health.messages_dropped > 0) status.mergeSummary(DiagnosticStatus::WARN, "messages were dropped");
-  status.add("file", health.file);
-  status.add("file size [byte]", health.file_size);
-  status.add("written [byte]", health.bytes_written);
-  status.add("files closed", health.files_closed);
-  status.add("files deleted", health.files_deleted);
-  status.add("messages written", health.messages_written);
-  status.add("messages dropped", health.messages_dropped);
-  for (const LogTopicCounts& topic : health.topics) {
-    if (topic.dropped > 0) status.add("dropped: " + topic.topic, topic.dropped);
-  }
-  status.add("queue fill", health.queue_fill);
 }
 
 }  // namespace hammer_loads

@@ -31,10 +31,8 @@ class NodeDiagnostics {
   void describeCrank(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describePitch(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describeModel(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describeLog(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const Pipeline& pipeline_;
-  const BagLog* log_;
   std::vector<std::string> notes_;  ///< of the parameters, e.g. why this level of the model
   Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
   IntakeCounts last_counts_;
