@@ -67,11 +67,12 @@ checkLocalhost() {
   asRoot sh -c 'echo "127.0.0.1 localhost" >> /etc/hosts'
 }
 
-# Targets of make as arguments.
+# Targets of make as arguments. cmake_options: more of them.
+cmake_options=()
 build() {
   local log
   log=$(mktemp)
-  cmake -S "$root_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release > "$log" 2>&1 || {
+  cmake -S "$root_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release "${cmake_options[@]}" > "$log" 2>&1 || {
     cat "$log" >&2
     rm -f "$log"
     fail "cmake cannot configure $root_dir"

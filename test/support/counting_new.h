@@ -4,16 +4,28 @@
 #include <cstddef>
 #include <cstdlib>
 
+namespace hammer_loads::test {
+inline std::size_t allocations = 0;
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+
+#include <sanitizer/allocator_interface.h>
+
+namespace hammer_loads::test {
+/// The sanitizer's allocator must stay in charge; it tells of every call.
+inline const int counting = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { ++allocations; }, [](const volatile void*) {});
+}  // namespace hammer_loads::test
+
+#else
+
 // glibc's own allocator under its public alternative names.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
-}
-
-namespace hammer_loads::test {
-inline std::size_t allocations = 0;
 }
 
 extern "C" {
@@ -34,3 +46,5 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
   return __libc_memalign(alignment, size);
 }
 }
+
+#endif

@@ -20,8 +20,10 @@ Checked<CrankRocker> CrankRocker::make(const LinkLengths& given) {
                                                   {"rocker_length_m", given.rocker},
                                                   {"pivot_distance_m", given.pivot_distance}};
   for (const auto& [key, value] : named) {
-    if (!(value > 0.0) || !std::isfinite(value))
-      result.problems.push_back(format("%s: %.9g m, must be > 0 and finite", key, value));
+    if (!(value >= kLeastParameter && value <= kMostParameter)) {
+      result.problems.push_back(
+          format("%s: %.9g m, must be > 0, from %g to %g", key, value, kLeastParameter, kMostParameter));
+    }
   }
   if (!result.problems.empty()) return result;
 

@@ -5,6 +5,10 @@
 
 namespace hammer_loads {
 
+/// Bounds of the size of every parameter in SI units, the lower one for those that must be > 0: far beyond any hammer,
+/// and no product of such numbers overflows.
+constexpr double kLeastParameter = 1e-9, kMostParameter = 1e9;
+
 /// Link lengths as a drawing gives them [m]; pins A (crank on hull), B (crank-rod), C (rod-rocker), D (rocker on hull).
 struct LinkLengths {
   double crank{};           ///< l1 = AB [m], > 0, shortest

@@ -17,13 +17,13 @@ struct Rule {
 };
 
 void check(const Rule& rule, std::vector<std::string>& problems) {
-  const bool good = std::isfinite(rule.value) && (rule.sign != Sign::kPositive || rule.value > 0.0) &&
-                    (rule.sign != Sign::kNotNegative || rule.value >= 0.0);
-  if (good) return;
-  const char* allowed = rule.sign == Sign::kPositive      ? "> 0 and finite"
-                        : rule.sign == Sign::kNotNegative ? ">= 0 and finite"
-                                                          : "finite";
-  problems.push_back(format("%s: %.9g %s, must be %s", rule.key, rule.value, rule.unit, allowed));
+  const double least = rule.sign == Sign::kPositive      ? kLeastParameter
+                       : rule.sign == Sign::kNotNegative ? 0.0
+                                                         : -kMostParameter;
+  if (rule.value >= least && rule.value <= kMostParameter) return;
+  const char* sign = rule.sign == Sign::kPositive ? "> 0" : rule.sign == Sign::kNotNegative ? ">= 0" : "finite";
+  problems.push_back(format("%s: %.9g %s, must be %s, from %g to %g", rule.key, rule.value, rule.unit, sign, least,
+                            kMostParameter));
 }
 
 double squaredSize(Planar a) { return a.re * a.re + a.im * a.im; }

@@ -5,7 +5,14 @@
 #include <numeric>
 #include <utility>
 
+#include "hammer_loads/pipeline/unit_check.h"
+
 namespace hammer_loads {
+namespace {
+
+constexpr double kMostAngle = 1e4;  // [rad]: degrees are taken and told, garbage is not
+
+}  // namespace
 
 HullPitch::HullPitch(std::vector<std::string> joints, double initial)
     : joints_(std::move(joints)),
@@ -20,7 +27,7 @@ bool HullPitch::update(const std::vector<std::string>& names, const std::vector<
     const auto found = std::find(names.begin(), names.end(), joints_[j]);
     if (found == names.end()) continue;
     const auto i = static_cast<std::size_t>(found - names.begin());
-    if (i >= positions.size() || !std::isfinite(positions[i])) {
+    if (i >= positions.size() || !(std::abs(positions[i]) <= kMostAngle)) {
       ++refused_;
       continue;
     }
@@ -31,6 +38,10 @@ bool HullPitch::update(const std::vector<std::string>& names, const std::vector<
   }
   if (any && known()) pitch_ = std::accumulate(angles_.begin(), angles_.end(), 0.0);
   return any;
+}
+
+bool HullPitch::looksLikeDegrees() const noexcept {
+  return std::any_of(angles_.begin(), angles_.end(), jointLooksLikeDegrees);
 }
 
 std::vector<std::string> HullPitch::unheard() const {

@@ -14,13 +14,15 @@ class HullPitch {
   /// initial: pitch until every joint has been heard [rad].
   HullPitch(std::vector<std::string> joints, double initial);
 
-  /// Takes what it knows from a message; returns whether any pitch joint was in it. Angles that are not finite are
-  /// refused and counted.
+  /// Takes what it knows from a message; returns whether any pitch joint was in it. Angles that are not finite
+  /// or beyond 1e4 rad are refused and counted.
   bool update(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
   double pitch() const noexcept { return pitch_; }            ///< [rad]
   bool known() const noexcept { return unheard_ == 0; }       ///< every pitch joint has been heard
   std::uint64_t refused() const noexcept { return refused_; } ///< joint angles refused
+  /// The latest angle of some joint lies beyond a whole turn: no boom reaches there.
+  bool looksLikeDegrees() const noexcept;
   /// Joints not heard yet, for diagnostics.
   std::vector<std::string> unheard() const;
 

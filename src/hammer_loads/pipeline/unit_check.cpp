@@ -1,0 +1,68 @@
+#include "hammer_loads/pipeline/unit_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kDegrees = 360.0 / kTwoPi;  // in a radian
+constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
+constexpr double kStretch = 1.0;             // [rad]: shorter than a turn, so that most stretches see no jump back
+constexpr double kLongestStep = 0.25;        // [s]
+constexpr double kRepeats = 0.2;             // relative change between steps that repeat each other
+constexpr double kMoves = 1.0;               // [rad/s]: a slower angle says nothing of its unit
+constexpr double kSlowTime = 2.0;            // [s] of motion within the bound that calms who was too fast
+constexpr int kEnough = 8;                   // votes more for degrees than against
+
+bool isDegrees(double ratio) noexcept {
+  return (ratio > kDegrees / kTolerance && ratio < kDegrees * kTolerance) ||
+         (ratio * kDegrees > 1.0 / kTolerance && ratio * kDegrees < kTolerance);
+}
+
+}  // namespace
+
+void UnitCheck::begin(double angle) noexcept {
+  last_angle_ = angle;
+  last_rate_ = turned_ = predicted_ = 0.0;
+}
+
+void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexcept {
+  if (!std::isfinite(angle) || !std::isfinite(speed.value_or(0.0))) {
+    last_angle_.reset();
+    return;
+  }
+  if (!last_angle_ || !(dt > 0.0) || dt > kLongestStep) return begin(angle);
+  const double step = angle - *last_angle_;
+  last_angle_ = angle;
+  compareWithBound(dt, step / dt);
+  if (speed) compareWithSpeed(step, *speed * dt);
+}
+
+void UnitCheck::compareWithSpeed(double step, double predicted) noexcept {
+  turned_ += step;
+  predicted_ += predicted;
+  if (std::abs(predicted_) < kStretch) return;
+  vote(speed_votes_, isDegrees(turned_ / predicted_));
+  turned_ = predicted_ = 0.0;
+}
+
+void UnitCheck::compareWithBound(double dt, double rate) noexcept {
+  const bool repeats = std::abs(rate - last_rate_) < kRepeats * std::abs(rate);
+  last_rate_ = rate;
+  if (!repeats || std::abs(rate) < kMoves) return;
+  const bool too_fast = std::abs(rate) > max_speed_;
+  if (too_fast && std::abs(rate) > kDegrees * max_speed_) return;  // no crank in degrees either
+  slow_time_ = too_fast ? 0.0 : slow_time_ + dt;
+  if (bound_votes_ == kEnough && !too_fast && slow_time_ < kSlowTime) return;  // a hammer that stops is slow, too
+  vote(bound_votes_, too_fast);
+}
+
+/// One judge suffices to tell; to be calmed, both must be.
+void UnitCheck::vote(int& votes, bool degrees) noexcept {
+  votes = std::clamp(votes + (degrees ? 1 : -1), 0, kEnough);
+  if (votes == kEnough) told_ = true;
+  if (speed_votes_ == 0 && bound_votes_ == 0) told_ = false;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,42 @@
+/// Tells a crank or a boom that speaks in degrees, where radians are agreed.
+#pragma once
+
+#include <optional>
+
+#include "hammer_loads/linkage/crank_angle.h"
+
+namespace hammer_loads {
+
+/// Compares what the crank's angle turns with what its speed says, over stretches of a radian or more: a factor of 57.3
+/// either way is degrees in one of them. Where both would be in degrees, or no speed is measured, it looks for steps that
+/// repeat themselves, each faster than any crank, but not so if they were degrees. Needs the raw samples, those
+/// that are refused as well; judges within some 2 turns and takes nothing back before the samples contradict it.
+/// Degrees of both angle and speed below `max_speed` [deg/s] cannot be told from radians.
+class UnitCheck {
+ public:
+  /// No crank is faster [rad/s].
+  explicit UnitCheck(double max_speed) noexcept : max_speed_(max_speed) {}
+
+  /// Sample dt after the one before it [s]; dt <= 0, a long pause and values that are not finite begin a new stretch.
+  void add(double dt, double angle, std::optional<double> speed) noexcept;
+  bool looksLikeDegrees() const noexcept { return told_; }
+
+ private:
+  void begin(double angle) noexcept;
+  void compareWithSpeed(double step, double predicted) noexcept;
+  void compareWithBound(double dt, double rate) noexcept;
+  void vote(int& votes, bool degrees) noexcept;
+
+  double max_speed_;
+  std::optional<double> last_angle_;
+  double last_rate_{};            ///< of the angle over the last step [rad/s]
+  double turned_{}, predicted_{};  ///< of this stretch, by angles and by speeds [rad]
+  double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
+  int speed_votes_{}, bound_votes_{};
+  bool told_{};
+};
+
+/// A pitch joint beyond a whole turn [rad]: a boom that speaks in degrees, for it cannot reach there.
+constexpr bool jointLooksLikeDegrees(double angle) noexcept { return angle > kTwoPi || angle < -kTwoPi; }
+
+}  // namespace hammer_loads
