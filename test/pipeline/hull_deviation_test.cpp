@@ -31,7 +31,7 @@ Coverage coverage(const MachineSettings& machine) {
     const auto& reading = session.crank[i];
     for (; joints < session.joints.size() && session.joints[joints].stamp <= reading.stamp; ++joints) {
       const auto& position = session.joints[joints].position;
-      pipeline.boomJoints(names, {position.begin(), position.end()});
+      pipeline.boomJoints(session.joints[joints].stamp, names, {position.begin(), position.end()}, {});
     }
     pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     while (pipeline.nextOutput(output)) {

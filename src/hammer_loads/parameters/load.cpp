@@ -59,7 +59,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
     pipeline.level = choice.level;
     result.notes.push_back(describe(choice));
   }
-  result.value = Settings{*mechanism, pipeline, log, std::move(boom), reader.yaml(), {}};
+  result.value = Settings{*mechanism, pipeline, log, std::move(boom), robot_description, reader.yaml(), {}};
   return result;
 }
 

@@ -72,6 +72,7 @@ class BoomFollower {
   Wrench wrenchAtLink(int link, const HullWrench& load) const noexcept;
 
   const BoomState& state() const noexcept { return state_; }
+  bool known() const noexcept { return known_; }  ///< the last sample had no fault
   const Boom& boom() const noexcept { return boom_; }
   const JointBuffer& joints() const noexcept { return joints_; }
   std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
@@ -92,7 +93,7 @@ class BoomFollower {
   BoomState state_;
   JointMotion motion_;
   TorqueStep torque_;
-  bool known_{};  ///< the last sample had no fault
+  bool known_{};
   std::uint64_t faults_{};
   std::vector<std::string> givers_;  ///< edges, then cylinders
   std::string no_giver_;

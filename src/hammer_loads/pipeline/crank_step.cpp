@@ -1,6 +1,13 @@
 #include "hammer_loads/pipeline/crank_step.h"
 
+#include <algorithm>
+
 namespace hammer_loads {
+namespace {
+
+constexpr double kBlowSpeed = 1.0;  // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
+
+}  // namespace
 
 void CrankStep::take(StampNs start, double length, const CrankPosition& from) noexcept {
   known_ = true;
@@ -13,7 +20,9 @@ void CrankStep::take(StampNs start, double length, const CrankPosition& from) no
     const bool forward = passed < passed_now;
     const std::int64_t blow = forward ? ++passed : passed--;
     const double time = timeOfBlow(blow);
-    passage_[passages_] = {time, blow, forward, at(time).speed};
+    const double speed = at(time).speed;
+    passage_[passages_] = {time, blow, forward, speed, forward && blow > furthest_blow_ && speed >= kBlowSpeed};
+    furthest_blow_ = std::max(furthest_blow_, passed);
   }
 }
 

@@ -18,12 +18,13 @@ class CrankStep {
     std::int64_t blow{};  ///< index as in CrankPosition
     bool forward{};
     double speed{};       ///< of the crank there [rad/s]
+    bool strikes{};       ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 
   explicit CrankStep(const CrankTracker& tracker) : tracker_(&tracker) {}
 
-  /// What lies before the last sample is not known.
-  void forget() noexcept { known_ = false, passages_ = 0; }
+  /// What lies before the last sample, in position `at`, is not known.
+  void forget(const CrankPosition& at) noexcept { known_ = false, passages_ = 0, furthest_blow_ = at.blowsPassed(); }
   /// A step of `length` [s] that began at stamp `start` in position `from`; finds its passages.
   void take(StampNs start, double length, const CrankPosition& from) noexcept;
 
@@ -45,6 +46,7 @@ class CrankStep {
   bool known_{};
   StampNs start_{};
   double length_{};
+  std::int64_t furthest_blow_{};  ///< highest index passed forward since the restart
   std::size_t passages_{};
   std::array<Passage, 32> passage_;
 };

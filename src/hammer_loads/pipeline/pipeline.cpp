@@ -11,7 +11,6 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kTrackStep = 1.25e-3;    // [s] between points of a turn at most: 15 of them in the MO-100's pulse
-constexpr double kBlowSpeed = 1.0;        // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
 constexpr double kSideOfBlow = 1e-7;      // [s] before and after the blow where its two sides are looked at
 constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
@@ -22,7 +21,7 @@ double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSe
 
 }  // namespace
 
-Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings)
+Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom)
     : mechanism_(mechanism),
       settings_(settings),
       hull_model_(mechanism_, settings.level),
@@ -32,11 +31,14 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings)
       intake_(settings.max_crank_speed, settings.stale_after),
       step_(*tracker_),
       outputs_(hull_model_, step_, settings) {
+  if (boom) boom_.emplace(*boom, settings, mechanism.parameters().striking_distance);
   tracker_->setGravity(gravity_);
 }
 
-bool Pipeline::boomJoints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
-  if (!hull_pitch_.update(names, positions)) return false;
+bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
+                          const std::vector<double>& velocities) noexcept {
+  const bool of_boom = boom_ && boom_->jointStates(stamp, names, positions, velocities);
+  if (!hull_pitch_.update(names, positions)) return of_boom;
   gravity_ = gravityAtPitch(settings_.gravity, hull_pitch_.pitch());
   tracker_->setGravity(gravity_);
   return true;
@@ -56,6 +58,7 @@ const Loads& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>&
 
 const Loads& Pipeline::refuse(Refusal refusal) noexcept {
   loads_.refusal = refusal;
+  loads_.boom = nullptr;
   ++counts_.refused[static_cast<std::size_t>(refusal)];
   return loads_;
 }
@@ -79,34 +82,54 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
     loads_.crank = tracker_->estimate();
     if (tracking == Tracking::kContinued) {
       step_.take(*intake_.last(), verdict.step, last_position_);
-      if (want_turns_) followTurn();
+      if (want_turns_ || (boom_ && want_boom_)) followTurn();
     }
   }
   intake_.accept(stamp);
   speed_measured_ = sample.speed.has_value();
   last_position_ = loads_.crank.position;
-  if (!settled()) return refuse(Refusal::kUnsettled);
+  if (!settled()) {
+    boom_follows_ = false;
+    return refuse(Refusal::kUnsettled);
+  }
   loads_.wrench = hullWrench(hull_model_,
                              {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, gravity_);
   outputs_.sample(stamp, loads_.crank, loads_.wrench, gravity_);
+  followBoom(stamp);
   ++counts_.accepted;
   return loads_;
+}
+
+void Pipeline::followBoom(StampNs stamp) noexcept {
+  loads_.boom = nullptr;
+  if (!boom_ || !want_boom_) {
+    boom_follows_ = false;
+    return;
+  }
+  const CrankEstimate& crank = loads_.crank;
+  const HullWrench motion = hullWrench(hull_model_, {crank.position.angle, crank.speed, crank.acceleration}, Gravity{});
+  const LoadStep step = boom_follows_ ? loadStep(hull_model_, step_) : LoadStep{};
+  loads_.boom = &boom_->sample({stamp, motion, settings_.gravity}, step);
+  boom_follows_ = true;
+  for (std::size_t i = 0; i < loads_.turn_ends; ++i)
+    boom_->turnEnded(loads_.ends[i].pulse, loads_.ends[i].mean_press_force);
 }
 
 void Pipeline::reset() noexcept {
   intake_.reset();
   turn_.abandon();
   last_blow_.reset();
-  step_.forget();
   outputs_.forget();
+  boom_follows_ = false;
+  if (boom_) boom_->reset();
 }
 
 void Pipeline::restart() noexcept {
-  step_.forget();
+  step_.forget(tracker_->estimate().position);
   outputs_.forget();
+  boom_follows_ = false;
   turn_.abandon();
   last_blow_.reset();
-  furthest_blow_ = tracker_->estimate().position.blowsPassed();
   unsettled_ = true;
   samples_since_restart_ = 0;
   ++counts_.restarts;
@@ -163,9 +186,7 @@ void Pipeline::followTurn() noexcept {
   if (loads_.crank.position.blowsPassed() < last_position_.blowsPassed()) turn_.abandon();
   double from = 0.0;
   for (const CrankStep::Passage& passage : step_) {
-    if (!passage.forward || passage.blow <= furthest_blow_) continue;
-    furthest_blow_ = passage.blow;
-    if (passage.speed < kBlowSpeed) continue;
+    if (!passage.strikes) continue;
     recordTo(from, std::max(from, passage.time - kSideOfBlow));
     endTurn(passage);
     from = passage.time + kSideOfBlow;

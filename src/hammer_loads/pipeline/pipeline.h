@@ -13,12 +13,12 @@
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/pulse.h"
 #include "hammer_loads/parameters/pipeline_settings.h"
+#include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/hull_outputs.h"
 #include "hammer_loads/pipeline/hull_pitch.h"
 #include "hammer_loads/pipeline/intake.h"
-#include "hammer_loads/pipeline/load_step.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
 
 namespace hammer_loads {
@@ -38,6 +38,7 @@ struct Loads {
   std::optional<Refusal> refusal;  ///< if set, crank and wrench are void (the turn ends are not)
   CrankEstimate crank;
   HullWrench wrench;               ///< at the sample
+  const BoomState* boom{};         ///< null: no boom, or not wanted
   std::size_t turn_ends{};         ///< how many of `ends` are meant; more than one only for sparse samples
   std::array<TurnEnd, 4> ends;
 };
@@ -51,15 +52,19 @@ struct IntakeCounts {
 
 class Pipeline {
  public:
-  Pipeline(const Mechanism& mechanism, const PipelineSettings& settings);
+  /// boom: nothing where its loads are not wanted.
+  Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom = {});
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
   /// Whether turns (blows and pulses) shall be followed; what nobody wants is not computed. Default: yes.
   void wantTurns(bool wanted) noexcept { want_turns_ = wanted; }
+  /// Whether the boom shall be followed. Default: yes, if there is one.
+  void wantBoom(bool wanted) noexcept { want_boom_ = wanted; }
 
-  /// Boom joint angles [rad], any subset in any order.
-  bool boomJoints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+  /// A message of boom joints, any subset in any order: angles [rad], speeds [rad/s] or none. Whether any was of use.
+  bool boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
+                  const std::vector<double>& velocities) noexcept;
   /// A crank message in JointState's terms; finds the crank joint in it.
   const Loads& crankJoint(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                           const std::vector<double>& velocities) noexcept;
@@ -73,6 +78,7 @@ class Pipeline {
   void reset() noexcept;
 
   const IntakeCounts& counts() const noexcept { return counts_; }
+  const std::optional<BoomFollower>& boom() const noexcept { return boom_; }
   const HullPitch& hullPitch() const noexcept { return hull_pitch_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }
   const Mechanism& mechanism() const noexcept { return mechanism_; }
@@ -83,6 +89,7 @@ class Pipeline {
   const Loads& refuse(Refusal refusal) noexcept;
   void restart() noexcept;
   bool settled() noexcept;
+  void followBoom(StampNs stamp) noexcept;
   void followTurn() noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
@@ -98,16 +105,17 @@ class Pipeline {
   CrankStep step_;
   HullOutputs outputs_;
   HullWrench last_momentum_deviation_;  ///< at the last output whose deviation was asked for
+  std::optional<BoomFollower> boom_;
+  bool boom_follows_{};  ///< the boom has been told of every step since the last restart
   IntakeCounts counts_;
   Loads loads_;
   TurnRecorder turn_;
   StampNs epoch_{};                        ///< first sample since the last beginning
   CrankPosition last_position_;            ///< at the last accepted sample
-  std::int64_t furthest_blow_{};           ///< highest blow index passed forward since the restart
   std::optional<StampNs> last_blow_;       ///< if the turn since then was seen whole
   std::uint64_t turns_{};
   double peak_force_{};                    ///< of the last whole turn [N], 0 before the first
-  bool want_turns_{true};
+  bool want_turns_{true}, want_boom_{true};
   bool unsettled_{};
   bool speed_measured_{};
   int samples_since_restart_{};

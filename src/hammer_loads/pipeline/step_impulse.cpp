@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/hammer/blow.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -26,6 +28,11 @@ void forEachSmoothPart(const CrankStep& step, double from, double to, const Visi
     start_time = passage.time;
   }
   visit(start_time, start, to, step.at(to));
+}
+
+/// From motion of the links relative to the hull.
+HullWrench motionWrench(const HullModel& model, const CrankEstimate& crank) noexcept {
+  return hullWrench(model, {crank.position.angle, crank.speed, crank.acceleration}, Gravity{});
 }
 
 }  // namespace
@@ -56,6 +63,28 @@ HullWrench weightImpulse(const HullModel& model, const CrankStep& step, Gravity 
     }
   });
   return impulse;
+}
+
+LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept {
+  LoadStep result;
+  if (!step.known()) return result;
+  const CrankStep::Passage* passage = step.begin();
+  forEachSmoothPart(step, 0.0, step.length(), [&](double from, const CrankEstimate& a, double to, const CrankEstimate& b) {
+    const CrankStep::Passage* ends_at = passage == step.end() ? nullptr : passage++;
+    if (result.count == result.pieces.size()) return;
+    LoadPiece& piece = result.pieces[result.count++];
+    piece.duration = to - from;
+    piece.from = motionWrench(model, a);
+    piece.to = motionWrench(model, b);
+    const HullWrench impulse = change(momentum(model, a), momentum(model, b));
+    piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
+    if (ends_at == nullptr || !ends_at->strikes) return;
+    const RockerBlow blow = blowAtCrankSpeed(model.mechanism(), model.level(), ends_at->speed);
+    piece.ends_in_blow = true;
+    piece.blow_x = blow.support_impulse_x;
+    piece.blow_z = blow.support_impulse_z;
+  });
+  return result;
 }
 
 }  // namespace hammer_loads

@@ -3,6 +3,7 @@
 
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/load_step.h"
 
 namespace hammer_loads {
 
@@ -15,6 +16,10 @@ HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double f
 /// blow: forces exact, moment to some 1e-11 of its size.
 HullWrench weightImpulse(const HullModel& model, const CrankStep& step, Gravity gravity, double from,
                          double to) noexcept;
+
+/// The load over the whole step as the boom takes it, blows included; pieces beyond those that a LoadStep holds are left
+/// out (a step of several turns).
+LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept;
 
 inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {
   return {a.force_x + b.force_x, a.force_z + b.force_z, a.torque_y + b.torque_y};

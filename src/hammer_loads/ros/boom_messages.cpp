@@ -84,10 +84,11 @@ const BoomVibration& BoomMessages::vibration() {
   return vibration_;
 }
 
-const geometry_msgs::WrenchStamped& BoomMessages::wrench(std::size_t link, const HullWrench& load) {
+const geometry_msgs::WrenchStamped& BoomMessages::wrench(std::size_t link, const ros::Time& stamp,
+                                                          const HullWrench& load) {
   geometry_msgs::WrenchStamped& message = wrenches_[link];
   const Wrench w = follower_.wrenchAtLink(indices_[link], load);
-  message.header.stamp = timeOf(follower_.state().stamp);
+  message.header.stamp = stamp;
   copy(w.force, message.wrench.force);
   copy(w.torque, message.wrench.torque);
   return message;

@@ -26,8 +26,9 @@ class BoomMessages {
   const BoomVibration& vibration();
   /// Links of the chain among the wrench links, in their order.
   const std::vector<std::string>& links() const { return links_; }
-  /// A load on the hull about D [N, N m] at one of links(), axes and frame of that link.
-  const geometry_msgs::WrenchStamped& wrench(std::size_t link, const HullWrench& load);
+  /// A load on the hull about D [N, N m] at one of links(), axes and frame of that link; the pose is that of the
+  /// follower's last sample.
+  const geometry_msgs::WrenchStamped& wrench(std::size_t link, const ros::Time& stamp, const HullWrench& load);
 
  private:
   const BoomFollower& follower_;

@@ -1,5 +1,7 @@
 #include "hammer_loads/ros/loads_flow.h"
 
+#include <algorithm>
+
 #include "hammer_loads/linkage/pin_forces.h"
 
 namespace hammer_loads {
@@ -21,10 +23,11 @@ double crankAngle(CrankAngle angle) { return angle.offset < 0.0 ? angle.offset +
 }  // namespace
 
 LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink)
-    : pipeline_(settings.mechanism, settings.pipeline), sink_(sink) {
+    : pipeline_(settings.mechanism, settings.pipeline, settings.boom), sink_(sink) {
   run_info_.version = HAMMER_LOADS_VERSION;
   run_info_.revision = HAMMER_LOADS_REVISION;
   run_info_.parameters_yaml = settings.yaml;
+  run_info_.robot_description = settings.robot_description;
   run_info_.notes = settings.notes;
   for (std_msgs::Header* header : {&wrench_.header, &hull_loads_.header, &mechanism_.header, &pin_forces_.header,
                                    &blow_.header, &pulse_.header})
@@ -34,6 +37,24 @@ LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink)
   mechanism_.name = {settings.pipeline.crank_joint, "hammer_rod_joint", "hammer_rocker_joint"};
   mechanism_.position.resize(mechanism_.name.size());
   mechanism_.velocity.resize(mechanism_.name.size());
+  const std::vector<std::string>& links = settings.pipeline.boom_wrench_links;
+  if (pipeline_.boom()) boom_messages_.emplace(*pipeline_.boom(), links);
+  const std::vector<std::string> frames = framesBesideChain(links, settings.boom ? &*settings.boom : nullptr);
+  if (frames.empty()) return;
+  frame_wrenches_.emplace(frames, kHullFrame, settings.pipeline.tf_max_wait,
+                          [this](std::size_t frame, const geometry_msgs::WrenchStamped& wrench, const ros::Time& time) {
+                            sink_.boomWrench(frame_wrenches_->frames()[frame], wrench, time);
+                          });
+}
+
+void LoadsFlow::reset() {
+  pipeline_.reset();
+  if (frame_wrenches_) frame_wrenches_->reset();
+}
+
+void LoadsFlow::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
+  beginRun(record_time);
+  if (frame_wrenches_) frame_wrenches_->transforms(message, is_static, record_time);
 }
 
 /// Stamped with the first input: a second run over the same input says the same.
@@ -46,18 +67,20 @@ void LoadsFlow::beginRun(const ros::Time& record_time) {
 
 void LoadsFlow::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   beginRun(record_time);
-  pipeline_.boomJoints(message.name, message.position);
+  pipeline_.boomJoints(stampOf(message.header.stamp), message.name, message.position, message.velocity);
 }
 
 void LoadsFlow::crank(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   beginRun(record_time);
   pipeline_.wantTurns(sink_.wantsTurns());
+  pipeline_.wantBoom(wantsBoom());
   const Loads& loads =
       pipeline_.crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
   for (std::size_t i = 0; i < loads.turn_ends; ++i) publishTurnEnd(loads.ends[i], record_time);
   HullOutput output;
   while (pipeline_.nextOutput(output)) publishOutput(output, record_time);
   if (loads.refusal) return;
+  if (loads.boom != nullptr && !loads.boom->fault) publishBoom(record_time);
   if (sink_.wantsMechanism()) publishMechanism(loads, record_time);
   if (sink_.wantsPinForces()) publishPinForces(loads, record_time);
 }
@@ -69,6 +92,25 @@ void LoadsFlow::publishOutput(const HullOutput& output, const ros::Time& record_
   wrench_.wrench.torque.y = output.wrench.torque_y;
   sink_.hullWrench(wrench_, record_time);
   if (sink_.wantsHullLoads()) publishHullLoads(output, record_time);
+  if (frame_wrenches_) frame_wrenches_->wrench(wrench_, record_time);
+  if (!boom_messages_ || !pipeline_.boom()->known()) return;
+  for (std::size_t i = 0; i < boom_messages_->links().size(); ++i) {
+    const std::string& link = boom_messages_->links()[i];
+    if (sink_.wantsBoomWrench(link))
+      sink_.boomWrench(link, boom_messages_->wrench(i, wrench_.header.stamp, output.wrench), record_time);
+  }
+}
+
+bool LoadsFlow::wantsBoom() const {
+  if (!boom_messages_) return false;
+  const std::vector<std::string>& links = boom_messages_->links();
+  return sink_.wantsJointLoads() || sink_.wantsBoomVibration() ||
+         std::any_of(links.begin(), links.end(), [this](const std::string& l) { return sink_.wantsBoomWrench(l); });
+}
+
+void LoadsFlow::publishBoom(const ros::Time& record_time) {
+  if (sink_.wantsJointLoads()) sink_.jointLoads(boom_messages_->jointLoads(), record_time);
+  if (sink_.wantsBoomVibration()) sink_.boomVibration(boom_messages_->vibration(), record_time);
 }
 
 void LoadsFlow::publishHullLoads(const HullOutput& output, const ros::Time& record_time) {

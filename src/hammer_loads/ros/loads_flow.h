@@ -9,10 +9,13 @@
 #include <hammer_loads/RunInfo.h>
 #include <sensor_msgs/JointState.h>
 
+#include <optional>
 #include <string>
 
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/ros/boom_messages.h"
+#include "hammer_loads/ros/frame_wrench.h"
 
 namespace hammer_loads {
 
@@ -22,12 +25,19 @@ class LoadsSink {
   virtual ~LoadsSink() = default;
   virtual void runInfo(const RunInfo& message, const ros::Time& record_time) = 0;
   virtual void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) = 0;
+  virtual void boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& message,
+                          const ros::Time& record_time) = 0;
+  virtual void jointLoads(const JointLoads& message, const ros::Time& record_time) = 0;
+  virtual void boomVibration(const BoomVibration& message, const ros::Time& record_time) = 0;
   virtual void hullLoads(const HullLoads& message, const ros::Time& record_time) = 0;
   virtual void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) = 0;
   virtual void pinForces(const PinForces& message, const ros::Time& record_time) = 0;
   virtual void blow(const Blow& message, const ros::Time& record_time) = 0;
   virtual void pulse(const Pulse& message, const ros::Time& record_time) = 0;
   /// What nobody takes is not computed.
+  virtual bool wantsBoomWrench(const std::string& link) const = 0;
+  virtual bool wantsJointLoads() const = 0;
+  virtual bool wantsBoomVibration() const = 0;
   virtual bool wantsHullLoads() const = 0;
   virtual bool wantsMechanism() const = 0;
   virtual bool wantsPinForces() const = 0;
@@ -41,16 +51,23 @@ class LoadsFlow {
 
   void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  /// A message of /tf, or of /tf_static.
+  void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
+  /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
+  bool needsTransforms() const { return frame_wrenches_.has_value(); }
   /// Time jumped: see Pipeline::reset.
-  void reset() { pipeline_.reset(); }
+  void reset();
 
   const Pipeline& pipeline() const { return pipeline_; }
   const RunInfo& runInfoMessage() const { return run_info_; }
+  const std::optional<FrameWrenches>& frameWrenches() const { return frame_wrenches_; }
 
  private:
   void beginRun(const ros::Time& record_time);
   void publishOutput(const HullOutput& output, const ros::Time& record_time);
   void publishHullLoads(const HullOutput& output, const ros::Time& record_time);
+  void publishBoom(const ros::Time& record_time);
+  bool wantsBoom() const;
   void publishTurnEnd(const TurnEnd& end, const ros::Time& record_time);
   void publishMechanism(const Loads& loads, const ros::Time& record_time);
   void publishPinForces(const Loads& loads, const ros::Time& record_time);
@@ -64,6 +81,8 @@ class LoadsFlow {
   PinForces pin_forces_;
   Blow blow_;
   Pulse pulse_;
+  std::optional<BoomMessages> boom_messages_;
+  std::optional<FrameWrenches> frame_wrenches_;
   bool run_begun_{};
 };
 
