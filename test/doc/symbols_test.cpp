@@ -84,8 +84,8 @@ std::string shown(const YAML::Node& value) {
 
 TEST(Readme, TablesHoldEveryParameterWithItsShippedValue) {
   const std::string readme = textOf("README.md");
-  for (const std::string file : {"config/hammer_mo100.yaml", "config/pipeline.yaml", "config/log.yaml",
-                                 "config/grapple_node.yaml"}) {
+  for (const std::string file :
+       {"config/hammer_mo100.yaml", "config/pipeline.yaml", "config/log.yaml", "config/grapple_node.yaml"}) {
     std::vector<std::string> problems;
     const ParameterMap parameters = readParameterFile((kRoot / file).string(), problems).value();
     std::istringstream headings(readme);
