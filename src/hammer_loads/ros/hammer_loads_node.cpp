@@ -41,25 +41,19 @@ void HammerLoadsNode::onJointStates(const JointStateEvent& event) {
 }
 
 void HammerLoadsNode::onCrank(const JointStateEvent& event) {
-  const ros::Time record_time = one_topic_ ? last_record_ : recordTime(event);
+  const ros::Time record_time = one_topic_ ? clock_.last() : recordTime(event);
   diagnostics_.crankArrived();
   if (log_ && !one_topic_) log_->write(crank_.getTopic(), record_time, *event.getConstMessage());
   flow_.crank(*event.getConstMessage(), record_time);
 }
 
-/// Arrival time, made strictly increasing so that a log read back in time order is in the order of arrival. Simulated
-/// time that runs back (a bag that loops, a simulation that starts again) begins anew; a wall clock that is set back
-/// changes nothing, for header stamps are the only time of the pipeline.
 ros::Time HammerLoadsNode::recordTime(const JointStateEvent& event) {
-  const ros::Time arrival = event.getReceiptTime();
-  if (arrival < last_arrival_ && ros::Time::isSimTime()) {
+  const RecordClock::Tick tick = clock_.next(event.getReceiptTime());
+  if (tick.ran_back) {
     flow_.reset();
     if (log_) log_->split();
-    last_record_ = ros::Time();
   }
-  last_arrival_ = arrival;
-  last_record_ = BagLog::nextRecordTime(arrival, last_record_);
-  return last_record_;
+  return tick.time;
 }
 
 template <typename Message>

@@ -12,6 +12,7 @@
 #include "hammer_loads/ros/bag_log.h"
 #include "hammer_loads/ros/loads_flow.h"
 #include "hammer_loads/ros/node_diagnostics.h"
+#include "hammer_loads/ros/record_clock.h"
 
 namespace hammer_loads {
 
@@ -50,8 +51,7 @@ class HammerLoadsNode final : private LoadsSink {
   ros::Publisher hull_wrench_, hull_loads_, mechanism_, pin_forces_, blow_, pulse_, run_info_;
   ros::Subscriber joint_states_, crank_;
   bool one_topic_{};       ///< crank and joint states arrive on the same topic
-  ros::Time last_arrival_;
-  ros::Time last_record_;
+  RecordClock clock_;
   NodeDiagnostics diagnostics_;
 };
 
