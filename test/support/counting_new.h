@@ -10,7 +10,9 @@ inline std::size_t allocations = 0;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 
-#include <sanitizer/allocator_interface.h>
+// Of the sanitizer's runtime library; GCC ships no header for it.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
+                                                         void (*free_hook)(const volatile void*));
 
 namespace hammer_loads::test {
 /// The sanitizer's allocator must stay in charge; it tells of every call.

@@ -186,14 +186,16 @@ void CrankFilter::setGravity(Gravity gravity) noexcept {
   load_ = model_(now_.position.angle);
 }
 
-/// The way forward from the earlier sample and the way back from the later one, each trusted near its own end.
+/// The way forward from the earlier sample and the way back from the later one, each trusted near its own end; the way
+/// back from samples that no machine makes may run away, and is left out then.
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   ShaftState state = before_, back = now_;
   ShaftLoad load = model_(state.position.angle), back_load = load_;
   advance(model_, dt, state, load);
   advance(model_, dt - step_, back, back_load);
-  const double part = dt / step_;
+  const bool sound = std::abs(back.speed) < kSoundSpeeds * settings_.max_speed;
+  const double part = sound ? dt / step_ : 0.0;
   state.position.turn(part * difference(back.position, state.position));
   state.speed += part * (back.speed - state.speed);
   state.torque += part * (back.torque - state.torque);

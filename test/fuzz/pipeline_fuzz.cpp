@@ -1,0 +1,149 @@
+// Any sequence of input messages: loads are finite or refused, and every message is counted once.
+//
+// Bytes of an input: first the level and the estimator, then messages, each an operation and its arguments; what is cut
+// off at the end counts as zeros. The common operation is a plausible sample, so that the filter is at work when the
+// others come.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <numeric>
+
+#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/pipeline/unit_check.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr std::uint64_t kLastStamp = 4294967295999999999;  // of ros::Time [ns]
+
+class Bytes {
+ public:
+  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+  bool empty() const { return size_ == 0; }
+  template <typename T>
+  T take() {
+    T value{};
+    const std::size_t count = std::min(sizeof(T), size_);
+    std::memcpy(&value, data_, count);
+    data_ += count;
+    size_ -= count;
+    return value;
+  }
+
+ private:
+  const std::uint8_t* data_;
+  std::size_t size_;
+};
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+const Settings& shipped() {
+  static const Settings settings = *loadFiles(configDirectory(), {}).value;
+  return settings;
+}
+
+PipelineSettings settingsOf(Bytes& bytes) {
+  PipelineSettings settings = shipped().pipeline;
+  const auto choice = bytes.take<std::uint8_t>();
+  settings.level = choice % 16 == 0 ? Level::kPulse : choice % 2 == 0 ? Level::kLinkage : Level::kRocker;
+  settings.crank_estimator = choice / 16 < 13 ? CrankEstimator::kMechanism
+                             : choice / 16 == 13 ? CrankEstimator::kNone : CrankEstimator::kDifference;
+  return settings;
+}
+
+class Session {
+ public:
+  explicit Session(Bytes bytes) : bytes_(bytes), pipeline_(shipped().mechanism, settingsOf(bytes_)) {}
+
+  void run() {
+    while (!bytes_.empty()) step();
+    const IntakeCounts& counts = pipeline_.counts();
+    require(std::accumulate(counts.refused.begin(), counts.refused.end(), counts.accepted) == messages_);
+  }
+
+ private:
+  void step() {
+    const auto operation = bytes_.take<std::uint8_t>();
+    if (operation == 255) return pipeline_.reset();
+    switch (operation % 8) {
+      case 4: return stampedSample();
+      case 5: return rawSample();
+      case 6: return boom();
+      case 7: return shapes();
+      default: return plausibleSample();
+    }
+  }
+
+  void plausibleSample() {
+    stamp_ += std::uint64_t{1000} * bytes_.take<std::uint16_t>();
+    const double angle = bytes_.take<std::uint16_t>() * shipped().pipeline.crank_angle_resolution;
+    crank({"hammer_crank_joint"}, {angle}, {0.01 * bytes_.take<std::int16_t>()});
+  }
+
+  void stampedSample() {
+    stamp_ = bytes_.take<std::uint64_t>();
+    const auto angle = bytes_.take<double>();
+    crank({"hammer_crank_joint"}, {angle}, {bytes_.take<double>()});
+  }
+
+  void rawSample() {
+    stamp_ += bytes_.take<std::uint32_t>();
+    const auto angle = bytes_.take<double>();
+    crank({"hammer_crank_joint"}, {angle}, {});
+  }
+
+  void boom() {
+    const auto angle = bytes_.take<double>();
+    pipeline_.boomJoints({"arm_joint", "boom_joint", "hammer_joint"}, {0.1, angle, -0.2});
+    require(std::isfinite(pipeline_.hullPitch().pitch()));
+  }
+
+  void shapes() {
+    const auto names = bytes_.take<std::uint8_t>(), positions = bytes_.take<std::uint8_t>();
+    const auto velocities = bytes_.take<std::uint8_t>(), place = bytes_.take<std::uint8_t>();
+    std::vector<std::string> joints(names % 8, "joint");
+    if (place < joints.size()) joints[place] = "hammer_crank_joint";
+    std::vector<double> angles(positions % 8), speeds(velocities % 8);
+    for (double& angle : angles) angle = bytes_.take<float>();
+    for (double& speed : speeds) speed = bytes_.take<float>();
+    pipeline_.boomJoints(joints, angles);
+    stamp_ += 1000000;
+    crank(joints, angles, speeds);
+  }
+
+  void crank(const std::vector<std::string>& names, const std::vector<double>& angles, const std::vector<double>& speeds) {
+    stamp_ %= kLastStamp + 1;
+    ++messages_;
+    const Loads& loads = pipeline_.crankJoint(static_cast<StampNs>(stamp_), names, angles, speeds);
+    if (!angles.empty()) check_.add(1e-3, angles[0], speeds.empty() ? std::nullopt : std::make_optional(speeds[0]));
+    require(loads.turn_ends <= loads.ends.size());
+    for (std::size_t i = 0; i < loads.turn_ends; ++i) {
+      const TurnEnd& end = loads.ends[i];
+      require(std::isfinite(end.blow.energy) && std::isfinite(end.blow.support_impulse_z));
+      if (end.pulse) require(std::isfinite(end.pulse->amplitude) && std::isfinite(end.pulse->half_sine_rms_error));
+    }
+    if (loads.refusal) return;
+    require(std::isfinite(loads.wrench.force_x) && std::isfinite(loads.wrench.force_z) &&
+            std::isfinite(loads.wrench.torque_y) && std::isfinite(loads.crank.speed) &&
+            std::isfinite(loads.crank.acceleration));
+    require(std::abs(loads.crank.position.angle.offset) < 3.2);
+  }
+
+  Bytes bytes_;
+  Pipeline pipeline_;
+  UnitCheck check_{300.0};
+  std::uint64_t stamp_{1700000000000000000}, messages_{};
+};
+
+}  // namespace
+}  // namespace hammer_loads
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  hammer_loads::Session(hammer_loads::Bytes(data, size)).run();
+  return 0;
+}
