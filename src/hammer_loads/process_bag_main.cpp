@@ -21,6 +21,8 @@ int run(int argc, const char* const* argv) {
   app.add_option("input", job.input, "bag to read")->required();
   app.add_option("output", job.output, "bag to write")->required();
   addParamsOption(app, files);
+  std::string urdf;
+  addUrdfOption(app, urdf);
   app.add_option("--crank-topic", job.crank_topic)->capture_default_str();
   app.add_option("--joint-states-topic", job.joint_topic)->capture_default_str();
   app.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
@@ -30,7 +32,7 @@ int run(int argc, const char* const* argv) {
       ->type_name("FILE.yaml");
   app.add_option("--grapple-prefix", job.grapple_prefix, "of the grapple's topics")->capture_default_str();
   if (const auto code = parse(app, argc, argv)) return *code;
-  const std::optional<Settings> settings = loadOrReport(files);
+  const std::optional<Settings> settings = loadOrReport(files, urdf);
   if (!grapple_files.empty()) job.grapple = grappleOrReport(grapple_files).value;
   if (!settings || job.grapple.has_value() == grapple_files.empty()) return kExitFailure;
 

@@ -9,6 +9,7 @@
 #include "hammer_loads/hammer/choose_level.h"
 #include "hammer_loads/parameters/hammer_parameters.h"
 #include "hammer_loads/parameters/parameter_reader.h"
+#include "hammer_loads/parameters/yaml_value.h"
 
 #ifndef HAMMER_LOADS_CONFIG_DIR
 #error "HAMMER_LOADS_CONFIG_DIR must name the source tree's config directory"
@@ -93,6 +94,15 @@ Checked<Settings> loadFiles(const std::string& config_directory, const std::vect
   result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
   if (!result.problems.empty()) result.value.reset();
   return result;
+}
+
+Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes) {
+  std::vector<std::string> problems;
+  ParameterMap parameters = parameterMap(YAML::Load(settings.yaml), {}, problems).value();
+  for (const auto& [key, value] : changes) parameters.at(key).value = YAML::Node(numberText(value));
+  Checked<Settings> changed = settingsFrom(std::move(parameters), settings.robot_description);
+  changed.value.value().notes = std::move(changed.notes);
+  return *std::move(changed.value);
 }
 
 std::string configDirectory() {

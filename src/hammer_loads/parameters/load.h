@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hammer_loads/boom/boom.h"
@@ -38,6 +39,9 @@ Checked<Settings> load(const std::string& config_directory, const ParameterMap& 
 /// The same from files; a later file's key replaces an earlier one's.
 Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
                             const std::string& robot_description = {});
+
+/// Settings in force with some numbers changed. The keys must be among those in force and the values allowed.
+Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
 
 /// Where the shipped files are: beside the installed program or library, else in the source tree it was built from.
 std::string configDirectory();

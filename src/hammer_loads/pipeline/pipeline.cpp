@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hammer_loads/pipeline/make_tracker.h"
+#include "hammer_loads/pipeline/step_impulse.h"
 
 namespace hammer_loads {
 namespace {
@@ -21,16 +22,19 @@ double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSe
 
 }  // namespace
 
-Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom)
+Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom,
+                   const IntakeCounts& counts)
     : mechanism_(mechanism),
       settings_(settings),
       hull_model_(mechanism_, settings.level),
       tracker_(makeTracker(mechanism_, settings)),
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
       gravity_(gravityAtPitch(settings.gravity, settings.hull_pitch)),
+      unit_check_(settings.max_crank_speed),
       intake_(settings.max_crank_speed, settings.stale_after),
       step_(*tracker_),
-      outputs_(hull_model_, step_, settings) {
+      outputs_(hull_model_, step_, settings),
+      counts_(counts) {
   if (boom) boom_.emplace(*boom, settings, mechanism.parameters().striking_distance);
   tracker_->setGravity(gravity_);
 }
@@ -67,6 +71,8 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
   loads_.stamp = stamp;
   loads_.turn_ends = 0;
   loads_.refusal.reset();
+  unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, sample.angle, sample.speed);
+  last_raw_stamp_ = stamp;
   const Intake::Verdict verdict = intake_.judge(stamp, sample);
   if (verdict.refusal) return refuse(*verdict.refusal);
 
@@ -113,15 +119,6 @@ void Pipeline::followBoom(StampNs stamp) noexcept {
   boom_follows_ = true;
   for (std::size_t i = 0; i < loads_.turn_ends; ++i)
     boom_->turnEnded(loads_.ends[i].pulse, loads_.ends[i].mean_press_force);
-}
-
-void Pipeline::reset() noexcept {
-  intake_.reset();
-  turn_.abandon();
-  last_blow_.reset();
-  outputs_.forget();
-  boom_follows_ = false;
-  if (boom_) boom_->reset();
 }
 
 void Pipeline::restart() noexcept {

@@ -20,6 +20,7 @@
 #include "hammer_loads/pipeline/hull_pitch.h"
 #include "hammer_loads/pipeline/intake.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
+#include "hammer_loads/pipeline/unit_check.h"
 
 namespace hammer_loads {
 
@@ -52,8 +53,9 @@ struct IntakeCounts {
 
 class Pipeline {
  public:
-  /// boom: nothing where its loads are not wanted.
-  Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom = {});
+  /// boom: nothing where its loads are not wanted. counts: where they go on from.
+  Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom = {},
+           const IntakeCounts& counts = {});
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
@@ -74,10 +76,9 @@ class Pipeline {
   bool nextOutput(HullOutput& output) noexcept { return outputs_.next(output); }
   /// Of the output just taken. For a mean that of its end or, if less, what the momentum's at both ends allows.
   HullDeviation deviation(const HullOutput& output) noexcept;
-  /// Time jumped: begin anew with the next sample; what was learned about the machine is kept.
-  void reset() noexcept;
 
   const IntakeCounts& counts() const noexcept { return counts_; }
+  const UnitCheck& unitCheck() const noexcept { return unit_check_; }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }
   const HullPitch& hullPitch() const noexcept { return hull_pitch_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }
@@ -101,6 +102,8 @@ class Pipeline {
   std::unique_ptr<CrankTracker> tracker_;
   HullPitch hull_pitch_;
   Gravity gravity_;
+  UnitCheck unit_check_;
+  std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
   Intake intake_;
   CrankStep step_;
   HullOutputs outputs_;

@@ -23,6 +23,16 @@ class BagSink final : public LoadsSink {
   void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "hull_wrench", record_time, message);
   }
+  void boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& message,
+                  const ros::Time& record_time) override {
+    bag_.write(prefix_ + "boom_wrench/" + link, record_time, message);
+  }
+  void jointLoads(const JointLoads& message, const ros::Time& record_time) override {
+    bag_.write(prefix_ + "joint_loads", record_time, message);
+  }
+  void boomVibration(const BoomVibration& message, const ros::Time& record_time) override {
+    bag_.write(prefix_ + "boom_vibration", record_time, message);
+  }
   void hullLoads(const HullLoads& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "hull_loads", record_time, message);
   }
@@ -38,6 +48,9 @@ class BagSink final : public LoadsSink {
   void pulse(const Pulse& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "pulse", record_time, message);
   }
+  bool wantsBoomWrench(const std::string&) const override { return true; }
+  bool wantsJointLoads() const override { return true; }
+  bool wantsBoomVibration() const override { return true; }
   bool wantsHullLoads() const override { return true; }
   bool wantsMechanism() const override { return true; }
   bool wantsPinForces() const override { return pins_; }
@@ -74,10 +87,17 @@ std::string checkTopics(rosbag::Bag& bag, const BagJob& job, BagInputs& inputs) 
 /// Null flows have no part in it.
 void process(rosbag::Bag& input, const BagJob& job, LoadsFlow* hammer, GrappleFlow* grapple,
              const std::function<void(double)>& progress) {
-  rosbag::View view(input, rosbag::TopicQuery({job.crank_topic, job.joint_topic}));
+  std::vector<std::string> topics{job.crank_topic, job.joint_topic};
+  if (hammer && hammer->needsTransforms()) topics.insert(topics.end(), {"/tf", "/tf_static"});
+  rosbag::View view(input, rosbag::TopicQuery(topics));
   const double count = view.size();
   double done = 0.0;
   for (const rosbag::MessageInstance& item : view) {
+    progress(++done / count);
+    if (const auto transforms = item.instantiate<tf2_msgs::TFMessage>()) {
+      hammer->transforms(*transforms, item.getTopic() == "/tf_static", item.getTime());
+      continue;
+    }
     const auto message = item.instantiate<sensor_msgs::JointState>();
     if (!message) throw rosbag::BagFormatException("a message on " + item.getTopic() + " cannot be read");
     // One topic may carry both.
@@ -85,7 +105,6 @@ void process(rosbag::Bag& input, const BagJob& job, LoadsFlow* hammer, GrappleFl
     if (hammer && joints) hammer->jointStates(*message, item.getTime());
     if (hammer && item.getTopic() == job.crank_topic) hammer->crank(*message, item.getTime());
     if (grapple && joints) grapple->jointStates(*message, item.getTime());
-    progress(++done / count);
   }
 }
 

@@ -22,34 +22,39 @@ double crankAngle(CrankAngle angle) { return angle.offset < 0.0 ? angle.offset +
 
 }  // namespace
 
-LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink)
-    : pipeline_(settings.mechanism, settings.pipeline, settings.boom), sink_(sink) {
+LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink) : settings_(settings), sink_(sink) {
   run_info_.version = HAMMER_LOADS_VERSION;
   run_info_.revision = HAMMER_LOADS_REVISION;
-  run_info_.parameters_yaml = settings.yaml;
-  run_info_.robot_description = settings.robot_description;
-  run_info_.notes = settings.notes;
   for (std_msgs::Header* header : {&wrench_.header, &hull_loads_.header, &mechanism_.header, &pin_forces_.header,
                                    &blow_.header, &pulse_.header})
     header->frame_id = kHullFrame;
-  for (const auto& [name, level] : kLevelNames)
-    if (level == settings.pipeline.level) hull_loads_.level = name;
   mechanism_.name = {settings.pipeline.crank_joint, "hammer_rod_joint", "hammer_rocker_joint"};
   mechanism_.position.resize(mechanism_.name.size());
   mechanism_.velocity.resize(mechanism_.name.size());
-  const std::vector<std::string>& links = settings.pipeline.boom_wrench_links;
-  if (pipeline_.boom()) boom_messages_.emplace(*pipeline_.boom(), links);
-  const std::vector<std::string> frames = framesBesideChain(links, settings.boom ? &*settings.boom : nullptr);
-  if (frames.empty()) return;
-  frame_wrenches_.emplace(frames, kHullFrame, settings.pipeline.tf_max_wait,
-                          [this](std::size_t frame, const geometry_msgs::WrenchStamped& wrench, const ros::Time& time) {
-                            sink_.boomWrench(frame_wrenches_->frames()[frame], wrench, time);
-                          });
+  const std::vector<std::string> frames =
+      framesBesideChain(settings.pipeline.boom_wrench_links, settings.boom ? &*settings.boom : nullptr);
+  if (!frames.empty()) {
+    frame_wrenches_.emplace(frames, kHullFrame, settings.pipeline.tf_max_wait,
+                            [this](std::size_t frame, const geometry_msgs::WrenchStamped& wrench, const ros::Time& time) {
+                              sink_.boomWrench(frame_wrenches_->frames()[frame], wrench, time);
+                            });
+  }
+  reset();
 }
 
-void LoadsFlow::reset() {
-  pipeline_.reset();
+void LoadsFlow::begin(const Settings& settings) {
+  settings_ = settings;
+  const IntakeCounts counts = pipeline_ ? pipeline_->counts() : IntakeCounts{};
+  pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
+  boom_messages_.reset();
+  if (pipeline_->boom()) boom_messages_.emplace(*pipeline_->boom(), settings_.pipeline.boom_wrench_links);
   if (frame_wrenches_) frame_wrenches_->reset();
+  run_info_.parameters_yaml = settings_.yaml;
+  run_info_.robot_description = settings_.robot_description;
+  run_info_.notes = settings_.notes;
+  for (const auto& [name, level] : kLevelNames)
+    if (level == settings_.pipeline.level) hull_loads_.level = name;
+  run_begun_ = false;
 }
 
 void LoadsFlow::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
@@ -67,18 +72,18 @@ void LoadsFlow::beginRun(const ros::Time& record_time) {
 
 void LoadsFlow::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   beginRun(record_time);
-  pipeline_.boomJoints(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+  pipeline_->boomJoints(stampOf(message.header.stamp), message.name, message.position, message.velocity);
 }
 
 void LoadsFlow::crank(const sensor_msgs::JointState& message, const ros::Time& record_time) {
   beginRun(record_time);
-  pipeline_.wantTurns(sink_.wantsTurns());
-  pipeline_.wantBoom(wantsBoom());
+  pipeline_->wantTurns(sink_.wantsTurns());
+  pipeline_->wantBoom(wantsBoom());
   const Loads& loads =
-      pipeline_.crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+      pipeline_->crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
   for (std::size_t i = 0; i < loads.turn_ends; ++i) publishTurnEnd(loads.ends[i], record_time);
   HullOutput output;
-  while (pipeline_.nextOutput(output)) publishOutput(output, record_time);
+  while (pipeline_->nextOutput(output)) publishOutput(output, record_time);
   if (loads.refusal) return;
   if (loads.boom != nullptr && !loads.boom->fault) publishBoom(record_time);
   if (sink_.wantsMechanism()) publishMechanism(loads, record_time);
@@ -93,7 +98,7 @@ void LoadsFlow::publishOutput(const HullOutput& output, const ros::Time& record_
   sink_.hullWrench(wrench_, record_time);
   if (sink_.wantsHullLoads()) publishHullLoads(output, record_time);
   if (frame_wrenches_) frame_wrenches_->wrench(wrench_, record_time);
-  if (!boom_messages_ || !pipeline_.boom()->known()) return;
+  if (!boom_messages_ || !pipeline_->boom()->known()) return;
   for (std::size_t i = 0; i < boom_messages_->links().size(); ++i) {
     const std::string& link = boom_messages_->links()[i];
     if (sink_.wantsBoomWrench(link))
@@ -114,7 +119,7 @@ void LoadsFlow::publishBoom(const ros::Time& record_time) {
 }
 
 void LoadsFlow::publishHullLoads(const HullOutput& output, const ros::Time& record_time) {
-  const HullDeviation deviation = pipeline_.deviation(output);
+  const HullDeviation deviation = pipeline_->deviation(output);
   const CrankAngle angle = output.crank.position.angle;
   hull_loads_.header.stamp = wrench_.header.stamp;
   hull_loads_.force_x_N = output.wrench.force_x;
@@ -132,14 +137,14 @@ void LoadsFlow::publishHullLoads(const HullOutput& output, const ros::Time& reco
   hull_loads_.interval_s = output.interval;
   hull_loads_.flags = 0;
   if (output.interval > 0.0) hull_loads_.flags |= HullLoads::FLAG_MEAN;
-  if (!pipeline_.hullPitch().known()) hull_loads_.flags |= HullLoads::FLAG_PITCH_UNKNOWN;
-  const LinkMotion links = linkMotion(pipeline_.mechanism().linkage(), angle);
-  if (transmissionAngle(links) < pipeline_.settings().near_blow) hull_loads_.flags |= HullLoads::FLAG_NEAR_BLOW;
+  if (!pipeline_->hullPitch().known()) hull_loads_.flags |= HullLoads::FLAG_PITCH_UNKNOWN;
+  const LinkMotion links = linkMotion(pipeline_->mechanism().linkage(), angle);
+  if (transmissionAngle(links) < pipeline_->settings().near_blow) hull_loads_.flags |= HullLoads::FLAG_NEAR_BLOW;
   sink_.hullLoads(hull_loads_, record_time);
 }
 
 void LoadsFlow::publishMechanism(const Loads& loads, const ros::Time& record_time) {
-  const LinkMotion links = linkMotion(pipeline_.mechanism().linkage(), loads.crank.position.angle);
+  const LinkMotion links = linkMotion(pipeline_->mechanism().linkage(), loads.crank.position.angle);
   mechanism_.header.stamp = timeOf(loads.stamp);
   mechanism_.position = {crankAngle(loads.crank.position.angle), rodAngle(links), rockerAngle(links.rocker)};
   mechanism_.velocity = {loads.crank.speed, links.v * loads.crank.speed, links.rocker.u * loads.crank.speed};
@@ -147,10 +152,10 @@ void LoadsFlow::publishMechanism(const Loads& loads, const ros::Time& record_tim
 }
 
 void LoadsFlow::publishPinForces(const Loads& loads, const ros::Time& record_time) {
-  const Mechanism& mechanism = pipeline_.mechanism();
-  const PipelineSettings& settings = pipeline_.settings();
+  const Mechanism& mechanism = pipeline_->mechanism();
+  const PipelineSettings& settings = pipeline_->settings();
   const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
-  const PinReactions pins = pinForces(mechanism, settings.level, crank, pipeline_.gravity(), NearBlow(settings.near_blow));
+  const PinReactions pins = pinForces(mechanism, settings.level, crank, pipeline_->gravity(), NearBlow(settings.near_blow));
   pin_forces_.header.stamp = timeOf(loads.stamp);
   pin_forces_.crank_angle_rad = crankAngle(crank.angle);
   pin_forces_.crank_speed_rad_s = crank.speed;

@@ -55,10 +55,14 @@ class LoadsFlow {
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
   /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
   bool needsTransforms() const { return frame_wrenches_.has_value(); }
-  /// Time jumped: see Pipeline::reset.
-  void reset();
+  /// A run begins anew with the next input, in the state of a flow just made; counts go on. For a time that jumped and
+  /// for a log that is to be reproduced from its own inputs. Static transforms stay.
+  void reset() { begin(Settings(settings_)); }
+  /// The same with other settings.
+  void begin(const Settings& settings);
 
-  const Pipeline& pipeline() const { return pipeline_; }
+  const Settings& settings() const { return settings_; }
+  const Pipeline& pipeline() const { return *pipeline_; }
   const RunInfo& runInfoMessage() const { return run_info_; }
   const std::optional<FrameWrenches>& frameWrenches() const { return frame_wrenches_; }
 
@@ -72,7 +76,8 @@ class LoadsFlow {
   void publishMechanism(const Loads& loads, const ros::Time& record_time);
   void publishPinForces(const Loads& loads, const ros::Time& record_time);
 
-  Pipeline pipeline_;
+  Settings settings_;
+  std::optional<Pipeline> pipeline_;  ///< made anew with each run, in its place
   LoadsSink& sink_;
   RunInfo run_info_;
   geometry_msgs::WrenchStamped wrench_;

@@ -11,7 +11,7 @@ void describeLog(const BagLog* log, diagnostic_updater::DiagnosticStatusWrapper&
   }
   const LogHealth health = log->health();
   switch (health.state) {
-    case LogState::kOff: status.summary(DiagnosticStatus::OK, "stopped on request"); break;
+    case LogState::kOff: status.summary(DiagnosticStatus::OK, "off"); break;
     case LogState::kRecording: status.summary(DiagnosticStatus::OK, "recording"); break;
     case LogState::kDiskFull: status.summary(DiagnosticStatus::ERROR, "stopped: " + health.reason); break;
     case LogState::kFailed: status.summary(DiagnosticStatus::ERROR, "failed: " + health.reason); break;

@@ -6,20 +6,17 @@
 
 #include <chrono>
 #include <cstdint>
-#include <string>
-#include <vector>
 
-#include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/ros/loads_flow.h"
 
 namespace hammer_loads {
 
-/// Published once a second of wall time: rates, ages, counts of accepted and refused input by reason, model, log health.
+/// Published once a second of wall time: rates, ages, counts of accepted and refused input by reason, model,
+/// boom, log health.
 class NodeDiagnostics {
  public:
-  /// log may be null.
-  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const Pipeline& pipeline, const BagLog* log,
-                  const std::vector<std::string>& notes);
+  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const LoadsFlow& flow, const BagLog& log);
 
   /// An input arrived; its age decides whether the node is stale.
   void crankArrived() { last_crank_ = Clock::now(); }
@@ -30,10 +27,11 @@ class NodeDiagnostics {
 
   void describeCrank(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describePitch(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeBoom(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeFrames(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describeModel(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  const Pipeline& pipeline_;
-  std::vector<std::string> notes_;  ///< of the parameters, e.g. why this level of the model
+  const LoadsFlow& flow_;
   Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
   IntakeCounts last_counts_;
   diagnostic_updater::Updater updater_;

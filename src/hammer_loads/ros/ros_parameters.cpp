@@ -58,7 +58,9 @@ ParameterMap privateParameters(const ros::NodeHandle& private_node, std::vector<
 Checked<Settings> loadPrivateParameters(const ros::NodeHandle& private_node) {
   std::vector<std::string> problems;
   const ParameterMap given = privateParameters(private_node, problems);
-  Checked<Settings> result = load(configDirectory(), given);
+  std::string key, robot_description;
+  if (private_node.searchParam("robot_description", key)) private_node.getParam(key, robot_description);
+  Checked<Settings> result = load(configDirectory(), given, robot_description);
   result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
   if (!result.problems.empty()) result.value.reset();
   return result;
