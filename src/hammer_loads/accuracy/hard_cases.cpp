@@ -29,8 +29,8 @@ HammerParameters scaled(HammerParameters p, double k) {
         &p.striking_distance, &p.crank_com_along, &p.crank_com_across, &p.rod_com_along, &p.rod_com_across}) {
     *length *= k;
   }
-  for (double* inertia : {&p.rocker_inertia_about_pivot, &p.crank_inertia_about_com, &p.rod_inertia_about_com,
-                          &p.drive_inertia}) {
+  for (double* inertia :
+       {&p.rocker_inertia_about_pivot, &p.crank_inertia_about_com, &p.rod_inertia_about_com, &p.drive_inertia}) {
     *inertia *= k * k;
   }
   return p;
