@@ -16,7 +16,8 @@ COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank"
           "grapple": "#b08a1e"}
 SESSION = {"none": "none", "difference": "difference"}  # crank rows by estimator; all others: mechanism
 EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "pulse"), ("scalar", "rocker"),
-           ("scalar", "linkage"), ("scalar", "linkage with pins"), ("batch", "linkage, AVX2"), ("batch", "linkage with pins, AVX2"),
+           ("scalar", "linkage"), ("scalar", "linkage with pins"), ("batch", "linkage, AVX2"),
+           ("batch", "linkage with pins, AVX2"),
            ("crank", "mechanism, linkage"), ("pipeline", "linkage")]
 SESSION_HEAD = "rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow instant | energy |"
 
@@ -123,13 +124,14 @@ def excerpt(figures, recorded):
              "cases and a picture are in [doc/accuracy.md](doc/accuracy.md):", "",
              "| | way to the loads | ns | per second | worst error |", "|---|---|---|---|---|"]
     lines += [price_line(prices[key]) for key in EXCERPT if key in prices]
-    lines += ["", "Recorded sessions (`test/data`), processed as they are, from 3 s after the start to 3 s before the end:",
+    lines += ["", "Recorded sessions (`test/data`), processed as they are, from 3 s after the start to 3 s before the",
+              "end:",
               "", f"| session | drive inertia wrong by | {SESSION_HEAD}", "|---" * 9 + "|", recorded.strip(),
               "", "Simulated sessions, by source of the crank's acceleration and sample rate:", "",
               f"| acceleration from | rate, Hz | {SESSION_HEAD}", "|---" * 9 + "|"]
     lines += [session_line(s) for s in sessions]
-    lines += ["", "Root-mean-square errors are of the peak of each quantity, impulses of the blow's; all others are the",
-              "worst of all turns. `none` is the papers' constant crank speed, `difference` that of measured speeds,",
+    lines += ["", "Root-mean-square errors are of the peak of each quantity, impulses of the blow's; all others are",
+              "the worst of all turns. `none` is the papers' constant crank speed, `difference` that of measured speeds,",
               "`mechanism` the shipped filter."]
     return "\n".join(lines) + "\n"
 

@@ -1,9 +1,9 @@
 /// Hull wrench and pin forces of level linkage together, under one gravity, in fewer operations than one after the
 /// other: for many states at once.
 ///
-/// The same equations as hullWrenchLinkage and pinForcesLinkage (their headers say what is neglected). Weights are taken
-/// off each link's inertia force at once, so the moments of crank about A, rod about B and rocker about D serve the
-/// hull's moment, the drive torque and the force in C.
+/// The same equations as hullWrenchLinkage and pinForcesLinkage (their headers say what is neglected). Weights are
+/// taken off each link's inertia force at once, so the moments of crank about A, rod about B and rocker about D serve
+/// the hull's moment, the drive torque and the force in C.
 #pragma once
 
 #include "hammer_loads/hammer/link_loads.h"
