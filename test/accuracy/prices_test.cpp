@@ -121,7 +121,8 @@ TEST(Timing, GivesTheProcessorTimeOfAnEvaluation) {
     timespec start{}, now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &start);
     do clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    while (1e9 * static_cast<double>(now.tv_sec - start.tv_sec) + static_cast<double>(now.tv_nsec - start.tv_nsec) < 1e5);
+    while (1e9 * static_cast<double>(now.tv_sec - start.tv_sec) + static_cast<double>(now.tv_nsec - start.tv_nsec) <
+           1e5);
   };
   const Cost cost = costOf(100, spin);
   EXPECT_GE(cost.median, 1000.0);

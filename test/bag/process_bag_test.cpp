@@ -128,7 +128,7 @@ TEST_P(RecordedSession, StaysWithinTheBounds) {
   const auto e = accuracy::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);
   test::expectWithin(e, session_case.bounds);
   EXPECT_GT(e.blows, 50);
-  // For the README: scripts/update_readme.
+  // For the README: scripts/update_accuracy.
   std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n", session_case.session,
               100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque, 100 * e.turn_peak,
               100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);

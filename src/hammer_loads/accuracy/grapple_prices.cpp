@@ -26,8 +26,7 @@ std::vector<double> swing(const GrappleParameters& p) {
 /// 1e-2 to 1e-10 m before the fold or dead point above the stroke.
 std::vector<double> besideTheLimit(const Grapple& grapple) {
   std::vector<double> sliders;
-  for (int decade = 2; decade <= 10; ++decade)
-    sliders.push_back(grapple.upperLimit().slider - std::pow(10.0, -decade));
+  for (int decade = 2; decade <= 10; ++decade) sliders.push_back(grapple.upperLimit().slider - std::pow(10.0, -decade));
   return sliders;
 }
 

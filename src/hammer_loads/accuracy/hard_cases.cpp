@@ -11,14 +11,16 @@ namespace {
 constexpr double kPaperSpeed = 31.416;  // [rad/s], P0
 const Gravity kGravity{9.80665 * std::sin(0.3), -9.80665 * std::cos(0.3)};
 
-/// side: +1 after, -1 before the blow.
-void addNearBlow(double side, std::initializer_list<double> digits, std::vector<double>& angles) {
-  for (int decade = 1; decade <= 12; ++decade) {
+/// Offsets 1e-first to 1e-last; side: +1 after, -1 before the blow.
+std::vector<double> besideTheBlow(double side, int first, int last, std::initializer_list<double> digits) {
+  std::vector<double> angles;
+  for (int decade = first; decade <= last; ++decade) {
     for (const double digit : digits) {
       const double offset = digit * std::pow(10.0, -decade);
       angles.push_back(side > 0.0 ? offset : kTwoPi - offset);
     }
   }
+  return angles;
 }
 
 HammerParameters scaled(HammerParameters p, double k) {
@@ -27,8 +29,8 @@ HammerParameters scaled(HammerParameters p, double k) {
         &p.striking_distance, &p.crank_com_along, &p.crank_com_across, &p.rod_com_along, &p.rod_com_across}) {
     *length *= k;
   }
-  for (double* inertia : {&p.rocker_inertia_about_pivot, &p.crank_inertia_about_com, &p.rod_inertia_about_com,
-                          &p.drive_inertia}) {
+  for (double* inertia :
+       {&p.rocker_inertia_about_pivot, &p.crank_inertia_about_com, &p.rod_inertia_about_com, &p.drive_inertia}) {
     *inertia *= k * k;
   }
   return p;
@@ -51,14 +53,19 @@ std::vector<double> turnAngles(std::size_t count) {
 }
 
 std::vector<HardCase> hardCases(const HammerParameters& hammer) {
-  std::vector<double> before, after, everywhere = turnAngles(48);
-  addNearBlow(-1.0, {1.0, 2.7, 6.1}, before);
-  addNearBlow(1.0, {1.0, 2.7, 6.1}, after);
-  addNearBlow(-1.0, {2.7}, everywhere);
-  addNearBlow(1.0, {2.7}, everywhere);
+  const auto beside = [&](const char* name, double side, int first, int last) {
+    return HardCase{name, hammer, kPaperSpeed, 0.0, kGravity, besideTheBlow(side, first, last, {1.0, 2.7, 6.1})};
+  };
+  std::vector<double> everywhere = turnAngles(48);
+  for (const double side : {-1.0, 1.0}) {
+    const std::vector<double> near_blow = besideTheBlow(side, 1, 12, {2.7});
+    everywhere.insert(everywhere.end(), near_blow.begin(), near_blow.end());
+  }
   return {{"regular turn", hammer, kPaperSpeed, 0.0, kGravity, turnAngles(240)},
-          {"before the blow", hammer, kPaperSpeed, 0.0, kGravity, before},
-          {"after the blow", hammer, kPaperSpeed, 0.0, kGravity, after},
+          beside("before the blow, to 1e-6 rad", -1.0, 1, 6),
+          beside("before, to 1e-12 rad", -1.0, 7, 12),
+          beside("after the blow, to 1e-6 rad", 1.0, 1, 6),
+          beside("after, to 1e-12 rad", 1.0, 7, 12),
           {"lengths rounded", rounded(hammer), kPaperSpeed, 0.0, kGravity, everywhere},
           {"lengths x 1e-3", scaled(hammer, 1e-3), kPaperSpeed, 0.0, kGravity, everywhere},
           {"lengths x 1e3", scaled(hammer, 1e3), kPaperSpeed, 0.0, kGravity, everywhere},

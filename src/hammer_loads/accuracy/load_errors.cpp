@@ -57,7 +57,10 @@ Error errorOf(const std::vector<LinkLoads>& computed, const ExactCase& exact, Pa
     add([](const LinkLoads& l) { return l.wrench.force_z; }, [](const Reference& r) { return r.hull_force.y; }, false);
     return worst;
   }
-  add([](const LinkLoads& l) { return PinForce{l.wrench.force_x, l.wrench.force_z}; },
+  add(
+      [](const LinkLoads& l) {
+        return PinForce{l.wrench.force_x, l.wrench.force_z};
+      },
       [](const Reference& r) { return r.hull_force; }, true);
   add([](const LinkLoads& l) { return l.wrench.torque_y; }, [](const Reference& r) { return r.hull_torque; }, false);
   if (parts == Parts::kWrench) return worst;
@@ -69,7 +72,8 @@ Error errorOf(const std::vector<LinkLoads>& computed, const ExactCase& exact, Pa
   add_pin(&PinReactions::rod_on_rocker, &Reference::r23);
   add_pin(&PinReactions::hull_on_rocker, &Reference::r03);
   if (parts == Parts::kPins)
-    add([](const LinkLoads& l) { return l.pins.drive_torque; }, [](const Reference& r) { return r.drive_torque; }, false);
+    add([](const LinkLoads& l) { return l.pins.drive_torque; }, [](const Reference& r) { return r.drive_torque; },
+        false);
   return worst;
 }
 

@@ -19,8 +19,8 @@ struct PriceRow {
   std::string group;  ///< printed, scalar, batch, crank, pipeline or grapple
   std::string name;
   Cost cost;
-  std::vector<CaseError> errors;      ///< against the reference of the row's own level; none where sessions tell
-  std::optional<double> left_out;     ///< regular turn, Fz against the reference of level linkage, of the peak
+  std::vector<CaseError> errors;   ///< against the reference of the row's own level; none where sessions tell
+  std::optional<double> left_out;  ///< regular turn, Fz against the reference of level linkage, of the peak
 };
 
 }  // namespace hammer_loads::accuracy

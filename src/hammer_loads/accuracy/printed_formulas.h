@@ -43,8 +43,7 @@ class PrintedFormulas {
     const double s = std::sin(0.5 * angle), y = std::cos(0.5 * angle), yy = y * y;
     const double bracket = (2.0 * l0_ * s * s + l2_ * (l0_ - 1.0)) * y / std::sqrt(l2_ * l3_ / l0_ - s * s);
     const double root = std::sqrt((g_ + yy) * (g_ + yy) * (g_ + yy));
-    const double sum =
-        b_ * y + ((g_ + 2.0 * (c_ - a_)) * yy * yy + g_ * (c_ - 3.0 * a_) * yy + a_ * c_ * g_) / root;
+    const double sum = b_ * y + ((g_ + 2.0 * (c_ - a_)) * yy * yy + g_ * (c_ - 3.0 * a_) * yy + a_ * c_ * g_) / root;
     return {(1.0 - l0_ + 2.0 * l0_ * s * s + bracket) / squaredBD(angle), -s / (4.0 * (a_ - yy) * (a_ - yy)) * sum};
   }
 
@@ -69,9 +68,8 @@ class PrintedFormulas {
     const double psi =
         3.14159265358979323846 - to_d - std::acos((l3_ * l3_ - l2_ * l2_ + d) / (2.0 * l3_ * std::sqrt(d)));  // (2)
     const double beta = std::acos((l2_ * l2_ - l3_ * l3_ + d) / (2.0 * l2_ * std::sqrt(d))) - to_d;           // (3)
-    return {{std::cos(psi), std::sin(psi)},
-            {std::cos(beta), std::sin(beta)},
-            {std::cos(psi - beta), std::sin(psi - beta)}};
+    return {
+        {std::cos(psi), std::sin(psi)}, {std::cos(beta), std::sin(beta)}, {std::cos(psi - beta), std::sin(psi - beta)}};
   }
 
   Places byTriangles(double angle) const noexcept {
@@ -90,11 +88,11 @@ class PrintedFormulas {
     // (1), along D->S and across; Deviates: signs, weight.
     const double pn = mass * (ls * rate * rate - q.psi.re * gravity.x + q.psi.im * gravity.z);
     const double pt = mass * (-ls * accel + q.psi.im * gravity.x + q.psi.re * gravity.z);
-    const double moment = -com_inertia_ * accel;                                  // Deviates: about S
-    const double r03t = moment / l3 + pt * (ls / l3 - cos_a_) - pn * sin_a_;      // (9)
-    const double r12 = (pt * cos_a_ + pn * sin_a_ + r03t) / q.mu.im;              // (11)
-    const Planar com = Planar{cos_a_, sin_a_} * q.mu;                             // e^(i (psi + a - beta))
-    const double r03n = (pn * com.im + pt * com.re + r03t * q.mu.re) / q.mu.im;   // (10)
+    const double moment = -com_inertia_ * accel;                                 // Deviates: about S
+    const double r03t = moment / l3 + pt * (ls / l3 - cos_a_) - pn * sin_a_;     // (9)
+    const double r12 = (pt * cos_a_ + pn * sin_a_ + r03t) / q.mu.im;             // (11)
+    const Planar com = Planar{cos_a_, sin_a_} * q.mu;                            // e^(i (psi + a - beta))
+    const double r03n = (pn * com.im + pt * com.re + r03t * q.mu.re) / q.mu.im;  // (10)
     const Planar rocker = q.psi * Planar{cos_a_, -sin_a_}, rod = q.beta * Planar{cos_a_, -sin_a_};
     LinkLoads loads;
     loads.pins.rod_on_rocker = {-r12 * rod.re, r12 * rod.im};
@@ -109,8 +107,8 @@ class PrintedFormulas {
 
   HammerParameters p_;
   Positions positions_;
-  double l0_, l2_, l3_;       ///< ratios to the crank
-  double a_, b_, c_, g_;      ///< P0's constants of (5)
+  double l0_, l2_, l3_;   ///< ratios to the crank
+  double a_, b_, c_, g_;  ///< P0's constants of (5)
   double com_inertia_, cos_a_, sin_a_;
 };
 

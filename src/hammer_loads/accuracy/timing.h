@@ -13,7 +13,7 @@ struct Cost {
 
 constexpr double kLeastRepeat = 2e6;  ///< a repeat lasts at least so long [ns of processor time]
 constexpr int kRepeats = 25;
-constexpr int kWarmUps = 3;           ///< repeats before the first that counts
+constexpr int kWarmUps = 3;  ///< repeats before the first that counts
 
 /// A pass makes `evaluations` of them; a repeat makes as many passes as its length needs.
 Cost costOf(std::size_t evaluations, const std::function<void()>& pass);

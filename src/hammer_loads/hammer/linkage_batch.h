@@ -1,9 +1,9 @@
 /// Hull wrench and pin forces of level linkage together, under one gravity, in fewer operations than one after the
 /// other: for many states at once.
 ///
-/// The same equations as hullWrenchLinkage and pinForcesLinkage (their headers say what is neglected). Weights are taken
-/// off each link's inertia force at once, so the moments of crank about A, rod about B and rocker about D serve the hull's
-/// moment, the drive torque and the force in C.
+/// The same equations as hullWrenchLinkage and pinForcesLinkage (their headers say what is neglected). Weights are
+/// taken off each link's inertia force at once, so the moments of crank about A, rod about B and rocker about D serve
+/// the hull's moment, the drive torque and the force in C.
 #pragma once
 
 #include "hammer_loads/hammer/link_loads.h"
@@ -39,8 +39,8 @@ struct LinkageConstants {
   Planar crank_rod_weight, rod_weight, rocker_weight;             ///< hull axes [N]
   /// Scalar product with the link's direction: moment of its weight (crank: with the rod's mass at B) [N m].
   Planar crank_weight_moment, rod_weight_moment, rocker_weight_moment;
-  Planar coupling, pivot;                                         ///< as in LinkMoments
-  double crank_inertia, rod_inertia, rocker_inertia;              ///< about A, B, D [kg m2]
+  Planar coupling, pivot;                             ///< as in LinkMoments
+  double crank_inertia, rod_inertia, rocker_inertia;  ///< about A, B, D [kg m2]
   double less_rod_force_factor, less_inv_rod_length, rocker_over_rod, crank_length;
 };
 
