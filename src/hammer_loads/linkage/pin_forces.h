@@ -156,7 +156,7 @@ inline void addTurningLinkage(const Mechanism& mechanism, const LinkMotion& l, d
   const TurningAccelerations t = turningAccelerations(l, speed, hull);
   const LinkAccelerations& q = t.links;
   const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, coupling = linkCoupling(mechanism, l);
-  const Planar at_a = -(k.pivot * t.hull);  // acceleration of pin A
+  const Planar at_a = -1.0 * (k.pivot * t.hull);  // acceleration of pin A
 
   // Moments of the inertia forces: rocker about D, rod about B, crank about A with the rod's mass at B.
   const double rocker_moment = p.rocker_inertia_about_pivot * hull.acceleration;

@@ -10,7 +10,6 @@ struct Planar {
 };
 
 constexpr Planar operator+(Planar a, Planar b) noexcept { return {a.re + b.re, a.im + b.im}; }
-constexpr Planar operator-(Planar a) noexcept { return {-a.re, -a.im}; }
 constexpr Planar operator-(Planar a, Planar b) noexcept { return {a.re - b.re, a.im - b.im}; }
 constexpr Planar operator*(double k, Planar a) noexcept { return {k * a.re, k * a.im}; }
 constexpr Planar operator*(Planar a, Planar b) noexcept {
