@@ -75,7 +75,7 @@ TEST_F(CrankFilterTest, ADeadStopOnTheToolTeachesNothingOfTheInertia) {
     machine.seed = seed;
     const simulation::Session session = simulation::recordSession(machine);
     CrankFilter f = filter(1.4 * machine.drive.inertia);
-    f.setGravity({0.0, -machine.gravity});
+    f.setHullMotion({{0.0, -machine.gravity}});
     double before_work = 0.0, stopped = 0.0;
     run(f, session, [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
       if (truth.time > 1.4) return;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/mechanism.h"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hammer_loads/linkage/crank_motion.h"
+#include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/mechanism.h"
 

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "hammer_loads/crank/crank_state.h"
-#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/hull_motion.h"
 
 namespace hammer_loads {
 
@@ -54,8 +54,8 @@ class CrankTracker {
   }
   /// The same at the last accepted sample.
   virtual Eigen::Matrix3d motionCovariance(double /*torque_part*/) const noexcept { return Eigen::Matrix3d::Zero(); }
-  /// Gravity changes with the hull's pitch; only who predicts the motion needs it.
-  virtual void setGravity(Gravity /*gravity*/) noexcept {}
+  /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.
+  virtual void setHullMotion(const HullMotion& /*hull*/) noexcept {}
 };
 
 }  // namespace hammer_loads

@@ -36,7 +36,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       outputs_(hull_model_, step_, settings),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings, mechanism.parameters().striking_distance);
-  tracker_->setGravity(gravity_);
+  tracker_->setHullMotion({gravity_});
 }
 
 bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
@@ -44,7 +44,7 @@ bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, 
   const bool of_boom = boom_ && boom_->jointStates(stamp, names, positions, velocities);
   if (!hull_pitch_.update(names, positions)) return of_boom;
   gravity_ = gravityAtPitch(settings_.gravity, hull_pitch_.pitch());
-  tracker_->setGravity(gravity_);
+  tracker_->setHullMotion({gravity_});
   return true;
 }
 
