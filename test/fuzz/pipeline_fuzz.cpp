@@ -105,7 +105,7 @@ class Session {
 
   void boom() {
     const auto angle = bytes_.take<double>();
-    pipeline_->boomJoints({"arm_joint", "boom_joint", "hammer_joint"}, {0.1, angle, -0.2});
+    pipeline_->boomJoints(0, {"arm_joint", "boom_joint", "hammer_joint"}, {0.1, angle, -0.2}, {});
     require(std::isfinite(pipeline_->hullPitch().pitch()));
   }
 
@@ -117,7 +117,7 @@ class Session {
     std::vector<double> angles(positions % 8), speeds(velocities % 8);
     for (double& angle : angles) angle = bytes_.take<float>();
     for (double& speed : speeds) speed = bytes_.take<float>();
-    pipeline_->boomJoints(joints, angles);
+    pipeline_->boomJoints(static_cast<StampNs>(stamp_), joints, angles, speeds);
     stamp_ += 1000000;
     crank(joints, angles, speeds);
   }
