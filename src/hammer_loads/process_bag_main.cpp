@@ -25,6 +25,7 @@ int run(int argc, const char* const* argv) {
   addUrdfOption(app, urdf);
   app.add_option("--crank-topic", job.crank_topic)->capture_default_str();
   app.add_option("--joint-states-topic", job.joint_topic)->capture_default_str();
+  app.add_option("--imu-topic", job.imu_topic, "with hull_motion imu")->capture_default_str();
   app.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
   app.add_flag("--pins", job.pins, "pin forces as well");
   app.add_option("--grapple", grapple_files, "the grapple as well, from --joint-states-topic; may be repeated")

@@ -28,6 +28,18 @@ void readBoom(ParameterReader& reader, PipelineSettings& s) {
   s.tf_max_wait = reader.number("tf_max_wait_s", "s", NumberRule::positive());
 }
 
+void readHullMotion(ParameterReader& reader, PipelineSettings& s) {
+  constexpr NumberRule kAny = NumberRule::any();
+  s.hull_motion = reader.choice("hull_motion", kHullMotionNames);
+  if (s.hull_motion == HullMotionSource::kModel && (s.boom == BoomModel::kNone || s.boom == BoomModel::kRigid))
+    reader.addProblem("hull_motion: model, must be fixed or imu with a boom that is none or rigid");
+  const double x = reader.number("imu_x_m", "m", kAny), y = reader.number("imu_y_m", "m", kAny);
+  s.imu.position = {x, y, reader.number("imu_z_m", "m", kAny)};
+  const double roll = reader.number("imu_roll_rad", "rad", kAny), pitch = reader.number("imu_pitch_rad", "rad", kAny);
+  s.imu.rotation = rotationOf(roll, pitch, reader.number("imu_yaw_rad", "rad", kAny));
+  s.imu.max_age = reader.number("imu_max_age_s", "s", NumberRule::positive());
+}
+
 }  // namespace
 
 PipelineSettings readPipelineSettings(ParameterReader& reader) {
@@ -62,6 +74,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", kPositive);
   s.withhold_above = reader.number("withhold_above", "", kPositive);
   readBoom(reader, s);
+  readHullMotion(reader, s);
   return s;
 }
 

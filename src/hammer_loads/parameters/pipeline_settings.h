@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hammer_loads/linkage/level.h"
+#include "hammer_loads/parameters/hull_imu_settings.h"
 
 namespace hammer_loads {
 
@@ -59,6 +60,16 @@ constexpr std::array<std::pair<const char*, BoomModel>, 4> kBoomModelNames{{{"no
 constexpr std::array<std::pair<const char*, BoomAcceleration>, 2> kBoomAccelerationNames{
     {{"none", BoomAcceleration::kNone}, {"difference", BoomAcceleration::kDifference}}};
 
+/// What is known of the hull's own motion.
+enum class HullMotionSource {
+  kFixed,  ///< it is at rest; weight by pitch
+  kImu,    ///< as its IMU tells
+  kModel,  ///< it vibrates as the compliant boom does
+};
+
+constexpr std::array<std::pair<const char*, HullMotionSource>, 3> kHullMotionNames{
+    {{"fixed", HullMotionSource::kFixed}, {"imu", HullMotionSource::kImu}, {"model", HullMotionSource::kModel}}};
+
 struct PipelineSettings {
   Level level{};                          ///< in force; where it was `auto`, the one chosen
   bool choose_level{};                    ///< the file says `auto`
@@ -70,6 +81,8 @@ struct PipelineSettings {
   std::string crank_joint;                ///< joint whose position is the crank angle
   std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
   double hull_pitch{};                    ///< until every pitch joint has been heard [rad]
+  HullMotionSource hull_motion{};
+  HullImuSettings imu;                    ///< where the IMU sits
   double gravity{};                       ///< [m/s2], >= 0
   double crank_angle_resolution{};        ///< encoder count [rad], > 0
   double crank_angle_noise{};             ///< standard deviation beside the count [rad], >= 0

@@ -39,7 +39,7 @@ CrankAngle moved(CrankAngle angle, double by) noexcept {
 
 }  // namespace
 
-HullDeviation hullDeviation(const HullModel& model, const CrankEstimate& crank, Gravity gravity,
+HullDeviation hullDeviation(const HullModel& model, const CrankEstimate& crank, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept {
   if (!(covariance(1, 1) > 0.0)) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -47,7 +47,7 @@ HullDeviation hullDeviation(const HullModel& model, const CrankEstimate& crank, 
   }
   const Gradient g = gradient(3, [&](const Eigen::Vector3d& by) noexcept {
     return hullWrench(model, {moved(crank.position.angle, by[0]), crank.speed + by[1], crank.acceleration + by[2]},
-                      gravity);
+                      hull);
   });
   return {deviationOf(g, covariance), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
           std::sqrt(covariance(2, 2))};

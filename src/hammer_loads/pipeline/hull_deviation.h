@@ -18,7 +18,7 @@ struct HullDeviation {
 
 /// covariance of (angle, speed, acceleration), linearised at the estimate (central differences; exact in speed and
 /// acceleration). What the model leaves out is not in it. Some 0.3 us.
-HullDeviation hullDeviation(const HullModel& model, const CrankEstimate& crank, Gravity gravity,
+HullDeviation hullDeviation(const HullModel& model, const CrankEstimate& crank, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept;
 
 /// Standard deviation of the momentum: of an impulse's one end [N s, N s, N m s].

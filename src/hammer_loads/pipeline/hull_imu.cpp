@@ -15,13 +15,6 @@ double seconds(StampNs from, StampNs to) noexcept { return static_cast<double>(t
 
 }  // namespace
 
-Eigen::Matrix3d rotationOf(double roll, double pitch, double yaw) {
-  using Eigen::AngleAxisd, Eigen::Vector3d;
-  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
-          AngleAxisd(roll, Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
 std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& reading) noexcept {
   if (!reading.specific_force.allFinite() || !reading.rate.allFinite()) return ImuRefusal::kNotFinite;
   if (reading.specific_force.norm() > kLargestForce || reading.rate.norm() > kLargestRate) {

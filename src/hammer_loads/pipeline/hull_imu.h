@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/parameters/hull_imu_settings.h"
 #include "hammer_loads/pipeline/intake.h"
 
 namespace hammer_loads {
@@ -17,16 +18,6 @@ struct ImuReading {
   Eigen::Vector3d specific_force;  ///< acceleration less gravity [m/s2]: upright at rest (0, 0, 9.8)
   Eigen::Vector3d rate;            ///< turning rate [rad/s]
 };
-
-/// Where the unit sits.
-struct HullImuSettings {
-  Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< from D, axes of hammer_hull [m]
-  Eigen::Matrix3d rotation{Eigen::Matrix3d::Identity()};  ///< from the unit's axes to those of hammer_hull
-  double max_age{};                         ///< of the last reading [s], > 0; older, the motion is not known
-};
-
-/// Rotation by roll, pitch, yaw about fixed x, y, z [rad], as in a URDF origin.
-Eigen::Matrix3d rotationOf(double roll, double pitch, double yaw);
 
 /// Why a reading was not taken.
 enum class ImuRefusal : std::size_t { kNotFinite, kImplausible, kOutOfOrder, kCount };

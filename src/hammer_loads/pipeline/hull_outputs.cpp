@@ -10,11 +10,11 @@ HullOutputs::HullOutputs(const HullModel& model, const CrankStep& step, const Pi
     : model_(&model), step_(&step), kind_(settings.output), rate_(settings.output_rate) {}
 
 void HullOutputs::sample(StampNs stamp, const CrankEstimate& crank, const HullWrench& wrench,
-                         Gravity gravity) noexcept {
+                         const HullMotion& hull) noexcept {
   stamp_ = stamp;
   crank_ = crank;
   wrench_ = wrench;
-  gravity_ = gravity;
+  hull_ = hull;
   added_up_to_ = 0.0;
   ready_ = true;
   if (begun_) return;
@@ -38,7 +38,7 @@ bool HullOutputs::due(StampNs& stamp) const noexcept {
 void HullOutputs::addUpTo(double time) noexcept {
   if (!(time > added_up_to_)) return;
   impulse_ = impulse_ + motionImpulse(*model_, *step_, added_up_to_, time) +
-             weightImpulse(*model_, *step_, gravity_, added_up_to_, time);
+             addedImpulse(*model_, *step_, hull_, added_up_to_, time);
   added_up_to_ = time;
 }
 
@@ -62,7 +62,7 @@ bool HullOutputs::next(HullOutput& output) noexcept {
   } else {
     output.wrench = at_sample ? wrench_
                               : hullWrench(*model_, {output.crank.position.angle, output.crank.speed,
-                                                     output.crank.acceleration}, gravity_);
+                                                     output.crank.acceleration}, hull_);
   }
   last_output_ = output.stamp;
   if (at_sample) ready_ = false;

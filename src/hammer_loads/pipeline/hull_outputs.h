@@ -28,7 +28,8 @@ class HullOutputs {
   /// Outputs begin anew with the next sample.
   void forget() noexcept { begun_ = false, ready_ = false; }
   /// The step has been taken that ends with this sample.
-  void sample(StampNs stamp, const CrankEstimate& crank, const HullWrench& wrench, Gravity gravity) noexcept;
+  void sample(StampNs stamp, const CrankEstimate& crank, const HullWrench& wrench,
+              const HullMotion& hull) noexcept;
   /// The next output up to the last sample; false when there is none left.
   bool next(HullOutput& output) noexcept;
 
@@ -49,7 +50,7 @@ class HullOutputs {
   HullWrench impulse_;    ///< since the last output
   CrankEstimate crank_;
   HullWrench wrench_;
-  Gravity gravity_;
+  HullMotion hull_;
 };
 
 }  // namespace hammer_loads

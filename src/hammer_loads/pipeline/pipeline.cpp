@@ -16,7 +16,12 @@ constexpr double kSideOfBlow = 1e-7;      // [s] before and after the blow where
 constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
 
-Gravity gravityAtPitch(double g, double pitch) noexcept { return {g * std::sin(pitch), -g * std::cos(pitch)}; }
+/// A hull that has the boom's vibration: of none, if the boom is rigid or not known.
+HullMotion withVibration(Gravity weight, const BoomState* boom) noexcept {
+  if (boom == nullptr || boom->fault || !boom->choice.compliant) return weight;
+  const auto& a = boom->tip.acceleration;  // linear, then angular
+  return {{weight.x - a[0], weight.z - a[2]}, boom->tip.velocity[4], a[4]};
+}
 
 double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSecondsPerNs; }
 
@@ -29,23 +34,47 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_model_(mechanism_, settings.level),
       tracker_(makeTracker(mechanism_, settings)),
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
-      gravity_(gravityAtPitch(settings.gravity, settings.hull_pitch)),
+      imu_(settings.imu),
       unit_check_(settings.max_crank_speed),
       intake_(settings.max_crank_speed, settings.stale_after),
       step_(*tracker_),
       outputs_(hull_model_, step_, settings),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings, mechanism.parameters().striking_distance);
-  tracker_->setHullMotion({gravity_});
+  hull_ = gravityByPitch();
+  tracker_->setHullMotion(hull_);
+}
+
+Gravity Pipeline::gravityByPitch() const noexcept {
+  const double pitch = hull_pitch_.pitch();
+  return {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)};
 }
 
 bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                           const std::vector<double>& velocities) noexcept {
   const bool of_boom = boom_ && boom_->jointStates(stamp, names, positions, velocities);
-  if (!hull_pitch_.update(names, positions)) return of_boom;
-  gravity_ = gravityAtPitch(settings_.gravity, hull_pitch_.pitch());
-  tracker_->setHullMotion({gravity_});
-  return true;
+  return hull_pitch_.update(names, positions) || of_boom;
+}
+
+std::optional<ImuRefusal> Pipeline::hullImu(StampNs stamp, const ImuReading& reading) noexcept {
+  const std::optional<ImuRefusal> refusal = imu_.update(stamp, reading);
+  ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
+  return refusal;
+}
+
+/// The hull's motion at a sample as far as it is known before the sample is: the boom's vibration from the one before.
+void Pipeline::predictHull(StampNs stamp) noexcept {
+  const Gravity weight = gravityByPitch();
+  hull_known_ = true;
+  if (settings_.hull_motion == HullMotionSource::kImu) {
+    const std::optional<HullMotion> measured = imu_.at(stamp);
+    hull_known_ = measured.has_value();
+    imu_counts_.missed += !hull_known_;
+    hull_ = measured.value_or(HullMotion(weight));
+  } else {
+    hull_ = withVibration(weight, loads_.boom);
+  }
+  tracker_->setHullMotion(hull_);
 }
 
 const Loads& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>& names,
@@ -76,6 +105,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
   const Intake::Verdict verdict = intake_.judge(stamp, sample);
   if (verdict.refusal) return refuse(*verdict.refusal);
 
+  predictHull(stamp);
   if (verdict.order == Intake::Order::kFirst) {
     tracker_->start(sample);
     loads_.crank = tracker_->estimate();
@@ -88,7 +118,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
     loads_.crank = tracker_->estimate();
     if (tracking == Tracking::kContinued) {
       step_.take(*intake_.last(), verdict.step, last_position_);
-      if (want_turns_ || (boom_ && want_boom_)) followTurn();
+      if (want_turns_ || boom_) followTurn();
     }
   }
   intake_.accept(stamp);
@@ -98,17 +128,19 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
     boom_follows_ = false;
     return refuse(Refusal::kUnsettled);
   }
-  loads_.wrench = hullWrench(hull_model_,
-                             {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, gravity_);
-  outputs_.sample(stamp, loads_.crank, loads_.wrench, gravity_);
   followBoom(stamp);
+  if (settings_.hull_motion == HullMotionSource::kModel) hull_ = withVibration(gravityByPitch(), loads_.boom);
+  loads_.wrench = hullWrench(hull_model_,
+                             {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, hull_);
+  outputs_.sample(stamp, loads_.crank, loads_.wrench, hull_);
   ++counts_.accepted;
   return loads_;
 }
 
 void Pipeline::followBoom(StampNs stamp) noexcept {
   loads_.boom = nullptr;
-  if (!boom_ || !want_boom_) {
+  const bool wanted = want_boom_ || settings_.hull_motion == HullMotionSource::kModel;
+  if (!boom_ || !wanted) {
     boom_follows_ = false;
     return;
   }
@@ -139,7 +171,7 @@ bool Pipeline::settled() noexcept {
   if (peak_force_ > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;
   if (peak_force_ > 0.0) {
     const double deviation =
-        hullDeviation(hull_model_, loads_.crank, gravity_, tracker_->motionCovariance(1.0)).wrench.force_z;
+        hullDeviation(hull_model_, loads_.crank, hull_, tracker_->motionCovariance(1.0)).wrench.force_z;
     if (kSettledDeviations * deviation > settings_.withhold_above * peak_force_) return false;
   }
   unsettled_ = false;
@@ -151,7 +183,7 @@ HullDeviation Pipeline::deviation(const HullOutput& output) noexcept {
   const Eigen::Matrix3d covariance =
       at_sample ? tracker_->motionCovariance(settings_.torque_deviation_part)
                 : tracker_->covarianceBetween(seconds(output.stamp - step_.start()), settings_.torque_deviation_part);
-  HullDeviation result = hullDeviation(hull_model_, output.crank, gravity_, covariance);
+  HullDeviation result = hullDeviation(hull_model_, output.crank, hull_, covariance);
   if (settings_.output != OutputKind::kMean) return result;
   const HullWrench momentum = momentumDeviation(hull_model_, output.crank, covariance);
   const HullWrench allowed = (1.0 / output.interval) * (last_momentum_deviation_ + momentum);
@@ -162,10 +194,10 @@ HullDeviation Pipeline::deviation(const HullOutput& output) noexcept {
 }
 
 TurnInstant Pipeline::instant(double time, const CrankEstimate& crank) const noexcept {
-  const CrankAngle angle = crank.position.angle;
-  const HullWrench weight = hullWrench(hull_model_, {angle, 0.0, 0.0}, gravity_);
-  return {time, hullWrench(hull_model_, {angle, crank.speed, crank.acceleration}, gravity_),
-          linkMomentum(hull_model_, angle, crank.speed), weight.force_x, weight.force_z};
+  const CrankMotion motion{crank.position.angle, crank.speed, crank.acceleration};
+  const HullWrench added = frameWrench(hull_model_, motion.angle, motion.speed, hull_);
+  return {time, hullWrench(hull_model_, motion, hull_), linkMomentum(hull_model_, motion.angle, motion.speed),
+          added.force_x, added.force_z};
 }
 
 /// Points of the turn in (from, to] [s] after the step's start.

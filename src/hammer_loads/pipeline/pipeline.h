@@ -16,6 +16,7 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
+#include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/hull_outputs.h"
 #include "hammer_loads/pipeline/hull_pitch.h"
 #include "hammer_loads/pipeline/intake.h"
@@ -51,6 +52,13 @@ struct IntakeCounts {
   std::uint64_t restarts{};  ///< drop-outs, jumps and time running back
 };
 
+/// Readings of the hull's IMU since the start.
+struct ImuCounts {
+  std::uint64_t accepted{};
+  std::array<std::uint64_t, static_cast<std::size_t>(ImuRefusal::kCount)> refused{};
+  std::uint64_t missed{};  ///< crank samples at which the hull's motion was not known: weight by pitch then
+};
+
 class Pipeline {
  public:
   /// boom: nothing where its loads are not wanted. counts: where they go on from.
@@ -67,6 +75,8 @@ class Pipeline {
   /// A message of boom joints, any subset in any order: angles [rad], speeds [rad/s] or none. Whether any was of use.
   bool boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                   const std::vector<double>& velocities) noexcept;
+  /// A reading of the hull's IMU; used with hull_motion imu alone. Why it was refused, if it was.
+  std::optional<ImuRefusal> hullImu(StampNs stamp, const ImuReading& reading) noexcept;
   /// A crank message in JointState's terms; finds the crank joint in it.
   const Loads& crankJoint(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                           const std::vector<double>& velocities) noexcept;
@@ -83,13 +93,18 @@ class Pipeline {
   const HullPitch& hullPitch() const noexcept { return hull_pitch_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }
   const Mechanism& mechanism() const noexcept { return mechanism_; }
-  Gravity gravity() const noexcept { return gravity_; }  ///< in hull axes, by the latest pitch
+  const HullMotion& hullMotion() const noexcept { return hull_; }  ///< at the last accepted sample
+  /// The hull's motion at the last sample is known: always, unless an IMU was to tell it and did not.
+  bool hullMotionKnown() const noexcept { return hull_known_; }
+  const ImuCounts& imuCounts() const noexcept { return imu_counts_; }
   const PipelineSettings& settings() const noexcept { return settings_; }
 
  private:
   const Loads& refuse(Refusal refusal) noexcept;
   void restart() noexcept;
   bool settled() noexcept;
+  Gravity gravityByPitch() const noexcept;
+  void predictHull(StampNs stamp) noexcept;
   void followBoom(StampNs stamp) noexcept;
   void followTurn() noexcept;
   void recordTo(double from, double to) noexcept;
@@ -101,7 +116,10 @@ class Pipeline {
   HullModel hull_model_;
   std::unique_ptr<CrankTracker> tracker_;
   HullPitch hull_pitch_;
-  Gravity gravity_;
+  HullImu imu_;
+  ImuCounts imu_counts_;
+  HullMotion hull_;
+  bool hull_known_{true};
   UnitCheck unit_check_;
   std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
   Intake intake_;

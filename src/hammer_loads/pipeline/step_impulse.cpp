@@ -45,21 +45,22 @@ HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double f
   return impulse;
 }
 
-HullWrench weightImpulse(const HullModel& model, const CrankStep& step, Gravity gravity, double from,
-                         double to) noexcept {
+HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
+                        double to) noexcept {
   constexpr double kLongest = 1.25e-3;  // [s]
   const double node = std::sqrt(0.6);
   const struct { double place, weight; } nodes[] = {{-node, 5.0 / 18.0}, {0.0, 8.0 / 18.0}, {node, 5.0 / 18.0}};
   HullWrench impulse;
-  const auto weightAt = [&](double time) noexcept {
-    return hullWrench(model, {step.at(time).position.angle, 0.0, 0.0}, gravity);
+  const auto addedAt = [&](double time) noexcept {
+    const CrankEstimate crank = step.at(time);
+    return frameWrench(model, crank.position.angle, crank.speed, hull);
   };
   forEachSmoothPart(step, from, to, [&](double start, const CrankEstimate&, double end, const CrankEstimate&) {
     const int parts = std::max(1, static_cast<int>(std::ceil((end - start) / kLongest)));
     const double half = 0.5 * (end - start) / parts;
     for (int i = 0; i < parts; ++i) {
       const double middle = start + (2 * i + 1) * half;
-      for (const auto& n : nodes) impulse = impulse + (2.0 * half * n.weight) * weightAt(middle + n.place * half);
+      for (const auto& n : nodes) impulse = impulse + (2.0 * half * n.weight) * addedAt(middle + n.place * half);
     }
   });
   return impulse;

@@ -12,10 +12,10 @@ namespace hammer_loads {
 /// over any division of a time is the same.
 HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept;
 
-/// Impulse over [from, to] of the links' weight. Gauss-Legendre of order 6 on pieces of at most 1.25 ms that end at the
-/// blow: forces exact, moment to some 1e-11 of its size.
-HullWrench weightImpulse(const HullModel& model, const CrankStep& step, Gravity gravity, double from,
-                         double to) noexcept;
+/// Impulse over [from, to] of what weight and motion of the hull add (frameWrench). Gauss-Legendre of order 6 on pieces of at most 1.25 ms that end at the blow: forces of a
+/// hull at rest exact, moments to some 1e-11 of their size.
+HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
+                        double to) noexcept;
 
 /// The load over the whole step as the boom takes it, blows included; pieces beyond those that a LoadStep holds are left
 /// out (a step of several turns).

@@ -89,6 +89,7 @@ void process(rosbag::Bag& input, const BagJob& job, LoadsFlow* hammer, GrappleFl
              const std::function<void(double)>& progress) {
   std::vector<std::string> topics{job.crank_topic, job.joint_topic};
   if (hammer && hammer->needsTransforms()) topics.insert(topics.end(), {"/tf", "/tf_static"});
+  if (hammer && hammer->needsImu()) topics.push_back(job.imu_topic);
   rosbag::View view(input, rosbag::TopicQuery(topics));
   const double count = view.size();
   double done = 0.0;
@@ -96,6 +97,10 @@ void process(rosbag::Bag& input, const BagJob& job, LoadsFlow* hammer, GrappleFl
     progress(++done / count);
     if (const auto transforms = item.instantiate<tf2_msgs::TFMessage>()) {
       hammer->transforms(*transforms, item.getTopic() == "/tf_static", item.getTime());
+      continue;
+    }
+    if (const auto imu = item.instantiate<sensor_msgs::Imu>()) {
+      hammer->hullImu(*imu, item.getTime());
       continue;
     }
     const auto message = item.instantiate<sensor_msgs::JointState>();

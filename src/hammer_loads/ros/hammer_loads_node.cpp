@@ -39,6 +39,7 @@ void HammerLoadsNode::subscribe(ros::NodeHandle& node, const Settings& settings)
   // Joint states first: where both arrive on one topic, a sample's own pitch counts for it.
   joint_states_ = node.subscribe("joint_states", kQueue, &HammerLoadsNode::onJointStates, this, no_delay);
   crank_ = node.subscribe("crank", kQueue, &HammerLoadsNode::onCrank, this, no_delay);
+  if (flow_.needsImu()) hull_imu_ = node.subscribe("hull_imu", kQueue, &HammerLoadsNode::onImu, this, no_delay);
   one_topic_ = joint_states_.getTopic() == crank_.getTopic();
   const auto transforms = [this](bool is_static) {
     return boost::function<void(const Event<tf2_msgs::TFMessage>&)>(
@@ -89,6 +90,12 @@ void HammerLoadsNode::onCrank(const Event<JointState>& event) {
   diagnostics_.crankArrived();
   if (!one_topic_) log_->write(crank_.getTopic(), record_time, *event.getConstMessage());
   flow_.crank(*event.getConstMessage(), record_time);
+}
+
+void HammerLoadsNode::onImu(const Event<sensor_msgs::Imu>& event) {
+  const ros::Time record_time = recordTime(event.getReceiptTime());
+  log_->write(hull_imu_.getTopic(), record_time, *event.getConstMessage());
+  flow_.hullImu(*event.getConstMessage(), record_time);
 }
 
 void HammerLoadsNode::onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static) {

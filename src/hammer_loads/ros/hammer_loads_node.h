@@ -39,6 +39,7 @@ class HammerLoadsNode final : private LoadsSink {
   void onReconfigure(const HammerLoadsConfig& config);
   void onCrank(const Event<JointState>& event);
   void onJointStates(const Event<JointState>& event);
+  void onImu(const Event<sensor_msgs::Imu>& event);
   void onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static);
   ros::Time recordTime(const ros::Time& arrival);
 
@@ -73,7 +74,7 @@ class HammerLoadsNode final : private LoadsSink {
   ros::Publisher hull_wrench_, hull_loads_, joint_loads_, boom_vibration_, mechanism_, pin_forces_, blow_, pulse_,
       run_info_;
   std::map<std::string, ros::Publisher> boom_wrench_;  ///< by link
-  ros::Subscriber joint_states_, crank_, tf_, tf_static_;
+  ros::Subscriber joint_states_, crank_, hull_imu_, tf_, tf_static_;
   bool one_topic_{};  ///< crank and joint states arrive on the same topic
   RecordClock clock_;
   NodeDiagnostics diagnostics_;

@@ -57,6 +57,12 @@ void LoadsFlow::begin(const Settings& settings) {
   run_begun_ = false;
 }
 
+void LoadsFlow::hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time) {
+  beginRun(record_time);
+  const geometry_msgs::Vector3 &a = message.linear_acceleration, &w = message.angular_velocity;
+  pipeline_->hullImu(stampOf(message.header.stamp), {{a.x, a.y, a.z}, {w.x, w.y, w.z}});
+}
+
 void LoadsFlow::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
   beginRun(record_time);
   if (frame_wrenches_) frame_wrenches_->transforms(message, is_static, record_time);
@@ -138,6 +144,8 @@ void LoadsFlow::publishHullLoads(const HullOutput& output, const ros::Time& reco
   hull_loads_.flags = 0;
   if (output.interval > 0.0) hull_loads_.flags |= HullLoads::FLAG_MEAN;
   if (!pipeline_->hullPitch().known()) hull_loads_.flags |= HullLoads::FLAG_PITCH_UNKNOWN;
+  const bool moves = pipeline_->settings().hull_motion != HullMotionSource::kFixed;
+  if (moves && pipeline_->hullMotionKnown()) hull_loads_.flags |= HullLoads::FLAG_HULL_MOTION;
   const LinkMotion links = linkMotion(pipeline_->mechanism().linkage(), angle);
   if (transmissionAngle(links) < pipeline_->settings().near_blow) hull_loads_.flags |= HullLoads::FLAG_NEAR_BLOW;
   sink_.hullLoads(hull_loads_, record_time);
@@ -155,7 +163,7 @@ void LoadsFlow::publishPinForces(const Loads& loads, const ros::Time& record_tim
   const Mechanism& mechanism = pipeline_->mechanism();
   const PipelineSettings& settings = pipeline_->settings();
   const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
-  const PinReactions pins = pinForces(mechanism, settings.level, crank, pipeline_->gravity(), NearBlow(settings.near_blow));
+  const PinReactions pins = pinForces(mechanism, settings.level, crank, pipeline_->hullMotion(), NearBlow(settings.near_blow));
   pin_forces_.header.stamp = timeOf(loads.stamp);
   pin_forces_.crank_angle_rad = crankAngle(crank.angle);
   pin_forces_.crank_speed_rad_s = crank.speed;

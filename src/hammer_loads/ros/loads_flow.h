@@ -7,6 +7,7 @@
 #include <hammer_loads/PinForces.h>
 #include <hammer_loads/Pulse.h>
 #include <hammer_loads/RunInfo.h>
+#include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
 
 #include <optional>
@@ -51,8 +52,10 @@ class LoadsFlow {
 
   void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  void hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time);
   /// A message of /tf, or of /tf_static.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
+  bool needsImu() const { return settings_.pipeline.hull_motion == HullMotionSource::kImu; }
   /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
   bool needsTransforms() const { return frame_wrenches_.has_value(); }
   /// A run begins anew with the next input, in the state of a flow just made; counts go on. For a time that jumped and

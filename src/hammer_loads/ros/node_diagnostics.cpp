@@ -29,6 +29,7 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   updater_.add("hull pitch", this, &NodeDiagnostics::describePitch);
   if (flow.pipeline().boom()) updater_.add("boom", this, &NodeDiagnostics::describeBoom);
   if (flow.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
+  if (flow.needsImu()) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
   updater_.add("model", this, &NodeDiagnostics::describeModel);
   updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(&log, status); });
   // Wall time: a stopped /clock is one of the things to report.
@@ -89,6 +90,20 @@ void NodeDiagnostics::describePitch(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("refused: not finite", pitch.refused());
   if (last_joint_states_ != Clock::time_point{})
     status.add("age of the last joint states [s]", secondsBetween(last_joint_states_, Clock::now()));
+}
+
+void NodeDiagnostics::describeImu(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const ImuCounts& counts = flow_.pipeline().imuCounts();
+  if (counts.missed > last_imu_counts_.missed) {
+    status.summary(DiagnosticStatus::WARN, "hull's motion not known at every crank sample: weight by pitch there");
+  } else {
+    status.summary(DiagnosticStatus::OK, counts.accepted > 0 ? "working" : "no reading yet");
+  }
+  status.add("accepted", counts.accepted);
+  for (std::size_t i = 0; i < counts.refused.size(); ++i)
+    status.add(std::string("refused: ") + kImuRefusalNames[i], counts.refused[i]);
+  status.add("crank samples without it", counts.missed);
+  last_imu_counts_ = counts;
 }
 
 void NodeDiagnostics::describeModel(diagnostic_updater::DiagnosticStatusWrapper& status) {

@@ -29,11 +29,13 @@ class NodeDiagnostics {
   void describePitch(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describeBoom(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describeFrames(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeImu(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describeModel(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const LoadsFlow& flow_;
   Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
   IntakeCounts last_counts_;
+  ImuCounts last_imu_counts_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
 };
