@@ -18,9 +18,10 @@ struct Supports {
   double rear_half_width{};   ///< [m], > 0
 };
 
-/// How many times a mean load may act before something gives; infinity: the load relieves it; 0: it gives already.
+/// How many times a mean load may act before something gives; infinity: the load relieves it, or
+/// the machine's supports are not known; 0: it gives already.
 struct HoldDown {
-  double machine{};                           ///< before the machine tips over an edge of its supports or lifts; infinity without them
+  double machine{};                           ///< before the machine tips over an edge of its supports or lifts
   int edge{};                                 ///< that edge: 0 front, 1 left, 2 rear, 3 right
   std::array<double, kMaxJoints> cylinder{};  ///< before a relief valve opens or a dead point lets go, per cylinder
   double least{};                             ///< of all

@@ -16,8 +16,8 @@ namespace hammer_loads {
 /// One accepted crank sample.
 struct BoomSample {
   StampNs stamp{};
-  HullWrench motion_wrench;  ///< at the sample, from motion of the links relative to the hull: no weight, no hull motion;
-                             ///< where the step's last piece ends
+  HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
+                             ///< weight, no hull motion
   double gravity{};          ///< [m/s2], along -z of the chain's root: a level base
 };
 

@@ -11,7 +11,9 @@ constexpr std::size_t kLongestLimit = 256;  // more than a cylinder's name has
 
 void copy(const JointVector& from, std::vector<double>& to) { std::copy(from.begin(), from.end(), to.begin()); }
 
-void copy(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) { to.x = from.x(), to.y = from.y(), to.z = from.z(); }
+void copy(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
+  to.x = from.x(), to.y = from.y(), to.z = from.z();
+}
 
 ros::Time timeOf(StampNs stamp) { return ros::Time().fromNSec(static_cast<std::uint64_t>(stamp)); }
 

@@ -25,7 +25,8 @@ struct FrameWrenchCounts {
 /// arrives may release waiting wrenches, which then have the record time of what released them.
 class FrameWrenches {
  public:
-  using Tell = std::function<void(std::size_t frame, const geometry_msgs::WrenchStamped&, const ros::Time& record_time)>;
+  using Tell =
+      std::function<void(std::size_t frame, const geometry_msgs::WrenchStamped&, const ros::Time& record_time)>;
 
   /// hull: the wrenches' frame. max_wait: between record times of a wrench and of what releases it [s].
   FrameWrenches(std::vector<std::string> frames, std::string hull, double max_wait, Tell tell);
