@@ -113,7 +113,7 @@ Names topicsOf(const std::string& file) {
   const std::string node = textOf(file);
   Names topics = matches(node, "node\\.subscribe\\(\"(\\w+)\"");
   for (const std::string& output : matches(node, "private_node\\.advertise<[^>]*>\\(\"([\\w/]+)\""))
-    topics.insert("~" + output);
+    topics.insert("~" + output + (output.back() == '/' ? "LINK" : ""));
   topics.insert("/diagnostics");
   return topics;
 }

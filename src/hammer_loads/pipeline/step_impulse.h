@@ -12,8 +12,8 @@ namespace hammer_loads {
 /// over any division of a time is the same.
 HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept;
 
-/// Impulse over [from, to] of what weight and motion of the hull add (frameWrench). Gauss-Legendre of order 6 on pieces of at most 1.25 ms that end at the blow: forces of a
-/// hull at rest exact, moments to some 1e-11 of their size.
+/// Impulse over [from, to] of what weight and motion of the hull add (frameWrench). Gauss-Legendre of order 6 on pieces
+/// of at most 1.25 ms that end at the blow: forces of a hull at rest exact, moments to some 1e-11 of their size.
 HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
                         double to) noexcept;
 
