@@ -53,7 +53,7 @@ class Probe {
         send(path);  // a relay advertises at its first message
         return path.publisher.getNumSubscribers() > 0 && path.subscriber.getNumPublishers() > 0;
       });
-    }) && wait([] { return false; }, 0.5) == false;
+    });
   }
 
   bool run(int rounds) {
@@ -61,7 +61,9 @@ class Probe {
       for (Path& path : paths_) {
         path.block.clear();
         measure(path);
-        if (path.block.size() != kBlock) {
+        // topic_tools' relay keeps ten messages and loses many on a loaded machine; the others may lose none.
+        const std::size_t least = &path == &paths_.back() ? kBlock / 10 : kBlock;
+        if (path.block.size() < least) {
           std::fprintf(stderr, "%s: %zu answers to %d samples\n", path.name.c_str(), path.block.size(), kBlock);
           return false;
         }
@@ -75,7 +77,8 @@ class Probe {
 
   void print() const {
     for (const Path& path : paths_) {
-      for (const double part : {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9995})
+      for (const double part :
+           {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9995})
         std::printf("%g,%s,%g,%.1f\n", rate_, path.name.c_str(), part, quantile(path.all, part));
       std::vector<double> ratios;
       for (std::size_t i = 0; i < path.medians.size(); ++i) ratios.push_back(path.medians[i] / paths_[2].medians[i]);
@@ -89,14 +92,15 @@ class Probe {
     path.name = name;
     path.publisher = node_.advertise<sensor_msgs::JointState>(to, kQueue);
     path.subscriber = node_.subscribe<Answer>(
-        from, kQueue, [this, &path](const typename Answer::ConstPtr& answer) { arrived(path, answer->header.stamp); }, {},
-        ros::TransportHints().tcpNoDelay());
+        from, kQueue, [this, &path](const typename Answer::ConstPtr& answer) { arrived(path, answer->header.stamp); },
+        {}, ros::TransportHints().tcpNoDelay());
   }
 
   template <typename Condition>
   bool wait(Condition condition, double seconds = 20.0) {
     const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
-    while (!condition() && Clock::now() < deadline) ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
+    while (!condition() && Clock::now() < deadline)
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
     return condition();
   }
 
@@ -132,7 +136,7 @@ class Probe {
       times_[(number_ + 1) % kMemory] = Clock::now();
       send(path);
     }
-    wait([&] { return path.block.size() >= kBlock; });
+    wait([&] { return path.block.size() >= kBlock; }, 1.0);
   }
 
   static constexpr std::size_t kMemory = 4096;  // sending times kept: more than a block
