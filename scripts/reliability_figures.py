@@ -62,7 +62,7 @@ def latency(results):
     rows = []
     for rate in sorted({key[0] for key in cells}, key=float):
         for path in ("relay", "node", "nodelet"):
-            values = [f"{float(cells[rate, path, q]):.0f}" for q in ("0.5", "0.99", "0.999")]
+            values = [f"{float(cells[rate, path, q]):.0f}".replace("inf", "lost") for q in ("0.5", "0.99", "0.999")]
             rows.append([f"{float(rate) / 1000:g} kHz", path, *values, cells[rate, path, "ratio"]])
     return table(["rate", "path", "median, us", "99 %", "99.9 %", "median over the relay's"], rows)
 

@@ -117,7 +117,7 @@ Written write(const std::string& directory, std::uint64_t samples) {
     if (i % 1000 != 0) continue;
     while (log.health().queue_fill > 0.25) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (i % (samples / 400 / 1000 * 1000 + 1000) == 0) {
-      written.memory.add(residentMemory());
+      if (i > samples / 10) written.memory.add(residentMemory());  // by then every buffer has had its size
       written.most_on_disk = std::max(written.most_on_disk, sizeOf(directory));
     }
   }
