@@ -19,8 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kBlock = 1000;  // samples of one path before the next has its turn
+constexpr int kBlock = 250;  // samples of one path before the next has its turn
 constexpr std::uint32_t kQueue = 10000;
+constexpr std::size_t kMemory = 1024;  // sending times kept: more than a block
 
 double quantile(std::vector<double> values, double part) {
   const auto at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
@@ -34,6 +35,9 @@ struct Path {
   ros::Publisher publisher;
   ros::Subscriber subscriber;
   std::vector<double> all, block, medians;  ///< [us]; medians: one per round
+  std::size_t number{};                     ///< of the last sample
+  ros::Time sent;                           ///< its stamp
+  std::array<Clock::time_point, kMemory> times{};
 };
 
 class Probe {
@@ -111,18 +115,19 @@ class Probe {
   void send(Path& path) {
     const auto message = boost::make_shared<sensor_msgs::JointState>();
     message->name = {"hammer_crank_joint"};
-    message->header.stamp.fromNSec(1000000000000 + static_cast<std::uint64_t>(1e9 / rate_) * ++number_);
-    message->position = {5.0 / rate_ * static_cast<double>(number_)};
+    message->header.stamp.fromNSec(1000000000000 + static_cast<std::uint64_t>(1e9 / rate_) * ++path.number);
+    message->position = {5.0 / rate_ * static_cast<double>(path.number)};
     message->velocity = {5.0};
-    sent_stamp_ = message->header.stamp;
+    path.sent = message->header.stamp;
     path.publisher.publish(message);
   }
 
   void arrived(Path& path, const ros::Time& stamp) {
     const auto now = Clock::now();
-    const auto behind = static_cast<std::size_t>(std::llround((sent_stamp_ - stamp).toSec() * rate_));
+    const auto behind = static_cast<std::size_t>(std::llround((path.sent - stamp).toSec() * rate_));
     if (behind >= kMemory) return;
-    path.block.push_back(std::chrono::duration<double, std::micro>(now - times_[(number_ - behind) % kMemory]).count());
+    path.block.push_back(
+        std::chrono::duration<double, std::micro>(now - path.times[(path.number - behind) % kMemory]).count());
   }
 
   void measure(Path& path) {
@@ -136,21 +141,16 @@ class Probe {
         const double left = std::chrono::duration<double>(due - Clock::now()).count();
         ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(std::max(0.0, left)));
       }
-      times_[(number_ + 1) % kMemory] = Clock::now();
+      path.times[(path.number + 1) % kMemory] = Clock::now();
       send(path);
     }
     wait([&] { return path.block.size() >= kBlock; }, 1.0);
   }
 
-  static constexpr std::size_t kMemory = 4096;  // sending times kept: more than a block
-
   ros::NodeHandle node_;
   nodelet::Loader loader_{false};
   std::array<Path, 3> paths_;
   double rate_;
-  std::size_t number_{};
-  ros::Time sent_stamp_;
-  std::array<Clock::time_point, kMemory> times_{};
 };
 
 }  // namespace
