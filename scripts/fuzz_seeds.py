@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what the fuzzer begins with: sessions as test/fuzz/pipeline_fuzz.cpp reads them, parameter files from config/."""
+"""Writes what the fuzzer begins with: sessions as test/fuzz/pipeline_fuzz.cpp reads them, parameters from config/."""
 import argparse
 import math
 import pathlib
@@ -36,7 +36,8 @@ def pipeline_seeds():
 def parameter_seeds(config):
     text = {path.stem: path.read_bytes() for path in sorted(config.glob("*.yaml"))}
     whole = b"\n".join(text[name] for name in ("hammer_mo100", "pipeline", "log"))
-    bare = b"\n".join(line.split(b" #")[0].rstrip() for line in whole.split(b"\n") if not line.lstrip().startswith(b"#"))
+    lines = (line for line in whole.split(b"\n") if not line.lstrip().startswith(b"#"))
+    bare = b"\n".join(line.split(b" #")[0].rstrip() for line in lines)
     return {**text, "whole": whole, "whole_bare": bare}
 
 

@@ -43,17 +43,27 @@ TEST(Corpus, EveryKnownInputPasses) {
 }
 
 Input mutation(const std::vector<Input>& known, std::mt19937& random) {
-  const auto below = [&](std::size_t limit) { return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random); };
+  const auto below = [&](std::size_t limit) {
+    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
+  };
   Input input = known[below(known.size())];
   for (std::size_t changes = 1 + below(8); changes > 0 && !input.empty(); --changes) {
     const std::size_t at = below(input.size()), length = std::min(1 + below(16), input.size() - at);
     const auto place = input.begin() + static_cast<std::ptrdiff_t>(at);
     const auto end = place + static_cast<std::ptrdiff_t>(length);
     switch (below(5)) {
-      case 0: *place = static_cast<std::uint8_t>(below(256)); break;
-      case 1: *place = static_cast<std::uint8_t>(*place ^ (1U << below(8))); break;
-      case 2: input.erase(place, end); break;
-      case 3: std::generate(place, end, [&] { return static_cast<std::uint8_t>(below(256)); }); break;
+      case 0:
+        *place = static_cast<std::uint8_t>(below(256));
+        break;
+      case 1:
+        *place = static_cast<std::uint8_t>(*place ^ (1U << below(8)));
+        break;
+      case 2:
+        input.erase(place, end);
+        break;
+      case 3:
+        std::generate(place, end, [&] { return static_cast<std::uint8_t>(below(256)); });
+        break;
       default: {
         const Input piece(place, end);
         input.insert(input.begin() + static_cast<std::ptrdiff_t>(below(input.size())), piece.begin(), piece.end());

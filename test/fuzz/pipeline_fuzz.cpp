@@ -51,8 +51,9 @@ PipelineSettings settingsOf(Bytes& bytes) {
   PipelineSettings settings = shipped().pipeline;
   const auto choice = bytes.take<std::uint8_t>();
   settings.level = choice % 16 == 0 ? Level::kPulse : choice % 2 == 0 ? Level::kLinkage : Level::kRocker;
-  settings.crank_estimator = choice / 16 < 13 ? CrankEstimator::kMechanism
-                             : choice / 16 == 13 ? CrankEstimator::kNone : CrankEstimator::kDifference;
+  settings.crank_estimator = choice / 16 < 13    ? CrankEstimator::kMechanism
+                             : choice / 16 == 13 ? CrankEstimator::kNone
+                                                 : CrankEstimator::kDifference;
   return settings;
 }
 
@@ -77,11 +78,16 @@ class Session {
       return;
     }
     switch (operation % 8) {
-      case 4: return stampedSample();
-      case 5: return rawSample();
-      case 6: return boom();
-      case 7: return shapes();
-      default: return plausibleSample();
+      case 4:
+        return stampedSample();
+      case 5:
+        return rawSample();
+      case 6:
+        return boom();
+      case 7:
+        return shapes();
+      default:
+        return plausibleSample();
     }
   }
 
@@ -122,7 +128,8 @@ class Session {
     crank(joints, angles, speeds);
   }
 
-  void crank(const std::vector<std::string>& names, const std::vector<double>& angles, const std::vector<double>& speeds) {
+  void crank(const std::vector<std::string>& names, const std::vector<double>& angles,
+             const std::vector<double>& speeds) {
     stamp_ %= kLastStamp + 1;
     ++messages_;
     const Loads& loads = pipeline_->crankJoint(static_cast<StampNs>(stamp_), names, angles, speeds);

@@ -76,7 +76,8 @@ class Victim {
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
       const TurnEnd& end = loads.ends[i];
       finite_ = finite_ && std::isfinite(end.blow.energy) && std::isfinite(end.blow.tool_impulse_z);
-      if (end.pulse) finite_ = finite_ && std::isfinite(end.pulse->amplitude) && std::isfinite(end.pulse->turn_impulse_z);
+      if (end.pulse)
+        finite_ = finite_ && std::isfinite(end.pulse->amplitude) && std::isfinite(end.pulse->turn_impulse_z);
     }
     return loads;
   }
@@ -110,16 +111,23 @@ Attack onSpeed(const char* name, std::optional<Refusal> refusal, double value) {
 }
 
 std::vector<Attack> valueAttacks() {
-  std::vector<Attack> attacks{
-      onPosition("angle NaN", Refusal::kNotFinite, kNan), onPosition("angle inf", Refusal::kNotFinite, kInf),
-      onPosition("angle -inf", Refusal::kNotFinite, -kInf), onPosition("angle 1e308", Refusal::kImplausible, 1e308),
-      onPosition("angle -1e308", Refusal::kImplausible, -1e308), onPosition("angle 1e10", Refusal::kImplausible, 1e10),
-      onPosition("angle 1e9", std::nullopt, 1e9), onPosition("angle denormal", std::nullopt, 5e-324),
-      onPosition("angle -denormal", std::nullopt, -5e-324), onPosition("angle -0", std::nullopt, -0.0),
-      onSpeed("speed NaN", Refusal::kNotFinite, kNan), onSpeed("speed inf", Refusal::kNotFinite, kInf),
-      onSpeed("speed -inf", Refusal::kNotFinite, -kInf), onSpeed("speed 1e308", Refusal::kImplausible, 1e308),
-      onSpeed("speed 301", Refusal::kImplausible, -301.0), onSpeed("speed 299", std::nullopt, 299.0),
-      onSpeed("speed denormal", std::nullopt, 5e-324)};
+  std::vector<Attack> attacks{onPosition("angle NaN", Refusal::kNotFinite, kNan),
+                              onPosition("angle inf", Refusal::kNotFinite, kInf),
+                              onPosition("angle -inf", Refusal::kNotFinite, -kInf),
+                              onPosition("angle 1e308", Refusal::kImplausible, 1e308),
+                              onPosition("angle -1e308", Refusal::kImplausible, -1e308),
+                              onPosition("angle 1e10", Refusal::kImplausible, 1e10),
+                              onPosition("angle 1e9", std::nullopt, 1e9),
+                              onPosition("angle denormal", std::nullopt, 5e-324),
+                              onPosition("angle -denormal", std::nullopt, -5e-324),
+                              onPosition("angle -0", std::nullopt, -0.0),
+                              onSpeed("speed NaN", Refusal::kNotFinite, kNan),
+                              onSpeed("speed inf", Refusal::kNotFinite, kInf),
+                              onSpeed("speed -inf", Refusal::kNotFinite, -kInf),
+                              onSpeed("speed 1e308", Refusal::kImplausible, 1e308),
+                              onSpeed("speed 301", Refusal::kImplausible, -301.0),
+                              onSpeed("speed 299", std::nullopt, 299.0),
+                              onSpeed("speed denormal", std::nullopt, 5e-324)};
   const auto add = [&](const char* name, std::optional<Refusal> refusal, auto strike) {
     attacks.push_back({name, refusal, strike});
   };
@@ -159,7 +167,8 @@ std::vector<Attack> shapeAttacks() {
       [](Victim& v, const CrankReading& r) { v.crank(r.stamp, {""}, {r.angle}, {*r.speed}); });
   add("other name", Refusal::kMissingJoint,
       [](Victim& v, const CrankReading& r) { v.crank(r.stamp, {"hammer_crank_join"}, {r.angle}, {*r.speed}); });
-  add("no position", Refusal::kShortArray, [](Victim& v, const CrankReading& r) { v.crank(r.stamp, kCrank, {}, {*r.speed}); });
+  add("no position", Refusal::kShortArray,
+      [](Victim& v, const CrankReading& r) { v.crank(r.stamp, kCrank, {}, {*r.speed}); });
   add("short positions", Refusal::kShortArray, [](Victim& v, const CrankReading& r) {
     v.crank(r.stamp, {"swing_joint", "hammer_crank_joint"}, {r.angle}, {*r.speed, *r.speed});
   });
@@ -199,9 +208,8 @@ std::vector<Attack> timeAttacks() {
     v.good(r);
     v.crank(0, kCrank, {r.angle}, {*r.speed});
   });
-  add("stamp far ahead", std::nullopt, [](Victim& v, const CrankReading& r) {
-    v.crank(r.stamp + 2000000000000000000, kCrank, {r.angle}, {*r.speed});
-  });
+  add("stamp far ahead", std::nullopt,
+      [](Victim& v, const CrankReading& r) { v.crank(r.stamp + 2000000000000000000, kCrank, {r.angle}, {*r.speed}); });
   add("largest and smallest stamp in turn", std::nullopt, [](Victim& v, const CrankReading& r) {
     v.crank(r.stamp % 2 == 0 ? 4294967295999999999 : 0, kCrank, {r.angle}, {*r.speed});
   });
@@ -302,21 +310,22 @@ struct BoomAttack {
 
 TEST(InputAttack, TheBoomsAngles) {
   const Names million(1000000, "joint");
-  const BoomAttack attacks[] = {{"NaN", kBoom, {kNan, kNan, kNan}},
-                                {"infinite", kBoom, {kInf, -kInf, kInf}},
-                                {"1e308", kBoom, {1e308, 1e308, 1e308}},
-                                {"1e308 and its opposite", kBoom, {1e308, -1e308, 1e308}},
-                                {"denormal", kBoom, {5e-324, -5e-324, 5e-324}},
-                                {"no angles", kBoom, {}},
-                                {"too few angles", kBoom, {-0.35}},
-                                {"no names", {}, kBoomAngles},
-                                {"empty names", {"", "", ""}, kBoomAngles},
-                                {"a joint missing", {"boom_joint", "hammer_joint"}, {-0.35, -0.85}},
-                                {"permuted", {"hammer_joint", "swing_joint", "arm_joint", "boom_joint"}, {-0.85, kNan, 1.2, -0.35}},
-                                {"given twice", {"boom_joint", "boom_joint", "arm_joint"}, {-0.35, kNan, 1.2}},
-                                {"degrees", kBoom, {-20.0, 68.8, -48.7}},
-                                {"a million names", million, {}},
-                                {"a million angles", kBoom, Numbers(1000000, kNan)}};
+  const BoomAttack attacks[] = {
+      {"NaN", kBoom, {kNan, kNan, kNan}},
+      {"infinite", kBoom, {kInf, -kInf, kInf}},
+      {"1e308", kBoom, {1e308, 1e308, 1e308}},
+      {"1e308 and its opposite", kBoom, {1e308, -1e308, 1e308}},
+      {"denormal", kBoom, {5e-324, -5e-324, 5e-324}},
+      {"no angles", kBoom, {}},
+      {"too few angles", kBoom, {-0.35}},
+      {"no names", {}, kBoomAngles},
+      {"empty names", {"", "", ""}, kBoomAngles},
+      {"a joint missing", {"boom_joint", "hammer_joint"}, {-0.35, -0.85}},
+      {"permuted", {"hammer_joint", "swing_joint", "arm_joint", "boom_joint"}, {-0.85, kNan, 1.2, -0.35}},
+      {"given twice", {"boom_joint", "boom_joint", "arm_joint"}, {-0.35, kNan, 1.2}},
+      {"degrees", kBoom, {-20.0, 68.8, -48.7}},
+      {"a million names", million, {}},
+      {"a million angles", kBoom, Numbers(1000000, kNan)}};
   for (const BoomAttack& attack : attacks) {
     for (const PipelineSettings& settings : allSettings()) {
       SCOPED_TRACE(attack.name);

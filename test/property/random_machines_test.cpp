@@ -1,7 +1,6 @@
 // Laws of mechanics that every machine must keep, on a hundred thousand random ones.
-#include <boost/math/quadrature/gauss.hpp>
-
 #include <array>
+#include <boost/math/quadrature/gauss.hpp>
 #include <complex>
 #include <limits>
 
@@ -98,9 +97,10 @@ Links linksOf(const Mechanism& mechanism, CrankAngle angle, double speed) {
   links.momentum = p.crank_mass * v1 + p.rod_mass * v2 + p.rocker_mass * v3;
   const double rocker_about_com =
       p.rocker_inertia_about_pivot - p.rocker_mass * p.rocker_com_distance * p.rocker_com_distance;
-  links.kinetic_energy = 0.5 * (p.crank_mass * std::norm(v1) + p.rod_mass * std::norm(v2) +
-                                p.rocker_mass * std::norm(v3) + p.crank_inertia_about_com * std::norm(crank_rate) +
-                                p.rod_inertia_about_com * std::norm(rod_rate) + rocker_about_com * std::norm(rocker_rate));
+  links.kinetic_energy =
+      0.5 * (p.crank_mass * std::norm(v1) + p.rod_mass * std::norm(v2) + p.rocker_mass * std::norm(v3) +
+             p.crank_inertia_about_com * std::norm(crank_rate) + p.rod_inertia_about_com * std::norm(rod_rate) +
+             rocker_about_com * std::norm(rocker_rate));
   return links;
 }
 
@@ -158,15 +158,16 @@ TEST(RandomMachines, ImpulseIsMinusTheChangeOfMomentum) {
       const double duration = 0.25 / speed;
       const auto crankAt = [&](double t) {
         const Side side = start < 0.0 ? Side::kBeforeBlow : Side::kAfterBlow;
-        return CrankMotion{{start + t * (speed + 0.5 * t * acceleration), side}, speed + t * acceleration, acceleration};
+        return CrankMotion{
+            {start + t * (speed + 0.5 * t * acceleration), side}, speed + t * acceleration, acceleration};
       };
       const auto impulse = [&](double HullWrench::*component) {
         double sum = 0.0;  // in pieces: the sharpest machine changes within some 0.1 rad
         constexpr int kPieces = 4;
         for (int k = 0; k < kPieces; ++k) {
-          sum += Quadrature::integrate(
-              [&](double t) { return hullWrench(mechanism, level, crankAt(t), {}).*component; },
-              duration * k / kPieces, duration * (k + 1) / kPieces);
+          sum +=
+              Quadrature::integrate([&](double t) { return hullWrench(mechanism, level, crankAt(t), {}).*component; },
+                                    duration * k / kPieces, duration * (k + 1) / kPieces);
         }
         return sum;
       };
@@ -174,10 +175,13 @@ TEST(RandomMachines, ImpulseIsMinusTheChangeOfMomentum) {
       const LinkMomentum before = linkMomentum(mechanism, level, from.angle, from.speed);
       const LinkMomentum after = linkMomentum(mechanism, level, to.angle, to.speed);
       const double size = std::hypot(before.x, before.z) + std::hypot(after.x, after.z);
-      const double moment_size = std::abs(before.about_d) + std::abs(after.about_d) + size * mechanism.linkage().lengths().rocker;
+      const double moment_size =
+          std::abs(before.about_d) + std::abs(after.about_d) + size * mechanism.linkage().lengths().rocker;
       const auto at = static_cast<std::size_t>(level == Level::kLinkage);
       force[at].take(std::hypot(impulse(&HullWrench::force_x) + after.x - before.x,
-                                impulse(&HullWrench::force_z) + after.z - before.z) / size, i);
+                                impulse(&HullWrench::force_z) + after.z - before.z) /
+                         size,
+                     i);
       moment[at].take(std::abs(impulse(&HullWrench::torque_y) + after.about_d - before.about_d) / moment_size, i);
     }
   }
@@ -202,7 +206,8 @@ TEST(RandomMachines, MasslessCrankAndRodLeaveLevelRocker) {
     const double psi_accel = m.du * crank.speed * crank.speed + m.u * crank.acceleration;
     const double force = mechanism.rockerFirstMoment() *
                              (m.u * m.u * crank.speed * crank.speed + std::abs(m.du * crank.speed * crank.speed) +
-                              std::abs(m.u * crank.acceleration)) + p.rocker_mass * 9.81;
+                              std::abs(m.u * crank.acceleration)) +
+                         p.rocker_mass * 9.81;
     const double torque = p.rocker_inertia_about_pivot * std::abs(psi_accel) + force * p.rocker_com_distance;
     wrench.take(std::hypot(a.force_x - b.force_x, a.force_z - b.force_z) / force, i);
     wrench.take(std::abs(a.torque_y - b.torque_y) / torque, i);
@@ -212,7 +217,8 @@ TEST(RandomMachines, MasslessCrankAndRodLeaveLevelRocker) {
     const PinReactions poor = pinForces(mechanism, Level::kRocker, crank, gravity, NearBlow(0.01));
     const PinReactions rich = pinForces(mechanism, Level::kLinkage, crank, gravity, NearBlow(0.01));
     const double size = force + std::hypot(poor.rod_on_rocker.x, poor.rod_on_rocker.z);
-    pins.take(std::hypot(poor.rod_on_rocker.x - rich.rod_on_rocker.x, poor.rod_on_rocker.z - rich.rod_on_rocker.z) / size, i);
+    pins.take(
+        std::hypot(poor.rod_on_rocker.x - rich.rod_on_rocker.x, poor.rod_on_rocker.z - rich.rod_on_rocker.z) / size, i);
     const ShaftLoad e = shaftLoad(mechanism, Level::kRocker, crank.angle, gravity);
     const ShaftLoad f = shaftLoad(mechanism, Level::kLinkage, crank.angle, gravity);
     shaft.take(std::abs(e.inertia - f.inertia) / e.inertia, i);
@@ -231,11 +237,34 @@ std::vector<double> everything(const Mechanism& mechanism, Level level, const Cr
   const ShaftLoad s = shaftLoad(mechanism, level, crank.angle, gravity);
   const PinReactions p = pinForces(mechanism, level, crank, gravity, NearBlow(0.01));
   const RockerBlow b = blowAtCrankSpeed(mechanism, level, std::abs(crank.speed) + 1.0);
-  return {w.force_x, w.force_z, w.torque_y, m.x, m.z, m.about_d, s.inertia, s.half_inertia_slope, s.weight_torque,
-          s.weight_torque_slope, p.hull_on_crank.x, p.hull_on_crank.z, p.crank_on_rod.x, p.crank_on_rod.z,
-          p.rod_on_rocker.x, p.rod_on_rocker.z, p.hull_on_rocker.x, p.hull_on_rocker.z, p.drive_torque,
-          b.rocker_speed_before, b.rocker_speed_after, b.restitution, b.energy, b.friction_work, b.tool_impulse_x,
-          b.tool_impulse_z, b.support_impulse_x, b.support_impulse_z};
+  return {w.force_x,
+          w.force_z,
+          w.torque_y,
+          m.x,
+          m.z,
+          m.about_d,
+          s.inertia,
+          s.half_inertia_slope,
+          s.weight_torque,
+          s.weight_torque_slope,
+          p.hull_on_crank.x,
+          p.hull_on_crank.z,
+          p.crank_on_rod.x,
+          p.crank_on_rod.z,
+          p.rod_on_rocker.x,
+          p.rod_on_rocker.z,
+          p.hull_on_rocker.x,
+          p.hull_on_rocker.z,
+          p.drive_torque,
+          b.rocker_speed_before,
+          b.rocker_speed_after,
+          b.restitution,
+          b.energy,
+          b.friction_work,
+          b.tool_impulse_x,
+          b.tool_impulse_z,
+          b.support_impulse_x,
+          b.support_impulse_z};
 }
 
 using Field = double& (*)(HammerParameters&);
@@ -264,18 +293,41 @@ constexpr Field kFields[] = {
 /// One to three fields of a good machine become garbage; lengths at times keep the change-point condition.
 HammerParameters garbage(Draw& draw) {
   using Limits = std::numeric_limits<double>;
-  const double kValues[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), 1e308, -1e308, 1e300, 1e200,
-                            1e155, 1e100, 1e30, 1e12, 1e-12, 1e-30, 1e-100, 1e-160, 1e-200, 1e-300, 5e-324, -5e-324,
-                            0.0, -0.0, 1.0, -1.0, 57.3};
+  const double kValues[] = {Limits::quiet_NaN(),
+                            Limits::infinity(),
+                            -Limits::infinity(),
+                            1e308,
+                            -1e308,
+                            1e300,
+                            1e200,
+                            1e155,
+                            1e100,
+                            1e30,
+                            1e12,
+                            1e-12,
+                            1e-30,
+                            1e-100,
+                            1e-160,
+                            1e-200,
+                            1e-300,
+                            5e-324,
+                            -5e-324,
+                            0.0,
+                            -0.0,
+                            1.0,
+                            -1.0,
+                            57.3};
   HammerParameters p = draw.parameters();
   const std::size_t changes = 1 + draw.index(3);
   for (std::size_t k = 0; k < changes; ++k)
     kFields[draw.index(std::size(kFields))](p) = kValues[draw.index(std::size(kValues))];
   if (draw.index(2) == 0) p.lengths.rod = p.lengths.pivot_distance + p.lengths.rocker - p.lengths.crank;
-  if (draw.index(4) == 0) p.rocker_inertia_about_pivot = 2.0 * p.rocker_mass * p.rocker_com_distance * p.rocker_com_distance;
+  if (draw.index(4) == 0)
+    p.rocker_inertia_about_pivot = 2.0 * p.rocker_mass * p.rocker_com_distance * p.rocker_com_distance;
   if (draw.index(8) == 0) {
     const double scale = std::pow(10.0, draw.between(-320.0, 308.0));
-    p.lengths = {p.lengths.crank * scale, p.lengths.rod * scale, p.lengths.rocker * scale, p.lengths.pivot_distance * scale};
+    p.lengths = {p.lengths.crank * scale, p.lengths.rod * scale, p.lengths.rocker * scale,
+                 p.lengths.pivot_distance * scale};
   }
   return p;
 }

@@ -68,10 +68,10 @@ class EndlessSession {
 
   /// What the machine really did at a sample.
   const simulation::CrankTruth& truth(std::size_t place) const { return truth_[place]; }
-  std::size_t pieceSize() const { return readings_.size(); }                      ///< samples
+  std::size_t pieceSize() const { return readings_.size(); }  ///< samples
   double turnsPerSecond() const { return 1e9 * static_cast<double>(turns_) / static_cast<double>(period_); }
   std::int64_t turnsOfPiece() const { return turns_; }
-  const std::vector<double>& joints() const { return joints_; }                   ///< order of kBoomJoints [rad]
+  const std::vector<double>& joints() const { return joints_; }  ///< order of kBoomJoints [rad]
   const simulation::MachineSettings& machine() const { return machine_; }
   double peakForce() const {
     double peak = 0.0;

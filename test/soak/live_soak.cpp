@@ -60,7 +60,8 @@ class LiveSoak {
   template <typename Condition>
   bool wait(Condition condition) {
     const auto deadline = Clock::now() + std::chrono::seconds(20);
-    while (!condition() && Clock::now() < deadline) ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
+    while (!condition() && Clock::now() < deadline)
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
     return condition();
   }
 
@@ -80,7 +81,8 @@ class LiveSoak {
       ++doubled_;
       return;
     }
-    for (; !pending_.empty() && pending_.front() != stamp; pending_.pop_front()) ++(received_ == 0 ? unsettled_ : lost_);
+    for (; !pending_.empty() && pending_.front() != stamp; pending_.pop_front())
+      ++(received_ == 0 ? unsettled_ : lost_);
     if (!pending_.empty()) pending_.pop_front();
     last_received_ = stamp;
     ++received_;
@@ -125,7 +127,8 @@ int run(double seconds, double rate, const std::string& node_process) {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "live_soak");
-  const double seconds = argc == 4 ? std::strtod(argv[1], nullptr) : 0.0, rate = argc == 4 ? std::strtod(argv[2], nullptr) : 0.0;
+  const double seconds = argc == 4 ? std::strtod(argv[1], nullptr) : 0.0,
+               rate = argc == 4 ? std::strtod(argv[2], nullptr) : 0.0;
   if (!(seconds >= 5.0) || !(rate >= 100.0)) {
     std::fprintf(stderr, "usage: live_soak SECONDS RATE_HZ NODE_PID\n");
     return 2;

@@ -29,8 +29,8 @@ LogSettings logSettings(const std::string& directory) {
   settings.enabled = true;
   settings.directory = directory;
   settings.prefix = "soak";
-  settings.split_size = 20'000'000;
-  settings.total_size = 100'000'000;
+  settings.split_size = 5'000'000;
+  settings.total_size = 25'000'000;
   settings.queue_size = 16'000'000;
   return settings;
 }
@@ -117,7 +117,7 @@ Written write(const std::string& directory, std::uint64_t samples) {
     if (i % 1000 != 0) continue;
     while (log.health().queue_fill > 0.25) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (i % (samples / 400 / 1000 * 1000 + 1000) == 0) {
-      written.memory.add(residentMemory());
+      if (i > samples / 10) written.memory.add(residentMemory());  // by then every buffer has had its size
       written.most_on_disk = std::max(written.most_on_disk, sizeOf(directory));
     }
   }
@@ -148,7 +148,8 @@ int run(const std::string& directory, double machine_seconds) {
   verdict.demand(written.health.state == LogState::kOff, "the log ends well: " + written.health.reason);
   verdict.demand(written.health.messages_dropped == 0, "no message dropped");
   verdict.demand(written.health.files_deleted > 0, "old bags deleted");
-  verdict.demand(kept.files == written.health.files_closed - written.health.files_deleted, "only bags deleted that count");
+  verdict.demand(kept.files == written.health.files_closed - written.health.files_deleted,
+                 "only bags deleted that count");
   verdict.demand(written.most_on_disk <= static_cast<double>(settings.total_size + 2 * settings.split_size),
                  "no more on the disk than allowed and the bag being written");
   verdict.demand(kept.gapless && kept.last == written.wrenches, "the bags kept hold the end of the run without a gap");

@@ -189,16 +189,27 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   load_ = model_(now_.position.angle);
 }
 
-/// The way forward from the earlier sample and the way back from the later one, each trusted near its own end; the way
-/// back from samples that no machine makes may run away, and is left out then.
+/// Faster or further than any crank gets within the last step.
+bool CrankFilter::hasRunAway(const ShaftState& state) const noexcept {
+  const double most_speed = kSoundSpeeds * settings_.max_speed;
+  return !(std::abs(state.speed) < most_speed &&
+           std::abs(difference(state.position, before_.position)) <= most_speed * step_ + 0.5 * kTwoPi);
+}
+
+/// The way forward from the earlier sample and the way back from the later one, each trusted near its own end. Between
+/// samples that no machine makes either may run away; it is left out then.
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   ShaftState state = before_, back = now_;
   ShaftLoad load = step_model_(state.position.angle), back_load = step_model_(back.position.angle);
   advance(step_model_, dt, state, load);
   advance(step_model_, dt - step_, back, back_load);
-  const bool sound = std::abs(back.speed) < kSoundSpeeds * settings_.max_speed;
-  const double part = sound ? dt / step_ : 0.0;
+  const double part = dt / step_;
+  if (hasRunAway(state)) {
+    state = before_;
+    state.position.turn(part * difference(now_.position, before_.position));
+  }
+  if (hasRunAway(back)) back = state;
   state.position.turn(part * difference(back.position, state.position));
   state.speed += part * (back.speed - state.speed);
   state.torque += part * (back.torque - state.torque);

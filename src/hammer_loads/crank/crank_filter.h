@@ -65,6 +65,7 @@ class CrankFilter final : public CrankTracker {
   void correct(Eigen::Index row, double innovation, double variance) noexcept;
   void respectCount(double reading) noexcept;
   bool isSound() const noexcept;
+  bool hasRunAway(const ShaftState& state) const noexcept;
   void anchor(double measured, const CrankSample& sample) noexcept;
 
   ShaftModel model_;         ///< with the latest motion of the hull

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "hammer_loads/linkage/crank_angle.h"
 
@@ -25,10 +26,15 @@ struct CrankPosition {
     }
   }
 
-  /// Turns by delta [rad], passing the blow when the offset changes sign.
+  /// Turns by delta [rad], passing the blow when the offset changes sign. A delta beyond 1e15 rad, which a diverged
+  /// estimate may ask for, leaves no number.
   void turn(double delta) noexcept {
     if (delta == 0.0) return;  // at the blow itself the side must not change
     const double offset = angle.offset + delta;
+    if (!(std::abs(offset) < 1e15)) {
+      angle.offset = std::numeric_limits<double>::quiet_NaN();
+      return;
+    }
     blow += static_cast<std::int64_t>(std::nearbyint(offset / kTwoPi));
     angle = CrankAngle::fromAngle(offset);
   }

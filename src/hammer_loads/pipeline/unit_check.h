@@ -8,8 +8,8 @@
 namespace hammer_loads {
 
 /// Compares what the crank's angle turns with what its speed says, over stretches of a radian or more: a factor of 57.3
-/// either way is degrees in one of them. Where both would be in degrees, or no speed is measured, it looks for steps that
-/// repeat themselves, each faster than any crank, but not so if they were degrees. Needs the raw samples, those
+/// either way is degrees in one of them. Where both would be in degrees, or no speed is measured, it looks for steps
+/// that repeat themselves, each faster than any crank, but not so if they were degrees. Needs the raw samples, those
 /// that are refused as well; judges within some 2 turns and takes nothing back before the samples contradict it.
 /// Degrees of both angle and speed below `max_speed` [deg/s] cannot be told from radians.
 class UnitCheck {
@@ -29,7 +29,7 @@ class UnitCheck {
 
   double max_speed_;
   std::optional<double> last_angle_;
-  double last_rate_{};            ///< of the angle over the last step [rad/s]
+  double last_rate_{};             ///< of the angle over the last step [rad/s]
   double turned_{}, predicted_{};  ///< of this stretch, by angles and by speeds [rad]
   double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
   int speed_votes_{}, bound_votes_{};
