@@ -96,14 +96,14 @@ TEST_F(Messages, TellTheVibrationAndWhy) {
 TEST_F(Messages, TellTheLoadAtTheChainsLinks) {
   sample(kStamp);
   ASSERT_EQ(messages_.links(), (Names{"arm_link", "base_link"}));
-  const geometry_msgs::WrenchStamped& arm = messages_.wrench(0, kLoad);
+  const geometry_msgs::WrenchStamped& arm = messages_.wrench(0, ros::Time(1.0), kLoad);
   EXPECT_EQ(arm.header.frame_id, "arm_link");
   EXPECT_EQ(arm.header.stamp.toNSec(), static_cast<std::uint64_t>(kStamp));
   const Wrench expected = follower_.wrenchAtLink(*follower_.linkIndex("arm_link"), kLoad);
   EXPECT_EQ(arm.wrench.force.x, expected.force.x());
   EXPECT_EQ(arm.wrench.force.z, expected.force.z());
   EXPECT_EQ(arm.wrench.torque.y, expected.torque.y());
-  EXPECT_EQ(messages_.wrench(1, kLoad).header.frame_id, "base_link");
+  EXPECT_EQ(messages_.wrench(1, ros::Time(1.0), kLoad).header.frame_id, "base_link");
 
   const Names links{"gauge", "arm_link", "left/gauge"};
   EXPECT_EQ(framesBesideChain(links, &follower_.boom()), (Names{"gauge", "left/gauge"}));
@@ -118,7 +118,7 @@ TEST_F(Messages, AllocateNothing) {
   for (int i = 1; i < 1000; ++i) {
     sample(kStamp + i * 1000000);
     sum += messages_.jointLoads().total_torque_Nm[1] + messages_.vibration().reduced_mass_kg +
-           messages_.wrench(0, kLoad).wrench.torque.y;
+           messages_.wrench(0, ros::Time(1.0), kLoad).wrench.torque.y;
   }
   EXPECT_EQ(test::allocations, before);
   EXPECT_TRUE(std::isfinite(sum));

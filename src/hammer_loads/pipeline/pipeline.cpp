@@ -72,7 +72,7 @@ void Pipeline::predictHull(StampNs stamp) noexcept {
     imu_counts_.missed += !hull_known_;
     hull_ = measured.value_or(HullMotion(weight));
   } else {
-    hull_ = withVibration(weight, loads_.boom);
+    hull_ = settings_.hull_motion == HullMotionSource::kModel ? withVibration(weight, loads_.boom) : HullMotion(weight);
   }
   tracker_->setHullMotion(hull_);
 }
