@@ -2,6 +2,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "hammer_loads/accuracy/price_table.h"
 #include "hammer_loads/accuracy/session_table.h"
 #include "hammer_loads/parameters/command_line.h"
 
@@ -9,23 +10,39 @@ namespace hammer_loads {
 namespace {
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Errors of the loads over simulated working sessions of the hammer", "accuracy");
+  CLI::App app("Price list: cost and error of every way to the loads, errors over simulated working sessions",
+               "accuracy");
   std::vector<std::string> files;
-  std::string json_file;
+  std::string json_file, only;
   addParamsOption(app, files);
   app.add_option("--json", json_file, "also write the figures to this file");
+  app.add_option("--only", only, "one of the two parts")->check(CLI::IsMember({"prices", "sessions"}));
   if (const auto code = parse(app, argc, argv)) return *code;
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;
 
-  const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(*settings);
-  std::cout << accuracy::markdown(sessions);
-  if (json_file.empty()) return 0;
-  std::ofstream file(json_file);
-  file << "{\"sessions\": " << accuracy::json(sessions) << "}\n";
-  if (file.flush()) return 0;
-  std::cerr << json_file << ": cannot be written\n";
-  return kExitFailure;
+  std::ofstream file;
+  if (!json_file.empty()) file.open(json_file);  // before the computing, which takes a minute
+  const auto complain = [&] {
+    std::cerr << json_file << ": cannot be written\n";
+    return kExitFailure;
+  };
+  if (!file) return complain();
+
+  std::string json;
+  if (only != "sessions") {
+    const std::vector<accuracy::PriceRow> prices = accuracy::priceTable(*settings);
+    std::cout << accuracy::markdown(prices) << std::flush;
+    json = "\"prices\": " + accuracy::json(prices);
+  }
+  if (only != "prices") {
+    const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(*settings);
+    std::cout << "\n### Simulated sessions\n\n" << accuracy::markdown(sessions);
+    json += (json.empty() ? "" : ",\n") + ("\"sessions\": " + accuracy::json(sessions));
+  }
+  if (const int code = finishOutput()) return code;
+  if (!json_file.empty() && !(file << '{' << json << "}\n").flush()) return complain();
+  return 0;
 }
 
 }  // namespace

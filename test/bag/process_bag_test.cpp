@@ -103,11 +103,11 @@ class ProcessBag : public testing::Test {
     BagJob job;
     job.input = input;
     job.output = output;
-    return processBag(job, settingsWithInertia(inertia_factor), [](double) {}, counts_);
+    return processBag(job, settingsWithInertia(inertia_factor), [](double) {}, report_);
   }
 
   fs::path directory_;
-  IntakeCounts counts_;
+  BagReport report_;
 };
 
 struct SessionCase {
@@ -123,12 +123,12 @@ TEST_P(RecordedSession, StaysWithinTheBounds) {
   ASSERT_EQ(process(data(session + ".bag"), path("out.bag"), inertia_factor), "");
   const Truth truth = truthOf(session);
   const Output output = outputOf(path("out.bag"));
-  EXPECT_EQ(output.wrenches.size(), counts_.accepted);
+  EXPECT_EQ(output.wrenches.size(), report_.crank.accepted);
   const accuracy::Judged judged{3.0, truth.wrenches.back().time - 3.0, endsOfDropOuts(truth.wrenches)};
   const auto e = accuracy::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);
   test::expectWithin(e, session_case.bounds);
   EXPECT_GT(e.blows, 50);
-  // For the README: scripts/update_readme.
+  // For the README: scripts/update_accuracy.
   std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n", session_case.session,
               100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque, 100 * e.turn_peak,
               100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);

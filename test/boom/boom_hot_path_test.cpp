@@ -42,7 +42,7 @@ class Sampler {
  private:
   Boom boom_;
   TorqueStep torque_{JointVector::Zero(4), JointVector::Zero(4), JointVector::Zero(4)};
-  JointLoads loads_;
+  BoomLoads loads_;
   int count_{};
   double sum_{};
 };

@@ -35,7 +35,7 @@ TEST_F(Press, MachineTipsByHand) {
   const HoldDown hold = boom_.holdDown(press(1000.0));
   const PointMass all = massFrom(boom_.chain(), boom_.pose(), 0);
   EXPECT_NEAR(all.mass, 6200.0, 1.0);
-  const double rear = boom_.parameters().supports.rear_x;
+  const double rear = boom_.parameters().supports->rear_x;
   const double lever = boom_.pose().tip().translation().x() - 0.1975 - rear;
   EXPECT_NEAR(hold.machine, all.mass * kGravity * (all.p.x() - rear) / (1000.0 * lever), 1e-9);
   EXPECT_EQ(hold.edge, 2);
@@ -70,7 +70,7 @@ TEST_F(Press, CylindersGiveAtTheirReliefPressure) {
     ASSERT_TRUE(std::isfinite(hold.cylinder[i])) << i;
     const Cylinder& cylinder = boom_.cylinders()[i];
     const double times = hold.cylinder[i];
-    JointLoads loads;
+    BoomLoads loads;
     boom_.loads({times * w.force, times * w.torque}, true, loads);
     EXPECT_NEAR(loads.cylinder[i].pressure, cylinder.parameters().relief_pressure, 1e-3);
   }

@@ -70,7 +70,7 @@ TEST(JointTorqueOfTipLoad, HasTheDocumentedSign) {
   EXPECT_NEAR(torque[3], -1000.0 * 0.10, 1e-9);
   EXPECT_EQ(torque[0], 0.0);
   // Weight drives it the other way.
-  JointLoads loads;
+  BoomLoads loads;
   boom.loads(up, true, loads);
   EXPECT_GT(loads.weight[1], 0.0);
   // The boom's cylinder raises it by pushing: weight makes it push.
@@ -128,7 +128,7 @@ TEST(JointLoads, TotalEqualsTheHandMadePlanarChain) {
       const auto expected = planar.loads(q, qd, qdd, {fx, fz}, ty);
       const auto vector = [](const auto& values) { return test::joints({values[0], values[1], values[2]}); };
       boom.value->move({vector(q), vector(qd), vector(qdd)}, kLevel);
-      JointLoads loads;
+      BoomLoads loads;
       boom.value->loads({Eigen::Vector3d(fx, 0.0, fz), Eigen::Vector3d(0.0, ty, 0.0)}, true, loads);
       const double size = vector(expected).cwiseAbs().maxCoeff();
       worst = std::max(worst, worstOf(loads.total, vector(expected)) / size);
@@ -156,7 +156,7 @@ TEST(JointLoads, TotalEqualsOneCallOfKdlWithEverything) {
                                   KDL::Vector(w.torque.x(), w.torque.y(), w.torque.z()));
     kdl.CartToJnt(q_kdl, qd_kdl, qdd_kdl, wrenches, torque);
     boom.move({q, qd, qdd}, kLevel);
-    JointLoads loads;
+    BoomLoads loads;
     boom.loads(w, true, loads);
     worst = std::max(worst, worstOf(loads.total, -torque.data) / torque.data.cwiseAbs().maxCoeff());
     EXPECT_EQ(loads.total, loads.hammer + loads.weight + loads.motion + loads.vibration);

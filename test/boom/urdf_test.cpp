@@ -20,15 +20,20 @@ class Model : public testing::Test {
     if (!model_ || !kdl_parser::treeFromUrdfModel(*model_, tree_)) throw std::runtime_error("cannot read the URDF");
   }
 
-  /// Pose of a link, joints not named at zero.
+  /// Position of a joint, of the one that it mimics if it does; those not named are at zero.
+  double position(const std::string& joint, const std::map<std::string, double>& angles) const {
+    const urdf::JointConstSharedPtr found = model_->getJoint(joint);
+    if (found && found->mimic)
+      return found->mimic->multiplier * position(found->mimic->joint_name, angles) + found->mimic->offset;
+    const auto angle = angles.find(joint);
+    return angle == angles.end() ? 0.0 : angle->second;
+  }
   KDL::Frame frame(const std::string& link, const std::map<std::string, double>& angles = {}) const {
     KDL::Chain chain;
     EXPECT_TRUE(tree_.getChain("base_link", link, chain)) << link;
     KDL::Frame X = KDL::Frame::Identity();
-    for (const KDL::Segment& segment : chain.segments) {
-      const auto angle = angles.find(segment.getJoint().getName());
-      X = X * segment.pose(angle == angles.end() ? 0.0 : angle->second);
-    }
+    for (const KDL::Segment& segment : chain.segments)
+      X = X * segment.pose(position(segment.getJoint().getName(), angles));
     return X;
   }
   double mass(const std::string& link) const {
@@ -76,7 +81,7 @@ TEST_F(Model, PinsMeetAllAroundTheTurn) {
     const LinkMotion motion = linkMotion(mechanism.linkage(), CrankAngle::fromAngle(phi));
     const double psi = rockerAngle(motion.rocker), beta = rodAngle(motion);
     const std::map<std::string, double> angles{
-        {"hammer_crank_joint", phi}, {"hammer_rod_joint", beta - phi}, {"hammer_rocker_joint", psi}};
+        {"hammer_crank_joint", phi}, {"hammer_rod_joint", beta}, {"hammer_rocker_joint", psi}};
     // Pins by the description: link frame, then along the link at zero.
     const KDL::Frame crank = X_hull * frame("hammer_crank", angles), rod = X_hull * frame("hammer_rod", angles);
     const KDL::Frame rocker = X_hull * frame("hammer_rocker", angles);
@@ -101,13 +106,24 @@ TEST_F(Model, ToolIsOnTheStrikingLine) {
   EXPECT_LT(tool.p.z(), 0.0);
 }
 
+TEST_F(Model, SimulatedMachineStandsTheToolOnTheGround) {
+  std::vector<std::string> problems;
+  const ParameterMap machine = *readParameterFile(test::sourceFile("config/simulated_machine.yaml"), problems);
+  std::map<std::string, double> angles;
+  for (const std::string joint : {"swing", "boom", "arm", "hammer"})
+    angles[joint + "_joint"] = machine.at(joint + "_mean_rad").value.as<double>();
+  const KDL::Frame tool = frame("hammer_tool", angles);
+  EXPECT_NEAR(tool.p.z(), 0.0, 0.02);
+  EXPECT_NEAR(tool.M.UnitZ().z(), 1.0, 1e-12);
+}
+
 TEST_F(Model, HasThePublishedFigures) {
   const double hammer = mass("hammer_link") + mass("hammer_hull") + mass("hammer_tool");
   EXPECT_NEAR(hammer, 400.0, 1.0);
   constexpr double kBucket = 300.0;
   EXPECT_NEAR(mass("body") + mass("swing_link") + mass("boom_link") + mass("arm_link") + kBucket, 6100.0, 1.0);
   // Moving links count once: in the hull.
-  for (const char* link : {"hammer_crank", "hammer_rod", "hammer_rocker"}) EXPECT_EQ(mass(link), 0.0);
+  for (const char* link : {"hammer_crank", "hammer_carrier", "hammer_rod", "hammer_rocker"}) EXPECT_EQ(mass(link), 0.0);
   const urdf::JointLimitsSharedPtr swing = model_->getJoint("swing_joint")->limits;
   EXPECT_NEAR(swing->upper - swing->lower, 160.0 * test::kPi / 180.0, 1e-3);
   // Deepest: boom down, arm and hammer straight below.

@@ -202,7 +202,7 @@ TEST_F(ShippedBoom, KnowsNothingAtADeadPoint) {
   EXPECT_TRUE(boom.vibration().displacement().isZero(0.0));
   EXPECT_TRUE(boom.vibration().torque().isZero(0.0));
   EXPECT_EQ(boom.vibration().energy(), 0.0);
-  JointLoads loads;
+  BoomLoads loads;
   boom.loads({}, false, loads);
   EXPECT_TRUE(loads.cylinder[0].dead_point);
   EXPECT_FALSE(loads.cylinder[1].dead_point);

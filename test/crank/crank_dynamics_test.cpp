@@ -45,7 +45,7 @@ TEST_F(CrankDynamics, AFreeTurnKeepsItsEnergyUpToTheBlow) {
 }
 
 TEST_F(CrankDynamics, EnergyGrowsByTheWorkOfTorqueAndWeight) {
-  rocker_.setGravity(kLeaning);
+  rocker_.setHullMotion(kLeaning);
   const auto height = [&](const ShaftState& s) {  // potential of the weight: minus m g . r
     const Motion m = motion(mechanism_.linkage(), s.position.angle);
     const double ls = mechanism_.parameters().rocker_com_distance;
@@ -105,8 +105,10 @@ TEST_F(CrankDynamics, ReversesAndTurnsBackwardsThroughTheBlow) {
   EXPECT_EQ(through.position.blow, 0);
 }
 
-TEST_F(CrankDynamics, LinearisationFollowsFiniteDifferences) {
-  linkage_.setGravity(kLeaning);
+class CrankLinearisation : public CrankDynamics, public testing::WithParamInterface<HullMotion> {};
+
+TEST_P(CrankLinearisation, FollowsFiniteDifferences) {
+  linkage_.setHullMotion(GetParam());
   for (const double angle : {0.5, 2.0, 3.5, 4.8, 5.6, 6.0, 6.2, 6.275}) {
     for (const double dt : {2e-4, 1e-3}) {
       const ShaftState from = stateAt(angle, 18.0, 150.0);
@@ -134,6 +136,9 @@ TEST_F(CrankDynamics, LinearisationFollowsFiniteDifferences) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Hulls, CrankLinearisation,
+                         testing::Values(HullMotion(kLeaning), HullMotion{{5.0, -25.0}, 2.0, 80.0}));
 
 TEST_F(CrankDynamics, AbsurdSpeedsEndInTime) {
   const ShaftState s = advanced(rocker_, 0.1, stateAt(1.0, 1e7, 0.0));

@@ -75,7 +75,7 @@ TEST_F(CrankFilterTest, ADeadStopOnTheToolTeachesNothingOfTheInertia) {
     machine.seed = seed;
     const simulation::Session session = simulation::recordSession(machine);
     CrankFilter f = filter(1.4 * machine.drive.inertia);
-    f.setGravity({0.0, -machine.gravity});
+    f.setHullMotion({{0.0, -machine.gravity}});
     double before_work = 0.0, stopped = 0.0;
     run(f, session, [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
       if (truth.time > 1.4) return;
@@ -105,7 +105,7 @@ TEST_F(CrankFilterTest, ErrorsLieWithinTwoDeviationsAsOftenAsTheyShould) {
   double samples = 0, angle = 0, speed = 0, acceleration = 0;
   run(f, shortSession(true, 1000.0, 0.6), [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
     if (truth.time < 3.0) return;
-    const Eigen::Vector3d deviation = at.motionCovariance().diagonal().cwiseSqrt();
+    const Eigen::Vector3d deviation = at.motionCovariance(1.0).diagonal().cwiseSqrt();
     const CrankEstimate e = at.estimate();
     ++samples;
     angle += std::abs(CrankAngle::wrapToPi(e.position.angle.offset - truth.angle)) < 2 * deviation[0];
@@ -139,7 +139,7 @@ TEST_F(CrankFilterTest, TellsTheMotionBetweenSamples) {
     last = i;
   }
   EXPECT_LT(worst, 4e-3);
-  EXPECT_GT(f.covarianceBetween(0.005)(0, 0), 0.0);
+  EXPECT_GT(f.covarianceBetween(0.005, 1.0)(0, 0), 0.0);
 }
 
 TEST_F(CrankFilterTest, StandsStill) {

@@ -84,7 +84,8 @@ std::string shown(const YAML::Node& value) {
 
 TEST(Readme, TablesHoldEveryParameterWithItsShippedValue) {
   const std::string readme = textOf("README.md");
-  for (const std::string file : {"config/hammer_mo100.yaml", "config/pipeline.yaml", "config/log.yaml"}) {
+  for (const std::string file :
+       {"config/hammer_mo100.yaml", "config/pipeline.yaml", "config/log.yaml", "config/grapple_node.yaml"}) {
     std::vector<std::string> problems;
     const ParameterMap parameters = readParameterFile((kRoot / file).string(), problems).value();
     std::istringstream headings(readme);
@@ -107,18 +108,33 @@ TEST(Readme, TablesHoldEveryParameterWithItsShippedValue) {
   }
 }
 
-TEST(Readme, TablesHoldEveryTopicOfTheNode) {
-  const std::string node = textOf("src/hammer_loads/ros/hammer_loads_node.cpp");
+/// Of a node's source.
+Names topicsOf(const std::string& file) {
+  const std::string node = textOf(file);
   Names topics = matches(node, "node\\.subscribe\\(\"(\\w+)\"");
-  ASSERT_GE(topics.size(), 2U);
   for (const std::string& output : matches(node, "private_node\\.advertise<[^>]*>\\(\"([\\w/]+)\""))
-    topics.insert("~" + output);
-  ASSERT_GE(topics.size(), 7U);
+    topics.insert("~" + output + (output.back() == '/' ? "LINK" : ""));
   topics.insert("/diagnostics");
-  Names in_readme;
-  for (const Cells& row : tableRows(section(textOf("README.md"), "## Topics")))
-    in_readme.insert(withoutBackquotes(row[0]));
-  EXPECT_EQ(in_readme, topics);
+  return topics;
+}
+
+/// First cells of a section's tables; JAW in one stands for left and right.
+Names topicsInReadme(const std::string& heading) {
+  Names topics;
+  for (const Cells& row : tableRows(section(textOf("README.md"), heading))) {
+    const std::string topic = withoutBackquotes(row[0]);
+    for (const char* jaw : {"left", "right"}) topics.insert(std::regex_replace(topic, std::regex("JAW"), jaw));
+  }
+  return topics;
+}
+
+TEST(Readme, TablesHoldEveryTopicOfTheNodes) {
+  const Names hammer = topicsOf("src/hammer_loads/ros/hammer_loads_node.cpp");
+  EXPECT_GE(hammer.size(), 8U);
+  EXPECT_EQ(topicsInReadme("## Topics"), hammer);
+  const Names grapple = topicsOf("src/hammer_loads/ros/grapple_node.cpp");
+  EXPECT_EQ(grapple.size(), 10U);
+  EXPECT_EQ(topicsInReadme("### Grapple\n"), grapple);
 }
 
 TEST(Readme, TableHoldsEveryMessage) {

@@ -59,18 +59,24 @@ PipelineSettings settingsOf(Bytes& bytes) {
 
 class Session {
  public:
-  explicit Session(Bytes bytes) : bytes_(bytes), pipeline_(shipped().mechanism, settingsOf(bytes_)) {}
+  explicit Session(Bytes bytes) : bytes_(bytes), settings_(settingsOf(bytes_)) {
+    pipeline_.emplace(shipped().mechanism, settings_);
+  }
 
   void run() {
     while (!bytes_.empty()) step();
-    const IntakeCounts& counts = pipeline_.counts();
+    const IntakeCounts& counts = pipeline_->counts();
     require(std::accumulate(counts.refused.begin(), counts.refused.end(), counts.accepted) == messages_);
   }
 
  private:
   void step() {
     const auto operation = bytes_.take<std::uint8_t>();
-    if (operation == 255) return pipeline_.reset();
+    if (operation == 255) {
+      const IntakeCounts counts = pipeline_->counts();
+      pipeline_.emplace(shipped().mechanism, settings_, std::nullopt, counts);
+      return;
+    }
     switch (operation % 8) {
       case 4:
         return stampedSample();
@@ -105,8 +111,8 @@ class Session {
 
   void boom() {
     const auto angle = bytes_.take<double>();
-    pipeline_.boomJoints({"arm_joint", "boom_joint", "hammer_joint"}, {0.1, angle, -0.2});
-    require(std::isfinite(pipeline_.hullPitch().pitch()));
+    pipeline_->boomJoints(0, {"arm_joint", "boom_joint", "hammer_joint"}, {0.1, angle, -0.2}, {});
+    require(std::isfinite(pipeline_->hullPitch().pitch()));
   }
 
   void shapes() {
@@ -117,7 +123,7 @@ class Session {
     std::vector<double> angles(positions % 8), speeds(velocities % 8);
     for (double& angle : angles) angle = bytes_.take<float>();
     for (double& speed : speeds) speed = bytes_.take<float>();
-    pipeline_.boomJoints(joints, angles);
+    pipeline_->boomJoints(static_cast<StampNs>(stamp_), joints, angles, speeds);
     stamp_ += 1000000;
     crank(joints, angles, speeds);
   }
@@ -126,7 +132,7 @@ class Session {
              const std::vector<double>& speeds) {
     stamp_ %= kLastStamp + 1;
     ++messages_;
-    const Loads& loads = pipeline_.crankJoint(static_cast<StampNs>(stamp_), names, angles, speeds);
+    const Loads& loads = pipeline_->crankJoint(static_cast<StampNs>(stamp_), names, angles, speeds);
     if (!angles.empty()) check_.add(1e-3, angles[0], speeds.empty() ? std::nullopt : std::make_optional(speeds[0]));
     require(loads.turn_ends <= loads.ends.size());
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
@@ -142,7 +148,8 @@ class Session {
   }
 
   Bytes bytes_;
-  Pipeline pipeline_;
+  PipelineSettings settings_;
+  std::optional<Pipeline> pipeline_;
   UnitCheck check_{300.0};
   std::uint64_t stamp_{1700000000000000000}, messages_{};
 };

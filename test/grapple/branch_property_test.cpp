@@ -174,17 +174,17 @@ TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
     const auto inside = grapple->at(grapple->parameters().reference_slider);
     ASSERT_TRUE(inside);
     for (const auto& [limit, outwards] : {std::pair{grapple->lowerLimit(), -1.0}, {grapple->upperLimit(), 1.0}}) {
-      EXPECT_EQ(grapple->judge(limit.slider - outwards * 1e-9), Refusal::kNone) << i;
+      EXPECT_EQ(grapple->judge(limit.slider - outwards * 1e-9), SliderRefusal::kNone) << i;
       for (const double beyond : {0.0, 1e-13, 1e-6, 1e-2, 0.3, 3.0}) {
         const double slider = limit.slider + outwards * beyond;
-        const Refusal refusal = grapple->judge(slider);
-        EXPECT_NE(refusal, Refusal::kNone);
+        const SliderRefusal refusal = grapple->judge(slider);
+        EXPECT_NE(refusal, SliderRefusal::kNone);
         EXPECT_FALSE(grapple->at(slider));
         EXPECT_FALSE(grapple->follow(*inside, slider));
         EXPECT_NE(grapple->explain(refusal, slider).find("must"), std::string::npos);
-        across_fold += refusal == Refusal::kAcrossFold;
-        across_dead_point += refusal == Refusal::kAcrossDeadPoint;
-        out_of_reach += refusal == Refusal::kOutOfReach;
+        across_fold += refusal == SliderRefusal::kAcrossFold;
+        across_dead_point += refusal == SliderRefusal::kAcrossDeadPoint;
+        out_of_reach += refusal == SliderRefusal::kOutOfReach;
       }
     }
   }

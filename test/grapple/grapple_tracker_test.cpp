@@ -16,21 +16,21 @@ GrappleTracker trackerOf(const GrappleParameters& p) { return GrappleTracker(tes
 TEST(GrappleTracker, BadSamplesAreRefusedCountedAndForgotten) {
   struct Bad {
     SliderMotion sample;
-    Refusal refusal;
+    SliderRefusal refusal;
   };
   GrappleTracker tracker = trackerOf(test::claimsParameters());
   EXPECT_FALSE(tracker.hasMotion());
   std::uint64_t accepted = 0, refused = 0;
   for (const Bad& bad :
-       {Bad{{kNan, 0.0, 0.0}, Refusal::kNotFinite}, Bad{{0.3, kInfinity, 0.0}, Refusal::kNotFinite},
-        Bad{{0.3, 0.0, kNan}, Refusal::kNotFinite}, Bad{{0.74, 0.1, 0.0}, Refusal::kAcrossFold},
-        Bad{{0.88, 0.1, 0.0}, Refusal::kAcrossFold}, Bad{{0.9, 0.1, 0.0}, Refusal::kOutOfReach},
-        Bad{{-0.3, 0.1, 0.0}, Refusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, Refusal::kAcrossDeadPoint},
-        Bad{{0.7, 0.1, 0.0}, Refusal::kOutsideStroke}, Bad{{0.0, 0.1, 0.0}, Refusal::kOutsideStroke}}) {
+       {Bad{{kNan, 0.0, 0.0}, SliderRefusal::kNotFinite}, Bad{{0.3, kInfinity, 0.0}, SliderRefusal::kNotFinite},
+        Bad{{0.3, 0.0, kNan}, SliderRefusal::kNotFinite}, Bad{{0.74, 0.1, 0.0}, SliderRefusal::kAcrossFold},
+        Bad{{0.88, 0.1, 0.0}, SliderRefusal::kAcrossFold}, Bad{{0.9, 0.1, 0.0}, SliderRefusal::kOutOfReach},
+        Bad{{-0.3, 0.1, 0.0}, SliderRefusal::kOutOfReach}, Bad{{-2.0, 0.1, 0.0}, SliderRefusal::kAcrossDeadPoint},
+        Bad{{0.7, 0.1, 0.0}, SliderRefusal::kOutsideStroke}, Bad{{0.0, 0.1, 0.0}, SliderRefusal::kOutsideStroke}}) {
     // Good: accepted, and the channel is proven.
     const double good = 0.3 + 0.01 * static_cast<double>(accepted);
-    ASSERT_EQ(tracker.update({good, 0.2, 0.0}), Refusal::kNone);
-    EXPECT_EQ(tracker.count(Refusal::kNone), ++accepted);
+    ASSERT_EQ(tracker.update({good, 0.2, 0.0}), SliderRefusal::kNone);
+    EXPECT_EQ(tracker.count(SliderRefusal::kNone), ++accepted);
     const GrappleMotion before = tracker.motion();
     EXPECT_EQ(before.slider, good);
     // Bad: refused, its counter alone rises, and everything else stays.
@@ -42,19 +42,34 @@ TEST(GrappleTracker, BadSamplesAreRefusedCountedAndForgotten) {
     EXPECT_EQ(tracker.motion().theta2, before.theta2);
     EXPECT_EQ(tracker.slider().position, good);
     // Good again: the same branch.
-    ASSERT_EQ(tracker.update({0.332, 0.2, 0.0}), Refusal::kNone);
+    ASSERT_EQ(tracker.update({0.332, 0.2, 0.0}), SliderRefusal::kNone);
     ++accepted;
     EXPECT_NEAR(tracker.motion().p.re, 0.802384681896094, 1e-12);
   }
-  EXPECT_EQ(tracker.count(Refusal::kNotFound), 0u);
+  EXPECT_EQ(tracker.count(SliderRefusal::kNotFound), 0u);
 }
 
 TEST(GrappleTracker, ABadFirstSampleLeavesItEmpty) {
   GrappleTracker tracker = trackerOf(test::claimsParameters());
-  EXPECT_EQ(tracker.update({0.74, 0.0, 0.0}), Refusal::kAcrossFold);
+  EXPECT_EQ(tracker.update({0.74, 0.0, 0.0}), SliderRefusal::kAcrossFold);
   EXPECT_FALSE(tracker.hasMotion());
-  EXPECT_EQ(tracker.update({0.1, 0.0, 0.0}), Refusal::kNone);
+  EXPECT_EQ(tracker.update({0.1, 0.0, 0.0}), SliderRefusal::kNone);
   EXPECT_TRUE(tracker.hasMotion());
+}
+
+TEST(GrappleTracker, ResetStartsColdAndKeepsTheCounts) {
+  GrappleTracker tracker = trackerOf(test::claimsParameters());
+  ASSERT_EQ(tracker.update({0.3, 0.0, 0.0}), SliderRefusal::kNone);
+  ASSERT_EQ(tracker.update({0.5, 0.0, 0.0}), SliderRefusal::kNone);
+  ASSERT_EQ(tracker.update({0.74, 0.0, 0.0}), SliderRefusal::kAcrossFold);
+  tracker.reset();
+  EXPECT_FALSE(tracker.hasMotion());
+  ASSERT_EQ(tracker.update({0.1, 0.0, 0.0}), SliderRefusal::kNone);
+  const GrappleMotion cold = *tracker.grapple().at(0.1);
+  EXPECT_EQ(tracker.motion().p.re, cold.p.re) << "bit for bit, or a bag would not give the same again";
+  EXPECT_EQ(tracker.motion().theta5, cold.theta5);
+  EXPECT_EQ(tracker.count(SliderRefusal::kNone), 3u);
+  EXPECT_EQ(tracker.refused(), 1u);
 }
 
 TEST(GrappleTracker, NeverLeavesTheBranchUpToTheFold) {
@@ -67,7 +82,7 @@ TEST(GrappleTracker, NeverLeavesTheBranchUpToTheFold) {
   // Onto the fold in ever shorter steps, and away from it in one; det J keeps its sign.
   for (int i = 0; i < 2000; ++i) {
     const double distance = i % 2 == 0 ? std::pow(10.0, random(-9.0, -1.0)) : random(0.1, 0.7);
-    ASSERT_EQ(tracker.update({whole.upperLimit().slider - distance, 0.0, 0.0}), Refusal::kNone) << distance;
+    ASSERT_EQ(tracker.update({whole.upperLimit().slider - distance, 0.0, 0.0}), SliderRefusal::kNone) << distance;
     EXPECT_LT(tracker.motion().determinant, 0.0);
     const GrappleMotion cold = *whole.at(tracker.slider().position);
     // Beside the fold rounding moves the pose by eps/sqrt(distance).
@@ -78,7 +93,7 @@ TEST(GrappleTracker, NeverLeavesTheBranchUpToTheFold) {
 
 TEST(GrappleTracker, JawsAreInTime) {
   GrappleTracker tracker = trackerOf(test::claimsParameters());
-  ASSERT_EQ(tracker.update({0.332, 0.5, -2.0}), Refusal::kNone);
+  ASSERT_EQ(tracker.update({0.332, 0.5, -2.0}), SliderRefusal::kNone);
   const GrappleMotion& m = tracker.motion();
   const JawMotion right = tracker.right(), left = tracker.left();
   EXPECT_DOUBLE_EQ(right.edge_velocity.re, 0.5 * m.dp.re);

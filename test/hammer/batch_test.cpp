@@ -212,6 +212,26 @@ TEST(Batch, CountsTheBlowItselfAsAfterIt) {
   EXPECT_GT(std::abs(after - before), 1000.0);
 }
 
+TEST(Batch, HasTheFinitePinForcesOfAnUnacceleratedCrankAtTheBlowItself) {
+  HammerParameters p = test::mo100LinkageParameters();
+  p.rod_com_across = 0.0;  // off its line the rod's mass needs an unbounded force
+  const Mechanism mechanism = test::mechanismOf(p);
+  for (BatchWidth width : kWidths) {
+    for (Level level : {Level::kRocker, Level::kLinkage}) {
+      Table table;
+      table.add(0.0, 30.0, 0.0);
+      table.out.assign(kColumns, std::vector<double>(1));
+      linkLoads(HullModel(mechanism, level), table.states(0, 1), {}, table.wrenches(0), table.pins(0), width);
+      const PinReactions right = pinForces(mechanism, level, {{0.0, Side::kAfterBlow}, 30.0, 0.0}, {}, NearBlow(0.01));
+      const double size = std::hypot(right.rod_on_rocker.x, right.rod_on_rocker.z);
+      EXPECT_GT(size, 100.0);
+      EXPECT_NEAR(table.out[7][0], right.rod_on_rocker.x, 1e-13 * size);
+      EXPECT_NEAR(table.out[8][0], right.rod_on_rocker.z, 1e-13 * size);
+      EXPECT_NEAR(table.out[11][0], right.drive_torque, 1e-13 * size);
+    }
+  }
+}
+
 TEST(Batch, NeverAllocates) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   const HullModel model(mechanism, Level::kLinkage);

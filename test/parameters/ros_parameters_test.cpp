@@ -64,11 +64,11 @@ TEST(RosParameters, ProblemsNameTheNameSpace) {
   parameters["gravity_m_s2"] = "9.8";
   parameters["hull_pitch_rad"] = std::numeric_limits<double>::quiet_NaN();
   parameters["stale_after_s"] = -1.5;
-  parameters["boom"]["length_m"] = 3.0;
+  parameters["excavator"]["length_m"] = 3.0;
   EXPECT_EQ(problemsOf(parameters),
             (Lines{"hull_pitch_rad: .nan rad, must be a finite number (/node)",
                    "gravity_m_s2: \"9.8\" m/s2, must be a finite number >= 0 (/node)",
-                   "stale_after_s: -1.5 s, must be a finite number > 0 (/node)", "boom: unknown key (/node)"}));
+                   "stale_after_s: -1.5 s, must be a finite number > 0 (/node)", "excavator: unknown key (/node)"}));
 }
 
 TEST(RosParameters, OneHammerKeyMeansThatAllMustBeGiven) {

@@ -81,7 +81,7 @@ class Victim {
     }
     return loads;
   }
-  bool boom(const Names& names, const Numbers& position) { return pipeline_.boomJoints(names, position); }
+  bool boom(const Names& names, const Numbers& position) { return pipeline_.boomJoints(0, names, position, {}); }
 
   void forgetErrors() { worst_ = 0.0; }
   bool finite() const { return finite_; }

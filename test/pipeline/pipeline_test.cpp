@@ -113,7 +113,7 @@ TEST(Pipeline, AllocatesNothingPerSample) {
   for (const auto& reading : session.crank) {
     position[0] = reading.angle;
     velocity[0] = *reading.speed;
-    pipeline.boomJoints(boom, angles);
+    pipeline.boomJoints(reading.stamp, boom, angles, {});
     pipeline.crankJoint(reading.stamp, kCrank, position, velocity);
   }
   EXPECT_EQ(test::allocations, before);

@@ -128,7 +128,7 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   joints.name = names;
   joints.position = {0.1, 0.2, 0.3, -0.35};
   joints_.publish(joints);
-  pipeline.boomJoints(names, joints.position);
+  pipeline.boomJoints(0, names, joints.position, {});
   ASSERT_TRUE(eventually([&] { return pitchIsKnown(); })) << "the joint states must be there before the first sample";
   std::vector<Loads> expected;
   std::size_t blows = 0;

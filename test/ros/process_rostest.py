@@ -37,14 +37,14 @@ def command(name):
 
 
 class NodeProcess:
-    """hammer_loads_node under a name of its own."""
+    """A node of this package under a name of its own."""
 
-    def __init__(self, name, parameters):
+    def __init__(self, name, parameters, program='hammer_loads_node'):
         self.name = name
         for key, value in parameters.items():
             rospy.set_param('/%s/%s' % (name, key), value)
         self.process = subprocess.Popen(
-            [command('hammer_loads_node'), '__name:=' + name, 'crank:=/%s/crank' % name,
+            [command(program), '__name:=' + name, 'crank:=/%s/crank' % name,
              'joint_states:=/%s/joints' % name],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
 

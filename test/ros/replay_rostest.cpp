@@ -19,9 +19,9 @@ std::map<ros::Time, geometry_msgs::Wrench> offline(const std::string& bag_file) 
   BagJob job;
   job.input = bag_file;
   job.output = "/tmp/replay_rostest_" + std::to_string(getpid()) + ".bag";
-  IntakeCounts counts;
+  BagReport report;
   const Settings settings = *loadFiles(configDirectory(), {}).value;
-  EXPECT_EQ(processBag(job, settings, [](double) {}, counts), "");
+  EXPECT_EQ(processBag(job, settings, [](double) {}, report), "");
   std::map<ros::Time, geometry_msgs::Wrench> wrenches;
   rosbag::Bag bag(job.output);
   for (const auto& item : rosbag::View(bag, rosbag::TopicQuery(std::string("/hammer_loads/hull_wrench")))) {

@@ -31,7 +31,7 @@ int run(std::uint64_t samples) {
   const auto begin = std::chrono::steady_clock::now();
   EndlessSession session(1000.0);
   Pipeline pipeline(*Mechanism::make(session.machine().hammer).value, loadFiles(configDirectory(), {}).value->pipeline);
-  pipeline.boomJoints({simulation::kBoomJoints.begin(), simulation::kBoomJoints.end()}, session.joints());
+  pipeline.boomJoints(0, {simulation::kBoomJoints.begin(), simulation::kBoomJoints.end()}, session.joints(), {});
   const double peak = session.peakForce();
   const std::uint64_t piece = session.pieceSize();
   const std::uint64_t pieces = samples / piece;

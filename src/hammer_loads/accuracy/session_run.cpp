@@ -13,8 +13,9 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
   SessionRun run;
   for (const simulation::CrankReading& reading : session.crank) {
     for (; next_joints < session.joints.size() && session.joints[next_joints].stamp <= reading.stamp; ++next_joints) {
-      const auto& position = session.joints[next_joints].position;
-      pipeline.boomJoints(names, {position.begin(), position.end()});
+      const simulation::JointReading& joints = session.joints[next_joints];
+      pipeline.boomJoints(joints.stamp, names, {joints.position.begin(), joints.position.end()},
+                          {joints.velocity.begin(), joints.velocity.end()});
     }
     const Loads& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {

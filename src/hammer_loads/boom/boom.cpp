@@ -20,7 +20,8 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
   check("mode_refresh_angle_rad", p.vibration.refresh_angle, " rad", p.vibration.refresh_angle >= 0.0,
         "a finite number >= 0");
   check("rigid_tolerance", p.rigid_tolerance, "", p.rigid_tolerance > 0.0, "a finite number > 0");
-  const Supports& s = p.supports;
+  if (!p.supports) return;
+  const Supports& s = *p.supports;
   check("support_front_x_m", s.front_x, " m", s.front_x > s.rear_x,
         format("> support_rear_x_m = %.9g m", s.rear_x).c_str());
   check("support_front_half_width_m", s.front_half_width, " m", s.front_half_width > 0.0, "a finite number > 0");
@@ -31,8 +32,21 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
 }  // namespace
 
 Checked<Boom> Boom::make(const std::string& urdf_text, const BoomParameters& parameters) {
+  std::vector<std::string> problems;
+  checkParameters(parameters, problems);
+  return build(urdf_text, parameters, std::move(problems));
+}
+
+Checked<Boom> Boom::make(const std::string& urdf_text, const ChainRequest& request) {
+  BoomParameters parameters;
+  parameters.chain = request;
+  return build(urdf_text, parameters, {});
+}
+
+Checked<Boom> Boom::build(const std::string& urdf_text, const BoomParameters& parameters,
+                          std::vector<std::string> problems) {
   Checked<Boom> result;
-  checkParameters(parameters, result.problems);
+  result.problems = std::move(problems);
   const Checked<Chain> chain = Chain::make(urdf_text, parameters.chain);
   result.problems.insert(result.problems.end(), chain.problems.begin(), chain.problems.end());
   result.notes = chain.notes;
@@ -86,7 +100,7 @@ ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {
   return reducedAtTip(vibration_.modes(), J.topRows<3>().transpose() * direction);
 }
 
-void Boom::loads(const Wrench& w_tip, bool rigid, JointLoads& result) const noexcept {
+void Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
   result.hammer = hammerTorque(w_tip);
   result.weight = weight_;
   result.motion = motion_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,13 @@ struct BoomParameters {
   std::vector<CylinderParameters> cylinders;  ///< at most one per joint
   double bulk_modulus{};                      ///< of oil with hose and air [Pa], > 0
   VibrationSettings vibration;
-  Supports supports;         ///< [m]
-  double rigid_tolerance{};  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
+  std::optional<Supports> supports;  ///< [m]; nothing: not known
+  double rigid_tolerance{};          ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
 /// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the
 /// joint forward. What holds the joint - a cylinder - gives the opposite of the total.
-struct JointLoads {
+struct BoomLoads {
   JointVector hammer;                             ///< J^T w, as on a rigid boom
   JointVector weight;                             ///< of the links
   JointVector motion;                             ///< inertia of the links as the boom moves
@@ -44,6 +45,8 @@ class Boom {
  public:
   /// Every problem of description and boom file at once, one line each.
   static Checked<Boom> make(const std::string& urdf_text, const BoomParameters& parameters);
+  /// From the description alone: rigid, no cylinders, supports not known.
+  static Checked<Boom> make(const std::string& urdf_text, const ChainRequest& request = {});
 
   /// Joint motion of the chain's joints, g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level base.
   void move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
@@ -69,7 +72,7 @@ class Boom {
   /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
   /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. rigid: without
   /// vibration.
-  void loads(const Wrench& w_tip, bool rigid, JointLoads& result) const noexcept;
+  void loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
   RigidVerdict rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept;
   /// Whether weight and cylinders hold the hull down against a mean load of the hammer on the tip.
@@ -81,6 +84,8 @@ class Boom {
 
  private:
   Boom(const Chain& chain, std::vector<Cylinder> cylinders, const BoomParameters& parameters);
+  static Checked<Boom> build(const std::string& urdf_text, const BoomParameters& parameters,
+                             std::vector<std::string> problems);
 
   Chain chain_;
   std::vector<Cylinder> cylinders_;

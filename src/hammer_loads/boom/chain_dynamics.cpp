@@ -27,6 +27,8 @@ struct ChainDynamics::Solvers {
 
 ChainDynamics::ChainDynamics(const Chain& chain) : solvers_(std::make_unique<Solvers>(chain)) {}
 ChainDynamics::~ChainDynamics() = default;
+ChainDynamics::ChainDynamics(const ChainDynamics& other) : ChainDynamics(other.solvers_->chain) {}
+ChainDynamics& ChainDynamics::operator=(const ChainDynamics& other) { return *this = ChainDynamics(other); }
 ChainDynamics::ChainDynamics(ChainDynamics&&) noexcept = default;
 ChainDynamics& ChainDynamics::operator=(ChainDynamics&&) noexcept = default;
 

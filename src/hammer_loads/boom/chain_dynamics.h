@@ -12,6 +12,8 @@ class ChainDynamics {
  public:
   explicit ChainDynamics(const Chain& chain);
   ~ChainDynamics();
+  ChainDynamics(const ChainDynamics& other);
+  ChainDynamics& operator=(const ChainDynamics& other);
   ChainDynamics(ChainDynamics&&) noexcept;
   ChainDynamics& operator=(ChainDynamics&&) noexcept;
 

@@ -28,24 +28,31 @@ double cylinderFactor(const Cylinder& cylinder, double angle, double weight, dou
                   factor(-force_weight, -force_load, cylinder.greatestPull()));
 }
 
+/// Times until each edge of the supports is let go.
+void tipOver(const Supports& s, const PointMass& machine, const Eigen::Vector3d& g_B, const Eigen::Vector3d& p_BH_B,
+             const Eigen::Vector3d& f_B, const Eigen::Vector3d& t_B, HoldDown& result) noexcept {
+  const std::array<Eigen::Vector3d, 4> corner{
+      Eigen::Vector3d(s.front_x, -s.front_half_width, 0.0), Eigen::Vector3d(s.front_x, s.front_half_width, 0.0),
+      Eigen::Vector3d(s.rear_x, s.rear_half_width, 0.0), Eigen::Vector3d(s.rear_x, -s.rear_half_width, 0.0)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3d &from = corner[i], &to = corner[(i + 1) % 4];
+    const double weight = tippingMoment(from, to, machine.p, machine.mass * g_B, Eigen::Vector3d::Zero());
+    const double times = factor(weight, tippingMoment(from, to, p_BH_B, f_B, t_B), 0.0);
+    if (times < result.machine) result.machine = times, result.edge = static_cast<int>(i);
+  }
+}
+
 }  // namespace
 
 HoldDown holdDown(const Chain& chain, const ChainPose& pose, const JointVector& position,
-                  const std::vector<Cylinder>& cylinders, const Supports& supports, const Wrench& w_mean,
+                  const std::vector<Cylinder>& cylinders, const std::optional<Supports>& supports, const Wrench& w_mean,
                   const Eigen::Vector3d& g_B) noexcept {
   HoldDown result;
-  const PointMass all = massFrom(chain, pose, 0);
-  const Eigen::Vector3d f_B = pose.tip().linear() * w_mean.force, t_B = pose.tip().linear() * w_mean.torque;
-  const std::array<Eigen::Vector3d, 4> corner{Eigen::Vector3d(supports.front_x, -supports.front_half_width, 0.0),
-                                              Eigen::Vector3d(supports.front_x, supports.front_half_width, 0.0),
-                                              Eigen::Vector3d(supports.rear_x, supports.rear_half_width, 0.0),
-                                              Eigen::Vector3d(supports.rear_x, -supports.rear_half_width, 0.0)};
   result.machine = kInfinity;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Eigen::Vector3d &from = corner[i], &to = corner[(i + 1) % 4];
-    const double weight = tippingMoment(from, to, all.p, all.mass * g_B, Eigen::Vector3d::Zero());
-    const double times = factor(weight, tippingMoment(from, to, pose.tip().translation(), f_B, t_B), 0.0);
-    if (times < result.machine) result.machine = times, result.edge = static_cast<int>(i);
+  if (supports) {
+    const Pose& X_BH = pose.tip();
+    tipOver(*supports, massFrom(chain, pose, 0), g_B, X_BH.translation(), X_BH.linear() * w_mean.force,
+            X_BH.linear() * w_mean.torque, result);
   }
   result.least = result.machine;
   const JointVector weight = jointTorqueOfWeight(chain, pose, g_B), load = jointTorqueOfTipLoad(pose, w_mean);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "hammer_loads/boom/chain_pose.h"
@@ -17,9 +18,10 @@ struct Supports {
   double rear_half_width{};   ///< [m], > 0
 };
 
-/// How many times a mean load may act before something gives; infinity: the load relieves it; 0: it gives already.
+/// How many times a mean load may act before something gives; infinity: the load relieves it, or
+/// the machine's supports are not known; 0: it gives already.
 struct HoldDown {
-  double machine{};                           ///< before the machine tips over an edge of its supports, or lifts
+  double machine{};                           ///< before the machine tips over an edge of its supports or lifts
   int edge{};                                 ///< that edge: 0 front, 1 left, 2 rear, 3 right
   std::array<double, kMaxJoints> cylinder{};  ///< before a relief valve opens or a dead point lets go, per cylinder
   double least{};                             ///< of all
@@ -29,7 +31,7 @@ struct HoldDown {
 /// w_mean: mean load of the hammer on the tip, such as the mean press force along +z at the striking line. Static; no
 /// sliding; supports on level ground carry pressure only. g_B: gravity in the root's axes [m/s2].
 HoldDown holdDown(const Chain& chain, const ChainPose& pose, const JointVector& position,
-                  const std::vector<Cylinder>& cylinders, const Supports& supports, const Wrench& w_mean,
+                  const std::vector<Cylinder>& cylinders, const std::optional<Supports>& supports, const Wrench& w_mean,
                   const Eigen::Vector3d& g_B) noexcept;
 
 }  // namespace hammer_loads

@@ -1,5 +1,7 @@
 #include "hammer_loads/boom/read_boom.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "hammer_loads/parameters/parameter_reader.h"
@@ -48,11 +50,20 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
   p.vibration.damping_ratio = reader.number("damping_ratio", "", NumberRule::any());
   p.vibration.refresh_angle = reader.number("mode_refresh_angle_rad", "rad", NumberRule::any());
   p.rigid_tolerance = reader.number("rigid_tolerance", "", NumberRule::any());
-  p.supports.front_x = reader.number("support_front_x_m", "m", NumberRule::any());
-  p.supports.front_half_width = reader.number("support_front_half_width_m", "m", NumberRule::any());
-  p.supports.rear_x = reader.number("support_rear_x_m", "m", NumberRule::any());
-  p.supports.rear_half_width = reader.number("support_rear_half_width_m", "m", NumberRule::any());
+  Supports& s = p.supports.emplace();
+  s.front_x = reader.number("support_front_x_m", "m", NumberRule::any());
+  s.front_half_width = reader.number("support_front_half_width_m", "m", NumberRule::any());
+  s.rear_x = reader.number("support_rear_x_m", "m", NumberRule::any());
+  s.rear_half_width = reader.number("support_rear_half_width_m", "m", NumberRule::any());
   return p;
+}
+
+bool hasBoomKey(const ParameterMap& parameters) {
+  constexpr const char* kKeys[] = {"root_link", "tip_link", "cylinders", "bulk_modulus_Pa", "damping_ratio",
+                                   "mode_refresh_angle_rad", "rigid_tolerance", "support_front_x_m",
+                                   "support_front_half_width_m", "support_rear_x_m", "support_rear_half_width_m"};
+  return std::any_of(std::begin(kKeys), std::end(kKeys),
+                     [&](const char* key) { return parameters.count(key) != 0; });
 }
 
 Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/parameters/parameter_map.h"
 
 namespace hammer_loads {
 
@@ -14,6 +15,9 @@ class ParameterReader;
 /// `cylinders` names them; the keys of each begin with its name. Usable only if the reader got no problem; what values
 /// demand of each other and of the chain is Boom::make()'s to judge.
 BoomParameters readBoomParameters(ParameterReader& reader);
+
+/// Whether any key of a boom file is there that is not a cylinder's own.
+bool hasBoomKey(const ParameterMap& parameters);
 
 /// A boom alone from the text of its description and files; a later file's key replaces an earlier one's. Unknown keys
 /// are problems.

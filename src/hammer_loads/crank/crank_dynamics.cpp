@@ -22,10 +22,15 @@ struct Shaft {
   double drive_inertia;
 };
 
+/// Of drive, weight and the hull's acceleration, which the drive's inertia follows.
+double torqueOf(const ShaftLoad& load, double torque, double drive_inertia) noexcept {
+  return torque + load.weight_torque - drive_inertia * load.hull_acceleration;
+}
+
 /// Time derivative of a path where the load is known.
 Path rate(const Shaft& shaft, double h, const ShaftLoad& load) noexcept {
   const double inv_root = 1.0 / std::sqrt(shaft.drive_inertia + load.inertia);
-  return {h * inv_root, (shaft.torque + load.weight_torque) * inv_root};
+  return {h * inv_root, torqueOf(load, shaft.torque, shaft.drive_inertia) * inv_root};
 }
 
 Path along(const Path& start, const Path& derivative, double dt) noexcept {
@@ -61,10 +66,10 @@ struct Linearised {
 Linearised linearised(const Shaft& shaft, double speed, const ShaftLoad& load) noexcept {
   const double inv = 1.0 / (shaft.drive_inertia + load.inertia);
   const double inv_root = std::sqrt(inv);
-  const double h_rate = (shaft.torque + load.weight_torque) * inv_root;
+  const double h_rate = torqueOf(load, shaft.torque, shaft.drive_inertia) * inv_root;
   const double slope = load.half_inertia_slope * inv, part = 0.5 * shaft.drive_inertia * inv;
   return {-speed * slope, inv_root, load.weight_torque_slope * inv_root - h_rate * slope,
-          inv_root, -part * speed, -part * h_rate};
+          inv_root, -part * speed, -part * h_rate - shaft.drive_inertia * load.hull_acceleration * inv_root};
 }
 
 /// Transition of one smooth piece: second order in dt with the mean of both ends' linearisations.
@@ -161,7 +166,7 @@ void passBlow(const ShaftModel& model, ShaftState& state, ShaftLoad& load, Shaft
 }  // namespace
 
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept {
-  return (state.torque + load.weight_torque - load.half_inertia_slope * state.speed * state.speed) /
+  return (torqueOf(load, state.torque, state.drive_inertia) - load.half_inertia_slope * state.speed * state.speed) /
          (state.drive_inertia + load.inertia);
 }
 

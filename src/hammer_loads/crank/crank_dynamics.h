@@ -8,20 +8,18 @@
 
 namespace hammer_loads {
 
-/// Links and gravity as the shaft feels them; refers to the mechanism, which must outlive it.
+/// Links, weight and motion of the hull as the shaft feels them; refers to the mechanism, which must outlive it.
 class ShaftModel {
  public:
   ShaftModel(const Mechanism& mechanism, Level level) : mechanism_(&mechanism), level_(level) {}
-  void setGravity(Gravity gravity) noexcept { gravity_ = gravity; }
-  Gravity gravity() const noexcept { return gravity_; }
-  ShaftLoad operator()(CrankAngle angle) const noexcept {
-    return shaftLoad(*mechanism_, level_, angle, gravity_);
-  }
+  void setHullMotion(const HullMotion& hull) noexcept { hull_ = hull; }
+  const HullMotion& hullMotion() const noexcept { return hull_; }
+  ShaftLoad operator()(CrankAngle angle) const noexcept { return shaftLoad(*mechanism_, level_, angle, hull_); }
 
  private:
   const Mechanism* mechanism_;
   Level level_;
-  Gravity gravity_;
+  HullMotion hull_;
 };
 
 /// Everything that decides the crank's motion.
@@ -32,7 +30,7 @@ struct ShaftState {
   double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
 };
 
-/// w' = (tau + weight - J'/2 w^2)/(Jc + J) [rad/s2] (model.md 6).
+/// w' = (tau + weight - Jc alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;
 
 /// Order of the shaft's variables in matrices: angle, speed, torque, logarithm of the drive inertia (which keeps it
@@ -46,8 +44,8 @@ using ShaftTransition = Eigen::Matrix<double, 2, 4>;
 /// in between (there the speed is continuous and the acceleration jumps). `load` is the model's at the state's angle,
 /// before and after the call.
 ///
-/// Integrates h = sqrt(Jc + J) w, half the square of which is the kinetic energy: h' = (tau + weight)/sqrt(Jc + J) has
-/// no term with the transfer function's derivative, so its linearisation needs none of third order.
+/// Integrates h = sqrt(Jc + J) w, half the square of which is the kinetic energy: its rate, the torques over
+/// sqrt(Jc + J), has no term with the transfer function's derivative, so its linearisation needs none of third order.
 /// Runge-Kutta of order 4, steps of at most 0.05 rad: error of a free turn below 1e-7 of the energy; linearisation of
 /// order 2 per step, within 1 % of finite differences at 1 kHz (test).
 ShaftTransition advance(const ShaftModel& model, double dt, ShaftState& state, ShaftLoad& load) noexcept;

@@ -27,8 +27,8 @@ double square(double x) noexcept { return x * x; }
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
-    : model_(model), settings_(settings), first_guess_(drive_inertia), encoder_(settings.angle_resolution),
-      speed_variance_(square(settings.speed_noise)) {
+    : model_(model), step_model_(model), settings_(settings), first_guess_(drive_inertia),
+      encoder_(settings.angle_resolution), speed_variance_(square(settings.speed_noise)) {
   now_.drive_inertia = drive_inertia;
   covariance_.setZero();
   covariance_(kInertia, kInertia) = square(settings.initial_inertia_deviation);
@@ -50,6 +50,7 @@ void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
   has_speed_ = sample.speed.has_value();
   outlier_seen_ = false;
   load_ = model_(now_.position.angle);
+  now_hull_ = model_.hullMotion();
   covariance_.setZero();
   covariance_(kAngle, kAngle) = encoder_.variance() + square(settings_.angle_noise);
   covariance_(kSpeed, kSpeed) = has_speed_ ? speed_variance_ : square(settings_.max_speed);
@@ -58,13 +59,14 @@ void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
 }
 
 /// Advances state and covariance by dt with the process noise of the meantime.
-void CrankFilter::predict(double dt, ShaftState& state, ShaftLoad& load, ShaftMatrix& covariance) const noexcept {
+void CrankFilter::predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept {
+  ShaftLoad load = step_model_(state.position.angle);
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
   const double torque = square(settings_.torque_walk) * h, speed = square(settings_.speed_walk) * h;
   for (int i = 0; i < steps && std::abs(state.speed) < kSoundSpeeds * settings_.max_speed; ++i) {
     const double b = 1.0 / (state.drive_inertia + load.inertia);
-    const ShaftTransition f = advance(model_, h, state, load);
+    const ShaftTransition f = advance(step_model_, h, state, load);
     const ShaftTransition moved = f * covariance;
     covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
     covariance.topRightCorner<2, 2>() = moved.rightCols<2>();
@@ -139,9 +141,9 @@ bool CrankFilter::isSound() const noexcept {
 
 Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   const ShaftState last = now_;
-  const ShaftLoad last_load = load_;
   const ShaftMatrix last_covariance = covariance_;
-  predict(dt, now_, load_, covariance_);
+  step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
+  predict(dt, now_, covariance_);
 
   const double measured = CrankAngle::fromAngle(encoder_.angle(sample.angle)).offset;
   const double innovation = CrankAngle::wrapToPi(measured - now_.position.angle.offset);
@@ -154,7 +156,6 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   if (has_speed_ && std::abs(innovation) > kJump) {
     if (!outlier_seen_) {
       now_ = last;
-      load_ = last_load;
       covariance_ = last_covariance;
       outlier_seen_ = true;
       return Tracking::kOutlier;
@@ -163,6 +164,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
     return Tracking::kRestarted;
   }
   before_ = last;
+  before_hull_ = now_hull_;
   before_covariance_ = last_covariance;
   step_ = dt;
   outlier_seen_ = false;
@@ -176,13 +178,14 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
     return Tracking::kRestarted;
   }
   load_ = model_(now_.position.angle);
+  now_hull_ = model_.hullMotion();
   const bool continued = has_speed_;
   has_speed_ = true;
   return continued ? Tracking::kContinued : Tracking::kRestarted;
 }
 
-void CrankFilter::setGravity(Gravity gravity) noexcept {
-  model_.setGravity(gravity);
+void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
+  model_.setHullMotion(hull);
   load_ = model_(now_.position.angle);
 }
 
@@ -198,9 +201,9 @@ bool CrankFilter::hasRunAway(const ShaftState& state) const noexcept {
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   ShaftState state = before_, back = now_;
-  ShaftLoad load = model_(state.position.angle), back_load = load_;
-  advance(model_, dt, state, load);
-  advance(model_, dt - step_, back, back_load);
+  ShaftLoad load = step_model_(state.position.angle), back_load = step_model_(back.position.angle);
+  advance(step_model_, dt, state, load);
+  advance(step_model_, dt - step_, back, back_load);
   const double part = dt / step_;
   if (hasRunAway(state)) {
     state = before_;
@@ -211,20 +214,22 @@ CrankEstimate CrankFilter::between(double dt) const noexcept {
   state.speed += part * (back.speed - state.speed);
   state.torque += part * (back.torque - state.torque);
   state.drive_inertia += part * (back.drive_inertia - state.drive_inertia);
-  return {state.position, state.speed, acceleration(model_(state.position.angle), state)};
+  ShaftModel there = model_;
+  there.setHullMotion(blend(before_hull_, now_hull_, dt / step_));
+  return {state.position, state.speed, acceleration(there(state.position.angle), state)};
 }
 
-Eigen::Matrix3d CrankFilter::covarianceBetween(double dt) const noexcept {
-  if (dt >= step_) return motionCovariance();
+Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) const noexcept {
+  if (dt >= step_) return motionCovariance(torque_part);
   ShaftState state = before_;
-  ShaftLoad load = model_(state.position.angle);
   ShaftMatrix covariance = before_covariance_;
-  predict(dt, state, load, covariance);
-  return motionCovarianceOf(state, covariance);
+  predict(dt, state, covariance);
+  return motionCovarianceOf(state, covariance, torque_part);
 }
 
 /// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.
-Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept {
+Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance,
+                                                double torque_part) const noexcept {
   const ShaftLoad load = model_(state.position.angle);
   const double inv = 1.0 / (state.drive_inertia + load.inertia);
   constexpr double kStep = 1e-5;  // [rad]: error 1e-10 by curvature, 1e-11 by rounding, both relative
@@ -235,8 +240,8 @@ Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const S
   jacobian(0, kAngle) = jacobian(1, kSpeed) = 1.0;
   jacobian(2, kAngle) = (acceleration(model_(high), state) - acceleration(model_(low), state)) / (2.0 * kStep);
   jacobian(2, kSpeed) = -2.0 * load.half_inertia_slope * state.speed * inv;
-  jacobian(2, kTorque) = inv;
-  jacobian(2, kInertia) = -acceleration(load, state) * state.drive_inertia * inv;
+  jacobian(2, kTorque) = inv * torque_part;
+  jacobian(2, kInertia) = -(acceleration(load, state) + load.hull_acceleration) * state.drive_inertia * inv;
   return jacobian * covariance * jacobian.transpose();
 }
 

@@ -34,7 +34,8 @@ class CrankFilter final : public CrankTracker {
   /// drive_inertia: first guess [kg m2], > 0.
   CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings);
 
-  void setGravity(Gravity gravity) noexcept override;
+  /// The step up to the coming sample is predicted with the mean of this and the last sample's.
+  void setHullMotion(const HullMotion& hull) noexcept override;
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
@@ -42,8 +43,10 @@ class CrankFilter final : public CrankTracker {
     return {now_.position, now_.speed, acceleration(load_, now_)};
   }
   CrankEstimate between(double dt) const noexcept override;
-  Eigen::Matrix3d covarianceBetween(double dt) const noexcept override;
-  Eigen::Matrix3d motionCovariance() const noexcept override { return motionCovarianceOf(now_, covariance_); }
+  Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
+  Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
+    return motionCovarianceOf(now_, covariance_, torque_part);
+  }
   bool hasSpeed() const noexcept override { return has_speed_; }
 
   const ShaftState& state() const noexcept { return now_; }
@@ -53,8 +56,9 @@ class CrankFilter final : public CrankTracker {
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
 
  private:
-  Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance) const noexcept;
-  void predict(double dt, ShaftState& state, ShaftLoad& load, ShaftMatrix& covariance) const noexcept;
+  Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance,
+                                     double torque_part) const noexcept;
+  void predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept;
   void forgetInertiaCoupling() noexcept;
   void correctAngle(double innovation) noexcept;
   void correctSpeed(double measured) noexcept;
@@ -64,7 +68,10 @@ class CrankFilter final : public CrankTracker {
   bool hasRunAway(const ShaftState& state) const noexcept;
   void anchor(double measured, const CrankSample& sample) noexcept;
 
-  ShaftModel model_;
+  ShaftModel model_;         ///< with the latest motion of the hull
+  ShaftModel step_model_;    ///< with its mean over the step between the last two samples
+  HullMotion now_hull_;      ///< at the last sample
+  HullMotion before_hull_;   ///< at the last but one sample
   CrankFilterSettings settings_;
   double first_guess_;      ///< of the drive inertia [kg m2]
   Encoder encoder_;

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "hammer_loads/crank/crank_state.h"
-#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/hull_motion.h"
 
 namespace hammer_loads {
 
@@ -47,12 +47,15 @@ class CrankTracker {
   /// False while the speed is still unknown (first sample without one).
   virtual bool hasSpeed() const noexcept = 0;
   /// Covariance of (angle [rad], speed [rad/s], acceleration [rad/s2]) at the same instant as between(dt); zero where
-  /// none is estimated.
-  virtual Eigen::Matrix3d covarianceBetween(double /*dt*/) const noexcept { return Eigen::Matrix3d::Zero(); }
+  /// none is estimated. torque_part: how much of the torque's deviation counts, see
+  /// PipelineSettings::torque_deviation_part.
+  virtual Eigen::Matrix3d covarianceBetween(double /*dt*/, double /*torque_part*/) const noexcept {
+    return Eigen::Matrix3d::Zero();
+  }
   /// The same at the last accepted sample.
-  virtual Eigen::Matrix3d motionCovariance() const noexcept { return Eigen::Matrix3d::Zero(); }
-  /// Gravity changes with the hull's pitch; only who predicts the motion needs it.
-  virtual void setGravity(Gravity /*gravity*/) noexcept {}
+  virtual Eigen::Matrix3d motionCovariance(double /*torque_part*/) const noexcept { return Eigen::Matrix3d::Zero(); }
+  /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.
+  virtual void setHullMotion(const HullMotion& /*hull*/) noexcept {}
 };
 
 }  // namespace hammer_loads

@@ -26,20 +26,20 @@ bool Grapple::inside(double slider) const noexcept {
   return slider > lower_.slider + kLimitGuard && slider < upper_.slider - kLimitGuard;
 }
 
-Refusal Grapple::judge(double slider) const noexcept {
-  if (!std::isfinite(slider)) return Refusal::kNotFinite;
-  if (inside(slider)) return Refusal::kNone;
-  if (!drive_.at(slider)) return Refusal::kOutOfReach;
+SliderRefusal Grapple::judge(double slider) const noexcept {
+  if (!std::isfinite(slider)) return SliderRefusal::kNotFinite;
+  if (inside(slider)) return SliderRefusal::kNone;
+  if (!drive_.at(slider)) return SliderRefusal::kOutOfReach;
   const SliderLimit& passed = slider < reference_.slider ? lower_ : upper_;
-  return passed.kind == SliderLimit::Kind::kDeadPoint ? Refusal::kAcrossDeadPoint : Refusal::kAcrossFold;
+  return passed.kind == SliderLimit::Kind::kDeadPoint ? SliderRefusal::kAcrossDeadPoint : SliderRefusal::kAcrossFold;
 }
 
-Refusal Grapple::judgeInStroke(double slider) const noexcept {
-  const Refusal refusal = judge(slider);
-  if (refusal != Refusal::kNone) return refusal;
+SliderRefusal Grapple::judgeInStroke(double slider) const noexcept {
+  const SliderRefusal refusal = judge(slider);
+  if (refusal != SliderRefusal::kNone) return refusal;
   const auto [low, high] = std::minmax(parameters_.slider_closed, parameters_.slider_open);
   const double margin = parameters_.slider_margin;
-  return slider >= low - margin && slider <= high + margin ? Refusal::kNone : Refusal::kOutsideStroke;
+  return slider >= low - margin && slider <= high + margin ? SliderRefusal::kNone : SliderRefusal::kOutsideStroke;
 }
 
 GrappleMotion Grapple::motionOf(double slider, const DriveMotion& drive, const GroupPose& pose,

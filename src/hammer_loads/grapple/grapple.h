@@ -33,7 +33,7 @@ struct SliderLimit {
 const char* nameOf(SliderLimit::Kind kind) noexcept;
 
 /// Why there is no pose for a slider position.
-enum class Refusal {
+enum class SliderRefusal {
   kNone,
   kNotFinite,        ///< NaN or infinite
   kOutOfReach,       ///< the drive does not close: beyond a dead point
@@ -42,10 +42,10 @@ enum class Refusal {
   kOutsideStroke,    ///< a regular pose, but the jaws overlap or open too far
   kNotFound,         ///< numerical failure; not known to happen
 };
-inline constexpr int kRefusalKinds = 7;
+inline constexpr int kSliderRefusalKinds = 7;
 
 /// One or two words for counters in diagnostics.
-const char* nameOf(Refusal refusal) noexcept;
+const char* nameOf(SliderRefusal refusal) noexcept;
 
 class Grapple {
  public:
@@ -57,11 +57,11 @@ class Grapple {
   const SliderLimit& upperLimit() const noexcept { return upper_; }
 
   /// kNone inside the working branch; the stroke is not considered.
-  Refusal judge(double slider) const noexcept;
+  SliderRefusal judge(double slider) const noexcept;
   /// The same, then kOutsideStroke beyond the stroke by more than slider_margin.
-  Refusal judgeInStroke(double slider) const noexcept;
+  SliderRefusal judgeInStroke(double slider) const noexcept;
   /// One line: name, slider position, unit, what is allowed.
-  std::string explain(Refusal refusal, double slider, const std::string& name = "slider position") const;
+  std::string explain(SliderRefusal refusal, double slider, const std::string& name = "slider position") const;
 
   /// From nothing: all branches by their polynomial, the working one of them. Nothing unless judge() says kNone.
   std::optional<GrappleMotion> at(double slider) const noexcept;

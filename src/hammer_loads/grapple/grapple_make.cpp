@@ -72,21 +72,21 @@ const char* nameOf(SliderLimit::Kind kind) noexcept {
   return "crossing of branches";
 }
 
-const char* nameOf(Refusal refusal) noexcept {
+const char* nameOf(SliderRefusal refusal) noexcept {
   switch (refusal) {
-    case Refusal::kNone:
+    case SliderRefusal::kNone:
       return "accepted";
-    case Refusal::kNotFinite:
+    case SliderRefusal::kNotFinite:
       return "not finite";
-    case Refusal::kOutOfReach:
+    case SliderRefusal::kOutOfReach:
       return "out of reach";
-    case Refusal::kAcrossDeadPoint:
+    case SliderRefusal::kAcrossDeadPoint:
       return "across dead point";
-    case Refusal::kAcrossFold:
+    case SliderRefusal::kAcrossFold:
       return "across fold";
-    case Refusal::kOutsideStroke:
+    case SliderRefusal::kOutsideStroke:
       return "outside stroke";
-    case Refusal::kNotFound:
+    case SliderRefusal::kNotFound:
       break;
   }
   return "not found";
@@ -198,23 +198,23 @@ void Grapple::checkStroke(std::vector<std::string>& problems) const {
   }
 }
 
-std::string Grapple::explain(Refusal refusal, double slider, const std::string& name) const {
+std::string Grapple::explain(SliderRefusal refusal, double slider, const std::string& name) const {
   const GrappleParameters& p = parameters_;
   const std::string given = format("%s: %.12g m, %s: must ", name.c_str(), slider, nameOf(refusal));
   switch (refusal) {
-    case Refusal::kNone:
+    case SliderRefusal::kNone:
       return {};
-    case Refusal::kNotFinite:
+    case SliderRefusal::kNotFinite:
       return given + "be a finite number";
-    case Refusal::kOutOfReach:
-    case Refusal::kAcrossDeadPoint:
-    case Refusal::kAcrossFold:
+    case SliderRefusal::kOutOfReach:
+    case SliderRefusal::kAcrossDeadPoint:
+    case SliderRefusal::kAcrossFold:
       return given + format("lie between the %s at %.13g m and the %s at %.13g m", nameOf(lower_.kind), lower_.slider,
                             nameOf(upper_.kind), upper_.slider);
-    case Refusal::kOutsideStroke:
+    case SliderRefusal::kOutsideStroke:
       return given + format("lie between %.9g m and %.9g m (+- %.3g m)", std::min(p.slider_closed, p.slider_open),
                             std::max(p.slider_closed, p.slider_open), p.slider_margin);
-    case Refusal::kNotFound:
+    case SliderRefusal::kNotFound:
       break;
   }
   return given + "have a pose on the working branch";

@@ -15,7 +15,7 @@ std::optional<std::string> printRows(const Grapple& grapple, double from, double
   for (int i = 0; i <= steps && out; ++i) {
     const double slider = i == 0 ? from : i == steps ? to : from + (to - from) * i / steps;
     motion = motion ? grapple.follow(*motion, slider) : grapple.at(slider);
-    if (!motion) return grapple.explain(Refusal::kNotFound, slider);
+    if (!motion) return grapple.explain(SliderRefusal::kNotFound, slider);
     out << motionCsvLine(*motion) << '\n';
   }
   return std::nullopt;
@@ -32,8 +32,8 @@ std::optional<std::string> printTable(const Grapple& grapple, const TableRequest
   const double from = request.from.value_or(grapple.parameters().slider_closed);
   const double to = request.to.value_or(grapple.parameters().slider_open);
   for (const auto& [name, slider] : {std::pair{"--from", from}, std::pair{"--to", to}}) {
-    const Refusal refusal = grapple.judge(slider);
-    if (refusal != Refusal::kNone) return grapple.explain(refusal, slider, name);
+    const SliderRefusal refusal = grapple.judge(slider);
+    if (refusal != SliderRefusal::kNone) return grapple.explain(refusal, slider, name);
   }
   if (!request.summary) return printRows(grapple, from, to, request.steps, out);
   out << summaryText(grapple, designFigures(grapple, from, to));

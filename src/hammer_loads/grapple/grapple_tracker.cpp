@@ -4,21 +4,22 @@
 
 namespace hammer_loads {
 
-Refusal GrappleTracker::judge(const SliderMotion& sample) const noexcept {
-  if (!std::isfinite(sample.velocity) || !std::isfinite(sample.acceleration)) return Refusal::kNotFinite;
+SliderRefusal GrappleTracker::judge(const SliderMotion& sample) const noexcept {
+  if (!std::isfinite(sample.velocity) || !std::isfinite(sample.acceleration)) return SliderRefusal::kNotFinite;
   return grapple_.judgeInStroke(sample.position);
 }
 
-Refusal GrappleTracker::update(const SliderMotion& sample) noexcept {
-  Refusal refusal = judge(sample);
-  if (refusal == Refusal::kNone) {
+SliderRefusal GrappleTracker::update(const SliderMotion& sample) noexcept {
+  SliderRefusal refusal = judge(sample);
+  if (refusal == SliderRefusal::kNone) {
     const std::optional<GrappleMotion> next =
         hasMotion() ? grapple_.follow(motion_, sample.position) : grapple_.at(sample.position);
     if (next) {
       motion_ = *next;
       slider_ = sample;
+      has_motion_ = true;
     } else {
-      refusal = Refusal::kNotFound;
+      refusal = SliderRefusal::kNotFound;
     }
   }
   ++counts_[static_cast<std::size_t>(refusal)];

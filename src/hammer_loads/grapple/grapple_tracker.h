@@ -15,9 +15,12 @@ class GrappleTracker {
   explicit GrappleTracker(const Grapple& grapple) : grapple_(grapple) {}
 
   /// kNone: accepted, motion() and both jaws belong to the sample. Else nothing has changed and the refusal is counted.
-  Refusal update(const SliderMotion& sample) noexcept;
+  SliderRefusal update(const SliderMotion& sample) noexcept;
 
-  bool hasMotion() const noexcept { return counts_[0] > 0; }  ///< a sample has been accepted
+  /// Forgets the pose, not the counts: the next sample starts cold.
+  void reset() noexcept { has_motion_ = false; }
+
+  bool hasMotion() const noexcept { return has_motion_; }  ///< a sample has been accepted since the start or reset()
   /// Of the last accepted sample. Precondition of these four: hasMotion().
   const SliderMotion& slider() const noexcept { return slider_; }
   const GrappleMotion& motion() const noexcept { return motion_; }
@@ -25,18 +28,19 @@ class GrappleTracker {
   JawMotion left() const noexcept { return leftJaw(right()); }
 
   /// Samples by outcome since construction; kNone counts the accepted ones.
-  std::uint64_t count(Refusal refusal) const noexcept { return counts_[static_cast<std::size_t>(refusal)]; }
+  std::uint64_t count(SliderRefusal refusal) const noexcept { return counts_[static_cast<std::size_t>(refusal)]; }
   std::uint64_t refused() const noexcept;
 
   const Grapple& grapple() const noexcept { return grapple_; }
 
  private:
-  Refusal judge(const SliderMotion& sample) const noexcept;
+  SliderRefusal judge(const SliderMotion& sample) const noexcept;
 
   Grapple grapple_;
   SliderMotion slider_;
   GrappleMotion motion_;
-  std::array<std::uint64_t, kRefusalKinds> counts_{};
+  bool has_motion_{};
+  std::array<std::uint64_t, kSliderRefusalKinds> counts_{};
 };
 
 }  // namespace hammer_loads

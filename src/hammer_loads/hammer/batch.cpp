@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "hammer_loads/hammer/link_loads.h"
+#include "hammer_loads/hammer/linkage_batch.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define HAMMER_LOADS_CPU_CLONES 1
@@ -94,8 +94,9 @@ HAMMER_LOADS_INLINE HullWrench pulseWrench(const Mechanism& mechanism, const Nom
 /// Copies, so that results written in the loop cannot alias them and reading them cannot fail.
 struct Job {
   explicit Job(const HullModel& model, Gravity g)
-      : mechanism(model.mechanism()), pulse(model.nominalPulse()), gravity(g) {}
+      : mechanism(model.mechanism()), linkage(mechanism, g), pulse(model.nominalPulse()), gravity(g) {}
   Mechanism mechanism;
+  LinkageConstants linkage;
   NominalPulse pulse;
   Gravity gravity;
 };
@@ -115,7 +116,7 @@ struct Workspace {
 
 HAMMER_LOADS_INLINE Motion motionOf(const Workspace& work, std::size_t i) noexcept {
   Motion m;
-  m.sin_half = work.sine[i];
+  m.sin_half = work.sine[i] + detail::kLeastSine;
   m.cos_half = work.cosine[i];
   m.inv_r = work.inv_r[i];
   m.r = work.r[i];
@@ -171,27 +172,30 @@ HAMMER_LOADS_INLINE void computeBlock(const Job& job, const Columns& in, const R
   HAMMER_LOADS_NO_ALIAS
   for (std::size_t i = 0; i < kBlock; ++i) {
     const CrankMotion crank{{}, speeds[i], accelerations[i]};
-    HullWrench wrench;
+    LinkLoads loads;
     if constexpr (level == Level::kPulse) {
-      wrench = pulseWrench(job.mechanism, job.pulse, offsetFromBlow(angles[i]), crank, job.gravity);
+      loads.wrench = pulseWrench(job.mechanism, job.pulse, offsetFromBlow(angles[i]), crank, job.gravity);
     } else {
       const Motion m = motionOf(work, i);
       const LinkMotion l = linkMotion(ratios, m);
-      wrench = level == Level::kLinkage ? hullWrenchLinkage(job.mechanism, l, crank, job.gravity)
-                                        : hullWrenchRocker(job.mechanism, m, crank, job.gravity);
+      if constexpr (level == Level::kLinkage && with_pins) {
+        loads = linkageLoads(job.linkage, l, crank.speed, crank.acceleration);
+      } else if constexpr (level == Level::kLinkage) {
+        loads.wrench = hullWrenchLinkage(job.mechanism, l, crank, job.gravity);
+      } else {
+        loads.wrench = hullWrenchRocker(job.mechanism, m, crank, job.gravity);
+        if constexpr (with_pins) loads.pins = pinForcesRocker(job.mechanism, l, crank, job.gravity, near_blow);
+      }
       if constexpr (with_pins) {
-        const PinReactions pins = level == Level::kLinkage
-                                      ? pinForcesLinkage(job.mechanism, l, crank, job.gravity, near_blow)
-                                      : pinForcesRocker(job.mechanism, l, crank, job.gravity, near_blow);
-        r01x[i] = pins.hull_on_crank.x, r01z[i] = pins.hull_on_crank.z;
-        r12x[i] = pins.crank_on_rod.x, r12z[i] = pins.crank_on_rod.z;
-        r23x[i] = pins.rod_on_rocker.x, r23z[i] = pins.rod_on_rocker.z;
-        r03x[i] = pins.hull_on_rocker.x, r03z[i] = pins.hull_on_rocker.z;
-        drive[i] = pins.drive_torque;
+        r01x[i] = loads.pins.hull_on_crank.x, r01z[i] = loads.pins.hull_on_crank.z;
+        r12x[i] = loads.pins.crank_on_rod.x, r12z[i] = loads.pins.crank_on_rod.z;
+        r23x[i] = loads.pins.rod_on_rocker.x, r23z[i] = loads.pins.rod_on_rocker.z;
+        r03x[i] = loads.pins.hull_on_rocker.x, r03z[i] = loads.pins.hull_on_rocker.z;
+        drive[i] = loads.pins.drive_torque;
       }
     }
-    x[i] = wrench.force_x, z[i] = wrench.force_z;
-    torque[i] = wrench.torque_y;
+    x[i] = loads.wrench.force_x, z[i] = loads.wrench.force_z;
+    torque[i] = loads.wrench.torque_y;
   }
 }
 

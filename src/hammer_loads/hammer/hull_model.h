@@ -36,7 +36,8 @@ inline double angleToBlow(CrankAngle angle) noexcept {
 
 /// Level pulse: half-sine in crank angle, amplitude in proportion to w^2, and the rocker's weight along the tool.
 /// Neglects: Fx and the moment; crank acceleration; Fz before the last lobe (MO-100: -3 % of H) and the lobe's skewness
-/// (MO-100: 6 % of H rms over the turn). Keeps H and the impulse S of the last lobe at constant speed exactly.
+/// (MO-100: 6 % of H rms over the turn); turning of the hull. Keeps H and the impulse S of the last lobe at constant
+/// speed exactly.
 inline HullWrench hullWrenchPulse(const Mechanism& mechanism, const NominalPulse& pulse, const CrankMotion& crank,
                                   Gravity gravity) noexcept {
   const double left = angleToBlow(crank.angle);
@@ -53,12 +54,19 @@ inline LinkMomentum linkMomentumPulse(const NominalPulse& pulse, CrankAngle angl
 }
 
 /// Hull wrench at the model's level. No allocation, no failure for finite input.
-inline HullWrench hullWrench(const HullModel& model, const CrankMotion& crank, Gravity gravity) noexcept {
-  if (model.level() == Level::kPulse) return hullWrenchPulse(model.mechanism(), model.nominalPulse(), crank, gravity);
-  return hullWrench(model.mechanism(), model.level(), crank, gravity);
+HAMMER_LOADS_INLINE HullWrench hullWrench(const HullModel& model, const CrankMotion& crank,
+                                          const HullMotion& hull) noexcept {
+  if (model.level() != Level::kPulse) return hullWrench(model.mechanism(), model.level(), crank, hull);
+  return hullWrenchPulse(model.mechanism(), model.nominalPulse(), crank, hull.gravity);
 }
 
-/// Momentum whose change is minus the impulse of hullWrench without weight between blows.
+/// The part of hullWrench that is not the change of linkMomentum: weight and motion of the hull.
+inline HullWrench frameWrench(const HullModel& model, CrankAngle angle, double speed, const HullMotion& hull) noexcept {
+  if (model.level() != Level::kPulse) return frameWrench(model.mechanism(), model.level(), angle, speed, hull);
+  return {0.0, model.mechanism().parameters().rocker_mass * hull.gravity.z, 0.0};
+}
+
+/// Momentum whose change is minus the impulse of hullWrench without frameWrench between blows.
 inline LinkMomentum linkMomentum(const HullModel& model, CrankAngle angle, double speed) noexcept {
   if (model.level() == Level::kPulse) return linkMomentumPulse(model.nominalPulse(), angle, speed);
   return linkMomentum(model.mechanism(), model.level(), angle, speed);

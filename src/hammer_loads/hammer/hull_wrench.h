@@ -1,8 +1,10 @@
-/// Load of the mechanism's moving links on the hull.
+/// Load of the mechanism's moving links on the hull, which may move itself (model.md 3).
 #pragma once
 
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/crank_motion.h"
+#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/hull_turning.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
@@ -18,7 +20,8 @@ struct HullWrench {
 };
 
 /// Momentum of the moving links relative to the hull, axes of hammer_hull, angular momentum about D.
-/// The impulse of the wrench without weight over any interval between blows is minus its change (model.md 3).
+/// The impulse of the wrench without weight over any interval between blows is minus its change (model.md 3); in a
+/// hull that moves, that of the wrench without frameWrench, in the hull's axes.
 struct LinkMomentum {
   double x{};        ///< [N s]
   double z{};        ///< [N s]
@@ -34,7 +37,7 @@ HAMMER_LOADS_INLINE HullWrench weightWrenchRocker(const Mechanism& mechanism, co
 }
 
 /// Level rocker: mass and inertia of the rocker, crank and rod massless (P0). Neglects: inertia and weight of crank and
-/// rod, friction, motion of the hull. Momentum theorem: no pin force is formed, so nothing is singular at the blow.
+/// rod, friction. Momentum theorem: no pin force is formed, so nothing is singular at the blow.
 /// Deviates: P0 (1) prints P_tau and M with the sign of the acceleration; inertia opposes it (model.md 7).
 HAMMER_LOADS_INLINE HullWrench hullWrenchRocker(const Mechanism& mechanism, const Motion& m, const CrankMotion& crank,
                                                 Gravity gravity) noexcept {
@@ -56,8 +59,8 @@ HAMMER_LOADS_INLINE LinkMomentum linkMomentumRocker(const Mechanism& mechanism, 
   return {size * m.sin_psi, size * m.cos_psi, mechanism.parameters().rocker_inertia_about_pivot * psi_rate};
 }
 
-/// Level linkage: mass, centre of mass, inertia and weight of crank, rod and rocker. Neglects: friction, motion of the
-/// hull, inertia of motor and flywheel. Momentum theorem in the frame turned by a, where hull x = -re and z = im:
+/// Level linkage: mass, centre of mass, inertia and weight of crank, rod and rocker. Neglects: friction, inertia of
+/// motor and flywheel. Momentum theorem in the frame turned by a, where hull x = -re and z = im:
 /// sum m a = C1 e^(i phi)(i e - w^2) + C2 e^(i beta)(...) + C3 e^(i psi)(...); see LinkMoments.
 HAMMER_LOADS_INLINE HullWrench hullWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
                                                  Gravity gravity) noexcept {
@@ -95,13 +98,68 @@ inline double movingMass(const Mechanism& mechanism, Level level) noexcept {
   return level == Level::kLinkage ? mechanism.moments().mass : mechanism.parameters().rocker_mass;
 }
 
+/// Adds the wrench of the masses' accelerations by the hull's turning: `inertia_forces` their sum, seen from the hull.
+inline void addTurning(const MomentsAboutD& moments, Planar inertia_forces, double speed, const HullMotion& hull,
+                       HullWrench& wrench) noexcept {
+  wrench.force_x += inertia_forces.re;
+  wrench.force_z -= inertia_forces.im;
+  wrench.torque_y -= moments.inertia * hull.acceleration + 2.0 * hull.rate * speed * moments.half_slope;
+}
+
+inline void addTurningRocker(const Mechanism& mechanism, const Motion& m, double speed, const HullMotion& hull,
+                             HullWrench& wrench) noexcept {
+  const Planar q{-hull.rate * (hull.rate + 2.0 * m.u * speed), hull.acceleration};
+  const Planar forces = mechanism.rockerFirstMoment() * (Planar{m.cos_psi, m.sin_psi} * q);
+  addTurning(momentsAboutDRocker(mechanism, m), forces, speed, hull, wrench);
+}
+
+inline void addTurningLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed, const HullMotion& hull,
+                              HullWrench& wrench) noexcept {
+  const LinkMoments& k = mechanism.moments();
+  const TurningAccelerations t = turningAccelerations(l, speed, hull);
+  const Planar forces = k.fixed * t.hull + (k.crank * l.phi) * t.links.crank + (k.rod * l.beta) * t.links.rod +
+                        k.rocker * (l.psi * t.links.rocker);
+  addTurning(momentsAboutDLinkage(mechanism, l), forces, speed, hull, wrench);
+}
+
+/// Level rocker in a hull that moves. A hull that does not turn costs nothing and gives hullWrenchRocker to the bit.
+HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, const Motion& m, const CrankMotion& crank,
+                                          const HullMotion& hull) noexcept {
+  HullWrench wrench = hullWrenchRocker(mechanism, m, crank, hull.gravity);
+  if (hull.turns()) addTurningRocker(mechanism, m, crank.speed, hull, wrench);
+  return wrench;
+}
+
+/// Level linkage, likewise.
+HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& crank,
+                                          const HullMotion& hull) noexcept {
+  HullWrench wrench = hullWrenchLinkage(mechanism, l, crank, hull.gravity);
+  if (hull.turns()) addTurningLinkage(mechanism, l, crank.speed, hull, wrench);
+  return wrench;
+}
+
 /// Hull wrench at a level of the model (level pulse: as rocker; the half-sine itself is in hull_model.h).
 /// No allocation, no failure for finite input.
 HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, Level level, const CrankMotion& crank,
-                                          Gravity gravity) noexcept {
+                                          const HullMotion& hull) noexcept {
   const Motion m = motion(mechanism.linkage(), crank.angle);
-  if (level != Level::kLinkage) return hullWrenchRocker(mechanism, m, crank, gravity);
-  return hullWrenchLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), crank, gravity);
+  if (level != Level::kLinkage) return hullWrench(mechanism, m, crank, hull);
+  return hullWrench(mechanism, linkMotion(mechanism.linkage().ratios(), m), crank, hull);
+}
+
+/// The part of hullWrench that is not the change of linkMomentum: weight and motion of the hull. Smooth in time, so
+/// that its impulse can be summed where linkMomentum's difference gives the rest.
+inline HullWrench frameWrench(const Mechanism& mechanism, Level level, CrankAngle angle, double speed,
+                              const HullMotion& hull) noexcept {
+  HullWrench wrench = hullWrench(mechanism, level, {angle, 0.0, 0.0}, hull.gravity);
+  if (!hull.turns()) return wrench;
+  const LinkMotion l = linkMotion(mechanism.linkage(), angle);
+  if (level != Level::kLinkage) {
+    addTurningRocker(mechanism, l.rocker, speed, hull, wrench);
+  } else {
+    addTurningLinkage(mechanism, l, speed, hull, wrench);
+  }
+  return wrench;
 }
 
 HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle,

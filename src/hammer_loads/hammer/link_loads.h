@@ -13,13 +13,11 @@ struct LinkLoads {
 
 /// Level pulse: as rocker. No allocation, no failure for finite input.
 HAMMER_LOADS_INLINE LinkLoads linkLoads(const Mechanism& mechanism, Level level, const CrankMotion& crank,
-                                        Gravity gravity, const NearBlow& near_blow) noexcept {
+                                        const HullMotion& hull, const NearBlow& near_blow) noexcept {
   const LinkMotion l = linkMotion(mechanism.linkage(), crank.angle);
-  if (level != Level::kLinkage) {
-    return {hullWrenchRocker(mechanism, l.rocker, crank, gravity),
-            pinForcesRocker(mechanism, l, crank, gravity, near_blow)};
-  }
-  return {hullWrenchLinkage(mechanism, l, crank, gravity), pinForcesLinkage(mechanism, l, crank, gravity, near_blow)};
+  return {level == Level::kLinkage ? hullWrench(mechanism, l, crank, hull)
+                                   : hullWrench(mechanism, l.rocker, crank, hull),
+          pinForces(mechanism, level, l, crank, hull, near_blow)};
 }
 
 }  // namespace hammer_loads

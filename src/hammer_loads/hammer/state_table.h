@@ -9,7 +9,7 @@
 
 #include "hammer_loads/linkage/checked.h"
 #include "hammer_loads/linkage/crank_motion.h"
-#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/hull_motion.h"
 
 namespace hammer_loads {
 

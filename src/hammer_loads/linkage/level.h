@@ -11,10 +11,4 @@ enum class Level {
   kLinkage,  ///< crank and rod with mass, centre of mass and inertia as well
 };
 
-/// Gravity in hull axes [m/s2]: (g sin pitch, 0, -g cos pitch) for a level base.
-struct Gravity {
-  double x{};
-  double z{};
-};
-
 }  // namespace hammer_loads

@@ -12,6 +12,8 @@
 #include <cmath>
 
 #include "hammer_loads/linkage/crank_motion.h"
+#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/hull_turning.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
@@ -22,6 +24,8 @@ struct PinForce {
   double x{};  ///< [N]
   double z{};  ///< [N]
 };
+
+constexpr PinForce operator+(PinForce a, PinForce b) noexcept { return {a.x + b.x, a.z + b.z}; }
 
 struct PinReactions {
   PinForce hull_on_crank;   ///< R01 at A
@@ -84,8 +88,8 @@ HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, con
   return pins;
 }
 
-/// Level linkage: mass, centre of mass, inertia and weight of all three links. Neglects friction, motion of the hull,
-/// inertia of motor and flywheel.
+/// Level linkage: mass, centre of mass, inertia and weight of all three links. Neglects friction, inertia of motor and
+/// flywheel.
 HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
                                                   Gravity gravity, const NearBlow& near_blow) noexcept {
   const HammerParameters& p = mechanism.parameters();
@@ -129,12 +133,69 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   return pins;
 }
 
-/// Pin forces at a level of the model (level pulse: as rocker). No allocation, no failure for finite input.
+/// Adds what the hull's turning does to level rocker.
+inline void addTurningRocker(const Mechanism& mechanism, const LinkMotion& l, double speed, const HullMotion& hull,
+                             PinReactions& pins) noexcept {
+  const Planar q = turningAccelerations(l, speed, hull).links.rocker;
+  const double moment = mechanism.parameters().rocker_inertia_about_pivot * hull.acceleration;
+  const double s = l.rocker.sin_half + detail::kLeastSine;
+  const double along = -moment * (mechanism.moments().rod_force_factor * l.rocker.inv_r) / s;
+  const Planar rod = along * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
+  for (PinForce* force : {&pins.rod_on_rocker, &pins.crank_on_rod, &pins.hull_on_crank}) {
+    *force = *force + detail::toHull(rod);
+  }
+  pins.hull_on_rocker = pins.hull_on_rocker + detail::toHull(mechanism.rockerFirstMoment() * (l.psi * q) - rod);
+  pins.drive_torque += l.rocker.u * moment;
+}
+
+/// The same for level linkage: the dyads of pinForcesLinkage with the added accelerations.
+inline void addTurningLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed, const HullMotion& hull,
+                              PinReactions& pins) noexcept {
+  const HammerParameters& p = mechanism.parameters();
+  const LinkMoments& k = mechanism.moments();
+  const TurningAccelerations t = turningAccelerations(l, speed, hull);
+  const LinkAccelerations& q = t.links;
+  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, coupling = linkCoupling(mechanism, l);
+  const Planar at_a = -1.0 * (k.pivot * t.hull);  // acceleration of pin A
+
+  // Moments of the inertia forces: rocker about D, rod about B, crank about A with the rod's mass at B.
+  const double rocker_moment = p.rocker_inertia_about_pivot * hull.acceleration;
+  const double rod_moment = k.rod_inertia * hull.acceleration + (conj(rod) * at_a).im + (conj(coupling) * q.crank).im;
+  const double crank_moment = k.crank_inertia * hull.acceleration + (conj(crank) * at_a).im + (coupling * q.rod).im;
+
+  const double across = -rod_moment * k.inv_rod_length;
+  const double along_s =
+      -(rocker_moment + k.rocker_over_rod * l.cos_mu * rod_moment) * (k.rod_force_factor * l.rocker.inv_r);
+  const double along = along_s / (l.rocker.sin_half + detail::kLeastSine);
+  const Planar on_rocker = Planar{along, across} * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
+  const Planar above_crank = on_rocker + rod * q.rod;
+  const Planar on_rod = above_crank + (k.rod_at_b * l.phi) * q.crank + p.rod_mass * at_a;
+  const Planar on_crank = above_crank + crank * q.crank + k.fixed * t.hull;
+  pins.rod_on_rocker = pins.rod_on_rocker + detail::toHull(on_rocker);
+  pins.crank_on_rod = pins.crank_on_rod + detail::toHull(on_rod);
+  pins.hull_on_crank = pins.hull_on_crank + detail::toHull(on_crank);
+  pins.hull_on_rocker = pins.hull_on_rocker + detail::toHull(k.rocker * (l.psi * q.rocker) - on_rocker);
+  pins.drive_torque += crank_moment + p.lengths.crank * (along_s * l.sin_delta_over_s + across * l.delta.re);
+}
+
+/// Pin forces at a level of the model (level pulse: as rocker) of a motion already known.
+HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level level, const LinkMotion& l,
+                                           const CrankMotion& crank, const HullMotion& hull,
+                                           const NearBlow& near_blow) noexcept {
+  if (level != Level::kLinkage) {
+    PinReactions pins = pinForcesRocker(mechanism, l, crank, hull.gravity, near_blow);
+    if (hull.turns()) addTurningRocker(mechanism, l, crank.speed, hull, pins);
+    return pins;
+  }
+  PinReactions pins = pinForcesLinkage(mechanism, l, crank, hull.gravity, near_blow);
+  if (hull.turns()) addTurningLinkage(mechanism, l, crank.speed, hull, pins);
+  return pins;
+}
+
+/// The same from the crank's motion. No allocation, no failure for finite input.
 HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level level, const CrankMotion& crank,
-                                           Gravity gravity, const NearBlow& near_blow) noexcept {
-  const LinkMotion l = linkMotion(mechanism.linkage(), crank.angle);
-  return level == Level::kLinkage ? pinForcesLinkage(mechanism, l, crank, gravity, near_blow)
-                                  : pinForcesRocker(mechanism, l, crank, gravity, near_blow);
+                                           const HullMotion& hull, const NearBlow& near_blow) noexcept {
+  return pinForces(mechanism, level, linkMotion(mechanism.linkage(), crank.angle), crank, hull, near_blow);
 }
 
 }  // namespace hammer_loads

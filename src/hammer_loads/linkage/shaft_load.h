@@ -1,7 +1,9 @@
-/// What the mechanism's moving links are to the crank's shaft: a variable inertia and a weight torque.
+/// What the mechanism's moving links are to the crank's shaft: a variable inertia and a torque by weight and hull.
 #pragma once
 
 #include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/hull_turning.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
@@ -13,8 +15,9 @@ namespace hammer_loads {
 struct ShaftLoad {
   double inertia{};              ///< reflected inertia of the links [kg m2]
   double half_inertia_slope{};   ///< half its derivative by the crank angle [kg m2/rad]
-  double weight_torque{};        ///< torque of the links' weight on the crank [N m]
+  double weight_torque{};        ///< torque of the links' weight and of the hull's motion on the crank [N m]
   double weight_torque_slope{};  ///< its derivative by the crank angle [N m/rad]
+  double hull_acceleration{};    ///< alpha, which all that turns with the crank must follow as well [rad/s2]
 };
 
 /// Level rocker: I u^2 and the rocker's weight. Neglects mass and inertia of crank and rod (a constant part of them
@@ -25,11 +28,11 @@ HAMMER_LOADS_INLINE ShaftLoad shaftLoadRocker(const Mechanism& mechanism, const 
   // Rocker weight times distance: moment about D and its derivative by psi.
   const double moment = mechanism.rockerFirstMoment() * (m.sin_psi * gravity.x + m.cos_psi * gravity.z);
   const double moment_slope = mechanism.rockerFirstMoment() * (m.cos_psi * gravity.x - m.sin_psi * gravity.z);
-  return {ux * m.u, ux * m.du, m.u * moment, m.du * moment + m.u * m.u * moment_slope};
+  return {ux * m.u, ux * m.du, m.u * moment, m.du * moment + m.u * m.u * moment_slope, 0.0};
 }
 
 /// Level linkage: kinetic energy w^2/2 (J1 + J2 v^2 + I u^2 + 2 v Re K), K = linkCoupling, and the weight of all links.
-/// Neglects friction and the motion of the hull.
+/// Neglects friction.
 HAMMER_LOADS_INLINE ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const LinkMotion& l,
                                                Gravity gravity) noexcept {
   const LinkMoments& k = mechanism.moments();
@@ -49,12 +52,27 @@ HAMMER_LOADS_INLINE ShaftLoad shaftLoadLinkage(const Mechanism& mechanism, const
   return load;
 }
 
+/// Adds what the hull's turning does: power of the added inertia forces per crank speed. Coriolis forces have none.
+inline void addTurning(const MomentsAboutD& moments, const HullMotion& hull, ShaftLoad& load) noexcept {
+  const double square = hull.rate * hull.rate;
+  load.weight_torque += square * moments.half_slope - hull.acceleration * moments.momentum;
+  load.weight_torque_slope += square * moments.half_slope_slope - hull.acceleration * moments.momentum_slope;
+  load.hull_acceleration = hull.acceleration;
+}
+
 /// Shaft load at a level of the model (level pulse: as rocker). No allocation, no failure for finite input.
 HAMMER_LOADS_INLINE ShaftLoad shaftLoad(const Mechanism& mechanism, Level level, CrankAngle angle,
-                                        Gravity gravity) noexcept {
+                                        const HullMotion& hull) noexcept {
   const Motion m = motion(mechanism.linkage(), angle);
-  if (level != Level::kLinkage) return shaftLoadRocker(mechanism, m, gravity);
-  return shaftLoadLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), gravity);
+  if (level != Level::kLinkage) {
+    ShaftLoad load = shaftLoadRocker(mechanism, m, hull.gravity);
+    if (hull.turns()) addTurning(momentsAboutDRocker(mechanism, m), hull, load);
+    return load;
+  }
+  const LinkMotion l = linkMotion(mechanism.linkage().ratios(), m);
+  ShaftLoad load = shaftLoadLinkage(mechanism, l, hull.gravity);
+  if (hull.turns()) addTurning(momentsAboutDLinkage(mechanism, l), hull, load);
+  return load;
 }
 
 /// Drive torque on the crank, about hull +y, that gives it an acceleration [N m]; inertia of motor and flywheel not

@@ -1,7 +1,11 @@
 #include "hammer_loads/parameters/command_line.h"
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "hammer_loads/parameters/yaml_value.h"
 
@@ -13,6 +17,18 @@ std::string ruleText(double least, double most) {
   if (std::isfinite(least)) rule += (least == 0.0 ? " > " : " >= ") + numberText(least);
   if (std::isfinite(most)) rule += (std::isfinite(least) ? " and <= " : " <= ") + numberText(most);
   return rule;
+}
+
+/// Nothing when it cannot be read or holds nothing; one line on stderr says so.
+std::optional<std::string> textOf(const std::string& file) {
+  std::ostringstream text;
+  errno = 0;
+  std::ifstream stream(file);
+  text << stream.rdbuf();  // fails for nothing at all to read as well
+  if (stream && text) return text.str();
+  const int error = errno;
+  std::cerr << file << ": cannot be read: " << (error != 0 ? std::strerror(error) : "is empty") << '\n';
+  return std::nullopt;
 }
 
 }  // namespace
@@ -67,8 +83,14 @@ int finishOutput() {
   return kExitFailure;
 }
 
-std::optional<Settings> loadOrReport(const std::vector<std::string>& files) {
-  Checked<Settings> settings = loadFiles(configDirectory(), files);
+void addUrdfOption(CLI::App& app, std::string& file) {
+  app.add_option("--urdf", file, "robot description; with it the boom's loads as well")->type_name("FILE.urdf");
+}
+
+std::optional<Settings> loadOrReport(const std::vector<std::string>& files, const std::string& urdf_file) {
+  const std::optional<std::string> description = urdf_file.empty() ? std::string{} : textOf(urdf_file);
+  if (!description) return std::nullopt;
+  Checked<Settings> settings = loadFiles(configDirectory(), files, *description);
   for (const std::string& problem : settings.problems) std::cerr << problem << '\n';
   if (!settings.value) return std::nullopt;
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';

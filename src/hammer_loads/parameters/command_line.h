@@ -28,7 +28,11 @@ std::optional<int> parse(CLI::App& app, int argc, const char* const* argv);
 /// Exit code of a command that has written its result to stdout; tells when that cannot be written.
 int finishOutput();
 
-/// Settings from files over the shipped ones; every problem and note on stderr, one line each.
-std::optional<Settings> loadOrReport(const std::vector<std::string>& files);
+/// Adds `--urdf FILE`, the robot description that the boom is made from.
+void addUrdfOption(CLI::App& app, std::string& file);
+
+/// Settings from files over the shipped ones and the robot description in `urdf_file` (empty: none); every problem and
+/// note on stderr, one line each.
+std::optional<Settings> loadOrReport(const std::vector<std::string>& files, const std::string& urdf_file = {});
 
 }  // namespace hammer_loads

@@ -1,9 +1,12 @@
 /// From parameter files to checked settings.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "hammer_loads/boom/boom.h"
 #include "hammer_loads/linkage/checked.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/parameters/log_settings.h"
@@ -16,7 +19,10 @@ struct Settings {
   Mechanism mechanism;
   PipelineSettings pipeline;
   LogSettings log;
-  std::string yaml;                ///< every parameter in force; loading it alone gives the same settings
+  std::optional<Boom> boom;        ///< nothing: no robot description, or `boom: none`
+  std::string robot_description;   ///< the URDF's text, as given
+  std::string yaml;                ///< every parameter in force; loading it alone with the same robot description
+                                   ///< gives the same settings
   std::vector<std::string> notes;  ///< accepted peculiarities, one line each
 };
 
@@ -24,10 +30,18 @@ struct Settings {
 ///
 /// Pipeline and log: each key given replaces the shipped one. Hammer: physical parameters have no defaults, so a single
 /// hammer key given means that all must be; with none given hammer_mo100.yaml is used.
-Checked<Settings> load(const std::string& config_directory, const ParameterMap& given);
+///
+/// Boom: from the text of a robot description (URDF; empty: none) and the boom file's keys, of which a single one given
+/// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`.
+Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
+                       const std::string& robot_description = {});
 
 /// The same from files; a later file's key replaces an earlier one's.
-Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files);
+Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
+                            const std::string& robot_description = {});
+
+/// Settings in force with some numbers changed. The keys must be among those in force and the values allowed.
+Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
 
 /// Where the shipped files are: beside the installed program or library, else in the source tree it was built from.
 std::string configDirectory();

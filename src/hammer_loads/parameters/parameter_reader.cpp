@@ -167,7 +167,7 @@ void ParameterReader::report(const std::string& key, const std::string& line) {
 
 void ParameterReader::addProblem(const std::string& line) {
   const std::string key = line.substr(0, line.find(':'));
-  if (faulty_.count(key) == 0) report(key, line);
+  if (known_.count(key) == 0 || faulty_.count(key) == 0) report(key, line);
 }
 
 void ParameterReader::reportUnknownKeys() {

@@ -52,8 +52,8 @@ class ParameterReader {
     return choices[choiceIndex(key, words)].second;
   }
 
-  /// A line `KEY: ...` found by whoever knows more than one key's rule. Left out when KEY has a problem already;
-  /// where KEY came from is added.
+  /// A line `KEY: ...` found by whoever knows more than one key's rule. Left out when the parameter KEY has a problem
+  /// already; where KEY came from is added.
   void addProblem(const std::string& line);
   /// Call after every read: each key that nobody asked for, with the nearest known one.
   void reportUnknownKeys();

@@ -3,17 +3,12 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/pipeline/stamp_order.h"
 
 namespace hammer_loads {
-
-/// Header stamp [ns]. The only time the pipeline knows.
-using StampNs = std::int64_t;
-
-constexpr double kSecondsPerNs = 1e-9;
 
 /// Why an input gave no wrench.
 enum class Refusal : std::size_t {
@@ -34,7 +29,7 @@ constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRe
 class Intake {
  public:
   /// Speed bound [rad/s] and age of the last sample from which on a new one starts anew [s].
-  Intake(double max_speed, double stale_after) : max_speed_(max_speed), stale_after_(stale_after) {}
+  Intake(double max_speed, double stale_after) : max_speed_(max_speed), stamps_(stale_after) {}
 
   enum class Order { kFirst, kNext };
   struct Verdict {
@@ -43,16 +38,14 @@ class Intake {
     double step{};  ///< since the last accepted sample [s]
   };
 
-  /// Time running back is believed from the second sample on: the first may just be late.
   Verdict judge(StampNs stamp, const CrankSample& sample) noexcept;
-  void accept(StampNs stamp) noexcept { last_ = stamp; }
-  void reset() noexcept { last_.reset(), rewound_.reset(); }
-  const std::optional<StampNs>& last() const noexcept { return last_; }
+  void accept(StampNs stamp) noexcept { stamps_.accept(stamp); }
+  void reset() noexcept { stamps_.reset(); }
+  const std::optional<StampNs>& last() const noexcept { return stamps_.last(); }
 
  private:
-  double max_speed_, stale_after_;
-  std::optional<StampNs> last_;     ///< of the last accepted sample
-  std::optional<StampNs> rewound_;  ///< of the last sample, if it was refused as out of order
+  double max_speed_;
+  StampOrder stamps_;
 };
 
 }  // namespace hammer_loads

@@ -5,60 +5,76 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/plain_tracker.h"
+#include "hammer_loads/pipeline/make_tracker.h"
+#include "hammer_loads/pipeline/step_impulse.h"
 
 namespace hammer_loads {
 namespace {
 
 constexpr double kTrackStep = 1.25e-3;    // [s] between points of a turn at most: 15 of them in the MO-100's pulse
-constexpr double kBlowSpeed = 1.0;        // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
 constexpr double kSideOfBlow = 1e-7;      // [s] before and after the blow where its two sides are looked at
 constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
 
-std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
-  if (s.crank_estimator != CrankEstimator::kMechanism) {
-    const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
-                                                                         : PlainTracker::Acceleration::kDifference;
-    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution);
-  }
-  const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
-  CrankFilterSettings filter;
-  filter.angle_resolution = s.crank_angle_resolution;
-  filter.angle_noise = s.crank_angle_noise;
-  filter.speed_noise = s.crank_speed_noise;
-  filter.torque_walk = s.torque_walk * inertia;
-  filter.speed_walk = s.speed_walk;
-  filter.inertia_walk = s.inertia_walk;
-  filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
-  filter.initial_inertia_deviation = s.initial_inertia_deviation;
-  filter.max_speed = s.max_crank_speed;
-  return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia, filter);
+/// A hull that has the boom's vibration: of none, if the boom is rigid or not known.
+HullMotion withVibration(Gravity weight, const BoomState* boom) noexcept {
+  if (boom == nullptr || boom->fault || !boom->choice.compliant) return weight;
+  const auto& a = boom->tip.acceleration;  // linear, then angular
+  return {{weight.x - a[0], weight.z - a[2]}, boom->tip.velocity[4], a[4]};
 }
-
-Gravity gravityAtPitch(double g, double pitch) noexcept { return {g * std::sin(pitch), -g * std::cos(pitch)}; }
 
 double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSecondsPerNs; }
 
 }  // namespace
 
-Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings)
+Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom,
+                   const IntakeCounts& counts)
     : mechanism_(mechanism),
       settings_(settings),
       hull_model_(mechanism_, settings.level),
       tracker_(makeTracker(mechanism_, settings)),
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
-      gravity_(gravityAtPitch(settings.gravity, settings.hull_pitch)),
-      intake_(settings.max_crank_speed, settings.stale_after) {
-  tracker_->setGravity(gravity_);
+      imu_(settings.imu),
+      unit_check_(settings.max_crank_speed),
+      intake_(settings.max_crank_speed, settings.stale_after),
+      step_(*tracker_),
+      outputs_(hull_model_, step_, settings),
+      counts_(counts) {
+  if (boom) boom_.emplace(*boom, settings, mechanism.parameters().striking_distance);
+  hull_ = gravityByPitch();
+  tracker_->setHullMotion(hull_);
 }
 
-bool Pipeline::boomJoints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
-  if (!hull_pitch_.update(names, positions)) return false;
-  gravity_ = gravityAtPitch(settings_.gravity, hull_pitch_.pitch());
-  tracker_->setGravity(gravity_);
-  return true;
+Gravity Pipeline::gravityByPitch() const noexcept {
+  const double pitch = hull_pitch_.pitch();
+  return {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)};
+}
+
+bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
+                          const std::vector<double>& velocities) noexcept {
+  const bool of_boom = boom_ && boom_->jointStates(stamp, names, positions, velocities);
+  return hull_pitch_.update(names, positions) || of_boom;
+}
+
+std::optional<ImuRefusal> Pipeline::hullImu(StampNs stamp, const ImuReading& reading) noexcept {
+  const std::optional<ImuRefusal> refusal = imu_.update(stamp, reading);
+  ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
+  return refusal;
+}
+
+/// The hull's motion at a sample as far as it is known before the sample is: the boom's vibration from the one before.
+void Pipeline::predictHull(StampNs stamp) noexcept {
+  const Gravity weight = gravityByPitch();
+  hull_known_ = true;
+  if (settings_.hull_motion == HullMotionSource::kImu) {
+    const std::optional<HullMotion> measured = imu_.at(stamp);
+    hull_known_ = measured.has_value();
+    imu_counts_.missed += !hull_known_;
+    hull_ = measured.value_or(HullMotion(weight));
+  } else {
+    hull_ = settings_.hull_motion == HullMotionSource::kModel ? withVibration(weight, loads_.boom) : HullMotion(weight);
+  }
+  tracker_->setHullMotion(hull_);
 }
 
 const Loads& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>& names,
@@ -75,6 +91,7 @@ const Loads& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>&
 
 const Loads& Pipeline::refuse(Refusal refusal) noexcept {
   loads_.refusal = refusal;
+  loads_.boom = nullptr;
   ++counts_.refused[static_cast<std::size_t>(refusal)];
   return loads_;
 }
@@ -83,34 +100,65 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
   loads_.stamp = stamp;
   loads_.turn_ends = 0;
   loads_.refusal.reset();
+  unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, sample.angle, sample.speed);
+  last_raw_stamp_ = stamp;
   const Intake::Verdict verdict = intake_.judge(stamp, sample);
   if (verdict.refusal) return refuse(*verdict.refusal);
 
+  predictHull(stamp);
   if (verdict.order == Intake::Order::kFirst) {
     tracker_->start(sample);
+    loads_.crank = tracker_->estimate();
     epoch_ = stamp;
     restart();
   } else {
     const Tracking tracking = tracker_->update(verdict.step, sample);
     if (tracking == Tracking::kOutlier) return refuse(Refusal::kImplausible);
     if (tracking == Tracking::kRestarted) restart();
-    if (tracking == Tracking::kContinued && want_turns_) followTurn(verdict.step);
+    loads_.crank = tracker_->estimate();
+    if (tracking == Tracking::kContinued) {
+      step_.take(*intake_.last(), verdict.step, last_position_);
+      if (want_turns_ || boom_) followTurn();
+    }
   }
   intake_.accept(stamp);
   speed_measured_ = sample.speed.has_value();
-  loads_.crank = tracker_->estimate();
   last_position_ = loads_.crank.position;
-  if (!settled()) return refuse(Refusal::kUnsettled);
+  if (!settled()) {
+    boom_follows_ = false;
+    return refuse(Refusal::kUnsettled);
+  }
+  followBoom(stamp);
+  if (settings_.hull_motion == HullMotionSource::kModel) hull_ = withVibration(gravityByPitch(), loads_.boom);
   loads_.wrench = hullWrench(hull_model_,
-                             {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, gravity_);
+                             {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, hull_);
+  outputs_.sample(stamp, loads_.crank, loads_.wrench, hull_);
   ++counts_.accepted;
   return loads_;
 }
 
+void Pipeline::followBoom(StampNs stamp) noexcept {
+  loads_.boom = nullptr;
+  const bool wanted = want_boom_ || settings_.hull_motion == HullMotionSource::kModel;
+  if (!boom_ || !wanted) {
+    boom_follows_ = false;
+    return;
+  }
+  const CrankEstimate& crank = loads_.crank;
+  const HullWrench motion = hullWrench(hull_model_, {crank.position.angle, crank.speed, crank.acceleration}, Gravity{});
+  const LoadStep step = boom_follows_ ? loadStep(hull_model_, step_) : LoadStep{};
+  loads_.boom = &boom_->sample({stamp, motion, settings_.gravity}, step);
+  boom_follows_ = true;
+  for (std::size_t i = 0; i < loads_.turn_ends; ++i)
+    boom_->turnEnded(loads_.ends[i].pulse, loads_.ends[i].mean_press_force);
+}
+
 void Pipeline::restart() noexcept {
+  step_.forget(tracker_->estimate().position);
+  outputs_.forget();
+  boom_follows_ = false;
   turn_.abandon();
   last_blow_.reset();
-  furthest_blow_ = tracker_->estimate().position.blowsPassed();
   unsettled_ = true;
   samples_since_restart_ = 0;
   ++counts_.restarts;
@@ -121,106 +169,75 @@ bool Pipeline::settled() noexcept {
   if (!unsettled_) return true;
   if (!tracker_->hasSpeed()) return false;
   if (peak_force_ > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;
-  if (peak_force_ > 0.0 && kSettledDeviations * wrenchDeviation() > settings_.withhold_above * peak_force_) return false;
+  if (peak_force_ > 0.0) {
+    const double deviation =
+        hullDeviation(hull_model_, loads_.crank, hull_, tracker_->motionCovariance(1.0)).wrench.force_z;
+    if (kSettledDeviations * deviation > settings_.withhold_above * peak_force_) return false;
+  }
   unsettled_ = false;
   return true;
 }
 
-/// Standard deviation of the force along the tool [N], by differences of the wrench.
-double Pipeline::wrenchDeviation() const noexcept {
-  const Eigen::Matrix3d covariance = tracker_->motionCovariance();
-  const CrankEstimate& at = loads_.crank;
-  const auto force = [&](double angle, double speed, double acceleration) noexcept {
-    CrankAngle moved = at.position.angle;
-    moved.offset += angle;
-    return hullWrench(hull_model_, {moved, at.speed + speed, at.acceleration + acceleration}, gravity_)
-        .force_z;
-  };
-  constexpr double kStep[] = {1e-5, 1e-3, 1e-2};
-  const Eigen::Vector3d gradient{(force(kStep[0], 0, 0) - force(-kStep[0], 0, 0)) / (2.0 * kStep[0]),
-                                 (force(0, kStep[1], 0) - force(0, -kStep[1], 0)) / (2.0 * kStep[1]),
-                                 (force(0, 0, kStep[2]) - force(0, 0, -kStep[2])) / (2.0 * kStep[2])};
-  return std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
+HullDeviation Pipeline::deviation(const HullOutput& output) noexcept {
+  const bool at_sample = output.stamp == loads_.stamp;
+  const Eigen::Matrix3d covariance =
+      at_sample ? tracker_->motionCovariance(settings_.torque_deviation_part)
+                : tracker_->covarianceBetween(seconds(output.stamp - step_.start()), settings_.torque_deviation_part);
+  HullDeviation result = hullDeviation(hull_model_, output.crank, hull_, covariance);
+  if (settings_.output != OutputKind::kMean) return result;
+  const HullWrench momentum = momentumDeviation(hull_model_, output.crank, covariance);
+  const HullWrench allowed = (1.0 / output.interval) * (last_momentum_deviation_ + momentum);
+  last_momentum_deviation_ = momentum;
+  result.wrench = {std::fmin(result.wrench.force_x, allowed.force_x), std::fmin(result.wrench.force_z, allowed.force_z),
+                   std::fmin(result.wrench.torque_y, allowed.torque_y)};
+  return result;
 }
 
 TurnInstant Pipeline::instant(double time, const CrankEstimate& crank) const noexcept {
-  const CrankAngle angle = crank.position.angle;
-  const HullWrench weight = hullWrench(hull_model_, {angle, 0.0, 0.0}, gravity_);
-  return {time, hullWrench(hull_model_, {angle, crank.speed, crank.acceleration}, gravity_),
-          linkMomentum(hull_model_, angle, crank.speed), weight.force_x, weight.force_z};
+  const CrankMotion motion{crank.position.angle, crank.speed, crank.acceleration};
+  const HullWrench added = frameWrench(hull_model_, motion.angle, motion.speed, hull_);
+  return {time, hullWrench(hull_model_, motion, hull_), linkMomentum(hull_model_, motion.angle, motion.speed),
+          added.force_x, added.force_z};
 }
 
-/// Points of the turn in (from, to] [s] after the last but one sample.
+/// Points of the turn in (from, to] [s] after the step's start.
 void Pipeline::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
-  const double origin = seconds(*intake_.last() - epoch_);
+  const double origin = seconds(step_.start() - epoch_);
   const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kTrackStep)));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
-    turn_.add(instant(origin + time, tracker_->between(time)));
+    turn_.add(instant(origin + time, step_.at(time)));
   }
 }
 
-void Pipeline::followTurn(double step) noexcept {
-  const CrankEstimate now = tracker_->estimate();
-  const std::int64_t passed_before = last_position_.blowsPassed(), passed_now = now.position.blowsPassed();
-  if (passed_now < passed_before) turn_.abandon();
+void Pipeline::followTurn() noexcept {
+  if (loads_.crank.position.blowsPassed() < last_position_.blowsPassed()) turn_.abandon();
   double from = 0.0;
-  for (std::int64_t blow = passed_before + 1; blow <= passed_now; ++blow) {
-    if (blow <= furthest_blow_) continue;
-    furthest_blow_ = blow;
-    const double time = timeOfBlow(blow, step);
-    if (tracker_->between(time).speed < kBlowSpeed) continue;
-    recordTo(from, std::max(from, time - kSideOfBlow));
-    endTurn(time);
-    from = time + kSideOfBlow;
+  for (const CrankStep::Passage& passage : step_) {
+    if (!passage.strikes) continue;
+    recordTo(from, std::max(from, passage.time - kSideOfBlow));
+    endTurn(passage);
+    from = passage.time + kSideOfBlow;
   }
-  recordTo(from, step);
+  recordTo(from, step_.length());
 }
 
-/// Root of the position by bracketing false position (Illinois) [s after the last but one sample].
-double Pipeline::timeOfBlow(std::int64_t blow, double step) const noexcept {
-  const CrankPosition at_blow{blow, {0.0, Side::kAfterBlow}};
-  double low = 0.0, high = step;
-  double f_low = difference(tracker_->between(low).position, at_blow);
-  double f_high = difference(tracker_->between(high).position, at_blow);
-  constexpr double kAngleTolerance = 1e-11;  // [rad]: some 1e-12 s
-  int kept = 0;  // which end stayed last time: +1 high, -1 low
-  for (int i = 0; i < 60 && f_high > kAngleTolerance && f_low < -kAngleTolerance; ++i) {
-    const double time = (low * f_high - high * f_low) / (f_high - f_low);
-    const double f = difference(tracker_->between(time).position, at_blow);
-    if (f < 0.0) {
-      low = time, f_low = f;
-      if (kept == 1) f_high *= 0.5;
-      kept = 1;
-    } else {
-      high = time, f_high = f;
-      if (kept == -1) f_low *= 0.5;
-      kept = -1;
-    }
-  }
-  return f_high <= -f_low ? high : low;
-}
-
-void Pipeline::endTurn(double time) noexcept {
-  const StampNs stamp = *intake_.last() + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
-  const double origin = seconds(*intake_.last() - epoch_);
-  CrankEstimate before = tracker_->between(std::max(0.0, time - kSideOfBlow));
-  CrankEstimate after = tracker_->between(time + kSideOfBlow);
-  before.position.angle = {0.0, Side::kBeforeBlow};
-  after.position.angle = {0.0, Side::kAfterBlow};
+void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
+  const StampNs stamp = step_.start() + static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
+  const double time = seconds(step_.start() - epoch_) + passage.time;
   ++turns_;
   TurnEnd end;
   end.stamp = stamp;
   end.turn = turns_;
-  end.blow = blowAtCrankSpeed(mechanism_, settings_.level, tracker_->between(time).speed);
-  end.pulse = turn_.end(instant(origin + time, before));
+  end.blow = blowAtCrankSpeed(mechanism_, settings_.level, passage.speed);
+  end.pulse = turn_.end(instant(time, step_.besides(passage, Side::kBeforeBlow)));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
   end.mean_press_force = last_blow_ ? end.blow.tool_impulse_z / seconds(stamp - *last_blow_)
                                     : std::numeric_limits<double>::quiet_NaN();
   if (loads_.turn_ends < loads_.ends.size()) loads_.ends[loads_.turn_ends++] = end;
   last_blow_ = stamp;
-  turn_.begin(instant(origin + time, after));
+  turn_.begin(instant(time, step_.besides(passage, Side::kAfterBlow)));
 }
 
 }  // namespace hammer_loads

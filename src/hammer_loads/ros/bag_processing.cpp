@@ -2,12 +2,12 @@
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 
+#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/grapple_bag_processing.h"
 #include "hammer_loads/ros/loads_flow.h"
 
 namespace hammer_loads {
@@ -18,16 +18,23 @@ class BagSink final : public LoadsSink {
   BagSink(rosbag::Bag& bag, const BagJob& job) : bag_(bag), prefix_(job.output_prefix + "/"), pins_(job.pins) {}
 
   void runInfo(const RunInfo& message, const ros::Time& record_time) override {
-    const auto header = boost::make_shared<ros::M_string>();
-    (*header)["latching"] = "1";
-    (*header)["topic"] = prefix_ + "run_info";
-    (*header)["type"] = ros::message_traits::datatype<RunInfo>();
-    (*header)["md5sum"] = ros::message_traits::md5sum<RunInfo>();
-    (*header)["message_definition"] = ros::message_traits::definition<RunInfo>();
-    bag_.write(prefix_ + "run_info", record_time, message, header);
+    writeLatched(bag_, prefix_ + "run_info", record_time, message);
   }
   void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "hull_wrench", record_time, message);
+  }
+  void boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& message,
+                  const ros::Time& record_time) override {
+    bag_.write(prefix_ + "boom_wrench/" + link, record_time, message);
+  }
+  void jointLoads(const JointLoads& message, const ros::Time& record_time) override {
+    bag_.write(prefix_ + "joint_loads", record_time, message);
+  }
+  void boomVibration(const BoomVibration& message, const ros::Time& record_time) override {
+    bag_.write(prefix_ + "boom_vibration", record_time, message);
+  }
+  void hullLoads(const HullLoads& message, const ros::Time& record_time) override {
+    bag_.write(prefix_ + "hull_loads", record_time, message);
   }
   void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "mechanism", record_time, message);
@@ -41,6 +48,10 @@ class BagSink final : public LoadsSink {
   void pulse(const Pulse& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "pulse", record_time, message);
   }
+  bool wantsBoomWrench(const std::string&) const override { return true; }
+  bool wantsJointLoads() const override { return true; }
+  bool wantsBoomVibration() const override { return true; }
+  bool wantsHullLoads() const override { return true; }
   bool wantsMechanism() const override { return true; }
   bool wantsPinForces() const override { return pins_; }
   bool wantsTurns() const override { return true; }
@@ -51,61 +62,83 @@ class BagSink final : public LoadsSink {
   bool pins_;
 };
 
-/// Removes the unfinished output unless it was given its final name.
-class PartialFile {
- public:
-  explicit PartialFile(const std::string& final_name)
-      : final_name_(final_name), name_(final_name + ".part." + std::to_string(getpid())) {}
-  PartialFile(const PartialFile&) = delete;
-  PartialFile& operator=(const PartialFile&) = delete;
-  ~PartialFile() {
-    if (!kept_) std::remove(name_.c_str());
-  }
-  const std::string& name() const { return name_; }
-  bool keep() { return kept_ = std::rename(name_.c_str(), final_name_.c_str()) == 0; }
-
- private:
-  std::string final_name_, name_;
-  bool kept_{};
+/// What of the job the bag has input for.
+struct BagInputs {
+  bool crank{}, joints{};
 };
 
-std::string checkTopics(rosbag::Bag& bag, const BagJob& job) {
+std::string checkTopics(rosbag::Bag& bag, const BagJob& job, BagInputs& inputs) {
   rosbag::View all(bag);
-  bool crank = false;
   std::string topics;
   for (const rosbag::ConnectionInfo* connection : all.getConnections()) {
     const bool wanted = connection->topic == job.crank_topic || connection->topic == job.joint_topic;
     const char* type = ros::message_traits::datatype<sensor_msgs::JointState>();
     if (wanted && connection->datatype != type)
       return connection->topic + " is of type " + connection->datatype + ", must be " + type;
-    crank = crank || connection->topic == job.crank_topic;
+    inputs.crank = inputs.crank || connection->topic == job.crank_topic;
+    inputs.joints = inputs.joints || connection->topic == job.joint_topic;
     topics += " " + connection->topic;
   }
-  if (crank) return {};
-  return "no topic " + job.crank_topic + " in it, must be there; topics:" + (topics.empty() ? " none" : topics);
+  if (job.grapple ? inputs.joints : inputs.crank) return {};
+  return "no topic " + (job.grapple ? job.joint_topic : job.crank_topic) +
+         " in it, must be there; topics:" + (topics.empty() ? " none" : topics);
 }
 
-void process(rosbag::Bag& input, const BagJob& job, LoadsFlow& flow, const std::function<void(double)>& progress) {
-  rosbag::View view(input, rosbag::TopicQuery({job.crank_topic, job.joint_topic}));
+/// Null flows have no part in it.
+void process(rosbag::Bag& input, const BagJob& job, LoadsFlow* hammer, GrappleFlow* grapple,
+             const std::function<void(double)>& progress) {
+  std::vector<std::string> topics{job.crank_topic, job.joint_topic};
+  if (hammer && hammer->needsTransforms()) topics.insert(topics.end(), {"/tf", "/tf_static"});
+  if (hammer && hammer->needsImu()) topics.push_back(job.imu_topic);
+  rosbag::View view(input, rosbag::TopicQuery(topics));
   const double count = view.size();
   double done = 0.0;
   for (const rosbag::MessageInstance& item : view) {
+    progress(++done / count);
+    if (const auto transforms = item.instantiate<tf2_msgs::TFMessage>()) {
+      hammer->transforms(*transforms, item.getTopic() == "/tf_static", item.getTime());
+      continue;
+    }
+    if (const auto imu = item.instantiate<sensor_msgs::Imu>()) {
+      hammer->hullImu(*imu, item.getTime());
+      continue;
+    }
     const auto message = item.instantiate<sensor_msgs::JointState>();
     if (!message) throw rosbag::BagFormatException("a message on " + item.getTopic() + " cannot be read");
     // One topic may carry both.
-    if (item.getTopic() == job.joint_topic) flow.jointStates(*message, item.getTime());
-    if (item.getTopic() == job.crank_topic) flow.crank(*message, item.getTime());
-    progress(++done / count);
+    const bool joints = item.getTopic() == job.joint_topic;
+    if (hammer && joints) hammer->jointStates(*message, item.getTime());
+    if (hammer && item.getTopic() == job.crank_topic) hammer->crank(*message, item.getTime());
+    if (grapple && joints) grapple->jointStates(*message, item.getTime());
   }
+}
+
+BagReport write(rosbag::Bag& input, const BagInputs& inputs, rosbag::Bag& output, const BagJob& job,
+                const Settings& settings, const std::function<void(double)>& progress) {
+  BagSink sink(output, job);
+  GrappleBagSink grapple_sink(output, job.grapple_prefix);
+  std::optional<LoadsFlow> hammer;
+  std::optional<GrappleFlow> grapple;
+  if (inputs.crank) hammer.emplace(settings, sink);
+  if (job.grapple) grapple.emplace(*job.grapple, grapple_sink);
+  process(input, job, hammer ? &*hammer : nullptr, grapple ? &*grapple : nullptr, progress);
+  BagReport report;
+  if (hammer) report.crank = hammer->pipeline().counts();
+  if (grapple) report.grapple = refusalReport(*grapple);
+  return report;
 }
 
 }  // namespace
 
-std::string processBag(const BagJob& job, const Settings& settings, const std::function<void(double)>& progress, IntakeCounts& counts) {
+std::string processBag(const BagJob& job, const Settings& settings, const std::function<void(double)>& progress,
+                       BagReport& report) {
+  if (job.grapple && job.grapple_prefix == job.output_prefix)
+    return "--grapple-prefix: " + job.grapple_prefix + ", must differ from --output-prefix";
   rosbag::Bag input;
+  BagInputs inputs;
   try {
     input.open(job.input, rosbag::bagmode::Read);
-    const std::string problem = checkTopics(input, job);
+    const std::string problem = checkTopics(input, job, inputs);
     if (!problem.empty()) return job.input + ": " + problem;
   } catch (const std::exception& error) {
     return job.input + ": cannot be read as a bag: " + error.what();
@@ -121,16 +154,23 @@ std::string processBag(const BagJob& job, const Settings& settings, const std::f
   }
 
   try {
-    BagSink sink(output, job);
-    LoadsFlow flow(settings, sink);
-    process(input, job, flow, progress);
-    counts = flow.pipeline().counts();
+    report = write(input, inputs, output, job, settings, progress);
     output.close();
   } catch (const std::exception& error) {
     return job.input + " to " + job.output + ": " + error.what();
   }
   if (!partial.keep()) return job.output + ": cannot be given its name: " + std::strerror(errno);
   return {};
+}
+
+std::string textOf(const BagReport& report) {
+  std::string text;
+  for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
+    if (report.crank.refused[i] == 0) continue;
+    text += std::string("crank samples without a wrench, ") + kRefusalNames[i] + ": " +
+            std::to_string(report.crank.refused[i]) + "\n";
+  }
+  return text + report.grapple;
 }
 
 }  // namespace hammer_loads

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/ros/grapple_settings.h"
 
 namespace hammer_loads {
 
@@ -14,13 +16,25 @@ struct BagJob {
   std::string input, output;
   std::string crank_topic{"/hammer/crank"};
   std::string joint_topic{"/joint_states"};
+  std::string imu_topic{"/hammer/hull_imu"};  ///< read with hull_motion imu alone
   std::string output_prefix{"/hammer_loads"};
   bool pins{};  ///< pin forces as well
+  std::optional<GrappleSettings> grapple;  ///< the grapple as well; then a bag without the crank topic will do
+  std::string grapple_prefix{"/grapple"};
+};
+
+struct BagReport {
+  IntakeCounts crank;
+  std::string grapple;  ///< refusalReport of the grapple, if there was one
 };
 
 /// Reads the input's messages in their order of arrival and writes every output at the record time of the input that
 /// caused it. The output appears under its name only when it is complete. progress: part done in [0, 1].
 /// Returns what went wrong in one line, empty if nothing did.
-std::string processBag(const BagJob& job, const Settings& settings, const std::function<void(double)>& progress, IntakeCounts& counts);
+std::string processBag(const BagJob& job, const Settings& settings, const std::function<void(double)>& progress,
+                       BagReport& report);
+
+/// What a user should know of the samples that gave nothing, one line each.
+std::string textOf(const BagReport& report);
 
 }  // namespace hammer_loads

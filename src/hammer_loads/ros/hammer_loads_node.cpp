@@ -16,66 +16,137 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
     : flow_(settings, *this),
       log_(std::move(log)),
       hull_wrench_(private_node.advertise<geometry_msgs::WrenchStamped>("hull_wrench", kQueue)),
-      mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kQueue)),
+      hull_loads_(private_node.advertise<HullLoads>("hull_loads", kQueue)),
+      joint_loads_(private_node.advertise<JointLoads>("joint_loads", kQueue)),
+      boom_vibration_(private_node.advertise<BoomVibration>("boom_vibration", kQueue)),
+      mechanism_(private_node.advertise<JointState>("mechanism", kQueue)),
       pin_forces_(private_node.advertise<PinForces>("pin_forces", kQueue)),
       blow_(private_node.advertise<Blow>("blow", kQueue)),
       pulse_(private_node.advertise<Pulse>("pulse", kQueue)),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
-      diagnostics_(node, private_node, flow_.pipeline(), log_.get()) {
-  RunInfo info = flow_.runInfoMessage();
-  info.header.stamp = ros::Time::now();
-  run_info_.publish(info);
+      diagnostics_(node, private_node, flow_, *log_),
+      log_services_(private_node, *log_, [this] { flow_.reset(); }),
+      reconfigure_(private_node) {
+  for (const std::string& link : settings.pipeline.boom_wrench_links)
+    boom_wrench_[link] = private_node.advertise<geometry_msgs::WrenchStamped>("boom_wrench/" + link, kQueue);
+  announceRun();
+  subscribe(node, settings);
+  reconfigure_.setCallback([this](HammerLoadsConfig& config, std::uint32_t) { onReconfigure(config); });
+}
+
+void HammerLoadsNode::subscribe(ros::NodeHandle& node, const Settings& settings) {
   const auto no_delay = ros::TransportHints().tcpNoDelay();
   // Joint states first: where both arrive on one topic, a sample's own pitch counts for it.
   joint_states_ = node.subscribe("joint_states", kQueue, &HammerLoadsNode::onJointStates, this, no_delay);
   crank_ = node.subscribe("crank", kQueue, &HammerLoadsNode::onCrank, this, no_delay);
+  if (flow_.needsImu()) hull_imu_ = node.subscribe("hull_imu", kQueue, &HammerLoadsNode::onImu, this, no_delay);
   one_topic_ = joint_states_.getTopic() == crank_.getTopic();
+  const auto transforms = [this](bool is_static) {
+    return boost::function<void(const Event<tf2_msgs::TFMessage>&)>(
+        [this, is_static](const Event<tf2_msgs::TFMessage>& event) { onTransforms(event, is_static); });
+  };
+  using Given = const Event<tf2_msgs::TFMessage>&;
+  // A log stands alone: whoever replays it needs the static transforms, even if this node does not.
+  if (settings.log.enabled || flow_.needsTransforms())
+    tf_static_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf_static", kQueue, transforms(true));
+  if (flow_.needsTransforms())
+    tf_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf", kQueue, transforms(false), {}, no_delay);
 }
 
-void HammerLoadsNode::onJointStates(const JointStateEvent& event) {
-  const ros::Time record_time = recordTime(event);
+/// Those who subscribe later get the latched message; the log gets its own with the first input.
+void HammerLoadsNode::announceRun() {
+  RunInfo info = flow_.runInfoMessage();
+  info.header.stamp = ros::Time::now();
+  run_info_.publish(info);
+}
+
+/// What cannot be told from the settings in force changes nothing: so the server's own first call.
+void HammerLoadsNode::onReconfigure(const HammerLoadsConfig& config) {
+  const PipelineSettings& now = flow_.settings().pipeline;
+  if (config.log_enabled != log_->isRecording() && log_->health().state != LogState::kDiskFull) {
+    if (!config.log_enabled) log_->stop();
+    if (config.log_enabled && log_->start().empty()) flow_.reset();
+  }
+  if (config.output_rate_Hz == now.output_rate && config.tolerance == now.tolerance &&
+      config.withhold_above == now.withhold_above)
+    return;
+  const Settings changed = withChanges(flow_.settings(), {{"output_rate_Hz", config.output_rate_Hz},
+                                                          {"tolerance", config.tolerance},
+                                                          {"withhold_above", config.withhold_above}});
+  flow_.begin(changed);
+  log_->split();
+  announceRun();
+}
+
+void HammerLoadsNode::onJointStates(const Event<JointState>& event) {
+  const ros::Time record_time = recordTime(event.getReceiptTime());
   diagnostics_.jointStatesArrived();
-  if (log_) log_->write(joint_states_.getTopic(), record_time, *event.getConstMessage());
+  log_->write(joint_states_.getTopic(), record_time, *event.getConstMessage());
   flow_.jointStates(*event.getConstMessage(), record_time);
 }
 
-void HammerLoadsNode::onCrank(const JointStateEvent& event) {
-  const ros::Time record_time = one_topic_ ? last_record_ : recordTime(event);
+void HammerLoadsNode::onCrank(const Event<JointState>& event) {
+  const ros::Time record_time = one_topic_ ? clock_.last() : recordTime(event.getReceiptTime());
   diagnostics_.crankArrived();
-  if (log_ && !one_topic_) log_->write(crank_.getTopic(), record_time, *event.getConstMessage());
+  if (!one_topic_) log_->write(crank_.getTopic(), record_time, *event.getConstMessage());
   flow_.crank(*event.getConstMessage(), record_time);
 }
 
-/// Arrival time, made strictly increasing so that a log read back in time order is in the order of arrival. Simulated
-/// time that runs back (a bag that loops, a simulation that starts again) begins anew; a wall clock that is set back
-/// changes nothing, for header stamps are the only time of the pipeline.
-ros::Time HammerLoadsNode::recordTime(const JointStateEvent& event) {
-  const ros::Time arrival = event.getReceiptTime();
-  if (arrival < last_arrival_ && ros::Time::isSimTime()) {
+void HammerLoadsNode::onImu(const Event<sensor_msgs::Imu>& event) {
+  const ros::Time record_time = recordTime(event.getReceiptTime());
+  log_->write(hull_imu_.getTopic(), record_time, *event.getConstMessage());
+  flow_.hullImu(*event.getConstMessage(), record_time);
+}
+
+void HammerLoadsNode::onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static) {
+  const ros::Time record_time = recordTime(event.getReceiptTime());
+  const tf2_msgs::TFMessage& message = *event.getConstMessage();
+  if (is_static) log_->writeLatched("/tf_static", record_time, message, event.getPublisherName());
+  if (!is_static) log_->write("/tf", record_time, message);
+  flow_.transforms(message, is_static, record_time);
+}
+
+ros::Time HammerLoadsNode::recordTime(const ros::Time& arrival) {
+  const RecordClock::Tick tick = clock_.next(arrival);
+  if (tick.ran_back) {
     flow_.reset();
-    if (log_) log_->split();
-    last_record_ = ros::Time();
+    log_->split();
   }
-  last_arrival_ = arrival;
-  last_record_ = BagLog::nextRecordTime(arrival, last_record_);
-  return last_record_;
+  return tick.time;
 }
 
 template <typename Message>
 void HammerLoadsNode::send(const ros::Publisher& publisher, const Message& message, const ros::Time& record_time) {
   if (publisher.getNumSubscribers() > 0) publisher.publish(message);
-  if (log_) log_->write(publisher.getTopic(), record_time, message);
+  log_->write(publisher.getTopic(), record_time, message);
 }
 
 void HammerLoadsNode::runInfo(const RunInfo& message, const ros::Time& record_time) {
-  if (log_) log_->writeLatched(run_info_.getTopic(), record_time, message);
+  log_->writeLatched(run_info_.getTopic(), record_time, message);
 }
 
 void HammerLoadsNode::hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) {
   send(hull_wrench_, message, record_time);
 }
 
-void HammerLoadsNode::mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+void HammerLoadsNode::boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& message,
+                                 const ros::Time& record_time) {
+  send(boom_wrench_.at(link), message, record_time);
+}
+
+void HammerLoadsNode::jointLoads(const JointLoads& message, const ros::Time& record_time) {
+  send(joint_loads_, message, record_time);
+}
+
+void HammerLoadsNode::boomVibration(const BoomVibration& message, const ros::Time& record_time) {
+  send(boom_vibration_, message, record_time);
+}
+
+void HammerLoadsNode::hullLoads(const HullLoads& message, const ros::Time& record_time) {
+  send(hull_loads_, message, record_time);
+}
+
+void HammerLoadsNode::mechanism(const JointState& message, const ros::Time& record_time) {
   send(mechanism_, message, record_time);
 }
 
@@ -85,23 +156,13 @@ void HammerLoadsNode::blow(const Blow& message, const ros::Time& record_time) { 
 
 void HammerLoadsNode::pulse(const Pulse& message, const ros::Time& record_time) { send(pulse_, message, record_time); }
 
-bool HammerLoadsNode::wantsMechanism() const { return log_ || mechanism_.getNumSubscribers() > 0; }
-
-/// Not logged: they follow from the logged mechanism and would be the largest part of the log.
-bool HammerLoadsNode::wantsPinForces() const { return pin_forces_.getNumSubscribers() > 0; }
-
-bool HammerLoadsNode::wantsTurns() const {
-  return log_ || blow_.getNumSubscribers() > 0 || pulse_.getNumSubscribers() > 0;
-}
-
 std::unique_ptr<HammerLoadsNode> makeNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                           std::vector<std::string>& problems) {
   const Checked<Settings> settings = loadPrivateParameters(private_node);
   problems = settings.problems;
   if (!settings.value) return nullptr;
-  std::unique_ptr<BagLog> log;
+  auto log = std::make_unique<BagLog>(settings.value->log);
   if (settings.value->log.enabled) {
-    log = std::make_unique<BagLog>(settings.value->log);
     problems = log->start();
     if (!problems.empty()) return nullptr;
   }

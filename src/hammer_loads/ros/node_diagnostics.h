@@ -7,16 +7,16 @@
 #include <chrono>
 #include <cstdint>
 
-#include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/ros/loads_flow.h"
 
 namespace hammer_loads {
 
-/// Published once a second of wall time: rates, ages, counts of accepted and refused input by reason, log health.
+/// Published once a second of wall time: rates, ages, counts of accepted and refused input by reason, model,
+/// boom, log health.
 class NodeDiagnostics {
  public:
-  /// log may be null.
-  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const Pipeline& pipeline, const BagLog* log);
+  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const LoadsFlow& flow, const BagLog& log);
 
   /// An input arrived; its age decides whether the node is stale.
   void crankArrived() { last_crank_ = Clock::now(); }
@@ -27,12 +27,15 @@ class NodeDiagnostics {
 
   void describeCrank(diagnostic_updater::DiagnosticStatusWrapper& status);
   void describePitch(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describeLog(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeBoom(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeFrames(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeImu(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void describeModel(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  const Pipeline& pipeline_;
-  const BagLog* log_;
+  const LoadsFlow& flow_;
   Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
   IntakeCounts last_counts_;
+  ImuCounts last_imu_counts_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
 };

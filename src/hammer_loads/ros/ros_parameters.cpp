@@ -55,10 +55,17 @@ ParameterMap privateParameters(const ros::NodeHandle& private_node, std::vector<
   return parameterMap(yamlFromXmlRpc(value), private_node.getNamespace(), problems).value_or(ParameterMap{});
 }
 
+std::string robotDescription(const ros::NodeHandle& private_node) {
+  std::string key, text;
+  if (private_node.searchParam("robot_description", key)) private_node.getParam(key, text);
+  return text;
+}
+
 Checked<Settings> loadPrivateParameters(const ros::NodeHandle& private_node) {
   std::vector<std::string> problems;
-  const ParameterMap given = privateParameters(private_node, problems);
-  Checked<Settings> result = load(configDirectory(), given);
+  ParameterMap given = privateParameters(private_node, problems);
+  given.erase("robot_description");  // not from our files
+  Checked<Settings> result = load(configDirectory(), given, robotDescription(private_node));
   result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
   if (!result.problems.empty()) result.value.reset();
   return result;

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""doc/accuracy.md, its picture and the README's excerpt from what `accuracy` and the recorded sessions' test said."""
+import json
+import math
+import pathlib
+import platform
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
+
+NO_DIGITS = 10.0  # where the picture shows errors above 1 and those that are no number
+COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank": "#3a8f5c", "pipeline": "#7a4ca0",
+          "grapple": "#b08a1e"}
+SESSION = {"none": "none", "difference": "difference"}  # crank rows by estimator; all others: mechanism
+EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "pulse"), ("scalar", "rocker"),
+           ("scalar", "linkage"), ("scalar", "linkage with pins"), ("batch", "linkage, AVX2"),
+           ("batch", "linkage with pins, AVX2"),
+           ("crank", "mechanism, linkage"), ("pipeline", "linkage")]
+SESSION_HEAD = "rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow instant | energy |"
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def worst(row):
+    """Largest relative error over the cases; NO_DIGITS where none is left."""
+    errors = [case["relative"] for case in row["errors"].values()]
+    return NO_DIGITS if any(error is None or error > 1 for error in errors) else max(errors)
+
+
+def picture_error(row, sessions):
+    """What the picture shows: the worst relative error, for pulse its model error, for steps the session's."""
+    if row["group"] in ("crank", "pipeline"):
+        estimator = SESSION.get(row["name"], "mechanism")
+        return next(s["rms_z"] for s in sessions
+                    if s["estimator"] == estimator and s["rate_hz"] == 1000 and s["encoder_counts"] == 4096)
+    if row["name"] == "pulse":
+        return row["errors"]["regular turn"]["of_peak"]
+    if row["group"] == "grapple":
+        return max(case["relative"] for name, case in row["errors"].items() if name.endswith("stroke"))
+    return worst(row)
+
+
+def spread(places, distance):
+    """Places in ascending order moved apart to a least distance, about where they were."""
+    groups = []  # [sum of wished starts, count]
+    for i, place in enumerate(places):
+        groups.append([place, 1])
+        while len(groups) > 1 and middle(groups[-2], distance) + distance > first(groups[-1], distance):
+            last = groups.pop()
+            groups[-1] = [groups[-1][0] + last[0], groups[-1][1] + last[1]]
+    moved = []
+    for group in groups:
+        moved += [first(group, distance) + i * distance for i in range(group[1])]
+    return moved
+
+
+def first(group, distance):
+    return group[0] / group[1] - distance * (group[1] - 1) / 2
+
+
+def middle(group, distance):
+    """Last place of a group."""
+    return first(group, distance) + distance * (group[1] - 1)
+
+
+def draw(figures, path):
+    points = sorted((math.log10(row["ns"]), math.log10(picture_error(row, figures["sessions"])), row)
+                    for row in figures["prices"] if row["errors"] or row["group"] != "grapple")
+    figure, axes = plt.subplots(figsize=(9.5, 6.5), dpi=110)
+    for x, y, row in points:
+        axes.plot(10**x, 10**y, "o", color=COLORS[row["group"]], markersize=7)
+    for above, band in ((-9.6, [p for p in points if p[1] < -8]), (2.2, [p for p in points if p[1] >= -8])):
+        for place, (x, y, row) in zip(spread([p[0] for p in band], 0.115), band):
+            axes.annotate(row["name"], xy=(10**x, 10**y), xytext=(10**place, 10**above), rotation=60, fontsize=8,
+                          color=COLORS[row["group"]], ha="left", va="bottom", rotation_mode="anchor",
+                          arrowprops={"arrowstyle": "-", "color": "#c8c8c8", "linewidth": 0.6, "shrinkB": 4})
+    axes.set(xscale="log", yscale="log", xlim=(1, 1e4), ylim=(1e-16, 1e7), xlabel="time per evaluation or sample [ns]",
+             ylabel="worst error")
+    decades = range(-16, 1, 2)
+    axes.set_yticks([10.0**e for e in decades] + [NO_DIGITS],
+                    [f"1e{e}" if e else "1" for e in decades] + ["no digit left"])
+    axes.set_xticks([1, 10, 100, 1000, 10000], ["1", "10", "100", "1000", "10 000"])
+    axes.minorticks_off()
+    axes.grid(axis="y", color="#ececec")
+    axes.set_axisbelow(True)
+    axes.spines["left"].set_bounds(1e-16, NO_DIGITS)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for group, color in COLORS.items():
+        axes.plot([], [], "o", color=color, label=group)
+    axes.legend(loc="lower right", frameon=False, fontsize=9)
+    figure.tight_layout()
+    figure.savefig(path)
+
+
+def price_line(row):
+    error = "see below" if row["group"] in ("crank", "pipeline") else f"{worst(row):.0e}"
+    if row["name"] == "pulse":
+        error = f"{100 * row['errors']['regular turn']['of_peak']:.0f} % of the peak (model)"
+    elif error == f"{NO_DIGITS:.0e}":
+        error = "no digit left"
+    return f"| {row['group']} | {row['name']} | {row['ns']:.3g} | {row['per_second'] / 1e6:.3g} million | {error} |"
+
+
+def session_line(s):
+    return (f"| {s['estimator']} | {s['rate_hz']:.0f} | {100 * s['rms_x']:.2f} % | {100 * s['rms_z']:.2f} % | "
+            f"{100 * s['rms_torque']:.2f} % | {100 * s['turn_peak']:.2f} % | {100 * s['turn_impulse']:.2f} % | "
+            f"{1e3 * s['blow_time_s']:.3f} ms | {100 * s['energy']:.2f} % |")
+
+
+def excerpt(figures, recorded):
+    prices = {(row["group"], row["name"]): row for row in figures["prices"]}
+    sessions = [s for s in figures["sessions"] if s["rate_hz"] in (1000, 100) and s["encoder_counts"] == 4096
+                and s["speed_measured"]]
+    lines = ["Cost on one core and worst relative error over all hard cases, against 100 digits; more rows, the",
+             "cases and a picture are in [doc/accuracy.md](doc/accuracy.md):", "",
+             "| | way to the loads | ns | per second | worst error |", "|---|---|---|---|---|"]
+    lines += [price_line(prices[key]) for key in EXCERPT if key in prices]
+    lines += ["", "Recorded sessions (`test/data`), processed as they are, from 3 s after the start to 3 s before the",
+              "end:",
+              "", f"| session | drive inertia wrong by | {SESSION_HEAD}", "|---" * 9 + "|", recorded.strip(),
+              "", "Simulated sessions, by source of the crank's acceleration and sample rate:", "",
+              f"| acceleration from | rate, Hz | {SESSION_HEAD}", "|---" * 9 + "|"]
+    lines += [session_line(s) for s in sessions]
+    lines += ["", "Root-mean-square errors are of the peak of each quantity, impulses of the blow's; all others are",
+              "the worst of all turns. `none` is the papers' constant crank speed, `difference` that of measured speeds,",
+              "`mechanism` the shipped filter."]
+    return "\n".join(lines) + "\n"
+
+
+def replace(path, marker, text):
+    """Text between <!-- marker --> and <!-- /marker -->."""
+    begin, end = f"<!-- {marker} -->\n", f"<!-- /{marker} -->"
+    head, rest = path.read_text().split(begin)
+    path.write_text(head + begin + text + end + rest.split(end)[1])
+
+
+def main():
+    work, root = (pathlib.Path(argument) for argument in sys.argv[1:])
+    figures = json.loads((work / "accuracy.json").read_text())
+    draw(figures, root / "doc" / "accuracy.png")
+    tables = f"Measured on: {processor()}, one thread.\n\n" + (work / "tables").read_text()
+    replace(root / "doc" / "accuracy.md", "tables", tables)
+    replace(root / "README.md", "accuracy", excerpt(figures, (work / "recorded").read_text()))
+
+
+if __name__ == "__main__":
+    main()

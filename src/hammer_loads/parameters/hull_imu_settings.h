@@ -1,0 +1,22 @@
+/// Where an inertial measurement unit sits on the hull.
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace hammer_loads {
+
+struct HullImuSettings {
+  Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< from D, axes of hammer_hull [m]
+  Eigen::Matrix3d rotation{Eigen::Matrix3d::Identity()};  ///< from the unit's axes to those of hammer_hull
+  double max_age{};                         ///< of the last reading [s], > 0; older, the motion is not known
+};
+
+/// Rotation by roll, pitch, yaw about fixed x, y, z [rad], as in a URDF origin.
+inline Eigen::Matrix3d rotationOf(double roll, double pitch, double yaw) {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
+          AngleAxisd(roll, Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+}  // namespace hammer_loads

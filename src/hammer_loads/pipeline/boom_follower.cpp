@@ -1,0 +1,126 @@
+#include "hammer_loads/pipeline/boom_follower.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hammer_loads/linkage/crank_angle.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kPi = 0.5 * kTwoPi;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kEdges = 4;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+}  // namespace
+
+BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double striking_distance)
+    : boom_(std::move(boom)),
+      joints_(boom_.chain(), settings),
+      model_(settings.boom),
+      striking_distance_(striking_distance),
+      follow_vibration_(model_ != BoomModel::kRigid && !boom_.cylinders().empty()),
+      givers_{"front edge", "left edge", "rear edge", "right edge"} {
+  const JointVector zero = JointVector::Zero(boom_.chain().joints());
+  motion_ = {zero, zero, zero};
+  torque_ = {zero, zero, zero};
+  state_.frequency.resize(0);
+  state_.reduced = {kInfinity, kInfinity};
+  state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
+  state_.choice.rigid_tolerance = boom_.parameters().rigid_tolerance;
+  for (const Cylinder& cylinder : boom_.cylinders()) givers_.push_back(cylinder.parameters().name);
+}
+
+void BoomFollower::reset() noexcept {
+  joints_.reset();
+  known_ = false;
+}
+
+Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
+  return {{w.force_x, 0.0, w.force_z}, {0.0, w.torque_y, 0.0}};
+}
+
+Wrench BoomFollower::wrenchAtLink(int link, const HullWrench& load) const noexcept {
+  return hammer_loads::wrenchAtLink(boom_.pose(), link, onTip(load));
+}
+
+bool BoomFollower::takesCompliant() const noexcept {
+  if (!follow_vibration_ || !boom_.vibration().known()) return false;
+  const BoomChoice& choice = state_.choice;
+  return model_ == BoomModel::kCompliant || !choice.judged || choice.rigid_error > choice.rigid_tolerance;
+}
+
+const BoomState& BoomFollower::sample(const BoomSample& sample, const LoadStep& step) noexcept {
+  state_.stamp = sample.stamp;
+  state_.fault = joints_.at(sample.stamp, motion_);
+  if (state_.fault) {
+    known_ = false;
+    ++faults_;
+    return state_;
+  }
+  const Eigen::Vector3d g_B(0.0, 0.0, -sample.gravity);
+  if (follow_vibration_) {
+    const bool continued = known_ && step.count > 0;
+    if (!continued) boom_.vibration().rest();
+    boom_.moveCompliant(motion_, g_B);
+    if (continued) vibrate(step);
+  } else {
+    boom_.move(motion_, g_B);
+  }
+  known_ = true;
+  state_.gravity_tip = boom_.gravityAtTip();
+  state_.choice.compliant = takesCompliant();
+  boom_.loads(onTip(sample.motion_wrench), !state_.choice.compliant, state_.loads);
+  if (follow_vibration_) tellVibration();
+  return state_;
+}
+
+void BoomFollower::vibrate(const LoadStep& step) noexcept {
+  for (std::size_t i = 0; i < step.count; ++i) {
+    const LoadPiece& piece = step.pieces[i];
+    torque_.from = boom_.hammerTorque(onTip(piece.from));
+    torque_.to = boom_.hammerTorque(onTip(piece.to));
+    torque_.mean = boom_.hammerTorque(onTip(piece.mean));
+    boom_.vibration().advance(piece.duration, torque_);
+    if (piece.ends_in_blow) boom_.vibration().strike(boom_.hammerTorque(onTip({piece.blow_x, piece.blow_z, 0.0})));
+  }
+}
+
+void BoomFollower::tellVibration() noexcept {
+  const BoomModes& modes = boom_.vibration().modes();
+  state_.dead_point = modes.dead_point;
+  state_.frequency = modes.omega / kTwoPi;
+  state_.reduced = boom_.reducedHull(Eigen::Vector3d::UnitZ());
+  if (state_.choice.compliant) {
+    state_.tip = boom_.tipVibration();
+  } else {
+    state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
+  }
+}
+
+void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept {
+  if (!known_) return;
+  if (pulse && pulse->frequency > 0.0 && follow_vibration_) {
+    BoomChoice& choice = state_.choice;
+    choice.pulse_length = kPi / pulse->frequency;
+    choice.rigid_error = boom_.rigidVerdict(onTip({0.0, pulse->amplitude, 0.0}), choice.pulse_length).error;
+    choice.lowest_frequency = state_.frequency.size() > 0 ? state_.frequency[0] : 0.0;
+    choice.judged = true;
+  }
+  if (std::isfinite(mean_press_force) && (boom_.parameters().supports || !boom_.cylinders().empty())) {
+    state_.hold_down = boom_.holdDown(onTip({0.0, mean_press_force, striking_distance_ * mean_press_force}));
+  }
+}
+
+const std::string& BoomFollower::firstToGive() const noexcept {
+  if (!state_.hold_down || std::isinf(state_.hold_down->least)) return no_giver_;
+  const HoldDown& hold = *state_.hold_down;
+  if (hold.machine <= hold.least) return givers_[static_cast<std::size_t>(hold.edge)];
+  std::size_t weakest = 0;
+  while (hold.cylinder[weakest] > hold.least) ++weakest;
+  return givers_[kEdges + weakest];
+}
+
+}  // namespace hammer_loads

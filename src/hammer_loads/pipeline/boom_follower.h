@@ -1,0 +1,102 @@
+/// The boom under the hammer, sample by sample: where it is, what its joints and cylinders carry, how it vibrates.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/pipeline/joint_buffer.h"
+#include "hammer_loads/pipeline/load_step.h"
+
+namespace hammer_loads {
+
+/// One accepted crank sample.
+struct BoomSample {
+  StampNs stamp{};
+  HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
+                             ///< weight, no hull motion
+  double gravity{};          ///< [m/s2], along -z of the chain's root: a level base
+};
+
+/// Why the boom is taken as rigid or compliant.
+struct BoomChoice {
+  bool compliant{};           ///< what is told holds vibration
+  bool judged{};              ///< some turn has ended; the figures below are of the last one that did
+  double pulse_length{};      ///< pi/mu of its pulse [s]
+  double lowest_frequency{};  ///< of the boom at its end [Hz], 0 without modes
+  double rigid_error{};       ///< of joint torques for such a pulse, over the largest [-]; see rigidError()
+  double rigid_tolerance{};   ///< [-]
+};
+
+/// What one crank sample gave. Void but for stamp and fault when there is a fault.
+struct BoomState {
+  StampNs stamp{};
+  std::optional<JointFault> fault;
+  BoomLoads loads;
+  Eigen::Vector3d gravity_tip = Eigen::Vector3d::Zero();  ///< in the hull's axes [m/s2]
+  bool dead_point{};                  ///< a cylinder does not hold its joint: no modes, taken as rigid
+  JointVector frequency;              ///< natural frequencies, per mode [Hz]; none when vibration is not followed
+  ReducedHull reduced;                ///< along hull z; infinite without modes
+  Boom::TipVibration tip;             ///< zero for a rigid boom
+  BoomChoice choice;
+  std::optional<HoldDown> hold_down;  ///< against the mean press force of the last turn that had one
+};
+
+/// Owns the boom and its joints' states. Vibration is followed from the first sample on, wherever a verdict could want
+/// it, so that nothing jumps when it does; with `boom: auto` a boom with cylinders counts as compliant until the first
+/// turn has ended. After construction no allocation.
+class BoomFollower {
+ public:
+  /// settings.boom must not be kNone. striking_distance: from D to the tool's axis, at -x of the hull [m].
+  BoomFollower(Boom boom, const PipelineSettings& settings, double striking_distance);
+
+  bool jointStates(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
+                   const std::vector<double>& velocities) noexcept {
+    return joints_.update(stamp, names, positions, velocities);
+  }
+  /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
+  /// until the next call.
+  const BoomState& sample(const BoomSample& sample, const LoadStep& step) noexcept;
+  /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
+  /// 0.1 ms.
+  void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept;
+  /// Time jumped: joints are to be heard again, the boom is at rest; what the last turn told is kept.
+  void reset() noexcept;
+
+  /// Index in the chain, for wrenchAtLink(); nothing for what is another TF frame.
+  std::optional<int> linkIndex(const std::string& link) const noexcept { return boom_.chain().linkIndex(link); }
+  /// A load on the hull about D at the origin of a link, its axes, at the last sample's pose.
+  Wrench wrenchAtLink(int link, const HullWrench& load) const noexcept;
+
+  const BoomState& state() const noexcept { return state_; }
+  bool known() const noexcept { return known_; }  ///< the last sample had no fault
+  const Boom& boom() const noexcept { return boom_; }
+  const JointBuffer& joints() const noexcept { return joints_; }
+  std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
+  /// What state().hold_down.least belongs to, such as "front edge" or a cylinder's name; empty when it is not known.
+  const std::string& firstToGive() const noexcept;
+
+ private:
+  static Wrench onTip(const HullWrench& w) noexcept;
+  bool takesCompliant() const noexcept;
+  void vibrate(const LoadStep& step) noexcept;
+  void tellVibration() noexcept;
+
+  Boom boom_;
+  JointBuffer joints_;
+  BoomModel model_;
+  double striking_distance_;
+  bool follow_vibration_;
+  BoomState state_;
+  JointMotion motion_;
+  TorqueStep torque_;
+  bool known_{};
+  std::uint64_t faults_{};
+  std::vector<std::string> givers_;  ///< edges, then cylinders
+  std::string no_giver_;
+};
+
+}  // namespace hammer_loads

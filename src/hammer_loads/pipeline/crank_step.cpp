@@ -1,0 +1,63 @@
+#include "hammer_loads/pipeline/crank_step.h"
+
+#include <algorithm>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kBlowSpeed = 1.0;  // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
+
+}  // namespace
+
+void CrankStep::take(StampNs start, double length, const CrankPosition& from) noexcept {
+  known_ = true;
+  start_ = start;
+  length_ = length;
+  passages_ = 0;
+  std::int64_t passed = from.blowsPassed();
+  const std::int64_t passed_now = tracker_->estimate().position.blowsPassed();
+  for (; passed != passed_now && passages_ < passage_.size(); ++passages_) {
+    const bool forward = passed < passed_now;
+    const std::int64_t blow = forward ? ++passed : passed--;
+    const double time = timeOfBlow(blow);
+    const double speed = at(time).speed;
+    passage_[passages_] = {time, blow, forward, speed, forward && blow > furthest_blow_ && speed >= kBlowSpeed};
+    furthest_blow_ = std::max(furthest_blow_, passed);
+  }
+}
+
+/// Root of the position by bracketing false position (Illinois).
+double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
+  const CrankPosition at_blow{blow, {0.0, Side::kAfterBlow}};
+  double low = 0.0, high = length_;
+  double f_low = difference(at(low).position, at_blow), f_high = difference(at(high).position, at_blow);
+  const double sign = f_high < f_low ? -1.0 : 1.0;  // a crank that turns back
+  f_low *= sign, f_high *= sign;
+  constexpr double kAngleTolerance = 1e-11;  // [rad]: some 1e-12 s
+  int kept = 0;  // which end stayed last time: +1 high, -1 low
+  for (int i = 0; i < 60 && f_high > kAngleTolerance && f_low < -kAngleTolerance; ++i) {
+    const double time = (low * f_high - high * f_low) / (f_high - f_low);
+    const double f = sign * difference(at(time).position, at_blow);
+    if (f < 0.0) {
+      low = time, f_low = f;
+      if (kept == 1) f_high *= 0.5;
+      kept = 1;
+    } else {
+      high = time, f_high = f;
+      if (kept == -1) f_low *= 0.5;
+      kept = -1;
+    }
+  }
+  return f_high <= -f_low ? high : low;
+}
+
+CrankEstimate CrankStep::besides(const Passage& passage, Side side) const noexcept {
+  constexpr double kAside = 1e-7;  // [s] before and after the blow, where its two accelerations are looked at
+  const bool earlier = (side == Side::kBeforeBlow) == passage.forward;
+  CrankEstimate estimate = at(earlier ? (passage.time > kAside ? passage.time - kAside : 0.0) : passage.time + kAside);
+  estimate.position = {passage.blow, {0.0, side}};
+  estimate.speed = passage.speed;
+  return estimate;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,54 @@
+/// The crank's way over the step between the last two samples, and where on it the blow is passed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/pipeline/intake.h"
+
+namespace hammer_loads {
+
+/// Refers to the tracker, whose last update it belongs to. Times are after the step's start [s].
+class CrankStep {
+ public:
+  /// The blow passed forward or backward, whether or not anything strikes.
+  struct Passage {
+    double time{};
+    std::int64_t blow{};  ///< index as in CrankPosition
+    bool forward{};
+    double speed{};       ///< of the crank there [rad/s]
+    bool strikes{};       ///< forward, for the first time, and not creeping: the rocker hits the tool
+  };
+
+  explicit CrankStep(const CrankTracker& tracker) : tracker_(&tracker) {}
+
+  /// What lies before the last sample, in position `at`, is not known.
+  void forget(const CrankPosition& at) noexcept { known_ = false, passages_ = 0, furthest_blow_ = at.blowsPassed(); }
+  /// A step of `length` [s] that began at stamp `start` in position `from`; finds its passages.
+  void take(StampNs start, double length, const CrankPosition& from) noexcept;
+
+  bool known() const noexcept { return known_; }
+  StampNs start() const noexcept { return start_; }
+  double length() const noexcept { return length_; }
+  CrankEstimate at(double time) const noexcept { return tracker_->between(time); }
+  /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
+  const Passage* begin() const noexcept { return passage_.data(); }
+  const Passage* end() const noexcept { return passage_.data() + passages_; }
+
+  /// Estimate on one side of a passage: exactly at the blow, so that nothing is lost to rounding there.
+  CrankEstimate besides(const Passage& passage, Side side) const noexcept;
+
+ private:
+  double timeOfBlow(std::int64_t blow) const noexcept;
+
+  const CrankTracker* tracker_;
+  bool known_{};
+  StampNs start_{};
+  double length_{};
+  std::int64_t furthest_blow_{};  ///< highest index passed forward since the restart
+  std::size_t passages_{};
+  std::array<Passage, 32> passage_;
+};
+
+}  // namespace hammer_loads

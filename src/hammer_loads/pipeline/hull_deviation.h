@@ -1,0 +1,28 @@
+/// How far the published wrench may be off, by the crank estimate's covariance.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/hammer/hull_model.h"
+
+namespace hammer_loads {
+
+/// Standard deviations; NaN where the estimator has no covariance.
+struct HullDeviation {
+  HullWrench wrench;      ///< of force_x [N], force_z [N], torque_y [N m]
+  double angle{};         ///< of the crank [rad]
+  double speed{};         ///< [rad/s]
+  double acceleration{};  ///< [rad/s2]
+};
+
+/// covariance of (angle, speed, acceleration), linearised at the estimate (central differences; exact in speed and
+/// acceleration). What the model leaves out is not in it. Some 0.3 us.
+HullDeviation hullDeviation(const HullModel& model, const CrankEstimate& crank, const HullMotion& hull,
+                            const Eigen::Matrix3d& covariance) noexcept;
+
+/// Standard deviation of the momentum: of an impulse's one end [N s, N s, N m s].
+HullWrench momentumDeviation(const HullModel& model, const CrankEstimate& crank,
+                             const Eigen::Matrix3d& covariance) noexcept;
+
+}  // namespace hammer_loads

@@ -1,0 +1,59 @@
+/// Motion of the hull from an inertial measurement unit fixed to it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/parameters/hull_imu_settings.h"
+#include "hammer_loads/pipeline/intake.h"
+
+namespace hammer_loads {
+
+/// One reading, in the unit's own axes.
+struct ImuReading {
+  Eigen::Vector3d specific_force;  ///< acceleration less gravity [m/s2]: upright at rest (0, 0, 9.8)
+  Eigen::Vector3d rate;            ///< turning rate [rad/s]
+};
+
+/// Why a reading was not taken.
+enum class ImuRefusal : std::size_t { kNotFinite, kImplausible, kOutOfOrder, kCount };
+
+constexpr std::array<const char*, static_cast<std::size_t>(ImuRefusal::kCount)> kImuRefusalNames{
+    "not finite", "implausible", "out of order"};
+
+/// From readings to the hull's motion at D: replaces weight and tilt together. The turning's acceleration is the
+/// difference of the last two rates: half an interval late, noise sqrt(2)/interval times the rate's. It also moves the
+/// specific force from the unit to D, so mounting the unit near D keeps that noise out of the wrench (model.md 3).
+class HullImu {
+ public:
+  explicit HullImu(const HullImuSettings& settings) : settings_(settings) {}
+
+  /// Takes a reading or says why not. A reading older than the last begins anew if a second such one follows it, as
+  /// when a log is played again. No allocation.
+  std::optional<ImuRefusal> update(StampNs stamp, const ImuReading& reading) noexcept;
+
+  /// Motion at a stamp: on the line through the last two readings, also one interval beyond them at most. Nothing
+  /// before the second reading in a row or when the last is more than max_age away.
+  std::optional<HullMotion> at(StampNs stamp) const noexcept;
+
+  void reset() noexcept { readings_ = 0, rewound_.reset(); }
+  StampNs last() const noexcept { return now_.stamp; }  ///< stamp of the last reading taken [ns]
+
+ private:
+  /// In axes of hammer_hull.
+  struct Sample {
+    StampNs stamp{};
+    Eigen::Vector3d force, rate;
+  };
+
+  HullImuSettings settings_;
+  Sample now_, before_;
+  int readings_{};  ///< in a row, counted up to 2
+  std::optional<StampNs> rewound_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,146 @@
+#include "hammer_loads/pipeline/joint_buffer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/format.h"
+
+namespace hammer_loads {
+namespace {
+
+double seconds(StampNs from, StampNs to) noexcept { return static_cast<double>(to - from) * kSecondsPerNs; }
+
+}  // namespace
+
+double JointBuffer::Track::difference(double from, double to) const noexcept {
+  return turns_freely ? std::remainder(to - from, kTwoPi) : to - from;
+}
+
+JointBuffer::JointBuffer(const Chain& chain, const PipelineSettings& settings)
+    : names_(chain.jointNames()),
+      tracks_(names_.size()),
+      max_age_(settings.joint_max_age),
+      differentiate_(settings.boom_acceleration == BoomAcceleration::kDifference) {
+  for (int j = 0; j < chain.joints(); ++j) {
+    const bool revolute = !chain.link(chain.linkBeyond(j)).prismatic;
+    tracks_[static_cast<std::size_t>(j)].turns_freely = revolute && std::isinf(chain.upper()[j]);
+  }
+}
+
+void JointBuffer::reset() noexcept {
+  for (Track& track : tracks_) track.count = 0, track.rewound.reset();
+}
+
+bool JointBuffer::update(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
+                         const std::vector<double>& velocities) noexcept {
+  bool taken = false;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = std::find(names_.begin(), names_.end(), names[i]);
+    if (found == names_.end()) continue;
+    if (i >= positions.size()) {
+      ++refusals_.short_array;
+      continue;
+    }
+    std::optional<double> velocity;
+    if (i < velocities.size()) velocity = velocities[i];
+    if (!velocity && !velocities.empty()) ++refusals_.short_array;
+    if (!std::isfinite(positions[i]) || !std::isfinite(velocity.value_or(0.0))) ++refusals_.not_finite;
+    if (!std::isfinite(positions[i])) continue;
+    if (velocity && !std::isfinite(*velocity)) velocity.reset();
+    Track& track = tracks_[static_cast<std::size_t>(found - names_.begin())];
+    if (!isInOrder(track, stamp)) continue;
+    add(track, stamp, positions[i], velocity);
+    taken = true;
+  }
+  return taken;
+}
+
+bool JointBuffer::isInOrder(Track& track, StampNs stamp) noexcept {
+  if (track.count == 0 || stamp > track.back(0).stamp) {
+    track.rewound.reset();
+    return true;
+  }
+  const bool again = track.rewound && stamp > *track.rewound;
+  if (stamp < track.back(0).stamp) track.rewound = stamp;
+  if (!again) {
+    ++refusals_.out_of_order;
+    return false;
+  }
+  track.rewound.reset();
+  track.count = 0;
+  return true;
+}
+
+void JointBuffer::add(Track& track, StampNs stamp, double position, std::optional<double> velocity) noexcept {
+  State next{stamp, position, velocity.value_or(0.0), 0.0, 0.0};
+  if (track.count > 0) {
+    const State& last = track.back(0);
+    const double step = seconds(last.stamp, stamp);
+    if (!velocity) {
+      next.velocity = track.difference(last.position, position) / step;
+      next.velocity_age = 0.5 * step;
+    }
+    // The first velocity by difference has none before it.
+    const bool known = velocity || track.count > 1;
+    if (known) next.acceleration = (next.velocity - last.velocity) / (step - next.velocity_age + last.velocity_age);
+  }
+  track.states[track.count % kKept] = next;
+  ++track.count;
+}
+
+JointBuffer::Bracket JointBuffer::around(const Track& track, StampNs stamp) noexcept {
+  const std::uint64_t kept = std::min(track.count, kKept);
+  const State* after = nullptr;
+  for (std::uint64_t i = 0; i < kept; ++i) {
+    const State& state = track.back(i);
+    if (state.stamp <= stamp) {
+      const double age = seconds(state.stamp, stamp);
+      return {&state, after, after == nullptr ? age : std::min(age, seconds(stamp, after->stamp))};
+    }
+    after = &state;
+  }
+  if (after == nullptr) return {nullptr, nullptr, std::numeric_limits<double>::infinity()};
+  return {after, nullptr, seconds(stamp, after->stamp)};
+}
+
+std::optional<JointFault> JointBuffer::fault(int joint, const Bracket& bracket) const noexcept {
+  if (bracket.before == nullptr) return JointFault{JointFault::Kind::kMissing, joint, bracket.age};
+  if (bracket.age > max_age_) return JointFault{JointFault::Kind::kStale, joint, bracket.age};
+  return std::nullopt;
+}
+
+std::optional<JointFault> JointBuffer::at(StampNs stamp, JointMotion& motion) const noexcept {
+  const auto joints = static_cast<Eigen::Index>(tracks_.size());
+  motion.position.resize(joints), motion.velocity.resize(joints), motion.acceleration.resize(joints);
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    const Track& track = tracks_[static_cast<std::size_t>(j)];
+    const Bracket bracket = around(track, stamp);
+    if (auto found = fault(static_cast<int>(j), bracket)) return found;
+    const State& before = *bracket.before;
+    const State& newest = bracket.after != nullptr ? *bracket.after : before;
+    motion.position[j] = before.position;
+    motion.velocity[j] = newest.velocity;
+    motion.acceleration[j] = differentiate_ ? newest.acceleration : 0.0;
+    if (bracket.after == nullptr) continue;
+    const double part = seconds(before.stamp, stamp) / seconds(before.stamp, newest.stamp);
+    motion.position[j] += part * track.difference(before.position, newest.position);
+    if (newest.velocity_age == 0.0) motion.velocity[j] += (1.0 - part) * (before.velocity - newest.velocity);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> JointBuffer::complaints(StampNs stamp) const {
+  std::vector<std::string> lines;
+  for (std::size_t j = 0; j < tracks_.size(); ++j) {
+    const auto found = fault(static_cast<int>(j), around(tracks_[j], stamp));
+    if (!found) continue;
+    lines.push_back(names_[j] + (found->kind == JointFault::Kind::kMissing
+                                     ? ": never heard"
+                                     : format(": %.3g s old, must be at most %.3g s", found->age, max_age_)));
+  }
+  return lines;
+}
+
+}  // namespace hammer_loads

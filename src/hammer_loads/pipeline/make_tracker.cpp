@@ -1,0 +1,28 @@
+#include "hammer_loads/pipeline/make_tracker.h"
+
+#include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/crank/plain_tracker.h"
+
+namespace hammer_loads {
+
+std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
+  if (s.crank_estimator != CrankEstimator::kMechanism) {
+    const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
+                                                                         : PlainTracker::Acceleration::kDifference;
+    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution);
+  }
+  const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
+  CrankFilterSettings filter;
+  filter.angle_resolution = s.crank_angle_resolution;
+  filter.angle_noise = s.crank_angle_noise;
+  filter.speed_noise = s.crank_speed_noise;
+  filter.torque_walk = s.torque_walk * inertia;
+  filter.speed_walk = s.speed_walk;
+  filter.inertia_walk = s.inertia_walk;
+  filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
+  filter.initial_inertia_deviation = s.initial_inertia_deviation;
+  filter.max_speed = s.max_crank_speed;
+  return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia, filter);
+}
+
+}  // namespace hammer_loads

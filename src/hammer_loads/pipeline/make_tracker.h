@@ -1,0 +1,15 @@
+/// The crank tracker that the settings ask for.
+#pragma once
+
+#include <memory>
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/parameters/pipeline_settings.h"
+
+namespace hammer_loads {
+
+/// Refers to the mechanism, which must outlive it.
+std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& settings);
+
+}  // namespace hammer_loads

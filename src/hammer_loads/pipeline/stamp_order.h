@@ -1,0 +1,56 @@
+/// A sample's place in time by its header stamp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace hammer_loads {
+
+/// Header stamp [ns]. The only time the pipeline knows.
+using StampNs = std::int64_t;
+
+constexpr double kSecondsPerNs = 1e-9;
+
+class StampOrder {
+ public:
+  enum class Place {
+    kFirst,       ///< nothing to continue from: start, gap, time ran back
+    kNext,        ///< behind the last accepted sample
+    kDuplicate,   ///< as old as the last accepted sample
+    kOutOfOrder,  ///< older than it
+  };
+  struct Verdict {
+    Place place{Place::kFirst};
+    double step{};  ///< since the last accepted sample [s], for kNext
+  };
+
+  /// stale_after: age of the last sample from which on a new one starts anew [s].
+  explicit StampOrder(double stale_after) : stale_after_(stale_after) {}
+
+  /// Time running back is believed from the second sample on: the first may just be late.
+  Verdict judge(StampNs stamp) noexcept {
+    if (!last_) return {};
+    if (stamp == *last_) return {Place::kDuplicate};
+    if (stamp < *last_) {
+      const bool again = rewound_ && stamp > *rewound_;
+      rewound_ = stamp;
+      if (!again) return {Place::kOutOfOrder};
+      rewound_.reset();
+      return {};
+    }
+    rewound_.reset();
+    const double step = static_cast<double>(stamp - *last_) * kSecondsPerNs;
+    if (step > stale_after_) return {};
+    return {Place::kNext, step};
+  }
+  void accept(StampNs stamp) noexcept { last_ = stamp; }
+  void reset() noexcept { last_.reset(), rewound_.reset(); }
+  const std::optional<StampNs>& last() const noexcept { return last_; }
+
+ private:
+  double stale_after_;
+  std::optional<StampNs> last_;     ///< of the last accepted sample
+  std::optional<StampNs> rewound_;  ///< of the last sample, if it was refused as out of order
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,91 @@
+#include "hammer_loads/pipeline/step_impulse.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/hammer/blow.h"
+
+namespace hammer_loads {
+namespace {
+
+LinkMomentum momentum(const HullModel& model, const CrankEstimate& crank) noexcept {
+  return linkMomentum(model, crank.position.angle, crank.speed);
+}
+
+HullWrench change(const LinkMomentum& from, const LinkMomentum& to) noexcept {
+  return {from.x - to.x, from.z - to.z, from.about_d - to.about_d};
+}
+
+/// Calls visit(from, to) for each part of [from, to] between passages of the blow.
+template <typename Visit>
+void forEachSmoothPart(const CrankStep& step, double from, double to, const Visit& visit) {
+  CrankEstimate start = step.at(from);
+  double start_time = from;
+  for (const CrankStep::Passage& passage : step) {
+    if (passage.time <= from || passage.time > to) continue;
+    visit(start_time, start, passage.time, step.besides(passage, passage.forward ? Side::kBeforeBlow : Side::kAfterBlow));
+    start = step.besides(passage, passage.forward ? Side::kAfterBlow : Side::kBeforeBlow);
+    start_time = passage.time;
+  }
+  visit(start_time, start, to, step.at(to));
+}
+
+/// From motion of the links relative to the hull.
+HullWrench motionWrench(const HullModel& model, const CrankEstimate& crank) noexcept {
+  return hullWrench(model, {crank.position.angle, crank.speed, crank.acceleration}, Gravity{});
+}
+
+}  // namespace
+
+HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept {
+  HullWrench impulse;
+  forEachSmoothPart(step, from, to, [&](double, const CrankEstimate& a, double, const CrankEstimate& b) {
+    impulse = impulse + change(momentum(model, a), momentum(model, b));
+  });
+  return impulse;
+}
+
+HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
+                        double to) noexcept {
+  constexpr double kLongest = 1.25e-3;  // [s]
+  const double node = std::sqrt(0.6);
+  const struct { double place, weight; } nodes[] = {{-node, 5.0 / 18.0}, {0.0, 8.0 / 18.0}, {node, 5.0 / 18.0}};
+  HullWrench impulse;
+  const auto addedAt = [&](double time) noexcept {
+    const CrankEstimate crank = step.at(time);
+    return frameWrench(model, crank.position.angle, crank.speed, hull);
+  };
+  forEachSmoothPart(step, from, to, [&](double start, const CrankEstimate&, double end, const CrankEstimate&) {
+    const int parts = std::max(1, static_cast<int>(std::ceil((end - start) / kLongest)));
+    const double half = 0.5 * (end - start) / parts;
+    for (int i = 0; i < parts; ++i) {
+      const double middle = start + (2 * i + 1) * half;
+      for (const auto& n : nodes) impulse = impulse + (2.0 * half * n.weight) * addedAt(middle + n.place * half);
+    }
+  });
+  return impulse;
+}
+
+LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept {
+  LoadStep result;
+  if (!step.known()) return result;
+  const CrankStep::Passage* passage = step.begin();
+  forEachSmoothPart(step, 0.0, step.length(), [&](double from, const CrankEstimate& a, double to, const CrankEstimate& b) {
+    const CrankStep::Passage* ends_at = passage == step.end() ? nullptr : passage++;
+    if (result.count == result.pieces.size()) return;
+    LoadPiece& piece = result.pieces[result.count++];
+    piece.duration = to - from;
+    piece.from = motionWrench(model, a);
+    piece.to = motionWrench(model, b);
+    const HullWrench impulse = change(momentum(model, a), momentum(model, b));
+    piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
+    if (ends_at == nullptr || !ends_at->strikes) return;
+    const RockerBlow blow = blowAtCrankSpeed(model.mechanism(), model.level(), ends_at->speed);
+    piece.ends_in_blow = true;
+    piece.blow_x = blow.support_impulse_x;
+    piece.blow_z = blow.support_impulse_z;
+  });
+  return result;
+}
+
+}  // namespace hammer_loads

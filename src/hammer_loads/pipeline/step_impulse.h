@@ -1,0 +1,31 @@
+/// Impulse of the hull wrench over a step or a part of it: exact where momentum gives it, at any output rate.
+#pragma once
+
+#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/load_step.h"
+
+namespace hammer_loads {
+
+/// Impulse [N s, N s, N m s] over [from, to] of the part from the links' motion relative to the hull: minus the change of
+/// their momentum, the jumps at the blow left out (they are the blow's own, in RockerBlow). No quadrature, so the sum
+/// over any division of a time is the same.
+HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept;
+
+/// Impulse over [from, to] of what weight and motion of the hull add (frameWrench). Gauss-Legendre of order 6 on pieces
+/// of at most 1.25 ms that end at the blow: forces of a hull at rest exact, moments to some 1e-11 of their size.
+HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
+                        double to) noexcept;
+
+/// The load over the whole step as the boom takes it, blows included; pieces beyond those that a LoadStep holds are left
+/// out (a step of several turns).
+LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept;
+
+inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {
+  return {a.force_x + b.force_x, a.force_z + b.force_z, a.torque_y + b.torque_y};
+}
+inline HullWrench operator*(double factor, const HullWrench& a) noexcept {
+  return {factor * a.force_x, factor * a.force_z, factor * a.torque_y};
+}
+
+}  // namespace hammer_loads

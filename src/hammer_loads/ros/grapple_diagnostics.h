@@ -1,0 +1,38 @@
+/// What the grapple node says of its own health on /diagnostics.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+
+#include <chrono>
+#include <cstdint>
+
+#include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/ros/grapple_flow.h"
+
+namespace hammer_loads {
+
+/// Published once a second of wall time: rate, age, counts of accepted and refused samples by reason, with the slider
+/// positions that are allowed, log health.
+class GrappleDiagnostics {
+ public:
+  /// log may be null.
+  GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, const BagLog* log);
+
+  /// An input arrived that has the slider joint; its age decides whether the slider is stale.
+  void sliderArrived() { last_slider_ = Clock::now(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void describeSlider(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void summarise(Clock::time_point now, diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  const GrappleFlow& flow_;
+  Clock::time_point last_slider_{}, last_report_{Clock::now()};
+  std::uint64_t last_accepted_{}, last_refused_{}, last_without_velocity_{};
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace hammer_loads

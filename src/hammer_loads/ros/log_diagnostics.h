@@ -1,0 +1,13 @@
+/// The log's part of a node's diagnostics.
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+
+#include "hammer_loads/ros/bag_log.h"
+
+namespace hammer_loads {
+
+/// log: null when nothing is logged.
+void describeLog(const BagLog* log, diagnostic_updater::DiagnosticStatusWrapper& status);
+
+}  // namespace hammer_loads

@@ -1,0 +1,44 @@
+#include "hammer_loads/ros/log_services.h"
+
+#include <utility>
+
+namespace hammer_loads {
+
+LogServices::LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> begin)
+    : log_(log), begin_(std::move(begin)) {
+  const auto serve = [&](const char* name, void (LogServices::*act)(Response&)) {
+    return private_node.advertiseService<std_srvs::Trigger::Request, Response>(
+        name, [this, act](std_srvs::Trigger::Request&, Response& response) {
+          (this->*act)(response);
+          return true;
+        });
+  };
+  start_ = serve("log/start", &LogServices::start);
+  stop_ = serve("log/stop", &LogServices::stop);
+  split_ = serve("log/split", &LogServices::split);
+}
+
+void LogServices::start(Response& response) {
+  if (log_.isRecording()) {
+    response.message = "is recording already";
+    return;
+  }
+  const std::vector<std::string> problems = log_.start();
+  response.success = problems.empty();
+  response.message = problems.empty() ? "recording" : problems.front();
+  if (response.success) begin_();
+}
+
+void LogServices::stop(Response& response) {
+  response.success = log_.isRecording();
+  response.message = response.success ? "stopped" : "was not recording";
+  log_.stop();
+}
+
+void LogServices::split(Response& response) {
+  response.success = log_.split();
+  response.message = response.success ? "recording in a new file" : "was not recording";
+  if (response.success) begin_();
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,34 @@
+/// Start, stop and split of a node's log on request.
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+#include <std_srvs/Trigger.h>
+
+#include <functional>
+
+#include "hammer_loads/ros/bag_log.h"
+
+namespace hammer_loads {
+
+/// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request carries nothing: where to and under which names
+/// the log is written comes from the parameters alone. The answer says what was done or why not.
+class LogServices {
+ public:
+  /// begin: called before a log begins or goes on in a new file, so that the file holds a run from its beginning. The
+  /// log must outlive this.
+  LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> begin);
+
+ private:
+  using Response = std_srvs::Trigger::Response;
+
+  void start(Response& response);
+  void stop(Response& response);
+  void split(Response& response);
+
+  BagLog& log_;
+  std::function<void()> begin_;
+  ros::ServiceServer start_, stop_, split_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,122 @@
+#include "hammer_loads/pipeline/hull_deviation.h"
+
+#include <array>
+#include <cmath>
+
+#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/simulation/session.h"
+#include "support/main.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+using simulation::MachineSettings;
+using simulation::Session;
+
+/// Part of the errors within two standard deviations: force_x, force_z, torque_y, angle, speed, acceleration.
+using Coverage = std::array<double, 6>;
+
+Coverage coverage(const MachineSettings& machine) {
+  const Session session = simulation::recordSession(machine);
+  const Settings settings = *loadFiles(configDirectory(), {}).value;
+  Pipeline pipeline(test::mechanismOf(machine.hammer), settings.pipeline);
+  const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+  Coverage inside{};
+  double count = 0;
+  std::size_t joints = 0;
+  HullOutput output;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const auto& reading = session.crank[i];
+    for (; joints < session.joints.size() && session.joints[joints].stamp <= reading.stamp; ++joints) {
+      const auto& position = session.joints[joints].position;
+      pipeline.boomJoints(session.joints[joints].stamp, names, {position.begin(), position.end()}, {});
+    }
+    pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    while (pipeline.nextOutput(output)) {
+      const double time = 1e-9 * static_cast<double>(reading.stamp - machine.start_stamp);
+      const auto truth = std::lower_bound(session.truth.begin(), session.truth.end(), time - 1e-6,
+                                          [](const auto& t, double at) { return t.time < at; });
+      if (truth == session.truth.end() || std::abs(truth->time - time) > 1e-6 || time < 2.0) continue;
+      if (time > machine.drive.stop_time - 0.3) continue;
+      const HullDeviation deviation = pipeline.deviation(output);
+      const std::array<double, 6> error{output.wrench.force_x - truth->load.force_x,
+                                        output.wrench.force_z - truth->load.force_z,
+                                        output.wrench.torque_y - truth->load.torque_y,
+                                        CrankAngle::wrapToPi(output.crank.position.angle.offset - truth->angle),
+                                        output.crank.speed - truth->speed,
+                                        output.crank.acceleration - truth->acceleration};
+      const std::array<double, 6> sigma{deviation.wrench.force_x, deviation.wrench.force_z, deviation.wrench.torque_y,
+                                        deviation.angle, deviation.speed, deviation.acceleration};
+      for (std::size_t k = 0; k < 6; ++k) inside[k] += std::abs(error[k]) <= 2.0 * sigma[k];
+      ++count;
+    }
+  }
+  for (double& part : inside) part /= count;
+  return inside;
+}
+
+class Deviations : public testing::TestWithParam<std::tuple<double, std::uint64_t>> {};
+
+TEST_P(Deviations, HoldTheErrorsAsOftenAsTheyShould) {
+  MachineSettings machine = simulation::workingMo100();
+  machine.duration = 15.0;
+  machine.drive.stop_time = 14.5;
+  machine.crank.rate = std::get<0>(GetParam());
+  machine.seed = std::get<1>(GetParam());
+  machine.crank.drop_outs.clear();
+  const Coverage inside = coverage(machine);
+  const char* names[] = {"force_x", "force_z", "torque_y", "angle", "speed", "acceleration"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_GE(inside[k], 0.90) << names[k];
+    EXPECT_LE(inside[k], 0.99) << names[k];
+  }
+  for (std::size_t k = 0; k < 6; ++k) RecordProperty(names[k], std::to_string(inside[k]));
+}
+
+INSTANTIATE_TEST_SUITE_P(RatesAndSeeds, Deviations,
+                         testing::Combine(testing::Values(2000.0, 1000.0, 500.0, 200.0, 100.0, 50.0),
+                                          testing::Values(1u, 2u, 3u)));
+
+TEST(Deviations, AreUnknownWithoutAFilter) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kRocker);
+  const HullDeviation deviation = hullDeviation(model, {}, {}, Eigen::Matrix3d::Zero());
+  EXPECT_TRUE(std::isnan(deviation.wrench.force_z));
+  EXPECT_TRUE(std::isnan(deviation.speed));
+}
+
+TEST(Deviations, OfAKnownCovarianceAreThoseOfManyDraws) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const HullModel model(mechanism, Level::kRocker);
+  CrankEstimate crank;
+  crank.position.angle = CrankAngle::fromAngle(5.9);
+  crank.speed = 20.0;
+  crank.acceleration = -500.0;
+  Eigen::Matrix3d root;
+  root << 1e-4, 0, 0, 2e-3, 1e-2, 0, -0.5, 0.3, 2.0;
+  const HullDeviation deviation = hullDeviation(model, crank, {}, root * root.transpose());
+  std::mt19937 random(1);
+  std::normal_distribution<> normal;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+  constexpr int kDraws = 40000;
+  for (int i = 0; i < kDraws; ++i) {
+    const Eigen::Vector3d draw = root * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    CrankAngle angle = crank.position.angle;
+    angle.offset += draw[0];
+    const HullWrench w = hullWrench(model, {angle, crank.speed + draw[1], crank.acceleration + draw[2]}, {});
+    const Eigen::Vector3d v(w.force_x, w.force_z, w.torque_y);
+    sum += v;
+    squares += v.cwiseAbs2();
+  }
+  const Eigen::Vector3d expected = (squares / kDraws - (sum / kDraws).cwiseAbs2()).cwiseSqrt();
+  EXPECT_NEAR(deviation.wrench.force_x, expected[0], 0.02 * expected[0]);  // 0.35 % by the draws, the rest curvature
+  EXPECT_NEAR(deviation.wrench.force_z, expected[1], 0.02 * expected[1]);
+  EXPECT_NEAR(deviation.wrench.torque_y, expected[2], 0.02 * expected[2]);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,180 @@
+#include "hammer_loads/pipeline/hull_imu.h"
+
+#include <limits>
+
+#include "hammer_loads/hammer/hull_model.h"
+#include "support/counting_new.h"
+#include "support/free_run.h"
+#include "support/imu_on_hull.h"
+#include "support/main.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr StampNs kMs = 1000000;
+const ImuReading kUpright{{0.0, 0.0, 9.80665}, {0.0, 0.0, 0.0}};
+
+HullImuSettings atD() {
+  HullImuSettings s;
+  s.max_age = 0.02;
+  return s;
+}
+
+/// Channel first: good readings in a row give a motion, then the bad one, then good ones again.
+void expectRefused(const ImuReading& bad, StampNs stamp, ImuRefusal why) {
+  HullImu imu(atD());
+  EXPECT_FALSE(imu.update(0, kUpright));
+  EXPECT_FALSE(imu.at(0)) << "one reading tells no turning acceleration";
+  EXPECT_FALSE(imu.update(kMs, kUpright));
+  ASSERT_TRUE(imu.at(kMs));
+  EXPECT_EQ(imu.update(stamp, bad), why);
+  EXPECT_EQ(imu.last(), kMs);
+  EXPECT_EQ(imu.at(kMs)->gravity.z, -9.80665);
+  EXPECT_FALSE(imu.update(3 * kMs, kUpright));
+  EXPECT_TRUE(imu.at(3 * kMs));
+}
+
+TEST(HullImu, RefusesWhatCannotBe) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  expectRefused({{nan, 0.0, 9.8}, {0.0, 0.0, 0.0}}, 2 * kMs, ImuRefusal::kNotFinite);
+  expectRefused({{0.0, 0.0, 9.8}, {0.0, inf, 0.0}}, 2 * kMs, ImuRefusal::kNotFinite);
+  expectRefused({{0.0, 0.0, 2001.0}, {0.0, 0.0, 0.0}}, 2 * kMs, ImuRefusal::kImplausible);
+  expectRefused({{0.0, 0.0, 9.8}, {0.0, 101.0, 0.0}}, 2 * kMs, ImuRefusal::kImplausible);
+  expectRefused(kUpright, kMs, ImuRefusal::kOutOfOrder);
+  expectRefused(kUpright, 0, ImuRefusal::kOutOfOrder);
+}
+
+TEST(HullImu, BelievesTimeRunningBackFromTheSecondReadingOn) {
+  HullImu imu(atD());
+  for (StampNs t : {5000 * kMs, 5001 * kMs}) imu.update(t, kUpright);
+  EXPECT_EQ(imu.update(1000 * kMs, kUpright), ImuRefusal::kOutOfOrder);
+  EXPECT_FALSE(imu.update(1001 * kMs, kUpright));
+  EXPECT_FALSE(imu.at(1001 * kMs));
+  EXPECT_FALSE(imu.update(1002 * kMs, kUpright));
+  EXPECT_TRUE(imu.at(1002 * kMs));
+}
+
+TEST(HullImu, SaysWhenItIsStale) {
+  HullImu imu(atD());
+  for (StampNs t : {0 * kMs, 1 * kMs}) imu.update(t, kUpright);
+  EXPECT_TRUE(imu.at(21 * kMs));
+  EXPECT_FALSE(imu.at(21 * kMs + 1));
+  EXPECT_FALSE(imu.at(-20 * kMs));
+  imu.update(30 * kMs, kUpright);  // after a gap: one reading in a row
+  EXPECT_FALSE(imu.at(30 * kMs));
+  imu.update(31 * kMs, kUpright);
+  EXPECT_TRUE(imu.at(31 * kMs));
+  imu.reset();
+  EXPECT_FALSE(imu.at(31 * kMs));
+}
+
+/// Weight and tilt at once: hull pitch p about +y, unit mounted askew.
+TEST(HullImu, AtRestReadsGravityByPitch) {
+  for (const double pitch : {-1.0, 0.0, 0.7}) {
+    const HullImuSettings mounting = test::imuMounting();
+    const HullMotion right{{9.8 * std::sin(pitch), -9.8 * std::cos(pitch)}};
+    HullImu imu(mounting);
+    for (StampNs t : {0 * kMs, 1 * kMs}) imu.update(t, test::readingOf(right, mounting));
+    EXPECT_NEAR(imu.at(kMs)->gravity.x, right.gravity.x, 1e-14);
+    EXPECT_NEAR(imu.at(kMs)->gravity.z, right.gravity.z, 1e-14);
+    EXPECT_FALSE(std::abs(imu.at(kMs)->rate) > 0.0);
+  }
+}
+
+TEST(HullImu, RollPitchYawTurnAboutFixedAxes) {
+  const Eigen::Matrix3d r = rotationOf(0.3, -0.5, 1.1);
+  EXPECT_NEAR((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-15);
+  EXPECT_NEAR(r(2, 0), std::sin(0.5), 1e-15);
+  EXPECT_NEAR(std::atan2(r(1, 0), r(0, 0)), 1.1, 1e-15);
+  EXPECT_NEAR(std::atan2(r(2, 1), r(2, 2)), 0.3, 1e-15);
+}
+
+TEST(HullImu, BetweenReadingsItFollowsTheLineAndOneIntervalBeyond) {
+  HullImu imu(atD());
+  imu.update(0, {{0.0, 0.0, 10.0}, {0.0, 0.1, 0.0}});
+  imu.update(2 * kMs, {{0.0, 0.0, 12.0}, {0.0, 0.3, 0.0}});
+  EXPECT_NEAR(imu.at(kMs)->gravity.z, -11.0, 1e-13);
+  EXPECT_NEAR(imu.at(3 * kMs)->gravity.z, -13.0, 1e-13);
+  EXPECT_NEAR(imu.at(9 * kMs)->gravity.z, -14.0, 1e-13);
+  EXPECT_NEAR(imu.at(3 * kMs)->rate, 0.4, 1e-14);
+  EXPECT_NEAR(imu.at(2 * kMs)->acceleration, 100.0, 1e-10);
+}
+
+TEST(HullImu, AllocatesNothing) {
+  HullImu imu(test::imuMounting());
+  imu.update(0, kUpright);
+  const std::size_t before = test::allocations;
+  imu.update(kMs, kUpright);
+  const auto motion = imu.at(kMs);
+  EXPECT_EQ(test::allocations, before);
+  EXPECT_TRUE(motion);
+}
+
+/// Force error over the peak: largest and root mean square.
+struct ForceError {
+  double worst{}, sum{}, peak{};
+  int count{};
+  void add(const HullWrench& wrench, const HullWrench& right) {
+    const double x = wrench.force_x - right.force_x, z = wrench.force_z - right.force_z;
+    worst = std::max(worst, std::hypot(x, z));
+    sum += x * x + z * z;
+    ++count;
+    peak = std::max(peak, right.force_z);
+  }
+  double largest() const { return worst / peak; }
+  double rms() const { return std::sqrt(sum / count) / peak; }
+};
+
+struct SessionErrors {
+  ForceError at_readings, between, fixed;
+};
+
+/// Three seconds of work of a 400 kg hull on its boom, readings at 1 kHz. The crank is known, so that all error is the
+/// hull's. The two readings after a blow are left out: what jumps there no line follows.
+SessionErrors session(bool noise) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const test::FreeHull system(mechanism, Level::kRocker, test::onBoom());
+  test::FreeRun run(system, test::hangingStill(test::onBoom(), 15.0), 160.0);
+  const HullImuSettings mounting = test::imuMounting();
+  HullImu imu(mounting);
+  test::ImuNoise noisy(4);
+  SessionErrors errors;
+  int last_blows = 0, since_blow = 0;
+  for (int i = 0; i < 6000; ++i, run.advance(5e-4)) {
+    const test::FreeHull::Result right = run.result();
+    const StampNs stamp = i * kMs / 2;
+    const ImuReading reading = test::readingOf(right.hull, mounting);
+    if (i % 2 == 0) imu.update(stamp, noise ? noisy(reading) : reading);
+    since_blow = run.blows() == last_blows ? since_blow + 1 : 0;
+    last_blows = run.blows();
+    if (i < 10 || since_blow < 6) continue;
+    const CrankMotion crank{run.state().crank, run.state().crank_speed, right.acceleration[3]};
+    const HullWrench truth = hullWrench(mechanism, Level::kRocker, crank, right.hull);
+    const double tilt = run.state().hull[2];
+    const Gravity weight{9.80665 * std::sin(tilt), -9.80665 * std::cos(tilt)};
+    (i % 2 == 0 ? errors.at_readings : errors.between)
+        .add(hullWrench(mechanism, Level::kRocker, crank, *imu.at(stamp)), truth);
+    errors.fixed.add(hullWrench(mechanism, Level::kRocker, crank, weight), truth);
+  }
+  EXPECT_GT(last_blows, 12);
+  return errors;
+}
+
+/// Half an interval's delay of the turning's acceleration, a line for a curve between readings, and noise.
+TEST(HullImu, GivesTheWrenchOfAMovingHullFromAnywhereOnIt) {
+  const SessionErrors exact = session(false), noisy = session(true);
+  EXPECT_NEAR(exact.fixed.peak, 8800.0, 50.0);
+  EXPECT_GT(exact.fixed.largest(), 0.20);
+  EXPECT_LT(exact.at_readings.largest(), 0.003);
+  EXPECT_LT(exact.between.largest(), 0.006);
+  EXPECT_LT(exact.between.rms(), 0.002);
+  EXPECT_LT(noisy.at_readings.largest(), 0.022);
+  EXPECT_LT(noisy.between.largest(), 0.022);
+  EXPECT_LT(noisy.between.rms(), 0.007);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

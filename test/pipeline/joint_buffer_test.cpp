@@ -1,0 +1,201 @@
+#include "hammer_loads/pipeline/joint_buffer.h"
+
+#include <limits>
+
+#include "boom/booms.h"
+#include "support/counting_new.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr StampNs kMs = 1000000;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using Names = std::vector<std::string>;
+using Values = std::vector<double>;
+
+PipelineSettings settings(BoomAcceleration acceleration = BoomAcceleration::kDifference) {
+  PipelineSettings s;
+  s.joint_max_age = 0.2;
+  s.boom_acceleration = acceleration;
+  return s;
+}
+
+const Names kFour{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+
+class Joints : public testing::Test {
+ protected:
+  /// Motion that must be known.
+  JointMotion at(StampNs stamp) const {
+    JointMotion motion;
+    const auto fault = buffer_.at(stamp, motion);
+    EXPECT_FALSE(fault) << (fault ? buffer_.name(fault->joint) : "");
+    return motion;
+  }
+  Boom boom_{test::shippedBoom()};
+  JointBuffer buffer_{boom_.chain(), settings()};
+};
+
+TEST_F(Joints, AreHeldBeyondTheNewestStateAndLinearBetweenStates) {
+  ASSERT_TRUE(buffer_.update(1000 * kMs, kFour, {0.1, -0.4, 1.2, -0.8}, {0.0, 0.1, 0.2, 0.3}));
+  ASSERT_TRUE(buffer_.update(1020 * kMs, kFour, {0.1, -0.3, 1.3, -0.9}, {0.0, 0.5, 0.4, 0.1}));
+  const JointMotion held = at(1100 * kMs);
+  EXPECT_EQ(held.position, test::joints({0.1, -0.3, 1.3, -0.9}));
+  EXPECT_EQ(held.velocity, test::joints({0.0, 0.5, 0.4, 0.1}));
+  const JointMotion between = at(1005 * kMs);
+  EXPECT_TRUE(between.position.isApprox(test::joints({0.1, -0.375, 1.225, -0.825}), 1e-15));
+  EXPECT_TRUE(between.velocity.isApprox(test::joints({0.0, 0.2, 0.25, 0.25}), 1e-15));
+  EXPECT_TRUE(between.acceleration.isApprox(test::joints({0.0, 20.0, 10.0, -10.0}), 1e-12));
+}
+
+TEST_F(Joints, MayComeInPartsInAnyOrderAmongOthers) {
+  EXPECT_FALSE(buffer_.update(0, {"wheel"}, {3.0}, {}));
+  EXPECT_TRUE(buffer_.update(0, {"hammer_joint", "wheel", "boom_joint"}, {-0.8, 3.0, -0.4}, {}));
+  JointMotion motion;
+  auto fault = buffer_.at(kMs, motion);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, JointFault::Kind::kMissing);
+  EXPECT_EQ(buffer_.name(fault->joint), "swing_joint");
+  EXPECT_EQ(buffer_.complaints(kMs), (Names{"swing_joint: never heard", "arm_joint: never heard"}));
+  EXPECT_TRUE(buffer_.update(kMs, {"swing_joint"}, {0.2}, {}));
+  EXPECT_TRUE(buffer_.update(2 * kMs, {"wheel", "arm_joint"}, {0.0, 1.2}, {}));
+  EXPECT_EQ(at(2 * kMs).position, test::joints({0.2, -0.4, 1.2, -0.8}));
+  EXPECT_TRUE(buffer_.complaints(2 * kMs).empty());
+}
+
+TEST_F(Joints, GrowStaleEachByItself) {
+  buffer_.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {});
+  buffer_.update(100 * kMs, {"swing_joint", "boom_joint", "hammer_joint"}, {0.0, 0.0, 0.0}, {});
+  at(200 * kMs);
+  JointMotion motion;
+  const auto fault = buffer_.at(201 * kMs, motion);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind, JointFault::Kind::kStale);
+  EXPECT_EQ(buffer_.name(fault->joint), "arm_joint");
+  EXPECT_NEAR(fault->age, 0.201, 1e-12);
+  EXPECT_EQ(buffer_.complaints(201 * kMs), Names{"arm_joint: 0.201 s old, must be at most 0.2 s"});
+  buffer_.update(300 * kMs, {"arm_joint"}, {1.0}, {});
+  at(300 * kMs);
+  // A long gap is not bridged, but its ends are known.
+  buffer_.update(1000 * kMs, kFour, {0.0, 0.0, 2.0, 0.0}, {});
+  EXPECT_TRUE(buffer_.at(600 * kMs, motion));
+  EXPECT_NEAR(at(900 * kMs).position[2], 1.0 + 6.0 / 7.0, 1e-15);
+}
+
+TEST_F(Joints, BeforeTheFirstStateAreTheFirst) {
+  buffer_.update(1000 * kMs, kFour, {0.1, 0.2, 1.3, 0.0}, {});
+  EXPECT_EQ(at(900 * kMs).position[2], 1.3);
+  JointMotion motion;
+  EXPECT_TRUE(buffer_.at(799 * kMs, motion));
+}
+
+TEST_F(Joints, WithoutVelocitiesDifferencesFollowAParabolaExactly) {
+  const double a = 0.6, v = -0.3;
+  const auto position = [&](double t) { return 1.0 + v * t + 0.5 * a * t * t; };
+  // Steps of different lengths.
+  const int stamps[] = {0, 20, 50, 60, 100};
+  for (int ms : stamps) buffer_.update(ms * kMs, kFour, {0.0, 0.0, position(1e-3 * ms), 0.0}, {});
+  const JointMotion between = at(80 * kMs);
+  EXPECT_NEAR(between.velocity[2], v + a * 0.080, 1e-14);  // of a chord: exact at its middle
+  EXPECT_NEAR(between.acceleration[2], a, 1e-12);
+  EXPECT_NEAR(between.position[2], position(0.080), 0.125 * a * 0.04 * 0.04 * 1.01);
+  EXPECT_EQ(between.velocity[1], 0.0);
+
+  JointBuffer first(boom_.chain(), settings());
+  first.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {});
+  JointMotion motion;
+  ASSERT_FALSE(first.at(0, motion));
+  EXPECT_TRUE(motion.velocity.isZero(0.0));
+  first.update(10 * kMs, kFour, {0.0, 0.0, 1.1, 0.0}, {});
+  ASSERT_FALSE(first.at(10 * kMs, motion));
+  EXPECT_NEAR(motion.velocity[2], 10.0, 1e-13);
+  EXPECT_TRUE(motion.acceleration.isZero(0.0));  // one velocity has no difference
+}
+
+TEST_F(Joints, AccelerationMayBeNeglected) {
+  JointBuffer plain(boom_.chain(), settings(BoomAcceleration::kNone));
+  plain.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 0.0, 0.0});
+  plain.update(10 * kMs, kFour, {0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 1.0, 0.0});
+  JointMotion motion;
+  ASSERT_FALSE(plain.at(10 * kMs, motion));
+  EXPECT_EQ(motion.velocity[2], 1.0);
+  EXPECT_TRUE(motion.acceleration.isZero(0.0));
+}
+
+TEST_F(Joints, BadValuesAreRefusedAndCounted) {
+  ASSERT_TRUE(buffer_.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {}));
+  EXPECT_FALSE(buffer_.update(10 * kMs, {"arm_joint"}, {kNaN}, {}));
+  EXPECT_FALSE(buffer_.update(10 * kMs, {"arm_joint"}, {std::numeric_limits<double>::infinity()}, {}));
+  EXPECT_EQ(buffer_.refusals().not_finite, 2U);
+  EXPECT_FALSE(buffer_.update(10 * kMs, {"arm_joint"}, {}, {}));
+  EXPECT_EQ(buffer_.refusals().short_array, 1U);
+  EXPECT_EQ(at(10 * kMs).position[2], 1.0);
+  // A bad or absent velocity leaves the position.
+  EXPECT_TRUE(buffer_.update(20 * kMs, {"arm_joint"}, {1.2}, {kNaN}));
+  EXPECT_EQ(buffer_.refusals().not_finite, 3U);
+  EXPECT_NEAR(at(20 * kMs).velocity[2], 10.0, 1e-12);
+  EXPECT_TRUE(buffer_.update(30 * kMs, {"boom_joint", "arm_joint"}, {0.0, 1.3}, {0.0}));
+  EXPECT_EQ(buffer_.refusals().short_array, 2U);
+  EXPECT_NEAR(at(30 * kMs).velocity[2], 10.0, 1e-12);
+}
+
+TEST_F(Joints, TheFirstOfADuplicateCounts) {
+  EXPECT_TRUE(buffer_.update(0, {"arm_joint", "swing_joint", "arm_joint", "boom_joint", "hammer_joint"},
+                             {1.0, 0.0, 2.0, 0.0, 0.0}, {}));
+  EXPECT_EQ(at(0).position[2], 1.0);
+  EXPECT_EQ(buffer_.refusals().out_of_order, 1U);
+}
+
+TEST_F(Joints, ALateStateIsRefusedTimeRunningBackIsBelieved) {
+  buffer_.update(1000 * kMs, kFour, {0.0, 0.0, 1.0, 0.0}, {});
+  EXPECT_FALSE(buffer_.update(990 * kMs, kFour, {0.0, 0.0, 2.0, 0.0}, {}));
+  EXPECT_TRUE(buffer_.update(1010 * kMs, kFour, {0.0, 0.0, 1.1, 0.0}, {}));
+  EXPECT_NEAR(at(1010 * kMs).position[2], 1.1, 0.0);
+  EXPECT_FALSE(buffer_.update(0, kFour, {0.0, 0.0, 2.0, 0.0}, {}));
+  EXPECT_TRUE(buffer_.update(10 * kMs, kFour, {0.0, 0.0, 2.1, 0.0}, {}));
+  EXPECT_EQ(at(10 * kMs).position[2], 2.1);
+  EXPECT_EQ(at(10 * kMs).velocity[2], 0.0);  // nothing of before is differentiated
+  EXPECT_EQ(buffer_.refusals().out_of_order, 8U);
+
+  buffer_.reset();
+  JointMotion motion;
+  EXPECT_TRUE(buffer_.at(10 * kMs, motion));
+  EXPECT_TRUE(buffer_.update(0, kFour, {0.0, 0.0, 3.0, 0.0}, {}));
+  EXPECT_EQ(at(0).position[2], 3.0);
+}
+
+TEST_F(Joints, AJointThatTurnsFreelyTakesTheShorterWay) {
+  std::mt19937 random(3);
+  const auto planar = test::PlanarChain<2>::random(random);
+  const Checked<Chain> chain = Chain::make(planar.urdf(), {"base_link", "tip", {}});
+  ASSERT_TRUE(chain.value);
+  JointBuffer winding(*chain.value, settings());
+  winding.update(0, {"j0", "j1"}, {3.1, 0.0}, {});
+  winding.update(10 * kMs, {"j0", "j1"}, {-3.1, 0.5}, {});
+  JointMotion motion;
+  ASSERT_FALSE(winding.at(5 * kMs, motion));
+  EXPECT_NEAR(motion.position[0], std::acos(-1.0), 1e-12);
+  EXPECT_NEAR(motion.velocity[0], (2.0 * std::acos(-1.0) - 6.2) / 0.010, 1e-9);
+}
+
+TEST_F(Joints, ACrankSampleMayLieFarBehind) {
+  for (int i = 0; i < 1000; ++i) buffer_.update(i * kMs, kFour, {0.0, 0.0, 1.0 + 1e-3 * i, 0.0}, {});
+  EXPECT_NEAR(at(940 * kMs + kMs / 2).position[2], 1.9405, 1e-12);
+  EXPECT_NEAR(at(900 * kMs).position[2], 1.936, 1e-12);  // older than all that is kept: the oldest
+}
+
+TEST_F(Joints, AllocateNothing) {
+  const Values position{0.0, 0.0, 1.0, 0.0}, velocity{0.0, 0.1, 0.0, 0.0};
+  JointMotion motion;
+  const std::size_t before = test::allocations;
+  for (int i = 0; i < 1000; ++i) {
+    buffer_.update(i * kMs, kFour, position, velocity);
+    buffer_.at(i * kMs, motion);
+  }
+  EXPECT_EQ(test::allocations, before);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,130 @@
+#include "hammer_loads/ros/boom_messages.h"
+
+#include "boom/booms.h"
+#include "support/counting_new.h"
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+using Names = std::vector<std::string>;
+constexpr StampNs kStamp = 12345678901;
+constexpr HullWrench kLoad{-900.0, 7000.0, 300.0};
+const Names kFour{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+
+PipelineSettings settings(BoomModel model) {
+  PipelineSettings s;
+  s.boom = model;
+  s.joint_max_age = 0.2;
+  return s;
+}
+
+HalfSinePulse pulse() {
+  HalfSinePulse p;
+  p.amplitude = 8e3;
+  p.frequency = 3.14159265358979323846 / 0.018;
+  return p;
+}
+
+class Messages : public testing::Test {
+ protected:
+  void sample(StampNs stamp) {
+    LoadStep step;
+    step.count = 1;
+    step.pieces[0] = {1e-3, kLoad, kLoad, kLoad, false, 0.0, 0.0};
+    follower_.jointStates(stamp, kFour, position_, {});
+    ASSERT_FALSE(follower_.sample({stamp, kLoad, 9.80665}, step).fault);
+  }
+  const std::vector<double> position_{0.2, -0.35, 1.20, -0.85};
+  BoomFollower follower_{test::shippedBoom(), settings(BoomModel::kAuto), 0.1975};
+  BoomMessages messages_{follower_, {"gauge", "arm_link", "left/gauge", "base_link"}};
+};
+
+TEST_F(Messages, HoldTheStateInItsOrder) {
+  sample(kStamp - 1000000);
+  sample(kStamp);
+  const BoomState& state = follower_.state();
+  const JointLoads& loads = messages_.jointLoads();
+  EXPECT_EQ(loads.header.stamp.toNSec(), static_cast<std::uint64_t>(kStamp));
+  EXPECT_EQ(loads.header.frame_id, "base_link");
+  EXPECT_EQ(loads.joint_name, kFour);
+  EXPECT_EQ(loads.cylinder_name, (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
+  for (int j = 0; j < 4; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    EXPECT_EQ(loads.hammer_torque_Nm.at(i), state.loads.hammer[j]);
+    EXPECT_EQ(loads.weight_torque_Nm.at(i), state.loads.weight[j]);
+    EXPECT_EQ(loads.motion_torque_Nm.at(i), state.loads.motion[j]);
+    EXPECT_EQ(loads.vibration_torque_Nm.at(i), state.loads.vibration[j]);
+    EXPECT_EQ(loads.total_torque_Nm.at(i), state.loads.total[j]);
+  }
+  EXPECT_NE(state.loads.vibration[1], 0.0);
+  ASSERT_EQ(loads.cylinder_force_N.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(loads.cylinder_force_N[i], state.loads.cylinder[i].force);
+    EXPECT_EQ(loads.cylinder_pressure_Pa[i], state.loads.cylinder[i].pressure);
+  }
+}
+
+TEST_F(Messages, TellTheVibrationAndWhy) {
+  sample(kStamp - 1000000);
+  sample(kStamp);
+  const BoomVibration& before = messages_.vibration();
+  EXPECT_TRUE(before.compliant);
+  EXPECT_TRUE(std::isnan(before.rigid_error) && std::isnan(before.pulse_length_s));
+  EXPECT_TRUE(std::isnan(before.hold_down_factor));
+  EXPECT_EQ(before.hold_down_limit, "");
+  EXPECT_EQ(before.header.frame_id, "hammer_hull");
+
+  follower_.turnEnded(pulse(), 300.0);
+  sample(kStamp + 1000000);
+  const BoomState& state = follower_.state();
+  const BoomVibration& after = messages_.vibration();
+  EXPECT_EQ(after.displacement_m.z, state.tip.displacement[2]);
+  EXPECT_EQ(after.rotation_rad.y, state.tip.displacement[4]);
+  EXPECT_EQ(after.acceleration_m_s2.x, state.tip.acceleration[0]);
+  ASSERT_EQ(after.natural_frequency_Hz.size(), 3U);
+  EXPECT_EQ(after.natural_frequency_Hz[2], state.frequency[2]);
+  EXPECT_EQ(after.reduced_mass_kg, state.reduced.mass);
+  EXPECT_EQ(after.reduced_stiffness_N_m, state.reduced.stiffness);
+  EXPECT_EQ(after.rigid_error, state.choice.rigid_error);
+  EXPECT_EQ(after.rigid_tolerance, 0.05);
+  EXPECT_NEAR(after.pulse_length_s, 0.018, 1e-15);
+  EXPECT_EQ(after.hold_down_factor, state.hold_down->least);
+  EXPECT_EQ(after.hold_down_limit, "boom_cylinder");
+}
+
+TEST_F(Messages, TellTheLoadAtTheChainsLinks) {
+  sample(kStamp);
+  ASSERT_EQ(messages_.links(), (Names{"arm_link", "base_link"}));
+  const geometry_msgs::WrenchStamped& arm = messages_.wrench(0, ros::Time(1.0), kLoad);
+  EXPECT_EQ(arm.header.frame_id, "arm_link");
+  EXPECT_EQ(arm.header.stamp.toNSec(), static_cast<std::uint64_t>(kStamp));
+  const Wrench expected = follower_.wrenchAtLink(*follower_.linkIndex("arm_link"), kLoad);
+  EXPECT_EQ(arm.wrench.force.x, expected.force.x());
+  EXPECT_EQ(arm.wrench.force.z, expected.force.z());
+  EXPECT_EQ(arm.wrench.torque.y, expected.torque.y());
+  EXPECT_EQ(messages_.wrench(1, ros::Time(1.0), kLoad).header.frame_id, "base_link");
+
+  const Names links{"gauge", "arm_link", "left/gauge"};
+  EXPECT_EQ(framesBesideChain(links, &follower_.boom()), (Names{"gauge", "left/gauge"}));
+  EXPECT_EQ(framesBesideChain(links, nullptr), links);
+}
+
+TEST_F(Messages, AllocateNothing) {
+  sample(kStamp);
+  follower_.turnEnded(pulse(), 300.0);
+  const std::size_t before = test::allocations;
+  double sum = 0.0;
+  for (int i = 1; i < 1000; ++i) {
+    sample(kStamp + i * 1000000);
+    sum += messages_.jointLoads().total_torque_Nm[1] + messages_.vibration().reduced_mass_kg +
+           messages_.wrench(0, ros::Time(1.0), kLoad).wrench.torque.y;
+  }
+  EXPECT_EQ(test::allocations, before);
+  EXPECT_TRUE(std::isfinite(sum));
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

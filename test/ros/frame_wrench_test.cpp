@@ -1,0 +1,167 @@
+#include "hammer_loads/ros/frame_wrench.h"
+
+#include <cmath>
+
+#include "support/main.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr char kHull[] = "hammer_hull";
+
+geometry_msgs::TransformStamped transform(const std::string& parent, const std::string& child, double time, double x,
+                                          double z, double pitch = 0.0) {
+  geometry_msgs::TransformStamped t;
+  t.header.frame_id = parent;
+  t.child_frame_id = child;
+  t.header.stamp = ros::Time(time);
+  t.transform.translation.x = x;
+  t.transform.translation.z = z;
+  t.transform.rotation.y = std::sin(0.5 * pitch);
+  t.transform.rotation.w = std::cos(0.5 * pitch);
+  return t;
+}
+
+struct Told {
+  std::size_t frame{};
+  geometry_msgs::WrenchStamped wrench;
+  double record_time{};
+};
+
+class Frames : public testing::Test {
+ protected:
+  void tf(const std::vector<geometry_msgs::TransformStamped>& transforms, double now, bool is_static = false) {
+    tf2_msgs::TFMessage message;
+    message.transforms = transforms;
+    frames_.transforms(message, is_static, ros::Time(now));
+  }
+  /// A load along z with stamp and record time.
+  void load(double stamp, double now, double force = 20e3) {
+    geometry_msgs::WrenchStamped w;
+    w.header.frame_id = kHull;
+    w.header.stamp = ros::Time(stamp);
+    w.wrench.force.z = force;
+    w.wrench.torque.y = 7.0;
+    frames_.wrench(w, ros::Time(now));
+  }
+  std::vector<Told> told_;
+  FrameWrenches frames_{{"gauge", "other"}, kHull, 0.5,
+                        [this](std::size_t frame, const geometry_msgs::WrenchStamped& w, const ros::Time& now) {
+                          told_.push_back({frame, w, now.toSec()});
+                        }};
+};
+
+TEST_F(Frames, TheLeverArmCounts) {
+  tf({transform("gauge", kHull, 0.0, 2.5, 0.0)}, 1.0, true);
+  load(1.0, 1.1);
+  ASSERT_EQ(told_.size(), 1U);
+  EXPECT_EQ(told_[0].frame, 0U);
+  EXPECT_EQ(told_[0].wrench.header.frame_id, "gauge");
+  EXPECT_EQ(told_[0].wrench.header.stamp, ros::Time(1.0));
+  EXPECT_EQ(told_[0].record_time, 1.1);
+  EXPECT_EQ(told_[0].wrench.wrench.force.z, 20e3);
+  EXPECT_EQ(told_[0].wrench.wrench.torque.y, 7.0 - 50e3);
+  EXPECT_EQ(frames_.counts(0).told, 1U);
+  EXPECT_EQ(frames_.complaint(0), "");
+}
+
+TEST_F(Frames, FollowAMovingTreeAtTheStamp) {
+  // arm carries the hull on one side and the gauge, turned by 90 deg about y, on the other.
+  tf({transform("arm", "gauge", 0.0, -0.5, 0.2, 0.5 * std::acos(-1.0))}, 1.0, true);
+  tf({transform("arm", kHull, 1.0, 1.0, 0.0)}, 1.0);
+  tf({transform("arm", kHull, 2.0, 2.0, 0.4)}, 2.0);
+  load(1.25, 2.0);
+  ASSERT_EQ(told_.size(), 1U);
+  // From the gauge to the hull (1.25 + 0.5, -0.1) in the arm's axes; gauge x is -z of the arm, gauge z is its x.
+  const geometry_msgs::Wrench& w = told_[0].wrench.wrench;
+  EXPECT_NEAR(w.force.x, -20e3, 1e-9);
+  EXPECT_NEAR(w.force.z, 0.0, 1e-9);
+  EXPECT_NEAR(w.torque.y, 7.0 - 1.75 * 20e3, 1e-8);
+}
+
+TEST_F(Frames, AWrenchWaitsForItsTransformAndIsRecordedWithIt) {
+  tf({transform("gauge", kHull, 1.000, 0.0, 0.0)}, 1.000);
+  for (int i = 1; i <= 20; ++i) load(1.0 + 1e-3 * i, 1.0 + 1e-3 * i, i);
+  EXPECT_TRUE(told_.empty());
+  EXPECT_EQ(frames_.counts(0).waiting, 20U);
+  tf({transform("gauge", kHull, 1.0105, 0.0, 0.0)}, 1.0205);
+  ASSERT_EQ(told_.size(), 10U);
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(told_[i].wrench.wrench.force.z, static_cast<double>(i + 1));
+    EXPECT_EQ(told_[i].record_time, 1.0205);
+  }
+  tf({transform("gauge", kHull, 1.040, 0.0, 0.0)}, 1.041);
+  EXPECT_EQ(told_.size(), 20U);
+  EXPECT_EQ(frames_.counts(0).waiting, 0U);
+  EXPECT_EQ(frames_.counts(0).dropped, 0U);
+}
+
+TEST_F(Frames, WithoutTransformNothingIsToldAndTheFrameIsNamed) {
+  tf({transform("gauge", kHull, 0.0, 1.0, 0.0)}, 0.9, true);
+  load(1.0, 1.0);
+  EXPECT_EQ(told_.size(), 1U);  // the other frame is silent
+  EXPECT_EQ(frames_.counts(1).waiting, 1U);
+  EXPECT_EQ(frames_.complaint(1), "");
+  load(1.5, 1.5);
+  EXPECT_EQ(frames_.counts(1).dropped, 0U);
+  load(1.6, 1.6);
+  EXPECT_EQ(told_.size(), 3U);
+  EXPECT_EQ(frames_.counts(1).dropped, 1U);
+  EXPECT_EQ(frames_.counts(1).waiting, 2U);
+  const std::string complaint = frames_.complaint(1);
+  EXPECT_EQ(complaint.rfind("other: no transform from hammer_hull within 0.5 s: ", 0), 0U) << complaint;
+  EXPECT_EQ(complaint.find('\n'), std::string::npos);
+  EXPECT_EQ(frames_.complaint(0), "");
+  // Good again.
+  tf({transform(kHull, "other", 0.0, 1.0, 0.0)}, 1.7, true);
+  EXPECT_EQ(frames_.counts(1).told, 2U);
+  EXPECT_EQ(frames_.complaint(1), "");
+}
+
+TEST_F(Frames, WhatIsOlderThanTfIsNotWaitedFor) {
+  load(1.0, 1.0);
+  load(1.2, 1.2);
+  tf({transform("gauge", kHull, 1.1, 0.0, 0.0)}, 1.21);
+  EXPECT_EQ(frames_.counts(0).dropped, 1U);
+  EXPECT_EQ(frames_.counts(0).waiting, 1U);
+  tf({transform("gauge", kHull, 1.21, 0.0, 0.0)}, 1.22);
+  ASSERT_EQ(told_.size(), 1U);
+  EXPECT_EQ(told_[0].wrench.header.stamp, ros::Time(1.2));
+}
+
+TEST_F(Frames, AQueueIsBounded) {
+  for (int i = 0; i < 5000; ++i) load(1.0 + 1e-5 * i, 1.0 + 1e-5 * i, i);
+  EXPECT_EQ(frames_.counts(0).waiting, 4096U);
+  EXPECT_EQ(frames_.counts(0).crowded, 904U);
+  tf({transform("gauge", kHull, 0.0, 0.0, 0.0)}, 1.06, true);
+  ASSERT_EQ(told_.size(), 4096U);
+  EXPECT_EQ(told_.front().wrench.wrench.force.z, 904.0);
+  EXPECT_EQ(told_.back().wrench.wrench.force.z, 4999.0);
+}
+
+TEST_F(Frames, TimeMayBeginAnew) {
+  tf({transform("gauge", "mount", 0.0, 1.0, 0.0)}, 5.0, true);
+  tf({transform("mount", kHull, 5.0, 0.0, 0.0)}, 5.0);
+  load(5.1, 5.1);
+  frames_.reset();
+  EXPECT_EQ(frames_.counts(0).waiting, 0U);
+  load(1.05, 1.05);
+  tf({transform("mount", kHull, 1.0, 0.0, 0.0)}, 1.05);
+  EXPECT_TRUE(told_.empty());
+  tf({transform("mount", kHull, 1.1, 0.0, 0.0)}, 1.1);
+  ASSERT_EQ(told_.size(), 1U);
+  EXPECT_EQ(told_[0].wrench.wrench.torque.y, 7.0 - 20e3);
+}
+
+TEST_F(Frames, ABadTransformIsNotTaken) {
+  tf({transform("gauge", kHull, 1.0, std::nan(""), 0.0)}, 1.0, true);
+  load(1.0, 1.0);
+  EXPECT_TRUE(told_.empty());
+  tf({transform("gauge", kHull, 1.0, 1.0, 0.0)}, 1.1, true);
+  EXPECT_EQ(told_.size(), 1U);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

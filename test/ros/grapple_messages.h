@@ -1,0 +1,95 @@
+/// Slider samples for the tests, and a sink that keeps what a GrappleFlow gives.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/ros/grapple_flow.h"
+
+namespace hammer_loads::test {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+inline std::string claimsFile() { return configDirectory() + "/grapple_claims.yaml"; }
+
+inline GrappleSettings grappleSettings(SliderAcceleration acceleration = SliderAcceleration::kNone,
+                                       const std::string& file = claimsFile()) {
+  Checked<GrappleSettings> settings = loadGrappleSettings(configDirectory(), std::vector<std::string>{file});
+  for (const std::string& problem : settings.problems) ADD_FAILURE() << problem;
+  settings.value.value().acceleration = acceleration;
+  return *settings.value;
+}
+
+/// The slider among other joints, position [m], velocity [m/s].
+inline sensor_msgs::JointState sliderMessage(const ros::Time& stamp, double position, std::optional<double> velocity) {
+  sensor_msgs::JointState m;
+  m.header.stamp = stamp;
+  m.name = {"boom_joint", "grapple_slider_joint", "arm_joint"};
+  m.position = {0.1, position, 0.2};
+  if (velocity) m.velocity = {kNan, *velocity, 0.0};  // what other joints say is none of the grapple's
+  return m;
+}
+
+/// A way of spoiling a sample, and the name under which it is counted.
+struct BadSample {
+  const char* reason;
+  sensor_msgs::JointState message;
+};
+
+/// Each way once; the good samples before have stamp and position as given.
+inline std::vector<BadSample> badSamples(const ros::Time& last, double position) {
+  const ros::Time next = last + ros::Duration(0.01);
+  sensor_msgs::JointState foreign = sliderMessage(next, position, 0.1), no_position = foreign, few_speeds = foreign;
+  foreign.name[1] = "wheel";
+  no_position.position.resize(1);
+  few_speeds.velocity.resize(1);
+  return {{"missing joint", foreign},
+          {"short array", no_position},
+          {"short array", few_speeds},
+          {"duplicate", sliderMessage(last, position, 0.1)},
+          {"out of order", sliderMessage(last - ros::Duration(0.05), position, 0.1)},
+          {"not finite", sliderMessage(next, kNan, 0.1)},
+          {"not finite", sliderMessage(next, position, std::numeric_limits<double>::infinity())},
+          {"across fold", sliderMessage(next, 0.74, 0.1)},
+          {"across fold", sliderMessage(next, 0.88, 0.1)},
+          {"out of reach", sliderMessage(next, 0.9, 0.1)},
+          {"across dead point", sliderMessage(next, -2.0, 0.1)},
+          {"outside stroke", sliderMessage(next, 0.7, 0.1)}};
+}
+
+struct KeptMessages final : GrappleSink {
+  template <typename Message>
+  using Kept = std::vector<std::pair<ros::Time, Message>>;  // with record time
+
+  void runInfo(const RunInfo& m, const ros::Time& time) override { run_infos.emplace_back(time, m); }
+  void edge(Jaw jaw, const geometry_msgs::PointStamped& m, const ros::Time& time) override {
+    edges[index(jaw)].emplace_back(time, m);
+  }
+  void twist(Jaw jaw, const geometry_msgs::TwistStamped& m, const ros::Time& time) override {
+    twists[index(jaw)].emplace_back(time, m);
+  }
+  void accel(Jaw jaw, const geometry_msgs::AccelStamped& m, const ros::Time& time) override {
+    accels[index(jaw)].emplace_back(time, m);
+  }
+  void mechanism(const sensor_msgs::JointState& m, const ros::Time& time) override { mechanisms.emplace_back(time, m); }
+  bool wants(Jaw jaw) const override { return wanted_jaws[index(jaw)]; }
+  bool wantsMechanism() const override { return wanted_mechanism; }
+
+  static std::size_t index(Jaw jaw) { return static_cast<std::size_t>(jaw); }
+
+  std::array<bool, 2> wanted_jaws{true, true};
+  bool wanted_mechanism{true};
+  Kept<RunInfo> run_infos;
+  std::array<Kept<geometry_msgs::PointStamped>, 2> edges;
+  std::array<Kept<geometry_msgs::TwistStamped>, 2> twists;
+  std::array<Kept<geometry_msgs::AccelStamped>, 2> accels;
+  Kept<sensor_msgs::JointState> mechanisms;
+};
+
+}  // namespace hammer_loads::test

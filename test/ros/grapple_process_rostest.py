@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""The grapple node as a process: its exit codes, its errors, its log, and the log processed again."""
+import glob
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rosgraph
+import rospy
+import rostest
+import yaml
+from sensor_msgs.msg import JointState
+
+from process_rostest import NodeProcess, command, eventually
+
+CONFIG = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', '..', 'config')
+SAMPLES = 300
+
+
+def claims():
+    with open(os.path.join(CONFIG, 'grapple_claims.yaml')) as file:
+        return yaml.safe_load(file)
+
+
+class GrappleProcessTest(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+
+    def tearDown(self):
+        shutil.rmtree(self.directory, ignore_errors=True)
+
+    def expect_refused(self, name, parameters):
+        """The lines it ends with."""
+        code, _, err = NodeProcess(name, parameters, 'grapple_node').wait()
+        self.assertEqual(code, 1, err)
+        published = rosgraph.Master('/test').getSystemState()[0]
+        self.assertEqual([topic for topic, _ in published if topic.startswith('/%s/' % name)], [])
+        return err.splitlines()
+
+    def test_bad_parameters_are_told_together_and_end_the_node(self):
+        lines = self.expect_refused('bad_values', dict(
+            claims(), log_enabled=False, bd_length_m=-0.29, slider_acceleration='guess', slider_opne_m=0.6))
+        self.assertEqual([line.split(':')[0] for line in lines],
+                         ['bd_length_m', 'slider_acceleration', 'slider_opne_m'], lines)
+
+    def test_a_grapple_must_be_whole(self):
+        parameters = dict(claims(), log_enabled=False)
+        del parameters['ce_length_m']
+        lines = self.expect_refused('incomplete', parameters)
+        self.assertEqual([line.split(':')[0] for line in lines], ['ce_length_m'], lines)
+
+    def test_a_stroke_across_the_fold(self):
+        lines = self.expect_refused('across', dict(claims(), log_enabled=False, slider_open_m=0.8))
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn('fold at 0.733192393', lines[0])
+
+    def test_a_log_directory_that_cannot_be(self):
+        lines = self.expect_refused('bad_log', dict(claims(), log_enabled=True, log_directory='/proc/no/such'))
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn('log_directory', lines[0])
+
+    def log_after_sigterm(self, name):
+        node = NodeProcess(name, dict(claims(), log_directory=self.directory, log_min_free_mb=0), 'grapple_node')
+        joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=1000)
+        edges = []
+        subscriber = rospy.Subscriber('/%s/mechanism' % name, JointState, edges.append, queue_size=None)
+        self.assertTrue(eventually(lambda: joints.get_num_connections() > 0 and subscriber.get_num_connections() > 0))
+        for i in range(SAMPLES):
+            message = JointState(name=['grapple_slider_joint'], position=[0.332 + 0.3 * math.sin(0.05 * i)],
+                                 velocity=[0.1])
+            message.header.stamp = rospy.Time(100.0 + 0.01 * i)
+            joints.publish(message)
+        self.assertTrue(eventually(lambda: len(edges) >= SAMPLES), len(edges))
+        code, _, err = node.end(signal.SIGTERM)
+        self.assertEqual(code, 0, err)
+        bags = glob.glob(self.directory + '/grapple_*.bag')
+        self.assertEqual(len(bags), 1, os.listdir(self.directory))
+        return bags[0]
+
+    def test_process_bag_over_the_log_gives_the_logged_outputs_bit_for_bit(self):
+        name = 'log_again'
+        path = self.log_after_sigterm(name)
+        again = os.path.join(self.directory, 'again.bag')
+        parameters = os.path.join(self.directory, 'in_force.yaml')
+        with rosbag.Bag(path) as bag:
+            for _, message, _ in bag.read_messages(topics=['/%s/run_info' % name]):
+                with open(parameters, 'w') as file:
+                    file.write(message.parameters_yaml)
+        subprocess.run([command('process_bag'), path, again, '--grapple', parameters,
+                        '--joint-states-topic', '/%s/joints' % name, '--grapple-prefix', '/' + name], check=True)
+
+        def outputs(bag_path):
+            with rosbag.Bag(bag_path) as bag:
+                return sorted((topic, time.to_nsec(), raw[1]) for topic, raw, time in bag.read_messages(raw=True)
+                              if topic != '/%s/joints' % name)
+
+        logged = outputs(path)
+        self.assertEqual(len(logged), 7 * SAMPLES + 1)
+        self.assertTrue(logged == outputs(again))
+
+
+if __name__ == '__main__':
+    rospy.init_node('grapple_process_rostest')
+    rostest.rosrun('hammer_loads', 'grapple_process', GrappleProcessTest, sys.argv)

@@ -1,0 +1,190 @@
+/// The live grapple as its users see it; run against the node and against the nodelet.
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <functional>
+#include <map>
+
+#include "grapple/grapples.h"
+#include "ros/grapple_messages.h"
+
+namespace hammer_loads {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+constexpr double kDeadline = 20.0;  // [s] of wall time for what takes milliseconds
+
+class GrappleNodeTest : public testing::Test {
+ protected:
+  template <typename Message>
+  ros::Subscriber keep(const std::string& topic, std::vector<Message>& kept) {
+    return node_.subscribe<Message>("grapple/" + topic, 10000, [&kept](const auto& m) { kept.push_back(*m); });
+  }
+
+  GrappleNodeTest() {
+    joints_ = node_.advertise<sensor_msgs::JointState>("joint_states", 10000);
+    subscribers_ = {keep("jaw_edge/left", left_), keep("jaw_edge/right", right_),
+                    keep("jaw_edge/right_twist", right_twist_), keep("jaw_edge/left_accel", left_accel_),
+                    keep("mechanism", mechanism_)};
+    info_ = node_.subscribe<RunInfo>("grapple/run_info", 1, [this](const auto& m) { run_info_ = *m; });
+    diagnostics_ = node_.subscribe<diagnostic_msgs::DiagnosticArray>("/diagnostics", 100, [this](const auto& m) {
+      for (const auto& status : m->status) {
+        if (status.name.find("slider") != std::string::npos) slider_status_ = status;
+      }
+    });
+    EXPECT_TRUE(eventually([this] {
+      return joints_.getNumSubscribers() > 0 &&
+             std::all_of(subscribers_.begin(), subscribers_.end(), [](auto& s) { return s.getNumPublishers() > 0; });
+    })) << "the node must be there";
+    // Samples of an earlier test count in the node: begin well behind them.
+    static double next_start = 1000.0;
+    stamp_ = ros::Time(next_start += 1000.0);
+  }
+
+  /// Spins until a condition holds or the deadline passes.
+  static bool eventually(const std::function<bool()>& condition) {
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kDeadline);
+    while (!condition()) {
+      if (ros::WallTime::now() > deadline || !ros::ok()) return false;
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
+    }
+    return true;
+  }
+
+  void publish(double slider, std::optional<double> velocity) {
+    stamp_ += ros::Duration(0.01);
+    joints_.publish(test::sliderMessage(stamp_, slider, velocity));
+  }
+
+  /// One good sample gives one of each.
+  ::testing::AssertionResult goodSamplePasses(double slider) {
+    const std::size_t before = right_.size();
+    publish(slider, 0.1);
+    const bool there = eventually([&] {
+      return right_.size() > before && right_.back().header.stamp == stamp_ && left_.size() == right_.size() &&
+             !mechanism_.empty() && mechanism_.back().header.stamp == stamp_;
+    });
+    if (!there) return ::testing::AssertionFailure() << right_.size() - before << " jaw edges";
+    return right_.size() == before + 1 ? ::testing::AssertionSuccess()
+                                       : ::testing::AssertionFailure() << "more than one jaw edge";
+  }
+
+  std::string diagnostic(const std::string& key) const {
+    for (const auto& value : slider_status_.values) {
+      if (value.key == key) return value.value;
+    }
+    return {};
+  }
+
+  ros::NodeHandle node_;
+  ros::Publisher joints_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber info_, diagnostics_;
+  std::vector<geometry_msgs::PointStamped> left_, right_;
+  std::vector<geometry_msgs::TwistStamped> right_twist_;
+  std::vector<geometry_msgs::AccelStamped> left_accel_;
+  std::vector<sensor_msgs::JointState> mechanism_;
+  std::optional<RunInfo> run_info_;
+  DiagnosticStatus slider_status_;
+  ros::Time stamp_;
+};
+
+TEST_F(GrappleNodeTest, GivesTheLibrarysValuesForEverySample) {
+  constexpr int kSamples = 300;
+  GrappleTracker tracker(test::grappleOf(test::claimsParameters()));
+  std::vector<JawMotion> expected;
+  const ros::Time start = stamp_;
+  for (int i = 0; i < kSamples; ++i) {
+    const double phase = 0.05 * i, slider = 0.332 + 0.3 * std::sin(phase), velocity = 1.5 * std::cos(phase);
+    publish(slider, velocity);
+    ASSERT_EQ(tracker.update({slider, velocity, 0.0}), SliderRefusal::kNone);
+    expected.push_back(tracker.right());
+  }
+  ASSERT_TRUE(eventually([&] {
+    return right_.size() >= kSamples && left_.size() >= kSamples && right_twist_.size() >= kSamples &&
+           left_accel_.size() >= kSamples && mechanism_.size() >= kSamples;
+  })) << right_.size();
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const JawMotion right = expected[i], left = leftJaw(right);
+    ASSERT_EQ(right_[i].header.frame_id, "grapple");
+    ASSERT_EQ(right_[i].header.stamp, start + ros::Duration(0.01 * (static_cast<double>(i) + 1.0)));
+    // An earlier test may have left the node on another pose to start from: the same value to rounding.
+    ASSERT_NEAR(right_[i].point.x, right.edge.re, 1e-12);
+    ASSERT_NEAR(right_[i].point.y, right.edge.im, 1e-12);
+    ASSERT_NEAR(left_[i].point.x, left.edge.re, 1e-12);
+    ASSERT_NEAR(right_twist_[i].twist.linear.y, right.edge_velocity.im, 1e-10);
+    ASSERT_NEAR(right_twist_[i].twist.angular.z, right.turning_speed, 1e-10);
+    ASSERT_NEAR(left_accel_[i].accel.linear.x, left.edge_acceleration.re, 1e-8);
+    ASSERT_EQ(mechanism_[i].name.size(), 13u);
+  }
+}
+
+TEST_F(GrappleNodeTest, RefusesEachBadSampleTellsItAndKeepsItsBranch) {
+  ASSERT_TRUE(goodSamplePasses(0.5));
+  ASSERT_TRUE(eventually([&] { return !diagnostic("refused: duplicate").empty(); }));
+  const double x = right_.back().point.x;
+  const ros::Time first = stamp_;
+  std::map<std::string, std::uint64_t> expected;
+  for (const test::BadSample& bad : test::badSamples(first, 0.5)) {
+    SCOPED_TRACE(bad.reason);
+    const std::string key = std::string("refused: ") + bad.reason;
+    if (expected.count(key) == 0) expected[key] = std::stoul(diagnostic(key));
+    ++expected[key];
+    ASSERT_TRUE(goodSamplePasses(0.5));
+    const std::size_t before = right_.size(), twists = right_twist_.size();
+    sensor_msgs::JointState message = bad.message;
+    message.header.stamp += stamp_ - first;
+    joints_.publish(message);
+    stamp_ += ros::Duration(0.01);
+    ASSERT_TRUE(goodSamplePasses(0.5));  // on the same topic, so the bad one has been seen
+    EXPECT_EQ(right_.size(), before + 1);
+    EXPECT_TRUE(eventually([&] { return right_twist_.size() == twists + 1; }));
+    EXPECT_NEAR(right_.back().point.x, x, 1e-13) << "the same branch";
+  }
+  for (const auto& [key, count] : expected)
+    EXPECT_TRUE(eventually([&] { return std::stoul(diagnostic(key)) == count; })) << key << ' ' << diagnostic(key);
+  EXPECT_NE(diagnostic("last refused: across fold").find("the fold at 0.7331923934967 m"), std::string::npos)
+      << diagnostic("last refused: across fold");
+  EXPECT_NE(diagnostic("upper limit [m]").find("0.733192393"), std::string::npos);
+}
+
+TEST_F(GrappleNodeTest, SaysWhenTheSliderIsStaleOrWithoutVelocity) {
+  ASSERT_TRUE(goodSamplePasses(0.4));
+  EXPECT_TRUE(eventually([&] {
+    return slider_status_.level == DiagnosticStatus::ERROR && slider_status_.message.find("stale") == 0;
+  })) << slider_status_.message;
+  const std::size_t twists = right_twist_.size();
+  // Others' joint states do not make the slider alive.
+  sensor_msgs::JointState foreign = test::sliderMessage(stamp_, 0.4, 0.1);
+  foreign.name[1] = "wheel";
+  slider_status_ = {};
+  EXPECT_TRUE(eventually([&] {
+    joints_.publish(foreign);
+    return slider_status_.level == DiagnosticStatus::ERROR;
+  }));
+  EXPECT_TRUE(eventually([&] {
+    publish(0.4, std::nullopt);
+    return slider_status_.level == DiagnosticStatus::WARN && slider_status_.message.find("no slider velocity") == 0;
+  })) << slider_status_.message;
+  EXPECT_EQ(right_twist_.size(), twists);
+  ASSERT_TRUE(mechanism_.back().velocity.empty());
+}
+
+TEST_F(GrappleNodeTest, ExplainsItselfInRunInfo) {
+  ASSERT_TRUE(eventually([&] { return run_info_.has_value(); }));
+  EXPECT_NE(run_info_->parameters_yaml.find("doe_angle_rad: -0.421"), std::string::npos);
+  EXPECT_NE(run_info_->parameters_yaml.find("slider_acceleration"), std::string::npos);
+  EXPECT_FALSE(run_info_->version.empty());
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "grapple_rostest");
+  ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}
