@@ -40,7 +40,7 @@ def soak_log(results):
         ["most on the disk, allowed but for the open bag", f"{f['most_on_disk_MB']:.0f}, {f['allowed_MB']:.0f} MB"],
         ["memory, mean of first and last quarter",
          f"{f['memory_first_quarter_MB']:.2f}, {f['memory_last_quarter_MB']:.2f} MB"],
-        ["gaps in what was kept", "0"],
+        ["gaps in what was kept", f"{f['gaps']:.0f}"],
     ])
 
 

@@ -81,8 +81,9 @@ TEST_F(LatencyTest, TheNodeAddsLittleToABareRelay) {
     sent_[sample.header.stamp.toNSec()] = Clock::now();
     crank_.publish(sample);
   }
+  // The relay's own queues hold ten messages: on a loaded machine it loses some.
   EXPECT_TRUE(eventually([this] {
-    return node_latency_.microseconds.size() == kSamples && relay_latency_.microseconds.size() == kSamples;
+    return node_latency_.microseconds.size() == kSamples && relay_latency_.microseconds.size() >= kSamples / 2;
   })) << node_latency_.microseconds.size() << " wrenches, " << relay_latency_.microseconds.size() << " relayed";
   ASSERT_FALSE(node_latency_.microseconds.empty());
   ASSERT_FALSE(relay_latency_.microseconds.empty());

@@ -116,9 +116,10 @@ int run(double seconds, double rate, const std::string& node_process) {
   verdict.demand(soak.received() + soak.unsettled() == soak.sent() && soak.lost() == 0, "no wrench lost");
   verdict.demand(soak.unsettled() <= 10, "a wrench from the first samples on");
   verdict.demand(soak.doubled() == 0, "no wrench doubled");
-  constexpr double kLong = 300.0;  // [s]: in less the start weighs too much
-  verdict.demand(seconds < kLong || std::abs(soak.memory.growth()) <= 0.01,
-                 "memory of the node's last quarter within 1 % of the first");
+  // A stall of the machine fills the node's queues for a moment, and the heap keeps their size.
+  constexpr double kQueues = 4e6;  // [byte]: some 10000 messages
+  verdict.demand(soak.memory.lastQuarter() - soak.memory.firstQuarter() <= kQueues,
+                 "memory grows by the queues at most");
   return verdict.exitCode();
 }
 

@@ -1,11 +1,12 @@
 /// Counts heap allocations of the whole test program: malloc and everything built on it (operator new, Eigen).
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 
 namespace hammer_loads::test {
-inline std::size_t allocations = 0;
+inline std::atomic<std::size_t> allocations{0};  // else the compiler may take it that malloc does not change it
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace hammer_loads {
+namespace {
+
+constexpr double kFurthest = 200.0;  // [rad] between two samples: some 30 turns; nobody can tell further ones
+
+}  // namespace
 
 void PlainTracker::start(const CrankSample& sample) noexcept {
   now_ = {{0, CrankAngle::fromAngle(encoder_.angle(sample.angle))}, sample.speed.value_or(0.0), 0.0};
@@ -20,7 +25,7 @@ Tracking PlainTracker::update(double dt, const CrankSample& sample) noexcept {
   now_.position.turn(turned);
   now_.speed = sample.speed.value_or(turned / dt);
   if (acceleration_ == Acceleration::kDifference && has_speed_) now_.acceleration = (now_.speed - before_.speed) / dt;
-  const bool continued = has_speed_ && std::abs(turned - predicted) < 0.25 * kTwoPi;
+  const bool continued = has_speed_ && std::abs(turned - predicted) < 0.25 * kTwoPi && std::abs(turned) < kFurthest;
   has_speed_ = true;
   return continued ? Tracking::kContinued : Tracking::kRestarted;
 }

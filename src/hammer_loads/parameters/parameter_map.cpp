@@ -1,5 +1,7 @@
 #include "hammer_loads/parameters/parameter_map.h"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -31,6 +33,29 @@ std::optional<std::string> contents(const std::string& file, std::string& proble
     return std::nullopt;
   }
   return text.str();
+}
+
+struct IgnoreEvents final : YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+/// At most 100: of some texts that are no YAML, yaml-cpp 0.7 reads documents without end. Throws YAML::Exception.
+int countDocuments(const std::string& text) {
+  constexpr int kMost = 100;
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  IgnoreEvents ignore;
+  int count = 0;
+  while (count < kMost && parser.HandleNextDocument(ignore)) ++count;
+  return count;
 }
 
 }  // namespace
@@ -66,9 +91,9 @@ std::optional<ParameterMap> readParameterFile(const std::string& file, std::vect
     return std::nullopt;
   }
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(*text);
-    if (documents.size() == 1) return parameterMap(documents.front(), file, problems);
-    problems.push_back(file + ": " + std::to_string(documents.size()) + " YAML documents, must be one");
+    const int documents = countDocuments(*text);
+    if (documents == 1) return parameterMap(YAML::Load(*text), file, problems);
+    problems.push_back(file + ": " + std::to_string(documents) + " YAML documents, must be one");
   } catch (const YAML::Exception& error) {
     problems.push_back(at(file, error.mark) + ": not valid YAML: " + onOneLine(error.msg));
   }
