@@ -1,0 +1,193 @@
+/// The pipeline with the shipped boom under it, over a working session: cost, what the joints get, and what becomes of it
+/// when joint states or crank samples fail.
+#include <chrono>
+#include <cstdio>
+
+#include "support/counting_new.h"
+#include "support/main.h"
+#include "support/session_player.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::kSessionEnd;
+using test::kSessionWorks;
+using test::Player;
+using test::session;
+using test::settingsWith;
+
+constexpr double kGravity = 9.80665;
+constexpr double kJointsHeard = 0.02;  // [s]: the first joint states come within a period of theirs
+
+const auto kNothing = [](double, const Loads&) {};
+
+/// Everything that a node publishes per sample but the messages.
+struct Everything {
+  Pipeline& pipeline;
+  double& sum;
+  void operator()(double, const Loads& loads) const {
+    HullOutput output;
+    while (pipeline.nextOutput(output)) {
+      sum += pipeline.deviation(output).wrench.force_z;
+      if (!pipeline.boom() || !pipeline.boom()->known()) continue;
+      for (int link = 1; link < 5; ++link) sum += pipeline.boom()->wrenchAtLink(link, output.wrench).torque.y();
+    }
+    if (loads.boom != nullptr && !loads.boom->fault) sum += loads.boom->loads.total.sum();
+  }
+};
+
+TEST(PipelineWithBoom, AllocatesNothingPerSample) {
+  const std::size_t before_control = test::allocations;
+  void* volatile block = std::malloc(1);  // volatile: else the compiler may leave both away
+  std::free(block);
+  ASSERT_GT(test::allocations, before_control) << "the counter must see an allocation";
+  for (const char* motion : {"fixed", "imu", "model"}) {
+    const Settings settings = settingsWith(std::string("boom: compliant\nhull_motion: ") + motion + "\n");
+    Player player(settings);
+    player.imu = test::atRest(0.0, settings.pipeline.imu);
+    double sum = 0.0;
+    const std::size_t before = test::allocations;
+    player.playTo(kSessionEnd, Everything{player.pipeline, sum});
+    EXPECT_EQ(test::allocations, before) << motion;
+    EXPECT_EQ(player.pipeline.counts().accepted, session().crank.size()) << motion;
+    EXPECT_TRUE(player.pipeline.boom()->state().choice.judged) << motion;
+    EXPECT_TRUE(std::isfinite(sum)) << motion;
+  }
+}
+
+/// Time per sample at work [us]: least and mean over batches of some two turns, whose verdicts are part of the price.
+struct Price {
+  double least{1e9}, mean{};
+};
+
+Price priceOf(const Settings& settings, bool with_boom) {
+  constexpr double kBatch = 0.5;
+  Price price;
+  int batches = 0;
+  for (int run = 0; run < 4; ++run) {
+    Player player(settings, with_boom);
+    double sum = 0.0;
+    const Everything everything{player.pipeline, sum};
+    player.playTo(kSessionWorks, everything);
+    for (double end = kSessionWorks + kBatch; end <= kSessionEnd; end += kBatch, ++batches) {
+      const std::uint64_t before = player.pipeline.counts().accepted;
+      const auto start = std::chrono::steady_clock::now();
+      player.playTo(end, everything);
+      const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - start;
+      const double each = spent.count() / static_cast<double>(player.pipeline.counts().accepted - before);
+      price.least = std::min(price.least, each);
+      price.mean += each;
+    }
+    EXPECT_TRUE(std::isfinite(sum));
+  }
+  price.mean /= batches;
+  return price;
+}
+
+TEST(PipelineWithBoom, CostsAFewMicrosecondsASample) {
+  const Settings settings = settingsWith("boom: compliant\nhull_motion: model\n");
+  const Price with = priceOf(settings, true), without = priceOf(settings, false);
+  std::printf("us per sample, least and mean: without boom %.2f %.2f, with everything %.2f %.2f\n", without.least,
+              without.mean, with.least, with.mean);
+  RecordProperty("with_boom_least_us", format("%.2f", with.least));
+  RecordProperty("without_boom_least_us", format("%.2f", without.least));
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  // Some 3 us on an idle core: the bound leaves room for one that is shared.
+  EXPECT_LE(with.least, 15.0);
+#endif
+}
+
+/// The description's hull mass includes the moving links: what they weigh must not load the joints twice.
+TEST(PipelineWithBoom, JointsCarryTheLinksMotionAndTheirWeightOnce) {
+  const Settings settings = settingsWith("boom: rigid\n");
+  Player player(settings);
+  double peak = 0.0;
+  player.playTo(kJointsHeard, kNothing);
+  player.playTo(kSessionEnd, [&](double time, const Loads& loads) {
+    ASSERT_TRUE(loads.boom != nullptr && !loads.boom->fault) << time;
+    const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
+    const HullWrench w = hullWrench(HullModel(settings.mechanism, settings.pipeline.level), crank, Gravity{});
+    const BoomLoads& told = loads.boom->loads;
+    // By hand about hammer_joint, from which D is (0.10, -0.55) m away in the hull's axes; bracket 50 kg, hull 350 kg.
+    const double hammer = w.torque_y - 0.55 * w.force_x - 0.10 * w.force_z;
+    const double pitch = player.pipeline.hullPitch().pitch();
+    const double lever_x = 50.0 * 0.03 + 350.0 * (0.10 - 0.08), lever_z = -50.0 * 0.06 - 350.0 * (0.55 - 0.05);
+    const double weight = kGravity * (lever_x * std::cos(pitch) + lever_z * std::sin(pitch));
+    ASSERT_NEAR(told.hammer[3], hammer, 1e-12 * 1e4) << time;
+    ASSERT_NEAR(told.weight[3], weight, 1e-12 * 1e4) << time;
+    ASSERT_NEAR(told.total[3], told.hammer[3] + told.weight[3] + told.motion[3], 1e-12 * 1e4) << time;
+    ASSERT_NEAR(told.hammer[0], 0.0, 1e-12 * 1e4) << "a plane load does not swing the machine";
+    peak = std::max(peak, told.hammer.cwiseAbs().maxCoeff());
+  });
+  EXPECT_GT(peak, 5e3);
+}
+
+TEST(PipelineWithBoom, StaleJointsSilenceTheBoomAloneUntilTheyAreBack) {
+  const Settings settings = settingsWith("boom: compliant\n");
+  constexpr double kSilent = 3.0, kBack = 4.0, kMaxAge = 0.2, kPeriod = 0.02;
+  Player player(settings);
+  int known = 0, faults = 0;
+  const auto watch = [&](double time, const Loads& loads) {
+    ASSERT_FALSE(loads.refusal) << time;
+    ASSERT_NE(loads.boom, nullptr) << time;
+    const bool stale = time > kSilent + kMaxAge && time < kBack;
+    if (!stale && time > kSilent + kMaxAge - kPeriod && time < kBack + kPeriod) return;  // one or the other
+    ASSERT_EQ(loads.boom->fault.has_value(), stale) << time;
+    ASSERT_EQ(player.pipeline.boom()->known(), !stale) << time;
+    ASSERT_TRUE(!stale || loads.boom->fault->kind == JointFault::Kind::kStale) << time;
+    ++(stale ? faults : known);
+  };
+  player.playTo(kJointsHeard, kNothing);
+  player.playTo(kSilent, watch);
+  EXPECT_GT(player.pipeline.boom()->state().tip.velocity.norm(), 0.0);
+  player.joints_speak = false;
+  player.playTo(kBack, watch);
+  EXPECT_EQ(player.pipeline.boom()->joints().complaints(player.pipeline.boom()->state().stamp).size(), 4U);
+  player.joints_speak = true;
+  bool first = true;
+  player.playTo(kSessionEnd, [&](double time, const Loads& loads) {
+    watch(time, loads);
+    if (loads.boom->fault) return;
+    EXPECT_TRUE(!first || loads.boom->tip.displacement.isZero(0.0)) << "nothing is known of it: from rest";
+    first = false;
+  });
+  EXPECT_GT(known, 3700);
+  EXPECT_GT(faults, 750);
+  EXPECT_EQ(player.pipeline.boom()->joints().complaints(player.pipeline.boom()->state().stamp).size(), 0U);
+  EXPECT_EQ(player.pipeline.counts().accepted, session().crank.size());
+}
+
+/// Longer than stale_after_s: where the crank went meanwhile is not known.
+TEST(PipelineWithBoom, VibrationBeginsAnewAfterADropOut) {
+  const Settings settings = settingsWith("boom: compliant\n");
+  constexpr double kFrom = 3.5, kTo = 3.9, kShortFrom = 3.0, kShortTo = 3.005;
+  const simulation::Session session = test::record({{kShortFrom, kShortTo}, {kFrom, kTo}});
+  Player player(settings, true, session);
+  player.playTo(kFrom, [&](double time, const Loads& loads) {
+    if (time < kSessionWorks + 0.5) return;
+    ASSERT_NE(loads.boom, nullptr) << time;
+    ASSERT_GT(loads.boom->tip.displacement.norm(), 0.0) << "a gap of a few samples ends nothing: " << time;
+  });
+  const std::uint64_t restarts = player.pipeline.counts().restarts;
+  std::optional<double> first;
+  double largest = 0.0;
+  player.playTo(kSessionEnd, [&](double time, const Loads& loads) {
+    if (loads.boom == nullptr) return;
+    if (!first) {
+      first = time;
+      EXPECT_TRUE(loads.boom->tip.displacement.isZero(0.0) && loads.boom->tip.velocity.isZero(0.0)) << time;
+      EXPECT_TRUE(loads.boom->loads.vibration.isZero(0.0)) << time;
+    }
+    ASSERT_TRUE(loads.boom->loads.total.allFinite()) << time;
+    largest = std::max(largest, loads.boom->tip.displacement.norm());
+  });
+  EXPECT_EQ(player.pipeline.counts().restarts, restarts + 1);
+  ASSERT_TRUE(first);
+  EXPECT_LT(*first, kTo + 0.1);
+  EXPECT_GT(largest, 1e-3);
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN

@@ -1,0 +1,131 @@
+/// The hull's own motion in the wrench of a working session: none, its IMU's, the compliant boom's.
+#include <cstdio>
+
+#include "support/main.h"
+#include "support/session_player.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::kSessionEnd;
+using test::Player;
+using test::session;
+using test::settingsWith;
+
+const auto kNothing = [](double, const Loads&) {};
+
+void expectSame(const std::vector<HullWrench>& a, const std::vector<HullWrench>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].force_x, b[i].force_x) << i;
+    ASSERT_EQ(a[i].force_z, b[i].force_z) << i;
+    ASSERT_EQ(a[i].torque_y, b[i].torque_y) << i;
+  }
+}
+
+/// Wrenches of accepted samples.
+std::vector<HullWrench> wrenchesOf(Player& player) {
+  std::vector<HullWrench> wrenches;
+  player.playTo(kSessionEnd, [&](double, const Loads& loads) {
+    if (!loads.refusal) wrenches.push_back(loads.wrench);
+  });
+  return wrenches;
+}
+
+/// Whoever wants the boom's loads as well gets no other hull wrench.
+TEST(PipelineHullMotion, AFixedHullsWrenchDoesNotDependOnTheBoom) {
+  const Settings settings = settingsWith("boom: compliant\n");
+  Player with(settings), without(settings, false);
+  const auto right = wrenchesOf(without), given = wrenchesOf(with);
+  EXPECT_GT(with.pipeline.boom()->state().tip.displacement.norm(), 0.0) << "it does vibrate";
+  expectSame(given, right);
+}
+
+double peakOf(const std::vector<HullWrench>& wrenches) {
+  double peak = 0.0;
+  for (const HullWrench& w : wrenches) peak = std::max(peak, w.force_z);
+  return peak;
+}
+
+TEST(PipelineHullMotion, TheCompliantBoomsMotionIsSomePercentOfTheWrench) {
+  Player fixed(settingsWith("boom: compliant\n"));
+  Player moving(settingsWith("boom: compliant\nhull_motion: model\n"));
+  const auto still = wrenchesOf(fixed), moved = wrenchesOf(moving);
+  ASSERT_EQ(still.size(), moved.size());
+  const double peak = peakOf(still);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < still.size(); ++i) {
+    ASSERT_TRUE(std::isfinite(moved[i].force_x + moved[i].force_z + moved[i].torque_y)) << i;
+    largest = std::max(largest, std::abs(moved[i].force_z - still[i].force_z));
+  }
+  std::printf("wrench on a compliant boom against a fixed hull: %.1f %% of the peak\n", 100.0 * largest / peak);
+  // 35 kg of rocker on a hull of 350 kg and more: some tenth of the peak, and whatever the boom swings after it.
+  EXPECT_GT(largest, 0.05 * peak);
+  EXPECT_LT(largest, 0.20 * peak);
+}
+
+TEST(PipelineHullMotion, ARigidBoomDoesNotMoveTheHull) {
+  Player fixed(settingsWith("boom: rigid\n"));
+  Player moving(settingsWith("hull_motion: model\n", false));  // without cylinders there is no spring
+  const auto still = wrenchesOf(fixed), moved = wrenchesOf(moving);
+  EXPECT_FALSE(moving.pipeline.boom()->state().choice.compliant);
+  expectSame(still, moved);
+}
+
+constexpr char kImuSettings[] =
+    "hull_motion: imu\nimu_x_m: 0.1\nimu_y_m: 0.15\nimu_z_m: 0.25\n"
+    "imu_roll_rad: 3.1\nimu_pitch_rad: -0.2\nimu_yaw_rad: 1.5\n";
+
+TEST(PipelineHullMotion, AnImuOnATiltedHullAtRestGivesTheWeightByPitch) {
+  for (const double pitch : {-0.6, 0.0, 0.9}) {
+    const std::string tilt = format("hull_pitch_rad: %.17g\n", pitch);
+    const Settings settings = settingsWith(kImuSettings);
+    Player with(settings), by_pitch(settingsWith(tilt));
+    by_pitch.joints_speak = with.joints_speak = false;  // else the joints' pitch would count
+    with.imu = test::atRest(pitch, settings.pipeline.imu);
+    with.pipeline.hullImu(session().crank.front().stamp - 1000000, *with.imu);  // one reading alone is no motion yet
+    const auto right = wrenchesOf(by_pitch), given = wrenchesOf(with);
+    ASSERT_EQ(given.size(), right.size());
+    const double peak = peakOf(right);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      ASSERT_NEAR(given[i].force_x, right[i].force_x, 1e-9 * peak) << pitch << ' ' << i;
+      ASSERT_NEAR(given[i].force_z, right[i].force_z, 1e-9 * peak) << pitch << ' ' << i;
+      ASSERT_NEAR(given[i].torque_y, right[i].torque_y, 1e-9 * peak) << pitch << ' ' << i;
+    }
+    EXPECT_EQ(with.pipeline.imuCounts().missed, 0U);
+    EXPECT_EQ(with.pipeline.imuCounts().accepted, session().crank.size() + 1);
+    EXPECT_TRUE(with.pipeline.hullMotionKnown());
+  }
+}
+
+TEST(PipelineHullMotion, ASilentImuLeavesTheWeightByPitchAndIsCounted) {
+  const Settings settings = settingsWith(kImuSettings);
+  Player silent(settings), fixed(settingsWith("hull_motion: fixed\n"));
+  const auto right = wrenchesOf(fixed), given = wrenchesOf(silent);
+  expectSame(given, right);
+  EXPECT_EQ(silent.pipeline.imuCounts().missed, session().crank.size());
+  EXPECT_FALSE(silent.pipeline.hullMotionKnown());
+
+  Player failing(settings);
+  const ImuCounts& counts = failing.pipeline.imuCounts();
+  failing.imu = test::atRest(0.0, settings.pipeline.imu);
+  failing.playTo(3.0, kNothing);
+  EXPECT_EQ(counts.missed, 1U);
+  failing.imu.reset();
+  failing.playTo(3.049, kNothing);  // 50 ms: imu_max_age_s
+  EXPECT_EQ(counts.missed, 1U);
+  EXPECT_TRUE(failing.pipeline.hullMotionKnown());
+  failing.playTo(4.0, [](double time, const Loads& loads) { ASSERT_FALSE(loads.refusal) << time; });
+  EXPECT_NEAR(static_cast<double>(counts.missed), 1.0 + 950.0, 2.0);
+  EXPECT_FALSE(failing.pipeline.hullMotionKnown());
+  const std::uint64_t missed = counts.missed;
+  failing.imu = test::atRest(0.0, settings.pipeline.imu);
+  failing.playTo(kSessionEnd, kNothing);
+  EXPECT_EQ(counts.missed, missed + 1);
+  EXPECT_TRUE(failing.pipeline.hullMotionKnown());
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+HAMMER_LOADS_TEST_MAIN
