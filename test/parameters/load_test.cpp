@@ -159,6 +159,8 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
   const BadPair pairs[] = {
       {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage, auto"},
       {"level: auto", "tolerance: 0", "tolerance: 0, must be a finite number > 0"},
+      {"hull_motion: imu", "hull_motion: model",
+       "hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring"},
       {"output: mean", "output: median", "output: median, must be one of instantaneous, mean"},
       {"output_rate_Hz: 50", "output_rate_Hz: -1", "output_rate_Hz: -1 Hz, must be a number in [0.0, 100000.0]"},
       {"torque_deviation_part: 1", "torque_deviation_part: 2",

@@ -66,7 +66,9 @@ TEST(PipelineHullMotion, TheCompliantBoomsMotionIsSomePercentOfTheWrench) {
 
 TEST(PipelineHullMotion, ARigidBoomDoesNotMoveTheHull) {
   Player fixed(settingsWith("boom: rigid\n"));
-  Player moving(settingsWith("hull_motion: model\n", false));  // without cylinders there is no spring
+  Settings rigid = settingsWith("", false);  // without cylinders there is no spring
+  rigid.pipeline.hull_motion = HullMotionSource::kModel;
+  Player moving(rigid);
   const auto still = wrenchesOf(fixed), moved = wrenchesOf(moving);
   EXPECT_FALSE(moving.pipeline.boom()->state().choice.compliant);
   expectSame(still, moved);

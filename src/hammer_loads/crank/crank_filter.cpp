@@ -17,6 +17,7 @@ constexpr double kLeastInertia = 0.1;       // of the first guess: no drawing is
 constexpr double kMostInertia = 1000.0;     // times the first guess: a crank held at constant speed looks that heavy
 constexpr double kLearnSpeed = 5.0;         // [rad/s]: a slower crank is moved by friction and stopped by the tool
 constexpr double kRelearn = 0.05;           // relative deviation of the inertia after what it cannot explain
+constexpr double kMostTorque = 3.0;         // times its first deviation: more is what a bad sample left behind
 constexpr double kSoundSpeeds = 2.0;        // times the largest plausible speed: more is a diverged filter
 constexpr double kSpeedNoiseGain = 0.005;   // per sample: the noise of measured speeds is learned within some 200
 constexpr double kNearCounts = 4.0;         // counts from the blow within which the encoder decides its side
@@ -47,6 +48,8 @@ void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
   const double inertia_variance = covariance_(kInertia, kInertia);  // NaN-proof by min: never above the first guess
   now_.position.turn(CrankAngle::wrapToPi(measured - now_.position.angle.offset));
   now_.speed = sample.speed.value_or(now_.speed);
+  const double most_torque = kMostTorque * settings_.initial_torque_deviation;
+  now_.torque = std::clamp(now_.torque, -most_torque, most_torque);
   has_speed_ = sample.speed.has_value();
   outlier_seen_ = false;
   load_ = model_(now_.position.angle);

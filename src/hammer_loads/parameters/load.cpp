@@ -52,6 +52,8 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   PipelineSettings pipeline = readPipelineSettings(reader);
   const LogSettings log = readLogSettings(reader);
   std::optional<Boom> boom = readBoom(reader, boom_file, pipeline.boom, robot_description, result.notes);
+  if (pipeline.hull_motion == HullMotionSource::kModel && !boom_file)
+    reader.addProblem("hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring");
   reader.reportUnknownKeys();
   result.problems = reader.problems();
   if (!mechanism || !result.problems.empty()) return result;

@@ -129,7 +129,10 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
     return refuse(Refusal::kUnsettled);
   }
   followBoom(stamp);
-  if (settings_.hull_motion == HullMotionSource::kModel) hull_ = withVibration(gravityByPitch(), loads_.boom);
+  if (settings_.hull_motion == HullMotionSource::kModel) {
+    hull_known_ = loads_.boom != nullptr && !loads_.boom->fault;
+    hull_ = withVibration(gravityByPitch(), loads_.boom);
+  }
   loads_.wrench = hullWrench(hull_model_,
                              {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, hull_);
   outputs_.sample(stamp, loads_.crank, loads_.wrench, hull_);

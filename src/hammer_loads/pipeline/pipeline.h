@@ -94,7 +94,7 @@ class Pipeline {
   const CrankTracker& tracker() const noexcept { return *tracker_; }
   const Mechanism& mechanism() const noexcept { return mechanism_; }
   const HullMotion& hullMotion() const noexcept { return hull_; }  ///< at the last accepted sample
-  /// The hull's motion at the last sample is known: always, unless an IMU was to tell it and did not.
+  /// The hull's motion at the last sample is known: always, unless IMU or boom were to tell it and did not.
   bool hullMotionKnown() const noexcept { return hull_known_; }
   const ImuCounts& imuCounts() const noexcept { return imu_counts_; }
   const PipelineSettings& settings() const noexcept { return settings_; }
