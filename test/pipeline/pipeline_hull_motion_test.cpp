@@ -66,7 +66,7 @@ TEST(PipelineHullMotion, TheCompliantBoomsMotionIsSomePercentOfTheWrench) {
 
 TEST(PipelineHullMotion, ARigidBoomDoesNotMoveTheHull) {
   Player fixed(settingsWith("boom: rigid\n"));
-  Settings rigid = settingsWith("", false);  // without cylinders there is no spring
+  Settings rigid = settingsWith("boom: auto\n", false);  // without cylinders there is no spring
   rigid.pipeline.hull_motion = HullMotionSource::kModel;
   Player moving(rigid);
   const auto still = wrenchesOf(fixed), moved = wrenchesOf(moving);

@@ -131,6 +131,31 @@ TEST_F(LogTest, StartsStopsAndSplitsOnRequest) {
   EXPECT_EQ(log.health().messages_dropped, 0u);
 }
 
+TEST_F(LogTest, WhatIsForgottenIsNotRepeated) {
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    log.forgetLatched(kRunInfo);  // nothing there
+    log.writeLatched(kRunInfo, at(0), text("old"));
+    log.writeLatched("/tf_static", at(0), text("arm"), "/publisher");
+    log.write("/wrench", at(0), wrench(0));
+    log.forgetLatched(kRunInfo);
+    log.split();
+    log.write("/wrench", at(1), wrench(1));
+    log.writeLatched(kRunInfo, at(1), text("new"));
+    log.split();
+    log.write("/wrench", at(2), wrench(2));
+  }
+  ASSERT_EQ(files().size(), 3u);
+  std::vector<std::string> infos;
+  for (const std::string& file : files()) {
+    const auto entries = readBag(file);
+    EXPECT_EQ(onTopic(entries, "/tf_static").size(), 1u) << file;
+    for (const Entry& entry : onTopic(entries, kRunInfo)) infos.push_back(entry.as<std_msgs::String>().data);
+  }
+  EXPECT_EQ(infos, (std::vector<std::string>{"old", "new", "new"}));
+}
+
 TEST_F(LogTest, NeverOverwritesAFile) {
   // Every name of the next seconds that the log would choose first is taken, by a bag or by one being written.
   std::vector<std::string> taken;

@@ -108,6 +108,16 @@ void BagLog::latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint
   if (!writer_.post(std::move(order))) topic.refused.fetch_add(1, std::memory_order_relaxed);
 }
 
+void BagLog::forgetLatched(const std::string& topic, const std::string& caller) {
+  const auto known = latched_.find(latchedKey(topic, caller));
+  if (known == latched_.end()) return;
+  LogOrder order;
+  order.kind = LogOrder::Kind::kForget;
+  order.position = queue_.end();
+  order.topic = known->second;
+  writer_.post(std::move(order));
+}
+
 LogHealth BagLog::health() const {
   LogHealth health;
   static_cast<LogStatus&>(health) = writer_.status();

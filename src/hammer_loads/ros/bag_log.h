@@ -46,6 +46,8 @@ class BagLog {
   template <typename Message>
   void writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
                     const std::string& caller = {});
+  /// What has been latched there holds no longer: later bags begin without it.
+  void forgetLatched(const std::string& topic, const std::string& caller = {});
 
   bool isRecording() const noexcept { return session_ != 0 && writer_.faultySession() != session_; }
   LogHealth health() const;
@@ -58,6 +60,7 @@ class BagLog {
   using Names = std::unordered_map<std::string, LogTopic*>;
 
   std::vector<std::string> settingProblems() const;
+  static std::string latchedKey(const std::string& topic, const std::string& caller) { return topic + '\n' + caller; }
   LogTopic& addTopic(Names& names, const std::string& key, const std::string& topic, const LogType& type, bool latched,
                      const std::string& caller);
   void latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint8_t> bytes);
@@ -99,7 +102,7 @@ void BagLog::write(const std::string& topic, const ros::Time& time, const Messag
 template <typename Message>
 void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
                           const std::string& caller) {
-  const std::string key = topic + '\n' + caller;
+  const std::string key = latchedKey(topic, caller);
   const auto known = latched_.find(key);
   LogTopic& entry =
       known != latched_.end() ? *known->second : addTopic(latched_, key, topic, typeOf(message), true, caller);

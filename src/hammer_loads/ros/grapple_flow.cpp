@@ -38,6 +38,7 @@ GrappleFlow::GrappleFlow(const GrappleSettings& settings, GrappleSink& sink)
 void GrappleFlow::reset() noexcept {
   tracker_.reset();
   stamps_.reset();
+  run_begun_ = false;
 }
 
 /// Stamped with the first input: a second run over the same input says the same.

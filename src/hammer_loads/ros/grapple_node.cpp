@@ -36,6 +36,7 @@ void GrappleNode::onJointStates(const ros::MessageEvent<const sensor_msgs::Joint
   const RecordClock::Tick tick = clock_.next(event.getReceiptTime());
   if (tick.ran_back) {
     flow_.reset();
+    if (log_) log_->forgetLatched(run_info_.getTopic());
     if (log_) log_->split();
   }
   if (log_) log_->write(joint_states_.getTopic(), tick.time, *event.getConstMessage());

@@ -1,5 +1,6 @@
 #include "hammer_loads/ros/hammer_loads_node.h"
 
+#include <cmath>
 #include <utility>
 
 #include "hammer_loads/ros/ros_parameters.h"
@@ -25,16 +26,18 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
       pulse_(private_node.advertise<Pulse>("pulse", kQueue)),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       diagnostics_(node, private_node, flow_, *log_),
-      log_services_(private_node, *log_, [this] { flow_.reset(); }),
-      reconfigure_(private_node) {
+      reconfigure_(reconfigure_mutex_, private_node),
+      log_services_(private_node, *log_, [this] { beginRun(); }, [this] { logSwitched(); }) {
   for (const std::string& link : settings.pipeline.boom_wrench_links)
     boom_wrench_[link] = private_node.advertise<geometry_msgs::WrenchStamped>("boom_wrench/" + link, kQueue);
   announceRun();
-  subscribe(node, settings);
+  config_ = configInForce(settings.log.enabled);
+  reconfigure_.updateConfig(config_);
   reconfigure_.setCallback([this](HammerLoadsConfig& config, std::uint32_t) { onReconfigure(config); });
+  subscribe(node);
 }
 
-void HammerLoadsNode::subscribe(ros::NodeHandle& node, const Settings& settings) {
+void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
   const auto no_delay = ros::TransportHints().tcpNoDelay();
   // Joint states first: where both arrive on one topic, a sample's own pitch counts for it.
   joint_states_ = node.subscribe("joint_states", kQueue, &HammerLoadsNode::onJointStates, this, no_delay);
@@ -47,8 +50,7 @@ void HammerLoadsNode::subscribe(ros::NodeHandle& node, const Settings& settings)
   };
   using Given = const Event<tf2_msgs::TFMessage>&;
   // A log stands alone: whoever replays it needs the static transforms, even if this node does not.
-  if (settings.log.enabled || flow_.needsTransforms())
-    tf_static_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf_static", kQueue, transforms(true));
+  tf_static_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf_static", kQueue, transforms(true));
   if (flow_.needsTransforms())
     tf_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf", kQueue, transforms(false), {}, no_delay);
 }
@@ -60,22 +62,58 @@ void HammerLoadsNode::announceRun() {
   run_info_.publish(info);
 }
 
-/// What cannot be told from the settings in force changes nothing: so the server's own first call.
-void HammerLoadsNode::onReconfigure(const HammerLoadsConfig& config) {
+/// The next input begins a run, and its run_info replaces that of the run before.
+void HammerLoadsNode::beginRun() {
+  flow_.reset();
+  log_->forgetLatched(run_info_.getTopic());
+}
+
+/// What is in force, for the server: it does not know the shipped parameter files.
+HammerLoadsConfig HammerLoadsNode::configInForce(bool log_enabled) const {
   const PipelineSettings& now = flow_.settings().pipeline;
-  if (config.log_enabled != log_->isRecording() && log_->health().state != LogState::kDiskFull) {
-    if (!config.log_enabled) log_->stop();
-    if (config.log_enabled && log_->start().empty()) flow_.reset();
+  HammerLoadsConfig config = HammerLoadsConfig::__getDefault__();
+  config.log_enabled = log_enabled;
+  config.output_rate_Hz = now.output_rate;
+  config.tolerance = now.tolerance;
+  config.withhold_above = now.withhold_above;
+  return config;
+}
+
+/// A log that stopped by itself is begun anew only where that is asked for. The answer says what is in force.
+void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
+  const bool switched = config.log_enabled != config_.log_enabled;
+  if (switched) switchLog(config.log_enabled);
+  const bool changed = config.output_rate_Hz != config_.output_rate_Hz || config.tolerance != config_.tolerance ||
+                       config.withhold_above != config_.withhold_above;
+  const bool finite = std::isfinite(config.output_rate_Hz + config.tolerance + config.withhold_above);
+  if (!finite) ROS_WARN("set_parameters: nan, must be numbers; nothing is changed");
+  if (changed && finite) {
+    flow_.begin(withChanges(flow_.settings(), {{"output_rate_Hz", config.output_rate_Hz},
+                                               {"tolerance", config.tolerance},
+                                               {"withhold_above", config.withhold_above}}));
+    log_->forgetLatched(run_info_.getTopic());
+    if (!switched) log_->split();
+    announceRun();
+    config_ = configInForce(config_.log_enabled);
   }
-  if (config.output_rate_Hz == now.output_rate && config.tolerance == now.tolerance &&
-      config.withhold_above == now.withhold_above)
-    return;
-  const Settings changed = withChanges(flow_.settings(), {{"output_rate_Hz", config.output_rate_Hz},
-                                                          {"tolerance", config.tolerance},
-                                                          {"withhold_above", config.withhold_above}});
-  flow_.begin(changed);
-  log_->split();
-  announceRun();
+  config = config_;
+}
+
+void HammerLoadsNode::switchLog(bool on) {
+  if (!on) log_->stop();
+  if (on && !log_->isRecording()) {
+    const std::vector<std::string> problems = log_->start();
+    for (const std::string& problem : problems) ROS_ERROR("%s", problem.c_str());
+    on = problems.empty();
+    if (on) beginRun();
+  }
+  config_.log_enabled = on;
+}
+
+/// By a service.
+void HammerLoadsNode::logSwitched() {
+  config_.log_enabled = log_->isRecording();
+  reconfigure_.updateConfig(config_);
 }
 
 void HammerLoadsNode::onJointStates(const Event<JointState>& event) {
@@ -109,7 +147,7 @@ void HammerLoadsNode::onTransforms(const Event<tf2_msgs::TFMessage>& event, bool
 ros::Time HammerLoadsNode::recordTime(const ros::Time& arrival) {
   const RecordClock::Tick tick = clock_.next(arrival);
   if (tick.ran_back) {
-    flow_.reset();
+    beginRun();
     log_->split();
   }
   return tick.time;

@@ -1,6 +1,7 @@
 /// The live node: subscriptions and publications around a LoadsFlow. Single-threaded, driven by its input messages.
 #pragma once
 
+#include <boost/thread/recursive_mutex.hpp>
 #include <dynamic_reconfigure/server.h>
 #include <hammer_loads/HammerLoadsConfig.h>
 #include <ros/message_event.h>
@@ -34,9 +35,13 @@ class HammerLoadsNode final : private LoadsSink {
   using Event = ros::MessageEvent<const Message>;
   using JointState = sensor_msgs::JointState;
 
-  void subscribe(ros::NodeHandle& node, const Settings& settings);
+  void subscribe(ros::NodeHandle& node);
   void announceRun();
-  void onReconfigure(const HammerLoadsConfig& config);
+  void beginRun();
+  void onReconfigure(HammerLoadsConfig& config);
+  void switchLog(bool on);
+  void logSwitched();
+  HammerLoadsConfig configInForce(bool log_enabled) const;
   void onCrank(const Event<JointState>& event);
   void onJointStates(const Event<JointState>& event);
   void onImu(const Event<sensor_msgs::Imu>& event);
@@ -78,8 +83,10 @@ class HammerLoadsNode final : private LoadsSink {
   bool one_topic_{};  ///< crank and joint states arrive on the same topic
   RecordClock clock_;
   NodeDiagnostics diagnostics_;
-  LogServices log_services_;
+  HammerLoadsConfig config_;  ///< in force
+  boost::recursive_mutex reconfigure_mutex_;
   dynamic_reconfigure::Server<HammerLoadsConfig> reconfigure_;
+  LogServices log_services_;
 };
 
 /// Node from its private parameters; every problem is reported on one line each and gives no node.

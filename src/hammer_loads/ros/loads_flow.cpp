@@ -64,8 +64,9 @@ void LoadsFlow::hullImu(const sensor_msgs::Imu& message, const ros::Time& record
 }
 
 void LoadsFlow::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
-  beginRun(record_time);
-  if (frame_wrenches_) frame_wrenches_->transforms(message, is_static, record_time);
+  if (!frame_wrenches_) return;
+  if (!is_static) beginRun(record_time);
+  frame_wrenches_->transforms(message, is_static, record_time);
 }
 
 /// Stamped with the first input: a second run over the same input says the same.
@@ -103,7 +104,7 @@ void LoadsFlow::publishOutput(const HullOutput& output, const ros::Time& record_
   wrench_.wrench.torque.y = output.wrench.torque_y;
   sink_.hullWrench(wrench_, record_time);
   if (sink_.wantsHullLoads()) publishHullLoads(output, record_time);
-  if (frame_wrenches_) frame_wrenches_->wrench(wrench_, record_time);
+  if (frame_wrenches_ && wantsAny(frame_wrenches_->frames())) frame_wrenches_->wrench(wrench_, record_time);
   if (!boom_messages_ || !pipeline_->boom()->known()) return;
   for (std::size_t i = 0; i < boom_messages_->links().size(); ++i) {
     const std::string& link = boom_messages_->links()[i];
@@ -112,11 +113,13 @@ void LoadsFlow::publishOutput(const HullOutput& output, const ros::Time& record_
   }
 }
 
+bool LoadsFlow::wantsAny(const std::vector<std::string>& links) const {
+  return std::any_of(links.begin(), links.end(), [this](const std::string& l) { return sink_.wantsBoomWrench(l); });
+}
+
 bool LoadsFlow::wantsBoom() const {
-  if (!boom_messages_) return false;
-  const std::vector<std::string>& links = boom_messages_->links();
-  return sink_.wantsJointLoads() || sink_.wantsBoomVibration() ||
-         std::any_of(links.begin(), links.end(), [this](const std::string& l) { return sink_.wantsBoomWrench(l); });
+  return boom_messages_ &&
+         (sink_.wantsJointLoads() || sink_.wantsBoomVibration() || wantsAny(boom_messages_->links()));
 }
 
 void LoadsFlow::publishBoom(const ros::Time& record_time) {

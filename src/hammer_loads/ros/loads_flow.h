@@ -53,7 +53,7 @@ class LoadsFlow {
   void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time);
-  /// A message of /tf, or of /tf_static.
+  /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
   bool needsImu() const { return settings_.pipeline.hull_motion == HullMotionSource::kImu; }
   /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
@@ -74,6 +74,7 @@ class LoadsFlow {
   void publishOutput(const HullOutput& output, const ros::Time& record_time);
   void publishHullLoads(const HullOutput& output, const ros::Time& record_time);
   void publishBoom(const ros::Time& record_time);
+  bool wantsAny(const std::vector<std::string>& links) const;
   bool wantsBoom() const;
   void publishTurnEnd(const TurnEnd& end, const ros::Time& record_time);
   void publishMechanism(const Loads& loads, const ros::Time& record_time);

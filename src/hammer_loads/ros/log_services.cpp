@@ -4,8 +4,9 @@
 
 namespace hammer_loads {
 
-LogServices::LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> begin)
-    : log_(log), begin_(std::move(begin)) {
+LogServices::LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> begin,
+                         std::function<void()> switched)
+    : log_(log), begin_(std::move(begin)), switched_(std::move(switched)) {
   const auto serve = [&](const char* name, void (LogServices::*act)(Response&)) {
     return private_node.advertiseService<std_srvs::Trigger::Request, Response>(
         name, [this, act](std_srvs::Trigger::Request&, Response& response) {
@@ -26,13 +27,16 @@ void LogServices::start(Response& response) {
   const std::vector<std::string> problems = log_.start();
   response.success = problems.empty();
   response.message = problems.empty() ? "recording" : problems.front();
-  if (response.success) begin_();
+  if (!response.success) return;
+  begin_();
+  switched_();
 }
 
 void LogServices::stop(Response& response) {
   response.success = log_.isRecording();
   response.message = response.success ? "stopped" : "was not recording";
   log_.stop();
+  if (response.success) switched_();
 }
 
 void LogServices::split(Response& response) {

@@ -107,6 +107,8 @@ void LogWriter::carryOut(LogOrder& order) {
       return split();
     case LogOrder::Kind::kLatched:
       return latch(order);
+    case LogOrder::Kind::kForget:
+      return forget(order.topic);
     case LogOrder::Kind::kQuit:
       quit_ = true;
       return end();
@@ -236,6 +238,11 @@ void LogWriter::latch(LogOrder& order) {
   auto fault =
       file_->write(*order.topic, order.time, bytes.data(), static_cast<std::uint32_t>(bytes.size()), Clock::now());
   if (fault) stopFor(std::move(*fault));
+}
+
+void LogWriter::forget(const LogTopic* topic) {
+  const auto same = [topic](const Latched& latched) { return latched.topic == topic; };
+  latched_.erase(std::remove_if(latched_.begin(), latched_.end(), same), latched_.end());
 }
 
 /// time: of the file's first message, so that the file does not begin with a gap; null: there is none yet.

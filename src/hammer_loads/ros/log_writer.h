@@ -21,14 +21,14 @@ namespace hammer_loads {
 
 /// What the writing thread is told, at its place among the messages. Never lost, unlike a message.
 struct LogOrder {
-  enum class Kind { kStart, kStop, kSplit, kLatched, kQuit };
+  enum class Kind { kStart, kStop, kSplit, kLatched, kForget, kQuit };
   Kind kind{};
   std::uint64_t position{};         ///< in the queue: carried out behind what was queued before
   std::uint64_t session{};          ///< kStart: number of this recording, from 1
   std::string directory;            ///< kStart
   std::optional<LogName> name;      ///< kStart: first file
   unsigned next_number{};           ///< kStart: in the name of the second file
-  LogTopic* topic{};                ///< kLatched
+  LogTopic* topic{};                ///< kLatched, kForget
   ros::Time time;                   ///< kLatched: record time
   std::vector<std::uint8_t> bytes;  ///< kLatched: serialised message
 };
@@ -75,6 +75,7 @@ class LogWriter {
   void settle();
   void deleteOldest();
   void latch(LogOrder& order);
+  void forget(const LogTopic* topic);
   void repeatLatched(const ros::Time* time);
   void report(LogState state, const std::string& reason);
 

@@ -79,7 +79,7 @@ void NodeDiagnostics::describePitch(diagnostic_updater::DiagnosticStatusWrapper&
   const auto unheard = pitch.unheard();
   if (unheard.empty()) {
     status.summary(DiagnosticStatus::OK, "known");
-    if (jointLooksLikeDegrees(pitch.pitch()))
+    if (pitch.looksLikeDegrees())
       status.summary(DiagnosticStatus::ERROR, "implausible: joint angles seem to be in degrees, radians are agreed");
   } else {
     std::string names;

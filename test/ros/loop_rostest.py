@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""rosbag play --clock --loop into the live node: each loop begins anew."""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import unittest
+
+import rosbag
+import rospy
+import rostest
+from std_srvs.srv import Trigger
+
+from node_session import NodeSession, TURN, active_bags, bags, crank_stamps, expect_reproduced, messages, recorded
+from process_rostest import DEADLINE, eventually
+
+LOOPS = 3  # whole ones
+# Of the peak. A loop's first samples may overtake the clock: then the estimate begins so much later.
+UNLIKE = 0.05
+
+
+def in_loops(told):
+    """Cut where stamps run back."""
+    loops = []
+    for message in told:
+        if not loops or message.header.stamp < loops[-1][-1].header.stamp:
+            loops.append([])
+        loops[-1].append(message)
+    return loops
+
+
+class LoopTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = rospy.get_param('/hammer_loads/log_directory')
+        cls.addClassCleanup(shutil.rmtree, cls.directory)
+        cls.session = NodeSession()
+        cls.piece = recorded(3.0, 4.0)
+        cls.play(cls.write_clip(os.path.join(cls.directory, 'clip')))
+        assert rospy.ServiceProxy('/hammer_loads/log/stop', Trigger)().success
+        assert eventually(lambda: not active_bags(cls.directory))
+        cls.files = bags(cls.directory)
+        cls.loops = in_loops(cls.session.wrenches)[:LOOPS]
+
+    @classmethod
+    def write_clip(cls, path):
+        with rosbag.Bag(path, 'w') as bag:
+            for is_crank, message in cls.piece:
+                bag.write('/crank' if is_crank else '/joint_states', message, message.header.stamp)
+        return path
+
+    @classmethod
+    def play(cls, clip):
+        player = subprocess.Popen(['rosbag', 'play', '--quiet', '--clock', '--hz=200', '--loop', '--rate=2',
+                                   '--wait-for-subscribers', '--topics', '/crank', '/joint_states', '--bags=' + clip],
+                                  stdout=subprocess.DEVNULL)
+        try:
+            assert eventually(lambda: len(in_loops(list(cls.session.wrenches))) > LOOPS)
+        finally:
+            player.send_signal(signal.SIGINT)
+            player.wait(DEADLINE)
+
+    def test_no_sample_is_lost(self):
+        arrived = [m.header.stamp for path in self.files for m in messages(path, '/crank')]
+        clip = sorted(crank_stamps(self.piece))
+        self.assertGreater(len(arrived), LOOPS * len(clip))
+        self.assertEqual(arrived[:LOOPS * len(clip)], LOOPS * clip)
+
+    def test_stamps_rise_in_each_loop_and_begin_within_a_turn(self):
+        first = crank_stamps(self.piece)[0]
+        for loop in self.loops:
+            stamps = [m.header.stamp for m in loop]
+            self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])))
+            self.assertLess((stamps[0] - first).to_sec(), TURN)
+            self.assertEqual(stamps[-1], crank_stamps(self.piece)[-1])
+
+    def test_each_loop_is_a_run_of_its_own(self):
+        self.assertGreaterEqual(len(self.files), LOOPS)
+        for path in self.files:
+            self.assertEqual(len(messages(path, '/hammer_loads/run_info')), 1)
+            expect_reproduced(self, path, self.session)
+
+    def test_each_loop_gives_the_same(self):
+        first = {m.header.stamp: m.wrench.force for m in self.loops[0]}
+        peak = max(abs(force.z) for force in first.values())
+        settled = crank_stamps(self.piece)[0] + rospy.Duration(TURN)
+        for loop in self.loops[1:]:
+            unlike = [abs(m.wrench.force.z - first[m.header.stamp].z) / peak for m in loop if m.header.stamp > settled]
+            self.assertGreater(len(unlike), 700)
+            self.assertLess(max(unlike), UNLIKE)
+
+
+if __name__ == '__main__':
+    rospy.init_node('loop_rostest')
+    rostest.rosrun('hammer_loads', 'loop', LoopTest, sys.argv)

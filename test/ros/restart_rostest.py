@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Two hammers under one master; the node of one is killed at work and started again by roslaunch."""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import unittest
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import rospy
+import rostest
+from std_srvs.srv import Trigger
+
+from node_session import (NodeSession, TURN, active_bags, bags, crank_stamps, entries, messages, process_again,
+                          recorded)
+from process_rostest import NodeProcess, eventually
+
+SLICE = 20  # messages, some 20 ms
+
+
+class RestartTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = rospy.get_param('/a/hammer_loads/log_directory')
+        cls.addClassCleanup(shutil.rmtree, cls.directory)
+        cls.a, cls.b = [NodeSession(ns + '/hammer_loads', ns + '/crank', ns + '/joint_states') for ns in ('/a', '/b')]
+
+    def test_1_two_hammers_keep_to_their_own(self):
+        piece = recorded(3.0, 4.0)
+        self.a.feed(piece)
+        self.assertEqual(self.b.wrenches, [])
+        self.b.feed(piece)
+        self.assertEqual(self.a.stamps(), self.b.stamps())
+        light, heavy = [max(w.wrench.force.z for w in session.wrenches) for session in (self.a, self.b)]
+        self.assertGreater(light, 5000.0)
+        self.assertAlmostEqual(heavy / light, 2.0, delta=0.1)  # the motion is the samples', but for their noise
+        published, _, services = rosgraph.Master('/test').getSystemState()
+        for ns in '/a', '/b':
+            names = [name for name, nodes in published + services
+                     if ns + '/hammer_loads' in nodes and name not in ('/diagnostics', '/rosout')]
+            self.assertGreater(len(names), 12)
+            self.assertEqual([name for name in names if not name.startswith(ns + '/hammer_loads/')], [])
+
+    def kill(self):
+        uri = rosgraph.Master('/test').lookupNode('/a/hammer_loads')
+        os.kill(ServerProxy(uri).getPid('/test')[2], signal.SIGKILL)
+
+    def work(self, inputs, enough):
+        """Both machines at work at about their pace until it is enough. What was sent."""
+        sent = []
+        while not enough(sent):
+            piece = inputs[len(sent):len(sent) + SLICE]
+            self.assertNotEqual(piece, [])
+            self.a.send(piece)
+            self.b.send(piece)
+            sent += piece
+            rospy.rostime.wallsleep(1e-3 * SLICE)
+        return sent
+
+    def test_2_killed_at_work(self):
+        before_b = len(self.b.wrenches)
+        inputs = recorded(4.0, 20.0)
+        first_life = self.work(inputs, lambda sent: len(sent) > 1500)
+        active, = active_bags(self.directory)
+        answered = self.a.wrenches[-1].header.stamp
+        self.kill()
+        self.a.wrenches.clear()
+        rest = self.work(inputs[len(first_life):], lambda _: len(self.a.wrenches) > 300)
+        stamps = crank_stamps(first_life + rest)
+        self.assertTrue(eventually(lambda: self.b.wrenches[-1].header.stamp == stamps[-1]))
+        self.assertEqual(self.b.stamps()[before_b:], stamps, 'the other lost nothing')
+        self.assertTrue(rospy.ServiceProxy('/a/hammer_loads/log/stop', Trigger)().success)
+        self.assertTrue(eventually(lambda: active_bags(self.directory) == [active]))
+        self.expect_output_soon()
+        self.expect_recovered(active, crank_stamps(recorded(3.0, 4.0) + first_life), answered)
+
+    def expect_output_soon(self):
+        """Within two turns of the first sample that the new life got."""
+        path, = bags(self.directory)
+        sample = messages(path, '/a/crank')[0].header.stamp
+        wrench = messages(path, '/a/hammer_loads/hull_wrench')[0].header.stamp
+        self.assertLess((wrench - sample).to_sec(), 2.0 * TURN)
+
+    def expect_recovered(self, active, sent, answered):
+        """The first life's log but for its last second."""
+        path = active[:-len('.active')]
+        os.rename(active, path)
+        subprocess.run(['rosbag', 'reindex', '--quiet', path], check=True, stdout=subprocess.DEVNULL)
+        stamps = [m.header.stamp for m in messages(path, '/a/crank')]
+        self.assertEqual(stamps, sent[:len(stamps)])
+        self.assertLess((answered - stamps[-1]).to_sec(), 1.0)
+        last = entries(path, '/a/crank')[-1][1]  # its outputs may be lost
+
+        def outputs(file):
+            return sorted(e for e in entries(file) if e[1] < last and e[0] not in ('/a/crank', '/a/joint_states'))
+        self.assertTrue(outputs(path) == outputs(process_again(path, self.a)))
+
+    def test_3_a_log_directory_that_cannot_be_written(self):
+        code, _, err = NodeProcess('unwritable', {'log_directory': '/proc', 'log_min_free_mb': 0}).wait()
+        self.assertEqual(code, 1, err)
+        self.assertEqual(len(err.strip().splitlines()), 1, err)
+        self.assertIn("log_directory: '/proc', must be writable", err)
+
+
+if __name__ == '__main__':
+    rospy.init_node('restart_rostest')
+    rostest.rosrun('hammer_loads', 'restart', RestartTest, sys.argv)
