@@ -53,6 +53,14 @@ inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
   return r;
 }
 
+/// State after a step h without force; r = responseAt(mode, h).
+inline ModeState advancedFreely(const Mode& mode, const ModeState& now, const ModeResponse& r) noexcept {
+  const double ww = mode.omega * mode.omega;
+  const double kept = 1.0 - ww * r.step;  // displacement kept by an initial displacement 1
+  return {kept * now.x + r.impulse * now.v,
+          -ww * r.impulse * now.x + (kept - 2.0 * mode.zeta * mode.omega * r.impulse) * now.v};
+}
+
 /// Force on a mode over one step h: from, to its ends, linear between plus a parabola that makes the mean `mean`.
 struct ModeForce {
   double from{}, to{}, mean{};
@@ -64,12 +72,9 @@ inline ModeState advanced(const Mode& mode, const ModeState& now, const ModeForc
   const double bump = 6.0 * (force.mean - 0.5 * (force.from + force.to));
   const double slope = h > 0.0 ? (force.to - force.from + bump) / h : 0.0;
   const double bend = h > 0.0 ? -2.0 * bump / (h * h) : 0.0;
-  const double ww = mode.omega * mode.omega;
-  const double kept = 1.0 - ww * r.step;  // displacement kept by an initial displacement 1
-  ModeState next;
-  next.x = kept * now.x + r.impulse * now.v + force.from * r.step + slope * r.ramp + bend * r.parabola;
-  next.v = -ww * r.impulse * now.x + (kept - 2.0 * mode.zeta * mode.omega * r.impulse) * now.v +
-           force.from * r.impulse + slope * r.step + bend * r.ramp;
+  ModeState next = advancedFreely(mode, now, r);
+  next.x += force.from * r.step + slope * r.ramp + bend * r.parabola;
+  next.v += force.from * r.impulse + slope * r.step + bend * r.ramp;
   return next;
 }
 
