@@ -131,11 +131,11 @@ TEST_F(BoomTest, AFrameUnknownToTfIsSilentAndNamedUntilItsTransformComes) {
 
   ASSERT_TRUE(machine_->workUntil([] { return !machine_->gauge.messages.empty(); }));
   const ros::Time back = machine_->gauge.last();
-  for (int period = 0; period < 50; ++period) {
-    ASSERT_TRUE(machine_->work());
-    ASSERT_TRUE(eventually([] { return machine_->gauge.last() >= machine_->samples.back(); })) << period;
-  }
-  EXPECT_EQ(machine_->gauge.count(back, now()), samples(back, now())) << "none lost";
+  ASSERT_TRUE(machine_->workFor(1.0));
+  const ros::Time goal = now();
+  // The robot_state_publisher may skip a joint state: then only the next one brings what waits.
+  ASSERT_TRUE(machine_->workUntil([&] { return machine_->gauge.last() >= goal; }));
+  EXPECT_EQ(machine_->gauge.count(back, goal), samples(back, goal)) << "none lost";
   double largest = 0.0;
   for (const auto& [stamp, told] : machine_->gauge.messages) {
     geometry_msgs::Wrench arm = atArm(machine_->hull.messages.at(stamp).wrench, machine_->position[3]), right;
