@@ -6,6 +6,7 @@
 #include <map>
 
 #include "bag/recording_sink.h"
+#include "hammer_loads/ros/stamp.h"
 #include "support/command.h"
 #include "support/session_player.h"
 
@@ -28,8 +29,6 @@ simulation::MachineSettings machine(bool moving) {
   for (simulation::JointMotion& joint : machine.boom) joint.amplitude *= moving ? 1.0 : 0.0;
   return machine;
 }
-
-ros::Time timeOf(StampNs stamp) { return ros::Time().fromNSec(static_cast<std::uint64_t>(stamp)); }
 
 geometry_msgs::TransformStamped transform(const ros::Time& stamp, const std::string& parent, const std::string& child,
                                           double x, double z, double pitch = 0.0) {

@@ -5,9 +5,15 @@
 #include <cstddef>
 
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/pipeline/intake.h"
 
 namespace hammer_loads {
+
+/// What a load needs to know of an estimate.
+inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {
+  return {crank.position.angle, crank.speed, crank.acceleration};
+}
 
 /// Refers to the tracker, whose last update it belongs to. Times are after the step's start [s].
 class CrankStep {

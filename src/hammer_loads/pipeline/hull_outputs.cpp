@@ -61,8 +61,7 @@ bool HullOutputs::next(HullOutput& output) noexcept {
     impulse_ = {};
   } else {
     output.wrench = at_sample ? wrench_
-                              : hullWrench(*model_, {output.crank.position.angle, output.crank.speed,
-                                                     output.crank.acceleration}, hull_);
+                              : hullWrench(*model_, motionOf(output.crank), hull_);
   }
   last_output_ = output.stamp;
   if (at_sample) ready_ = false;

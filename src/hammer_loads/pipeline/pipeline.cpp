@@ -41,19 +41,24 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       outputs_(hull_model_, step_, settings),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings, mechanism.parameters().striking_distance);
-  hull_ = gravityByPitch();
-  tracker_->setHullMotion(hull_);
+  takePitch();
 }
 
-Gravity Pipeline::gravityByPitch() const noexcept {
+/// The weight by the latest pitch; of a fixed hull that is all its motion.
+void Pipeline::takePitch() noexcept {
   const double pitch = hull_pitch_.pitch();
-  return {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)};
+  weight_ = {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)};
+  if (settings_.hull_motion != HullMotionSource::kFixed) return;
+  hull_ = weight_;
+  tracker_->setHullMotion(hull_);
 }
 
 bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                           const std::vector<double>& velocities) noexcept {
   const bool of_boom = boom_ && boom_->jointStates(stamp, names, positions, velocities);
-  return hull_pitch_.update(names, positions) || of_boom;
+  if (!hull_pitch_.update(names, positions)) return of_boom;
+  takePitch();
+  return true;
 }
 
 std::optional<ImuRefusal> Pipeline::hullImu(StampNs stamp, const ImuReading& reading) noexcept {
@@ -64,15 +69,15 @@ std::optional<ImuRefusal> Pipeline::hullImu(StampNs stamp, const ImuReading& rea
 
 /// The hull's motion at a sample as far as it is known before the sample is: the boom's vibration from the one before.
 void Pipeline::predictHull(StampNs stamp) noexcept {
-  const Gravity weight = gravityByPitch();
+  if (settings_.hull_motion == HullMotionSource::kFixed) return;
   hull_known_ = true;
   if (settings_.hull_motion == HullMotionSource::kImu) {
     const std::optional<HullMotion> measured = imu_.at(stamp);
     hull_known_ = measured.has_value();
     imu_counts_.missed += !hull_known_;
-    hull_ = measured.value_or(HullMotion(weight));
+    hull_ = measured.value_or(HullMotion(weight_));
   } else {
-    hull_ = settings_.hull_motion == HullMotionSource::kModel ? withVibration(weight, loads_.boom) : HullMotion(weight);
+    hull_ = withVibration(weight_, loads_.boom);
   }
   tracker_->setHullMotion(hull_);
 }
@@ -131,10 +136,9 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
   followBoom(stamp);
   if (settings_.hull_motion == HullMotionSource::kModel) {
     hull_known_ = loads_.boom != nullptr && !loads_.boom->fault;
-    hull_ = withVibration(gravityByPitch(), loads_.boom);
+    hull_ = withVibration(weight_, loads_.boom);
   }
-  loads_.wrench = hullWrench(hull_model_,
-                             {loads_.crank.position.angle, loads_.crank.speed, loads_.crank.acceleration}, hull_);
+  loads_.wrench = hullWrench(hull_model_, motionOf(loads_.crank), hull_);
   outputs_.sample(stamp, loads_.crank, loads_.wrench, hull_);
   ++counts_.accepted;
   return loads_;
@@ -147,8 +151,7 @@ void Pipeline::followBoom(StampNs stamp) noexcept {
     boom_follows_ = false;
     return;
   }
-  const CrankEstimate& crank = loads_.crank;
-  const HullWrench motion = hullWrench(hull_model_, {crank.position.angle, crank.speed, crank.acceleration}, Gravity{});
+  const HullWrench motion = hullWrench(hull_model_, motionOf(loads_.crank), Gravity{});
   const LoadStep step = boom_follows_ ? loadStep(hull_model_, step_) : LoadStep{};
   loads_.boom = &boom_->sample({stamp, motion, settings_.gravity}, step);
   boom_follows_ = true;
@@ -197,7 +200,7 @@ HullDeviation Pipeline::deviation(const HullOutput& output) noexcept {
 }
 
 TurnInstant Pipeline::instant(double time, const CrankEstimate& crank) const noexcept {
-  const CrankMotion motion{crank.position.angle, crank.speed, crank.acceleration};
+  const CrankMotion motion = motionOf(crank);
   const HullWrench added = frameWrench(hull_model_, motion.angle, motion.speed, hull_);
   return {time, hullWrench(hull_model_, motion, hull_), linkMomentum(hull_model_, motion.angle, motion.speed),
           added.force_x, added.force_z};

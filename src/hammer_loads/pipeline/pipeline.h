@@ -103,7 +103,7 @@ class Pipeline {
   const Loads& refuse(Refusal refusal) noexcept;
   void restart() noexcept;
   bool settled() noexcept;
-  Gravity gravityByPitch() const noexcept;
+  void takePitch() noexcept;
   void predictHull(StampNs stamp) noexcept;
   void followBoom(StampNs stamp) noexcept;
   void followTurn() noexcept;
@@ -118,6 +118,7 @@ class Pipeline {
   HullPitch hull_pitch_;
   HullImu imu_;
   ImuCounts imu_counts_;
+  Gravity weight_;  ///< by the latest pitch, hull axes [m/s2]
   HullMotion hull_;
   bool hull_known_{true};
   UnitCheck unit_check_;

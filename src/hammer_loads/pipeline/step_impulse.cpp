@@ -32,7 +32,7 @@ void forEachSmoothPart(const CrankStep& step, double from, double to, const Visi
 
 /// From motion of the links relative to the hull.
 HullWrench motionWrench(const HullModel& model, const CrankEstimate& crank) noexcept {
-  return hullWrench(model, {crank.position.angle, crank.speed, crank.acceleration}, Gravity{});
+  return hullWrench(model, motionOf(crank), Gravity{});
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "hammer_loads/ros/stamp.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -14,8 +16,6 @@ void copy(const JointVector& from, std::vector<double>& to) { std::copy(from.beg
 void copy(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
   to.x = from.x(), to.y = from.y(), to.z = from.z();
 }
-
-ros::Time timeOf(StampNs stamp) { return ros::Time().fromNSec(static_cast<std::uint64_t>(stamp)); }
 
 }  // namespace
 

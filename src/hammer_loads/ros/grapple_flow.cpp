@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/ros/stamp.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -11,7 +14,6 @@ constexpr std::array<const char*, static_cast<std::size_t>(MessageRefusal::kCoun
     "missing joint", "short array", "out of order", "duplicate"};
 /// Joints of each jaw in the order of publishMechanism.
 constexpr std::array<const char*, 6> kLinks{"drive_rod", "rocker", "lever", "jaw", "tie_rod", "main_rocker"};
-constexpr double kTwoPi = 6.283185307179586;
 
 double betweenPis(double angle) { return std::remainder(angle, kTwoPi); }
 
@@ -57,7 +59,7 @@ void GrappleFlow::jointStates(const sensor_msgs::JointState& message, const ros:
   if (!verdict) return;
   const std::optional<double> slider_acceleration = acceleration(*reading, *verdict);
   if (!track(*reading, slider_acceleration)) return;
-  stamps_.accept(static_cast<StampNs>(message.header.stamp.toNSec()));
+  stamps_.accept(stampOf(message.header.stamp));
   has_velocity_ = reading->velocity.has_value();
   has_acceleration_ = slider_acceleration.has_value();
   without_velocity_ += !has_velocity_;
@@ -84,7 +86,7 @@ std::optional<GrappleFlow::Reading> GrappleFlow::read(const sensor_msgs::JointSt
 }
 
 std::optional<StampOrder::Verdict> GrappleFlow::order(const ros::Time& stamp) noexcept {
-  const StampOrder::Verdict verdict = stamps_.judge(static_cast<StampNs>(stamp.toNSec()));
+  const StampOrder::Verdict verdict = stamps_.judge(stampOf(stamp));
   if (verdict.place == StampOrder::Place::kDuplicate) {
     refuse(MessageRefusal::kDuplicate);
     return std::nullopt;

@@ -3,19 +3,12 @@
 #include <algorithm>
 
 #include "hammer_loads/linkage/pin_forces.h"
+#include "hammer_loads/ros/stamp.h"
 
 namespace hammer_loads {
 namespace {
 
 constexpr char kHullFrame[] = "hammer_hull";
-
-ros::Time timeOf(StampNs stamp) {
-  ros::Time time;
-  time.fromNSec(static_cast<std::uint64_t>(stamp));
-  return time;
-}
-
-StampNs stampOf(const ros::Time& time) { return static_cast<StampNs>(time.toNSec()); }
 
 /// Angle in [0, 2 pi) [rad].
 double crankAngle(CrankAngle angle) { return angle.offset < 0.0 ? angle.offset + kTwoPi : angle.offset; }

@@ -1,0 +1,18 @@
+/// Header stamps as ROS and as the pipeline has them.
+#pragma once
+
+#include <ros/time.h>
+
+#include "hammer_loads/pipeline/intake.h"
+
+namespace hammer_loads {
+
+inline ros::Time timeOf(StampNs stamp) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(stamp));
+  return time;
+}
+
+inline StampNs stampOf(const ros::Time& time) { return static_cast<StampNs>(time.toNSec()); }
+
+}  // namespace hammer_loads
