@@ -171,6 +171,29 @@ TEST_F(CrankFilterTest, IgnoresOneOutlierAndBelievesTwo) {
   EXPECT_NEAR(CrankAngle::wrapToPi(f.estimate().position.angle.offset - (angle + 2.04)), 0.0, kCount);
 }
 
+TEST_F(CrankFilterTest, AKickThatNoTorqueGivesIsAnOutlierHoweverSmall) {
+  for (const double kick : {0.01, -0.01, 0.03, -0.1, 0.3}) {
+    CrankFilter f = filter(0.6);
+    f.start({0.5, 20.0});
+    double angle = 0.5;
+    for (int i = 0; i < 50; ++i) f.update(1e-3, {angle += 0.02, 20.0});
+    const double speed = f.estimate().speed;
+    EXPECT_EQ(f.update(1e-3, {angle + 0.02 + kick, 20.0}), Tracking::kOutlier) << kick;
+    EXPECT_EQ(f.update(2e-3, {angle += 0.04, 20.0}), Tracking::kContinued) << kick;
+    EXPECT_NEAR(f.estimate().speed, speed, 0.1) << kick;
+  }
+}
+
+TEST_F(CrankFilterTest, ASpeedThatSaysNothingDoesNoHarm) {
+  for (const double told : {0.0, -20.0, 26.0}) {
+    CrankFilter f = filter(0.6);
+    f.start({0.5, told});
+    double angle = 0.5;
+    for (int i = 0; i < 50; ++i) f.update(1e-3, {angle += 0.02, told});
+    EXPECT_NEAR(f.estimate().speed, 20.0, 0.5) << told;
+  }
+}
+
 TEST_F(CrankFilterTest, TheEncoderDecidesTheSideOfTheBlow) {
   CrankFilter f = filter(0.6);
   f.start({kTwoPi - 40 * kCount, 15.0});

@@ -1,6 +1,7 @@
 #include "hammer_loads/pipeline/intake.h"
 
 #include <limits>
+#include <optional>
 
 #include "support/main.h"
 
@@ -11,12 +12,13 @@ constexpr StampNs kMs = 1000000;
 
 class IntakeTest : public testing::Test {
  protected:
-  Intake::Verdict judge(StampNs stamp, double angle = 1.0, double speed = 10.0) {
+  Intake::Verdict judge(StampNs stamp, std::optional<double> given = {}, double speed = 10.0) {
+    const double angle = given.value_or(1e-9 * static_cast<double>(stamp));
     const Intake::Verdict verdict = intake_.judge(stamp, {angle, speed});
-    if (!verdict.refusal) intake_.accept(stamp);
+    if (!verdict.refusal) intake_.accept(stamp, angle);
     return verdict;
   }
-  Intake intake_{300.0, 0.25};
+  Intake intake_{{300.0, 0.25, 0.01, 1.5}};
 };
 
 TEST_F(IntakeTest, GivesTheStepBetweenAcceptedSamples) {
@@ -57,6 +59,23 @@ TEST_F(IntakeTest, OneLateSampleChangesNothing) {
   EXPECT_FALSE(judge(1001 * kMs).refusal);
   EXPECT_EQ(judge(991 * kMs).refusal, Refusal::kOutOfOrder);
   EXPECT_FALSE(judge(1002 * kMs).refusal);
+}
+
+TEST_F(IntakeTest, AnAngleThatStandsStillWhileTheSpeedGoesOnIsRefusedUntilItMoves) {
+  judge(0, 1.0, 20.0);
+  for (int i = 1; i <= 400; ++i) EXPECT_EQ(judge(i * kMs, 1.0, 20.0).refusal, Refusal::kImplausible) << i;
+  const Intake::Verdict moving = judge(401 * kMs, 1.02, 20.0);
+  EXPECT_FALSE(moving.refusal);
+  EXPECT_EQ(moving.order, Intake::Order::kFirst) << "stale by then";
+  EXPECT_EQ(judge(402 * kMs, 1.02, 20.0).refusal, Refusal::kImplausible);
+  EXPECT_FALSE(judge(403 * kMs, 1.02, 0.1).refusal) << "now the speed agrees that it stands";
+}
+
+TEST_F(IntakeTest, TheSameAngleIsNoFaultOfACrankThatStandsOrCreepsOrTurnedRound) {
+  judge(0, 1.0, 0.0);
+  for (int i = 1; i <= 100; ++i) EXPECT_FALSE(judge(i * kMs, 1.0, i % 2 == 0 ? 1.4 : -1.4).refusal) << "noise";
+  for (int i = 101; i <= 104; ++i) EXPECT_FALSE(judge(i * kMs, 1.0, 9.0).refusal) << "0.009 rad: within a few counts";
+  EXPECT_FALSE(judge(304 * kMs, 1.0, 31.4).refusal) << "one whole turn later";
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ struct CrankFilterSettings {
 ///
 /// An angle that the model cannot explain within 5 standard deviations widens the filter's uncertainty until it can: a
 /// supply that behaves otherwise than a slow random walk is followed with less smoothing, not refused, and teaches
-/// nothing of the inertia. A speed that far off is not used.
+/// nothing of the inertia. A speed that far off is not used. Where following the angle would change the speed by a third,
+/// the sample is an outlier; a second one in a row is believed, and begins anew without the speed it tells.
 class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
@@ -64,6 +65,7 @@ class CrankFilter final : public CrankTracker {
   void correctSpeed(double measured) noexcept;
   void correct(Eigen::Index row, double innovation, double variance) noexcept;
   void respectCount(double reading) noexcept;
+  bool isContradiction(double dt, double innovation) const noexcept;
   bool isSound() const noexcept;
   bool hasRunAway(const ShaftState& state) const noexcept;
   void anchor(double measured, const CrankSample& sample) noexcept;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hammer_loads/linkage/crank_angle.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr double kLargestAngle = 1e9;  // [rad]: beyond it a double resolves les
 Intake::Verdict Intake::judge(StampNs stamp, const CrankSample& sample) noexcept {
   const double speed = sample.speed.value_or(0.0);
   if (!std::isfinite(sample.angle) || !std::isfinite(speed)) return {Refusal::kNotFinite};
-  if (std::abs(sample.angle) > kLargestAngle || std::abs(speed) > max_speed_) return {Refusal::kImplausible};
+  if (std::abs(sample.angle) > kLargestAngle || std::abs(speed) > limits_.max_speed) return {Refusal::kImplausible};
   const auto [place, step] = stamps_.judge(stamp);
   switch (place) {
     case StampOrder::Place::kDuplicate:
@@ -20,11 +22,21 @@ Intake::Verdict Intake::judge(StampNs stamp, const CrankSample& sample) noexcept
     case StampOrder::Place::kOutOfOrder:
       return {Refusal::kOutOfOrder};
     case StampOrder::Place::kFirst:
-      return {};
     case StampOrder::Place::kNext:
       break;
   }
-  return {std::nullopt, Order::kNext, step};
+  if (isFrozen(step, sample)) return {Refusal::kImplausible};
+  return {std::nullopt, place == StampOrder::Place::kFirst ? Order::kFirst : Order::kNext, step};
+}
+
+/// A sensor may stand still while its speed goes on. The other way round, a speed that is always zero, is common and
+/// harmless: the filter learns not to believe it.
+bool Intake::isFrozen(double step, const CrankSample& sample) noexcept {
+  const double speed = std::abs(sample.speed.value_or(0.0)), turn = speed * step;
+  const bool turns = speed > limits_.frozen_speed && (frozen_ || (turn > limits_.frozen_turn && turn < 0.5 * kTwoPi));
+  // Bits, not nearness: counts repeat exactly, and any living sensor moves by its noise.
+  frozen_ = turns && sample.angle == angle_;
+  return frozen_;
 }
 
 }  // namespace hammer_loads

@@ -28,8 +28,13 @@ constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRe
 /// Checks that need no model: a sample's own values and its place in time.
 class Intake {
  public:
-  /// Speed bound [rad/s] and age of the last sample from which on a new one starts anew [s].
-  Intake(double max_speed, double stale_after) : max_speed_(max_speed), stamps_(stale_after) {}
+  struct Limits {
+    double max_speed{};    ///< of any crank [rad/s]
+    double stale_after{};  ///< age of the last sample from which on a new one starts anew [s]
+    double frozen_turn{};  ///< a crank that turned further does not give the same angle again [rad]
+    double frozen_speed{}; ///< nor does one that turns faster, however soon [rad/s]
+  };
+  explicit Intake(const Limits& limits) : limits_(limits), stamps_(limits.stale_after) {}
 
   enum class Order { kFirst, kNext };
   struct Verdict {
@@ -39,13 +44,19 @@ class Intake {
   };
 
   Verdict judge(StampNs stamp, const CrankSample& sample) noexcept;
-  void accept(StampNs stamp) noexcept { stamps_.accept(stamp); }
-  void reset() noexcept { stamps_.reset(); }
+  void accept(StampNs stamp, double angle) noexcept {
+    stamps_.accept(stamp);
+    angle_ = angle;
+  }
   const std::optional<StampNs>& last() const noexcept { return stamps_.last(); }
 
  private:
-  double max_speed_;
+  bool isFrozen(double step, const CrankSample& sample) noexcept;
+
+  Limits limits_;
   StampOrder stamps_;
+  double angle_{};  ///< of the last accepted sample
+  bool frozen_{};   ///< the same reading ever since, while the crank turned
 };
 
 }  // namespace hammer_loads

@@ -15,12 +15,19 @@ constexpr double kTrackStep = 1.25e-3;    // [s] between points of a turn at mos
 constexpr double kSideOfBlow = 1e-7;      // [s] before and after the blow where its two sides are looked at
 constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
 constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
+constexpr double kFrozenCounts = 5;       // a crank that turned further gives another angle
+constexpr double kFrozenDeviations = 5;   // of a sensor's noise, likewise
 
 /// A hull that has the boom's vibration: of none, if the boom is rigid or not known.
 HullMotion withVibration(Gravity weight, const BoomState* boom) noexcept {
   if (boom == nullptr || boom->fault || !boom->choice.compliant) return weight;
   const auto& a = boom->tip.acceleration;  // linear, then angular
   return {{weight.x - a[0], weight.z - a[2]}, boom->tip.velocity[4], a[4]};
+}
+
+Intake::Limits limitsOf(const PipelineSettings& s) noexcept {
+  const double frozen_turn = kFrozenCounts * s.crank_angle_resolution + kFrozenDeviations * s.crank_angle_noise;
+  return {s.max_crank_speed, s.stale_after, frozen_turn, kFrozenDeviations * s.crank_speed_noise};
 }
 
 double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSecondsPerNs; }
@@ -36,7 +43,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
       imu_(settings.imu),
       unit_check_(settings.max_crank_speed),
-      intake_(settings.max_crank_speed, settings.stale_after),
+      intake_(limitsOf(settings)),
       step_(*tracker_),
       outputs_(hull_model_, step_, settings),
       counts_(counts) {
@@ -116,19 +123,19 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
     loads_.crank = tracker_->estimate();
     epoch_ = stamp;
     restart();
+    speed_measured_ = sample.speed.has_value();
   } else {
     const Tracking tracking = tracker_->update(verdict.step, sample);
     if (tracking == Tracking::kOutlier) return refuse(Refusal::kImplausible);
-    if (tracking == Tracking::kRestarted) restart();
+    if (tracking == Tracking::kRestarted) restart(), speed_measured_ = false;
     loads_.crank = tracker_->estimate();
     if (tracking == Tracking::kContinued) {
       step_.take(*intake_.last(), verdict.step, last_position_);
       if (want_turns_ || boom_) followTurn();
     }
   }
-  intake_.accept(stamp);
-  speed_measured_ = sample.speed.has_value();
-  last_position_ = loads_.crank.position;
+  intake_.accept(stamp, sample.angle);
+    last_position_ = loads_.crank.position;
   if (!settled()) {
     boom_follows_ = false;
     return refuse(Refusal::kUnsettled);
