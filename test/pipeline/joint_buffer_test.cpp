@@ -156,12 +156,6 @@ TEST_F(Joints, ALateStateIsRefusedTimeRunningBackIsBelieved) {
   EXPECT_EQ(at(10 * kMs).position[2], 2.1);
   EXPECT_EQ(at(10 * kMs).velocity[2], 0.0);  // nothing of before is differentiated
   EXPECT_EQ(buffer_.refusals().out_of_order, 8U);
-
-  buffer_.reset();
-  JointMotion motion;
-  EXPECT_TRUE(buffer_.at(10 * kMs, motion));
-  EXPECT_TRUE(buffer_.update(0, kFour, {0.0, 0.0, 3.0, 0.0}, {}));
-  EXPECT_EQ(at(0).position[2], 3.0);
 }
 
 TEST_F(Joints, AJointThatTurnsFreelyTakesTheShorterWay) {

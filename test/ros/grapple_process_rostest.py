@@ -16,6 +16,7 @@ import rospy
 import rostest
 import yaml
 from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
 
 from process_rostest import NodeProcess, command, eventually
 
@@ -65,33 +66,37 @@ class GrappleProcessTest(unittest.TestCase):
         self.assertEqual(len(lines), 1, lines)
         self.assertIn('log_directory', lines[0])
 
-    def log_after_sigterm(self, name):
-        node = NodeProcess(name, dict(claims(), log_directory=self.directory, log_min_free_mb=0), 'grapple_node')
+    def node_at_work(self, name, **parameters):
+        """The node and a function that lets it work through some samples."""
+        node = NodeProcess(name, dict(claims(), log_directory=self.directory, log_min_free_mb=0, **parameters),
+                           'grapple_node')
         joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=1000)
-        edges = []
-        subscriber = rospy.Subscriber('/%s/mechanism' % name, JointState, edges.append, queue_size=None)
+        mechanisms = []
+        subscriber = rospy.Subscriber('/%s/mechanism' % name, JointState, mechanisms.append, queue_size=None)
         self.assertTrue(eventually(lambda: joints.get_num_connections() > 0 and subscriber.get_num_connections() > 0))
-        for i in range(SAMPLES):
-            message = JointState(name=['grapple_slider_joint'], position=[0.332 + 0.3 * math.sin(0.05 * i)],
-                                 velocity=[0.1])
-            message.header.stamp = rospy.Time(100.0 + 0.01 * i)
-            joints.publish(message)
-        self.assertTrue(eventually(lambda: len(edges) >= SAMPLES), len(edges))
-        code, _, err = node.end(signal.SIGTERM)
-        self.assertEqual(code, 0, err)
-        bags = glob.glob(self.directory + '/grapple_*.bag')
-        self.assertEqual(len(bags), 1, os.listdir(self.directory))
-        return bags[0]
 
-    def test_process_bag_over_the_log_gives_the_logged_outputs_bit_for_bit(self):
-        name = 'log_again'
-        path = self.log_after_sigterm(name)
+        def work():
+            before = len(mechanisms)
+            for i in range(before, before + SAMPLES):
+                message = JointState(name=['grapple_slider_joint'], position=[0.332 + 0.3 * math.sin(0.05 * i)],
+                                     velocity=[0.1])
+                message.header.stamp = rospy.Time(100.0 + 0.01 * i)
+                joints.publish(message)
+            self.assertTrue(eventually(lambda: len(mechanisms) >= before + SAMPLES), len(mechanisms))
+        return node, work
+
+    def bags(self):
+        return sorted(glob.glob(self.directory + '/grapple_*.bag'), key=os.path.getmtime)
+
+    def expect_same_again(self, name, path):
+        """process_bag over a log gives its outputs bit for bit."""
         again = os.path.join(self.directory, 'again.bag')
         parameters = os.path.join(self.directory, 'in_force.yaml')
         with rosbag.Bag(path) as bag:
-            for _, message, _ in bag.read_messages(topics=['/%s/run_info' % name]):
-                with open(parameters, 'w') as file:
-                    file.write(message.parameters_yaml)
+            infos = [message for _, message, _ in bag.read_messages(topics=['/%s/run_info' % name])]
+        self.assertEqual(len(infos), 1, path)
+        with open(parameters, 'w') as file:
+            file.write(infos[0].parameters_yaml)
         subprocess.run([command('process_bag'), path, again, '--grapple', parameters,
                         '--joint-states-topic', '/%s/joints' % name, '--grapple-prefix', '/' + name], check=True)
 
@@ -103,6 +108,37 @@ class GrappleProcessTest(unittest.TestCase):
         logged = outputs(path)
         self.assertEqual(len(logged), 7 * SAMPLES + 1)
         self.assertTrue(logged == outputs(again))
+        os.remove(again)
+
+    def test_process_bag_over_the_log_gives_the_logged_outputs_bit_for_bit(self):
+        node, work = self.node_at_work('log_again')
+        work()
+        code, _, err = node.end(signal.SIGTERM)
+        self.assertEqual(code, 0, err)
+        self.assertEqual(len(self.bags()), 1, os.listdir(self.directory))
+        self.expect_same_again('log_again', self.bags()[0])
+
+    def test_the_log_starts_splits_and_stops_on_request_and_each_bag_stands_alone(self):
+        name = 'served'
+        node, work = self.node_at_work(name, log_enabled=False)
+
+        def request(what):
+            return rospy.ServiceProxy('/%s/log/%s' % (name, what), Trigger)()
+        work()
+        self.assertEqual(self.bags(), [])
+        self.assertFalse(request('split').success)
+        self.assertTrue(request('start').success)
+        self.assertFalse(request('start').success)
+        work()
+        self.assertTrue(request('split').success)
+        work()
+        self.assertTrue(request('stop').success)
+        work()
+        code, _, err = node.end(signal.SIGTERM)
+        self.assertEqual(code, 0, err)
+        self.assertEqual(len(self.bags()), 2, os.listdir(self.directory))
+        for path in self.bags():
+            self.expect_same_again(name, path)
 
 
 if __name__ == '__main__':

@@ -33,11 +33,6 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
   for (const Cylinder& cylinder : boom_.cylinders()) givers_.push_back(cylinder.parameters().name);
 }
 
-void BoomFollower::reset() noexcept {
-  joints_.reset();
-  known_ = false;
-}
-
 Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
   return {{w.force_x, 0.0, w.force_z}, {0.0, w.torque_y, 0.0}};
 }

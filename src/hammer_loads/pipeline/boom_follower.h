@@ -63,8 +63,6 @@ class BoomFollower {
   /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
   /// 0.1 ms.
   void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept;
-  /// Time jumped: joints are to be heard again, the boom is at rest; what the last turn told is kept.
-  void reset() noexcept;
 
   /// Index in the chain, for wrenchAtLink(); nothing for what is another TF frame.
   std::optional<int> linkIndex(const std::string& link) const noexcept { return boom_.chain().linkIndex(link); }

@@ -40,7 +40,6 @@ class HullImu {
   /// before the second reading in a row or when the last is more than max_age away.
   std::optional<HullMotion> at(StampNs stamp) const noexcept;
 
-  void reset() noexcept { readings_ = 0, rewound_.reset(); }
   StampNs last() const noexcept { return now_.stamp; }  ///< stamp of the last reading taken [ns]
 
  private:

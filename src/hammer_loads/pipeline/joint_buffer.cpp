@@ -29,10 +29,6 @@ JointBuffer::JointBuffer(const Chain& chain, const PipelineSettings& settings)
   }
 }
 
-void JointBuffer::reset() noexcept {
-  for (Track& track : tracks_) track.count = 0, track.rewound.reset();
-}
-
 bool JointBuffer::update(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                          const std::vector<double>& velocities) noexcept {
   bool taken = false;

@@ -44,8 +44,6 @@ class JointBuffer {
               const std::vector<double>& velocities) noexcept;
   /// Motion at an instant, or what is not known of it (then `motion` is void). No allocation.
   std::optional<JointFault> at(StampNs stamp, JointMotion& motion) const noexcept;
-  /// Time jumped: forgets every state, not the counts.
-  void reset() noexcept;
 
   const JointRefusals& refusals() const noexcept { return refusals_; }
   const std::string& name(int joint) const noexcept { return names_[static_cast<std::size_t>(joint)]; }

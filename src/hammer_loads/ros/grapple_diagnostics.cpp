@@ -4,26 +4,23 @@
 
 #include "hammer_loads/linkage/format.h"
 #include "hammer_loads/ros/log_diagnostics.h"
+#include "hammer_loads/ros/steady_time.h"
 
 namespace hammer_loads {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-double secondsBetween(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
-  return std::chrono::duration<double>(to - from).count();
-}
-
 std::string limitText(const SliderLimit& limit) { return format("%.13g, %s", limit.slider, nameOf(limit.kind)); }
 
 }  // namespace
 
 GrappleDiagnostics::GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow,
-                                       const BagLog* log)
+                                       const BagLog& log)
     : flow_(flow), updater_(node, private_node) {
   updater_.setHardwareID("none");
   updater_.add("slider", this, &GrappleDiagnostics::describeSlider);
-  updater_.add("log", [log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
+  updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ =
       node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });

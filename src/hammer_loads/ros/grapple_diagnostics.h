@@ -16,8 +16,7 @@ namespace hammer_loads {
 /// positions that are allowed, log health.
 class GrappleDiagnostics {
  public:
-  /// log may be null.
-  GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, const BagLog* log);
+  GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, const BagLog& log);
 
   /// An input arrived that has the slider joint; its age decides whether the slider is stale.
   void sliderArrived() { last_slider_ = Clock::now(); }

@@ -24,7 +24,8 @@ GrappleNode::GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, con
               private_node.advertise<geometry_msgs::AccelStamped>("jaw_edge/right_accel", kQueue)}}},
       mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kQueue)),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
-      diagnostics_(node, private_node, flow_, log_.get()) {
+      diagnostics_(node, private_node, flow_, *log_),
+      log_services_(private_node, *log_, [this] { beginRun(); }, [] {}) {
   RunInfo info = flow_.runInfoMessage();
   info.header.stamp = ros::Time::now();
   run_info_.publish(info);
@@ -35,24 +36,29 @@ GrappleNode::GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, con
 void GrappleNode::onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
   const RecordClock::Tick tick = clock_.next(event.getReceiptTime());
   if (tick.ran_back) {
-    flow_.reset();
-    if (log_) log_->forgetLatched(run_info_.getTopic());
-    if (log_) log_->split();
+    beginRun();
+    log_->split();
   }
-  if (log_) log_->write(joint_states_.getTopic(), tick.time, *event.getConstMessage());
+  log_->write(joint_states_.getTopic(), tick.time, *event.getConstMessage());
   const std::uint64_t foreign = flow_.messagesWithoutJoint();
   flow_.jointStates(*event.getConstMessage(), tick.time);
   if (flow_.messagesWithoutJoint() == foreign) diagnostics_.sliderArrived();
 }
 
+/// The next input begins a run, and its run_info replaces that of the run before.
+void GrappleNode::beginRun() {
+  flow_.reset();
+  log_->forgetLatched(run_info_.getTopic());
+}
+
 template <typename Message>
 void GrappleNode::send(const ros::Publisher& publisher, const Message& message, const ros::Time& record_time) {
   if (publisher.getNumSubscribers() > 0) publisher.publish(message);
-  if (log_) log_->write(publisher.getTopic(), record_time, message);
+  log_->write(publisher.getTopic(), record_time, message);
 }
 
 void GrappleNode::runInfo(const RunInfo& message, const ros::Time& record_time) {
-  if (log_) log_->writeLatched(run_info_.getTopic(), record_time, message);
+  log_->writeLatched(run_info_.getTopic(), record_time, message);
 }
 
 void GrappleNode::edge(Jaw jaw, const geometry_msgs::PointStamped& message, const ros::Time& record_time) {
@@ -73,10 +79,10 @@ void GrappleNode::mechanism(const sensor_msgs::JointState& message, const ros::T
 
 bool GrappleNode::wants(Jaw jaw) const {
   const JawPublishers& p = publishers(jaw);
-  return log_ || p.edge.getNumSubscribers() > 0 || p.twist.getNumSubscribers() > 0 || p.accel.getNumSubscribers() > 0;
+  return log_->isRecording() || p.edge.getNumSubscribers() > 0 || p.twist.getNumSubscribers() > 0 || p.accel.getNumSubscribers() > 0;
 }
 
-bool GrappleNode::wantsMechanism() const { return log_ || mechanism_.getNumSubscribers() > 0; }
+bool GrappleNode::wantsMechanism() const { return log_->isRecording() || mechanism_.getNumSubscribers() > 0; }
 
 std::unique_ptr<GrappleNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                              std::vector<std::string>& problems) {
@@ -84,9 +90,8 @@ std::unique_ptr<GrappleNode> makeGrappleNode(const ros::NodeHandle& node, const 
   const Checked<GrappleSettings> settings = loadGrappleSettings(configDirectory(), given);
   problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
   if (!problems.empty()) return nullptr;
-  std::unique_ptr<BagLog> log;
+  auto log = std::make_unique<BagLog>(settings.value->log);
   if (settings.value->log.enabled) {
-    log = std::make_unique<BagLog>(settings.value->log);
     problems = log->start();
     if (!problems.empty()) return nullptr;
   }

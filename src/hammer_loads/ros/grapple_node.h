@@ -14,6 +14,7 @@
 #include "hammer_loads/ros/bag_log.h"
 #include "hammer_loads/ros/grapple_diagnostics.h"
 #include "hammer_loads/ros/grapple_flow.h"
+#include "hammer_loads/ros/log_services.h"
 #include "hammer_loads/ros/record_clock.h"
 
 namespace hammer_loads {
@@ -22,7 +23,7 @@ namespace hammer_loads {
 /// `~mechanism`, `~run_info` (latched), /diagnostics. One of each per accepted slider sample, with the sample's stamp.
 class GrappleNode final : private GrappleSink {
  public:
-  /// log: null when nothing shall be logged.
+  /// log: recording, unless nothing shall be logged yet.
   GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
               std::unique_ptr<BagLog> log);
 
@@ -31,6 +32,7 @@ class GrappleNode final : private GrappleSink {
     ros::Publisher edge, twist, accel;
   };
 
+  void beginRun();
   void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event);
 
   void runInfo(const RunInfo& message, const ros::Time& record_time) override;
@@ -52,6 +54,7 @@ class GrappleNode final : private GrappleSink {
   ros::Subscriber joint_states_;
   RecordClock clock_;
   GrappleDiagnostics diagnostics_;
+  LogServices log_services_;
 };
 
 /// Node from its private parameters; every problem is reported on one line each and gives no node.

@@ -4,12 +4,8 @@ namespace hammer_loads {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-void describeLog(const BagLog* log, diagnostic_updater::DiagnosticStatusWrapper& status) {
-  if (log == nullptr) {
-    status.summary(DiagnosticStatus::OK, "off by log_enabled");
-    return;
-  }
-  const LogHealth health = log->health();
+void describeLog(const BagLog& log, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const LogHealth health = log.health();
   switch (health.state) {
     case LogState::kOff: status.summary(DiagnosticStatus::OK, "off"); break;
     case LogState::kRecording: status.summary(DiagnosticStatus::OK, "recording"); break;

@@ -7,7 +7,6 @@
 
 namespace hammer_loads {
 
-/// log: null when nothing is logged.
-void describeLog(const BagLog* log, diagnostic_updater::DiagnosticStatusWrapper& status);
+void describeLog(const BagLog& log, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace hammer_loads

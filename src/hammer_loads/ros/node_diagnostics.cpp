@@ -5,15 +5,12 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/ros/log_diagnostics.h"
+#include "hammer_loads/ros/steady_time.h"
 
 namespace hammer_loads {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-
-double secondsBetween(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
-  return std::chrono::duration<double>(to - from).count();
-}
 
 std::uint64_t refusedTotal(const IntakeCounts& counts) {
   return std::accumulate(counts.refused.begin(), counts.refused.end(), std::uint64_t{0});
@@ -31,7 +28,7 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   if (flow.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
   if (flow.needsImu()) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
   updater_.add("model", this, &NodeDiagnostics::describeModel);
-  updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(&log, status); });
+  updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ = node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
 }
