@@ -104,8 +104,8 @@ class BoomBag : public testing::Test {
   test::Outcome process(const std::string& out, const std::string& parameters, const std::string& more = {}) const {
     const test::TemporaryFile given(parameters);
     return test::runCommand(HAMMER_LOADS_PROCESS_BAG, path("in.bag") + " " + path(out) + " --pins --urdf " + kUrdf +
-                                                          " --params " + kBoomFile + " --params " + given.path() +
-                                                          " " + more);
+                                                          " --params " + kBoomFile + " --params " + given.path() + " " +
+                                                          more);
   }
   /// What the live node's flow makes of the same messages.
   test::Recorded live(const std::string& parameters, const std::string& imu_topic = {}) const {

@@ -32,7 +32,8 @@ std::string contents(const std::string& path) {
 }
 
 Settings settingsWithInertia(double factor) {
-  ParameterMap given = *readParameterFile(configDirectory() + "/hammer_mo100.yaml", *std::make_unique<std::vector<std::string>>());
+  ParameterMap given =
+      *readParameterFile(configDirectory() + "/hammer_mo100.yaml", *std::make_unique<std::vector<std::string>>());
   given["drive_inertia_kg_m2"].value = YAML::Load(std::to_string(0.6 * factor));
   return *load(configDirectory(), given).value;
 }
@@ -75,7 +76,8 @@ Output outputOf(const std::string& path) {
   rosbag::Bag bag(path);
   for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
     if (const auto w = item.instantiate<geometry_msgs::WrenchStamped>()) {
-      output.wrenches.push_back({sinceStart(w->header.stamp), w->wrench.force.x, w->wrench.force.z, w->wrench.torque.y});
+      output.wrenches.push_back(
+          {sinceStart(w->header.stamp), w->wrench.force.x, w->wrench.force.z, w->wrench.torque.y});
     } else if (const auto b = item.instantiate<Blow>()) {
       output.blows.push_back({sinceStart(b->header.stamp), b->energy_J, b->tool_impulse_z_Ns});
     } else if (const auto p = item.instantiate<Pulse>()) {
@@ -103,7 +105,8 @@ class ProcessBag : public testing::Test {
     BagJob job;
     job.input = input;
     job.output = output;
-    return processBag(job, settingsWithInertia(inertia_factor), [](double) {}, report_);
+    return processBag(
+        job, settingsWithInertia(inertia_factor), [](double) {}, report_);
   }
 
   fs::path directory_;
@@ -129,9 +132,9 @@ TEST_P(RecordedSession, StaysWithinTheBounds) {
   test::expectWithin(e, session_case.bounds);
   EXPECT_GT(e.blows, 50);
   // For the README: scripts/update_accuracy.
-  std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n", session_case.session,
-              100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque, 100 * e.turn_peak,
-              100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);
+  std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n",
+              session_case.session, 100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque,
+              100 * e.turn_peak, 100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sessions, RecordedSession,
@@ -188,7 +191,8 @@ TEST_F(ProcessBag, TellsABagThatIsMissingTruncatedOrNone) {
   for (const char* name : {"missing.bag", "text.bag", "cut.bag"}) {
     expectRefused(process(path(name), path("out.bag")), path(name), path("out.bag"));
   }
-  EXPECT_TRUE(fs::is_empty(directory_) || std::distance(fs::directory_iterator(directory_), {}) == 2) << "nothing half-written";
+  EXPECT_TRUE(fs::is_empty(directory_) || std::distance(fs::directory_iterator(directory_), {}) == 2)
+      << "nothing half-written";
 }
 
 TEST_F(ProcessBag, TellsABagOfAnotherTypeOrWithoutTheCrank) {

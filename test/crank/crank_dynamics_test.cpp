@@ -70,7 +70,8 @@ TEST_F(CrankDynamics, AgreesWithAnotherIntegratorOfTheEquationOfMotion) {
   };
   namespace ode = boost::numeric::odeint;
   Phase x{1.0, 30.0};
-  ode::integrate_adaptive(ode::make_controlled(1e-11, 1e-11, ode::runge_kutta_dopri5<Phase>()), rate, x, 0.0, 0.1, 1e-4);
+  ode::integrate_adaptive(ode::make_controlled(1e-11, 1e-11, ode::runge_kutta_dopri5<Phase>()), rate, x, 0.0, 0.1,
+                          1e-4);
   const ShaftState s = advanced(rocker_, 0.1, stateAt(1.0, 30.0, 150.0));
   EXPECT_NEAR(difference(s.position, CrankPosition{}), x[0], 1e-6);
   EXPECT_NEAR(s.speed, x[1], 1e-4);

@@ -124,7 +124,9 @@ TEST_F(CrankFilterTest, TellsTheMotionBetweenSamples) {
   std::size_t last = 0;
   for (std::size_t i = 0; i < dense.crank.size(); i += 20) {  // 100 Hz out of 2 kHz
     const CrankSample sample{dense.crank[i].angle, dense.crank[i].speed};
-    const auto seconds = [&](std::size_t k) { return 1e-9 * static_cast<double>(dense.crank[k].stamp - dense.crank[last].stamp); };
+    const auto seconds = [&](std::size_t k) {
+      return 1e-9 * static_cast<double>(dense.crank[k].stamp - dense.crank[last].stamp);
+    };
     if (i == 0) {
       f.start(sample);
       continue;

@@ -85,8 +85,8 @@ TEST_P(HullMotionTest, ShaftTurnsAsInTheFreeSystem) {
   turn(system, [&](const FreeRun& run, const FreeHull::Result& right) {
     model.setHullMotion(right.hull);
     const ShaftLoad load = model(run.state().crank);
-    const ShaftState state{{0, run.state().crank}, run.state().crank_speed, run.torque(),
-                           mechanism_.parameters().drive_inertia};
+    const ShaftState state{
+        {0, run.state().crank}, run.state().crank_speed, run.torque(), mechanism_.parameters().drive_inertia};
     e.add(acceleration(load, state), right.acceleration[3]);
     drive.add(driveTorque(load, state.speed, right.acceleration[3]), run.torque() - right.flywheel_torque);
   });
@@ -159,9 +159,7 @@ TEST(MovingHull, TakenAsAtRestIsWrongByTheRatioOfMasses) {
   EXPECT_LT(errorOfFixedHull(mechanism, test::unmoved()), 1e-6);
 }
 
-bool sameBits(const HullWrench& a, const HullWrench& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
+bool sameBits(const HullWrench& a, const HullWrench& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 TEST(MovingHull, AtRestEveryLoadIsTheSameToTheBit) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());

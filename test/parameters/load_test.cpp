@@ -279,7 +279,8 @@ TEST_F(LoadBoom, NoneIsNone) {
   EXPECT_FALSE(loaded("", boom_, "boom: none").value.value().boom);
   EXPECT_FALSE(loaded("no URDF", "boom: none").value.value().boom);
   // Its keys are still judged.
-  expectOne(loaded("", with(boom_, "bore_m: 0.110", "bore_m: wide"), "boom: none"), "boom_cylinder_bore_m: wide m, must");
+  expectOne(loaded("", with(boom_, "bore_m: 0.110", "bore_m: wide"), "boom: none"),
+            "boom_cylinder_bore_m: wide m, must");
 }
 
 TEST_F(LoadBoom, AFileOrAModelWithoutDescription) {

@@ -48,7 +48,7 @@ Coverage coverage(const MachineSettings& machine) {
                                         output.crank.speed - truth->speed,
                                         output.crank.acceleration - truth->acceleration};
       const std::array<double, 6> sigma{deviation.wrench.force_x, deviation.wrench.force_z, deviation.wrench.torque_y,
-                                        deviation.angle, deviation.speed, deviation.acceleration};
+                                        deviation.angle,          deviation.speed,          deviation.acceleration};
       for (std::size_t k = 0; k < 6; ++k) inside[k] += std::abs(error[k]) <= 2.0 * sigma[k];
       ++count;
     }

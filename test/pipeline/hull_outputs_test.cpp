@@ -26,7 +26,7 @@ MachineSettings machineAt(double crank_rate) {
 
 struct Total {
   double x{}, z{}, about_d{};
-  double time{};        ///< covered by the intervals [s]
+  double time{};  ///< covered by the intervals [s]
   std::size_t outputs{};
   StampNs first{}, last{};
 };

@@ -1,5 +1,5 @@
-/// The pipeline with the shipped boom under it, over a working session: cost, what the joints get, and what becomes of it
-/// when joint states or crank samples fail.
+/// The pipeline with the shipped boom under it, over a working session: cost, what the joints get, and what becomes of
+/// it when joint states or crank samples fail.
 #include <chrono>
 #include <cstdio>
 

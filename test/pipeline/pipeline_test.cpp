@@ -1,12 +1,12 @@
 #include "hammer_loads/pipeline/pipeline.h"
 
+#include "hammer_loads/accuracy/session_run.h"
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/counting_new.h"
 #include "support/main.h"
 #include "support/mo100.h"
 #include "support/session_bounds.h"
-#include "hammer_loads/accuracy/session_run.h"
 
 namespace hammer_loads {
 namespace {
@@ -50,7 +50,8 @@ TEST_P(UnseenSessions, StayWithinTheBounds) {
     HammerParameters hammer = machine.hammer;
     hammer.drive_inertia = GetParam().inertia_guess * machine.drive.inertia;
     const Session session = simulation::recordSession(machine);
-    const accuracy::SessionRun run = accuracy::runSession(session, machine.start_stamp, test::mechanismOf(hammer), shippedSettings().pipeline);
+    const accuracy::SessionRun run =
+        accuracy::runSession(session, machine.start_stamp, test::mechanismOf(hammer), shippedSettings().pipeline);
     SCOPED_TRACE(rate);
     const accuracy::SessionErrors errors = accuracy::judge(run, session, machine);
     test::expectWithin(errors, bounds);
@@ -69,9 +70,11 @@ TEST(Pipeline, AfterADropOutNothingIsTenPercentWrong) {
       MachineSettings machine = machineOf(seed, 1000.0);
       machine.duration = 7.5;
       machine.drive.stop_time = 7.4;
-      machine.crank.drop_outs = {{6.0 + 0.05 * static_cast<double>(seed), 6.0 + 0.05 * static_cast<double>(seed) + gap}};
+      machine.crank.drop_outs = {
+          {6.0 + 0.05 * static_cast<double>(seed), 6.0 + 0.05 * static_cast<double>(seed) + gap}};
       const Session session = simulation::recordSession(machine);
-      const accuracy::SessionRun run = accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), shippedSettings().pipeline);
+      const accuracy::SessionRun run = accuracy::runSession(
+          session, machine.start_stamp, test::mechanismOf(machine.hammer), shippedSettings().pipeline);
       double peak = 0, worst = 0;
       std::size_t next = 0;
       for (const auto& t : session.truth) {
@@ -91,10 +94,14 @@ TEST(Pipeline, ThePapersAssumptionOfConstantSpeedIsThirtyPercentWrong) {
   const Session session = simulation::recordSession(machine);
   PipelineSettings settings = shippedSettings().pipeline;
   settings.crank_estimator = CrankEstimator::kNone;
-  const auto none = accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), session, machine);
+  const auto none =
+      accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings),
+                      session, machine);
   EXPECT_GT(none.turn_peak, 0.25);
   settings.crank_estimator = CrankEstimator::kDifference;
-  const auto diff = accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings), session, machine);
+  const auto diff =
+      accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings),
+                      session, machine);
   EXPECT_GT(diff.rms_z, 0.03);
 }
 
@@ -135,10 +142,10 @@ TEST(Pipeline, CountsEveryRefusalByItsReason) {
   EXPECT_EQ(refusal(2000000, kCrank, {3.0}, {10.0}), Refusal::kImplausible);
   EXPECT_FALSE(refusal(2000000, {"wheel", "hammer_crank_joint"}, {1.0, 1.01}, {}));
   for (std::size_t i = 0; i < kRefusalNames.size(); ++i) {
-    const std::uint64_t expected = i == static_cast<std::size_t>(Refusal::kShortArray)                ? 2
-                                   : i == static_cast<std::size_t>(Refusal::kOutOfOrder) ||
-                                             i == static_cast<std::size_t>(Refusal::kUnsettled) ? 0
-                                                                                                  : 1;
+    const std::uint64_t expected =
+        i == static_cast<std::size_t>(Refusal::kShortArray)                                                         ? 2
+        : i == static_cast<std::size_t>(Refusal::kOutOfOrder) || i == static_cast<std::size_t>(Refusal::kUnsettled) ? 0
+                                                                                                                    : 1;
     EXPECT_EQ(pipeline.counts().refused[i], expected) << kRefusalNames[i];
   }
   EXPECT_EQ(pipeline.counts().accepted, 2u);
@@ -156,7 +163,9 @@ TEST(Pipeline, ABlowIsOnlyWhatStrikes) {
   const auto swing = [&](StampNs from, double amplitude, double center) {
     for (int i = 0; i < 2000; ++i) {
       const double t = 1e-3 * i, angle = center + amplitude * std::sin(3.0 * t);
-      blows += pipeline.crankSample(from + static_cast<StampNs>(i) * 1000000, {angle, 3.0 * amplitude * std::cos(3.0 * t)}).turn_ends;
+      blows +=
+          pipeline.crankSample(from + static_cast<StampNs>(i) * 1000000, {angle, 3.0 * amplitude * std::cos(3.0 * t)})
+              .turn_ends;
     }
   };
   swing(0, 0.05, kTwoPi);  // creeps to and fro over the blow

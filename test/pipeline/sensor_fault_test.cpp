@@ -1,4 +1,5 @@
-// Faults of the crank's sensor, live ones in the middle of work: what is accepted stays good, during the fault and after.
+// Faults of the crank's sensor, live ones in the middle of work: what is accepted stays good, during the fault and
+// after.
 #include <cmath>
 #include <functional>
 #include <optional>

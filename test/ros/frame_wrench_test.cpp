@@ -45,7 +45,9 @@ class Frames : public testing::Test {
     frames_.wrench(w, ros::Time(now));
   }
   std::vector<Told> told_;
-  FrameWrenches frames_{{"gauge", "other"}, kHull, 0.5,
+  FrameWrenches frames_{{"gauge", "other"},
+                        kHull,
+                        0.5,
                         [this](std::size_t frame, const geometry_msgs::WrenchStamped& w, const ros::Time& now) {
                           told_.push_back({frame, w, now.toSec()});
                         }};

@@ -1,20 +1,18 @@
 /// The live grapple as its users see it; run against the node and against the nodelet.
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
-#include <functional>
 #include <map>
 
 #include "grapple/grapples.h"
+#include "ros/eventually.h"
 #include "ros/grapple_messages.h"
 
 namespace hammer_loads {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-
-constexpr double kDeadline = 20.0;  // [s] of wall time for what takes milliseconds
+using test::eventually;
 
 class GrappleNodeTest : public testing::Test {
  protected:
@@ -41,16 +39,6 @@ class GrappleNodeTest : public testing::Test {
     // Samples of an earlier test count in the node: begin well behind them.
     static double next_start = 1000.0;
     stamp_ = ros::Time(next_start += 1000.0);
-  }
-
-  /// Spins until a condition holds or the deadline passes.
-  static bool eventually(const std::function<bool()>& condition) {
-    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kDeadline);
-    while (!condition()) {
-      if (ros::WallTime::now() > deadline || !ros::ok()) return false;
-      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
-    }
-    return true;
   }
 
   void publish(double slider, std::optional<double> velocity) {

@@ -11,9 +11,12 @@
 #include <map>
 #include <vector>
 
+#include "ros/eventually.h"
+
 namespace hammer_loads {
 namespace {
 
+using test::eventually;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kSamples = 4000;
@@ -34,7 +37,8 @@ class LatencyTest : public testing::Test {
     crank_ = node_.advertise<sensor_msgs::JointState>("crank", kSamples);
     wrench_ = node_.subscribe<geometry_msgs::WrenchStamped>(
         "hammer_loads/hull_wrench", kSamples,
-        [this](const geometry_msgs::WrenchStamped::ConstPtr& m) { arrived(m->header.stamp, node_latency_); }, {}, hints);
+        [this](const geometry_msgs::WrenchStamped::ConstPtr& m) { arrived(m->header.stamp, node_latency_); }, {},
+        hints);
     relay_ = node_.subscribe<sensor_msgs::JointState>(
         "relayed", kSamples,
         [this](const sensor_msgs::JointState::ConstPtr& m) { arrived(m->header.stamp, relay_latency_); }, {}, hints);
@@ -44,13 +48,6 @@ class LatencyTest : public testing::Test {
     const auto sent = sent_.find(stamp.toNSec());
     if (sent == sent_.end()) return;
     latencies.microseconds.push_back(std::chrono::duration<double, std::micro>(Clock::now() - sent->second).count());
-  }
-
-  template <typename Condition>
-  bool eventually(Condition condition, double seconds = 20.0) {
-    const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
-    while (!condition() && Clock::now() < deadline) ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
-    return condition();
   }
 
   ros::NodeHandle node_;
@@ -84,7 +81,8 @@ TEST_F(LatencyTest, TheNodeAddsLittleToABareRelay) {
   // The relay's own queues hold ten messages: on a loaded machine it loses some.
   EXPECT_TRUE(eventually([this] {
     return node_latency_.microseconds.size() == kSamples && relay_latency_.microseconds.size() >= kSamples / 2;
-  })) << node_latency_.microseconds.size() << " wrenches, " << relay_latency_.microseconds.size() << " relayed";
+  })) << node_latency_.microseconds.size()
+      << " wrenches, " << relay_latency_.microseconds.size() << " relayed";
   ASSERT_FALSE(node_latency_.microseconds.empty());
   ASSERT_FALSE(relay_latency_.microseconds.empty());
   std::printf("latency at 1 kHz, us, median / 99 %% / 99.9 %%: node %.0f / %.0f / %.0f, relay %.0f / %.0f / %.0f\n",

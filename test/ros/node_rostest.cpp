@@ -5,7 +5,6 @@
 #include <hammer_loads/Blow.h>
 #include <hammer_loads/Pulse.h>
 #include <hammer_loads/RunInfo.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
@@ -17,11 +16,12 @@
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/simulation/session.h"
+#include "ros/eventually.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kDeadline = 20.0;  // [s] of wall time for what takes milliseconds
+using test::eventually;
 
 sensor_msgs::JointState crankMessage(const ros::Time& stamp, double angle, double speed) {
   sensor_msgs::JointState m;
@@ -37,8 +37,8 @@ class NodeTest : public testing::Test {
   NodeTest() {
     crank_ = node_.advertise<sensor_msgs::JointState>("crank", 10000);
     joints_ = node_.advertise<sensor_msgs::JointState>("joint_states", 1000);
-    wrench_ = node_.subscribe<geometry_msgs::WrenchStamped>(
-        "hammer_loads/hull_wrench", 20000, [this](const auto& m) { wrenches_.push_back(*m); });
+    wrench_ = node_.subscribe<geometry_msgs::WrenchStamped>("hammer_loads/hull_wrench", 20000,
+                                                            [this](const auto& m) { wrenches_.push_back(*m); });
     blow_ = node_.subscribe<Blow>("hammer_loads/blow", 100, [this](const auto& m) { blows_.push_back(*m); });
     pulse_ = node_.subscribe<Pulse>("hammer_loads/pulse", 100, [this](const auto& m) { pulses_.push_back(*m); });
     info_ = node_.subscribe<RunInfo>("hammer_loads/run_info", 1, [this](const auto& m) { run_info_ = *m; });
@@ -52,16 +52,6 @@ class NodeTest : public testing::Test {
     // Samples of an earlier test count in the node: begin well behind them.
     static double next_start = 1000.0;
     start_ = ros::Time(next_start += 1000.0);
-  }
-
-  /// Spins until a condition holds or the deadline passes.
-  static bool eventually(const std::function<bool()>& condition) {
-    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kDeadline);
-    while (!condition()) {
-      if (ros::WallTime::now() > deadline || !ros::ok()) return false;
-      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
-    }
-    return true;
   }
 
   void publishGoodSamples(int n) {
@@ -139,8 +129,10 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
     expected.push_back(pipeline.crankSample(reading.stamp, {reading.angle, reading.speed}));
     blows += expected.back().turn_ends;
   }
-  ASSERT_TRUE(eventually([&] { return wrenches_.size() >= expected.size() && blows_.size() >= blows && pulses_.size() + 1 >= blows; }))
-      << wrenches_.size() << " of " << expected.size();
+  ASSERT_TRUE(eventually([&] {
+    return wrenches_.size() >= expected.size() && blows_.size() >= blows && pulses_.size() + 1 >= blows;
+  })) << wrenches_.size()
+      << " of " << expected.size();
   ASSERT_EQ(wrenches_.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     ASSERT_EQ(static_cast<StampNs>(wrenches_[i].header.stamp.toNSec()), expected[i].stamp);

@@ -1,7 +1,6 @@
 /// A bag played in simulated time through the live node, against process_bag on the same bag and on the node's own log.
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -12,29 +11,22 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <numeric>
 
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/ros/bag_processing.h"
+#include "ros/eventually.h"
 
 namespace hammer_loads {
 namespace {
+
+using test::eventually;
 
 namespace fs = std::filesystem;
 using geometry_msgs::WrenchStamped;
 using sensor_msgs::JointState;
 
 constexpr char kWrenchTopic[] = "/hammer_loads/hull_wrench";
-
-bool eventually(const std::function<bool()>& condition) {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(60.0);
-  while (!condition()) {
-    if (ros::WallTime::now() > deadline || !ros::ok()) return false;
-    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
-  }
-  return true;
-}
 
 std::vector<WrenchStamped> wrenchesOf(const std::string& bag_file) {
   std::vector<WrenchStamped> wrenches;
@@ -49,7 +41,9 @@ std::vector<WrenchStamped> processed(const std::string& bag_file) {
   job.input = bag_file;
   job.output = (fs::temp_directory_path() / ("replay_rostest_" + std::to_string(getpid()) + ".bag")).string();
   BagReport report;
-  EXPECT_EQ(processBag(job, *loadFiles(configDirectory(), {}).value, [](double) {}, report), "");
+  EXPECT_EQ(processBag(
+                job, *loadFiles(configDirectory(), {}).value, [](double) {}, report),
+            "");
   std::vector<WrenchStamped> wrenches = wrenchesOf(job.output);
   std::remove(job.output.c_str());
   return wrenches;
@@ -68,8 +62,10 @@ std::vector<Sample> samplesOf(const std::string& bag_file) {
   const std::vector<std::string> topics{"/hammer/crank", "/joint_states"};
   for (const auto& item : rosbag::View(bag, rosbag::TopicQuery(topics))) {
     const auto message = item.instantiate<JointState>();
-    if (item.getTopic() == "/hammer/crank") samples.push_back({message->header.stamp, pitch});
-    else pitch = std::accumulate(message->position.begin() + 1, message->position.end(), 0.0);  // without the swing
+    if (item.getTopic() == "/hammer/crank")
+      samples.push_back({message->header.stamp, pitch});
+    else
+      pitch = std::accumulate(message->position.begin() + 1, message->position.end(), 0.0);  // without the swing
   }
   return samples;
 }

@@ -3,22 +3,22 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 
 #include "hammer_loads/ros/hammer_loads_node.h"
 #include "hammer_loads/simulation/session.h"
+#include "ros/eventually.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kDeadline = 20.0;  // [s] of wall time for what takes milliseconds
-constexpr double kTurn = 0.2;       // [s]
+using test::eventually;
+
+constexpr double kTurn = 0.2;                       // [s]
 constexpr std::int64_t kStart = 1'000'000'000'000;  // [ns]
 
 using sensor_msgs::JointState;
@@ -91,15 +91,6 @@ class SimulatedTime : public testing::Test {
       return crank_.getNumSubscribers() > 0 && joints_.getNumSubscribers() > 0 && wrench_.getNumPublishers() > 0 &&
              diagnostics_.getNumPublishers() > 0;
     }));
-  }
-
-  static bool eventually(const std::function<bool()>& condition) {
-    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kDeadline);
-    while (!condition()) {
-      if (ros::WallTime::now() > deadline || !ros::ok()) return false;
-      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(1e-3));
-    }
-    return true;
   }
 
   void send(const JointState& input) {

@@ -153,7 +153,8 @@ int run(const std::string& directory, double machine_seconds) {
                  "only bags deleted that count");
   verdict.demand(written.most_on_disk <= static_cast<double>(settings.total_size + 2 * settings.split_size),
                  "no more on the disk than allowed and the bag being written");
-  verdict.demand(kept.gaps == 0 && kept.last == written.wrenches, "the bags kept hold the end of the run without a gap");
+  verdict.demand(kept.gaps == 0 && kept.last == written.wrenches,
+                 "the bags kept hold the end of the run without a gap");
   verdict.demand(std::abs(written.memory.growth()) <= 0.01, "memory of the last quarter within 1 % of the first");
   return verdict.exitCode();
 }

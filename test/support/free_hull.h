@@ -100,10 +100,9 @@ class FreeHull {
       const Relative& body = bodies.body[b];
       const Place p = place(body, state.hull, rates(state));
       const double vx = p.x.first, vz = p.z.first, turn = body.inertia * p.angle.first;
-      sum += Eigen::Vector4d(body.mass * vx, body.mass * vz,
-                             body.mass * (p.z.value * vx - p.x.value * vz) + turn,
-                             0.5 * (body.mass * (vx * vx + vz * vz) + turn * p.angle.first) +
-                                 body.mass * body_.gravity * p.z.value);
+      sum += Eigen::Vector4d(
+          body.mass * vx, body.mass * vz, body.mass * (p.z.value * vx - p.x.value * vz) + turn,
+          0.5 * (body.mass * (vx * vx + vz * vz) + turn * p.angle.first) + body.mass * body_.gravity * p.z.value);
     }
     return sum;
   }

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#define HAMMER_LOADS_TEST_MAIN          \
-  int main(int argc, char** argv) {     \
+#define HAMMER_LOADS_TEST_MAIN            \
+  int main(int argc, char** argv) {       \
     testing::InitGoogleTest(&argc, argv); \
-    return RUN_ALL_TESTS();             \
+    return RUN_ALL_TESTS();               \
   }

@@ -23,10 +23,10 @@ struct BlowAt {
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
 struct SessionErrors {
   double rms_x{}, rms_z{}, rms_torque{};
-  double turn_peak{};      ///< relative, worst turn
-  double turn_impulse{};   ///< of the blow's tool impulse, worst turn
-  double blow_time{};      ///< [s], worst
-  double energy{};         ///< relative, worst
+  double turn_peak{};     ///< relative, worst turn
+  double turn_impulse{};  ///< of the blow's tool impulse, worst turn
+  double blow_time{};     ///< [s], worst
+  double energy{};        ///< relative, worst
   int blows{}, missed_blows{}, extra_blows{};
 };
 

@@ -18,6 +18,7 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
                       const PipelineSettings& settings);
 
 /// Judged from 3 s after the start to 3 s before the end, without the two turns after each drop-out.
-SessionErrors judge(const SessionRun& run, const simulation::Session& session, const simulation::MachineSettings& machine);
+SessionErrors judge(const SessionRun& run, const simulation::Session& session,
+                    const simulation::MachineSettings& machine);
 
 }  // namespace hammer_loads::accuracy

@@ -46,7 +46,8 @@ std::vector<SessionRow> sessionTable(const Settings& settings) {
 
 std::string markdown(const std::vector<SessionRow>& rows) {
   std::string text =
-      "| crank acceleration from | rate, Hz | encoder counts | speed | rms Fx | rms Fz | rms torque | peak, worst turn | turn "
+      "| crank acceleration from | rate, Hz | encoder counts | speed | rms Fx | rms Fz | rms torque | peak, worst turn "
+      "| turn "
       "impulse | blow instant | energy |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SessionRow& row : rows) {
     const SessionErrors& e = row.errors;
@@ -63,11 +64,12 @@ std::string json(const std::vector<SessionRow>& rows) {
   for (const SessionRow& row : rows) {
     const SessionErrors& e = row.errors;
     text += format(
-        "%s\n  {\"estimator\": \"%s\", \"rate_hz\": %g, \"encoder_counts\": %d, \"speed_measured\": %s, \"rms_x\": %.6g, "
+        "%s\n  {\"estimator\": \"%s\", \"rate_hz\": %g, \"encoder_counts\": %d, \"speed_measured\": %s, \"rms_x\": "
+        "%.6g, "
         "\"rms_z\": %.6g, \"rms_torque\": %.6g, \"turn_peak\": %.6g, \"turn_impulse\": %.6g, \"blow_time_s\": %.6g, "
         "\"energy\": %.6g, \"blows\": %d, \"missed_blows\": %d}",
-        &row == rows.data() ? "" : ",", row.estimator.c_str(), row.rate, row.counts, row.speed ? "true" : "false", e.rms_x,
-        e.rms_z, e.rms_torque, e.turn_peak, e.turn_impulse, e.blow_time, e.energy, e.blows, e.missed_blows);
+        &row == rows.data() ? "" : ",", row.estimator.c_str(), row.rate, row.counts, row.speed ? "true" : "false",
+        e.rms_x, e.rms_z, e.rms_torque, e.turn_peak, e.turn_impulse, e.blow_time, e.energy, e.blows, e.missed_blows);
   }
   return text + "\n]";
 }

@@ -11,9 +11,9 @@ namespace hammer_loads::accuracy {
 
 struct SessionRow {
   std::string estimator;
-  double rate{};   ///< of crank samples [Hz]
-  int counts{};    ///< of the encoder per turn
-  bool speed{};    ///< speeds are measured too
+  double rate{};  ///< of crank samples [Hz]
+  int counts{};   ///< of the encoder per turn
+  bool speed{};   ///< speeds are measured too
   SessionErrors errors;
 };
 

@@ -59,11 +59,18 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
 }
 
 bool hasBoomKey(const ParameterMap& parameters) {
-  constexpr const char* kKeys[] = {"root_link", "tip_link", "cylinders", "bulk_modulus_Pa", "damping_ratio",
-                                   "mode_refresh_angle_rad", "rigid_tolerance", "support_front_x_m",
-                                   "support_front_half_width_m", "support_rear_x_m", "support_rear_half_width_m"};
-  return std::any_of(std::begin(kKeys), std::end(kKeys),
-                     [&](const char* key) { return parameters.count(key) != 0; });
+  constexpr const char* kKeys[] = {"root_link",
+                                   "tip_link",
+                                   "cylinders",
+                                   "bulk_modulus_Pa",
+                                   "damping_ratio",
+                                   "mode_refresh_angle_rad",
+                                   "rigid_tolerance",
+                                   "support_front_x_m",
+                                   "support_front_half_width_m",
+                                   "support_rear_x_m",
+                                   "support_rear_half_width_m"};
+  return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return parameters.count(key) != 0; });
 }
 
 Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {

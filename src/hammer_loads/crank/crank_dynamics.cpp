@@ -68,8 +68,8 @@ Linearised linearised(const Shaft& shaft, double speed, const ShaftLoad& load) n
   const double inv_root = std::sqrt(inv);
   const double h_rate = torqueOf(load, shaft.torque, shaft.drive_inertia) * inv_root;
   const double slope = load.half_inertia_slope * inv, part = 0.5 * shaft.drive_inertia * inv;
-  return {-speed * slope, inv_root, load.weight_torque_slope * inv_root - h_rate * slope,
-          inv_root, -part * speed, -part * h_rate - shaft.drive_inertia * load.hull_acceleration * inv_root};
+  return {-speed * slope, inv_root,      load.weight_torque_slope * inv_root - h_rate * slope,
+          inv_root,       -part * speed, -part * h_rate - shaft.drive_inertia * load.hull_acceleration * inv_root};
 }
 
 /// Transition of one smooth piece: second order in dt with the mean of both ends' linearisations.
@@ -84,7 +84,8 @@ ShaftTransition transition(const Shaft& shaft, double dt, double speed, const Sh
   const double torque_h = 0.5 * dt * (p.h_by_torque + q.h_by_torque);
   const double inertia_angle = 0.5 * dt * (p.angle_by_inertia + q.angle_by_inertia);
   const double inertia_h = 0.5 * dt * (p.h_by_inertia + q.h_by_inertia);
-  const Scaling from = scaling(load, shaft.drive_inertia, speed), to = scaling(load_end, shaft.drive_inertia, speed_end);
+  const Scaling from = scaling(load, shaft.drive_inertia, speed),
+                to = scaling(load_end, shaft.drive_inertia, speed_end);
   ShaftTransition f;
   f(0, 0) = phi00 + phi01 * from.by_angle;
   f(0, 1) = phi01 * from.by_speed;
@@ -105,9 +106,7 @@ ShaftTransition chained(const ShaftTransition& second, const ShaftTransition& fi
   return both;
 }
 
-bool passedBlow(Side side, double offset) noexcept {
-  return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0;
-}
+bool passedBlow(Side side, double offset) noexcept { return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0; }
 
 /// Part of the step dt after which the path is at the blow: safeguarded secant on the smooth continuation.
 double timeToBlow(const Shaft& shaft, const Path& start, const Path& first, const Path& end, double dt) noexcept {

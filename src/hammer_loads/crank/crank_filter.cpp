@@ -8,29 +8,34 @@ namespace {
 
 enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia };
 
-constexpr double kWiden = 25.0;          // innovation^2 over its variance from which on the model does not explain it
-constexpr double kDoubtfulAngle = 0.3;   // [rad] predicted deviation from which on the prediction is worth nothing
-constexpr double kJump = 0.5;            // [rad] innovation that no working machine makes between two samples
-constexpr double kKick = 0.35;           // of the speed: what no torque changes between two samples
-constexpr double kNoiseStep = 2e-3;      // [s] step over which the process noise is spread
-constexpr double kMaxInertiaChange = 0.3;   // of the logarithm by one sample: beyond it the linearisation is worth nothing
-constexpr double kLeastInertia = 0.1;       // of the first guess: no drawing is further off
-constexpr double kMostInertia = 1000.0;     // times the first guess: a crank held at constant speed looks that heavy
-constexpr double kLearnSpeed = 5.0;         // [rad/s]: a slower crank is moved by friction and stopped by the tool
-constexpr double kRelearn = 0.05;           // relative deviation of the inertia after what it cannot explain
-constexpr double kMostTorque = 3.0;         // times its first deviation: more is what a bad sample left behind
-constexpr double kSoundSpeeds = 2.0;        // times the largest plausible speed: more is a diverged filter
-constexpr double kSpeedNoiseGain = 0.005;   // per sample: the noise of measured speeds is learned within some 200
-constexpr double kNearCounts = 4.0;         // counts from the blow within which the encoder decides its side
-constexpr double kLeastSpeedNoise = 0.3;    // of the first guess
+constexpr double kWiden = 25.0;         // innovation^2 over its variance from which on the model does not explain it
+constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
+constexpr double kJump = 0.5;           // [rad] innovation that no working machine makes between two samples
+constexpr double kKick = 0.35;          // of the speed: what no torque changes between two samples
+constexpr double kNoiseStep = 2e-3;     // [s] step over which the process noise is spread
+constexpr double kMaxInertiaChange =
+    0.3;                                 // of the logarithm by one sample: beyond it the linearisation is worth nothing
+constexpr double kLeastInertia = 0.1;    // of the first guess: no drawing is further off
+constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held at constant speed looks that heavy
+constexpr double kLearnSpeed = 5.0;      // [rad/s]: a slower crank is moved by friction and stopped by the tool
+constexpr double kRelearn = 0.05;        // relative deviation of the inertia after what it cannot explain
+constexpr double kMostTorque = 3.0;      // times its first deviation: more is what a bad sample left behind
+constexpr double kSoundSpeeds = 2.0;     // times the largest plausible speed: more is a diverged filter
+constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
+constexpr double kNearCounts = 4.0;        // counts from the blow within which the encoder decides its side
+constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
 
 double square(double x) noexcept { return x * x; }
 
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
-    : model_(model), step_model_(model), settings_(settings), first_guess_(drive_inertia),
-      encoder_(settings.angle_resolution), speed_variance_(square(settings.speed_noise)) {
+    : model_(model),
+      step_model_(model),
+      settings_(settings),
+      first_guess_(drive_inertia),
+      encoder_(settings.angle_resolution),
+      speed_variance_(square(settings.speed_noise)) {
   now_.drive_inertia = drive_inertia;
   covariance_.setZero();
   covariance_(kInertia, kInertia) = square(settings.initial_inertia_deviation);
@@ -43,8 +48,8 @@ void CrankFilter::start(const CrankSample& sample) noexcept {
   anchor(now_.position.angle.offset, sample);
 }
 
-/// Takes angle and speed from the sample alone; the torque is in doubt, the inertia stays as identified. The whole turns
-/// are those nearest to now_.
+/// Takes angle and speed from the sample alone; the torque is in doubt, the inertia stays as identified. The whole
+/// turns are those nearest to now_.
 void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
   const double inertia_variance = covariance_(kInertia, kInertia);  // NaN-proof by min: never above the first guess
   now_.position.turn(CrankAngle::wrapToPi(measured - now_.position.angle.offset));
@@ -93,7 +98,8 @@ void CrankFilter::correct(Eigen::Index row, double innovation, double variance) 
   now_.position.turn(change[kAngle]);
   now_.speed += change[kSpeed];
   now_.torque += change[kTorque];
-  const double inertia = now_.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
+  const double inertia =
+      now_.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
   now_.drive_inertia = std::clamp(inertia, first_guess_ * kLeastInertia, first_guess_ * kMostInertia);
   covariance_.noalias() -= column * (column.transpose() / total);
 }
@@ -140,11 +146,13 @@ void CrankFilter::respectCount(double reading) noexcept {
 
 bool CrankFilter::isSound() const noexcept {
   return std::isfinite(now_.position.angle.offset) && std::abs(now_.speed) < kSoundSpeeds * settings_.max_speed &&
-         std::isfinite(now_.torque) && std::isfinite(now_.drive_inertia) && covariance_.allFinite() && (covariance_.diagonal().array() >= 0.0).all();
+         std::isfinite(now_.torque) && std::isfinite(now_.drive_inertia) && covariance_.allFinite() &&
+         (covariance_.diagonal().array() >= 0.0).all();
 }
 
 /// Following it would throw speed and torque far off: 0.3 rad at 1 kHz gave a thousand times the peak force. A crank
-/// at constant speed, which the model takes for a heavy one, stays below a kick of 0.35 from 100 Hz on; a slow one may be stopped dead.
+/// at constant speed, which the model takes for a heavy one, stays below a kick of 0.35 from 100 Hz on; a slow one may
+/// be stopped dead.
 bool CrankFilter::isContradiction(double dt, double innovation) const noexcept {
   const double most = std::max(kKick * std::abs(now_.speed), kLearnSpeed) * dt;
   const double total = covariance_(kAngle, kAngle) + encoder_.variance() + square(settings_.angle_noise);

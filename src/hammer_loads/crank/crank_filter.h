@@ -22,14 +22,14 @@ struct CrankFilterSettings {
   double max_speed{};                  ///< bound of an unknown speed [rad/s], > 0
 };
 
-/// Extended Kalman filter, state: angle, speed, net torque, drive inertia (model.md 6). The step between samples and its
-/// linearisation are advance()'s, through the blow as well. The inertia identifies itself within a few turns, the
+/// Extended Kalman filter, state: angle, speed, net torque, drive inertia (model.md 6). The step between samples and
+/// its linearisation are advance()'s, through the blow as well. The inertia identifies itself within a few turns, the
 /// noise of measured speeds within some hundred samples.
 ///
 /// An angle that the model cannot explain within 5 standard deviations widens the filter's uncertainty until it can: a
 /// supply that behaves otherwise than a slow random walk is followed with less smoothing, not refused, and teaches
-/// nothing of the inertia. A speed that far off is not used. Where following the angle would change the speed by a third,
-/// the sample is an outlier; a second one in a row is believed, and begins anew without the speed it tells.
+/// nothing of the inertia. A speed that far off is not used. Where following the angle would change the speed by a
+/// third, the sample is an outlier; a second one in a row is believed, and begins anew without the speed it tells.
 class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
@@ -40,9 +40,7 @@ class CrankFilter final : public CrankTracker {
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
-  CrankEstimate estimate() const noexcept override {
-    return {now_.position, now_.speed, acceleration(load_, now_)};
-  }
+  CrankEstimate estimate() const noexcept override { return {now_.position, now_.speed, acceleration(load_, now_)}; }
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
@@ -70,20 +68,20 @@ class CrankFilter final : public CrankTracker {
   bool hasRunAway(const ShaftState& state) const noexcept;
   void anchor(double measured, const CrankSample& sample) noexcept;
 
-  ShaftModel model_;         ///< with the latest motion of the hull
-  ShaftModel step_model_;    ///< with its mean over the step between the last two samples
-  HullMotion now_hull_;      ///< at the last sample
-  HullMotion before_hull_;   ///< at the last but one sample
+  ShaftModel model_;        ///< with the latest motion of the hull
+  ShaftModel step_model_;   ///< with its mean over the step between the last two samples
+  HullMotion now_hull_;     ///< at the last sample
+  HullMotion before_hull_;  ///< at the last but one sample
   CrankFilterSettings settings_;
-  double first_guess_;      ///< of the drive inertia [kg m2]
+  double first_guess_;  ///< of the drive inertia [kg m2]
   Encoder encoder_;
-  ShaftState now_;          ///< at the last sample, corrected by it
-  ShaftLoad load_;          ///< there
-  ShaftState before_;       ///< at the last but one sample
-  double step_{};           ///< between these two [s]
+  ShaftState now_;                 ///< at the last sample, corrected by it
+  ShaftLoad load_;                 ///< there
+  ShaftState before_;              ///< at the last but one sample
+  double step_{};                  ///< between these two [s]
   ShaftMatrix covariance_;         ///< at the last sample
   ShaftMatrix before_covariance_;  ///< at the last but one sample
-  double speed_variance_;   ///< of measured speeds, as identified [rad2/s2]
+  double speed_variance_;          ///< of measured speeds, as identified [rad2/s2]
   bool has_speed_{};
   bool outlier_seen_{};
 };

@@ -1,9 +1,8 @@
 /// What is known of the crank at an instant, and the common face of the ways to know it.
 #pragma once
 
-#include <optional>
-
 #include <Eigen/Core>
+#include <optional>
 
 #include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/linkage/hull_motion.h"
@@ -19,8 +18,8 @@ struct CrankSample {
 /// Best estimate at an instant.
 struct CrankEstimate {
   CrankPosition position;
-  double speed{};          ///< [rad/s]
-  double acceleration{};   ///< [rad/s2]
+  double speed{};         ///< [rad/s]
+  double acceleration{};  ///< [rad/s2]
 };
 
 /// How a sample was taken.

@@ -63,10 +63,11 @@ LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double tur
 
 std::string describe(const LevelChoice& choice) {
   const char* names[] = {"pulse", "rocker", "linkage"};
-  return format("level auto: %s is the cheapest within tolerance %.3g %% of the peak; error over a working turn: "
-                "pulse %.3g %%, rocker %.3g %%, linkage 0 %%",
-                names[static_cast<std::size_t>(choice.level)], 100.0 * choice.tolerance, 100.0 * choice.error[0],
-                100.0 * choice.error[1]);
+  return format(
+      "level auto: %s is the cheapest within tolerance %.3g %% of the peak; error over a working turn: "
+      "pulse %.3g %%, rocker %.3g %%, linkage 0 %%",
+      names[static_cast<std::size_t>(choice.level)], 100.0 * choice.tolerance, 100.0 * choice.error[0],
+      100.0 * choice.error[1]);
 }
 
 }  // namespace hammer_loads

@@ -15,9 +15,9 @@ struct LinkLoads {
 HAMMER_LOADS_INLINE LinkLoads linkLoads(const Mechanism& mechanism, Level level, const CrankMotion& crank,
                                         const HullMotion& hull, const NearBlow& near_blow) noexcept {
   const LinkMotion l = linkMotion(mechanism.linkage(), crank.angle);
-  return {level == Level::kLinkage ? hullWrench(mechanism, l, crank, hull)
-                                   : hullWrench(mechanism, l.rocker, crank, hull),
-          pinForces(mechanism, level, l, crank, hull, near_blow)};
+  return {
+      level == Level::kLinkage ? hullWrench(mechanism, l, crank, hull) : hullWrench(mechanism, l.rocker, crank, hull),
+      pinForces(mechanism, level, l, crank, hull, near_blow)};
 }
 
 }  // namespace hammer_loads

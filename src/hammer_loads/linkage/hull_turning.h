@@ -48,14 +48,13 @@ inline MomentsAboutD momentsAboutDLinkage(const Mechanism& mechanism, const Link
   const Planar by_angle_slope = conj(k.pivot) * (turned(crank + l.v * l.v * rod) + l.dv * rod);
   const double inertia_a = (p.crank_mass + p.rod_mass) * (k.pivot.re * k.pivot.re + k.pivot.im * k.pivot.im);
   const double u = l.rocker.u, swing = l.v - 1.0;  // of the rod in the crank
-  return {inertia_a - 2.0 * from_d.re + k.crank_inertia + k.rod_inertia + 2.0 * coupling.re +
-              p.rocker_inertia_about_pivot,
-          by_angle.im - swing * coupling.im,
-          by_angle_slope.im - l.dv * coupling.im - swing * swing * coupling.re,
-          k.crank_inertia + k.rod_inertia * l.v + p.rocker_inertia_about_pivot * u + (1.0 + l.v) * coupling.re -
-              by_angle.re,
-          k.rod_inertia * l.dv + p.rocker_inertia_about_pivot * l.rocker.du + l.dv * coupling.re -
-              (1.0 + l.v) * swing * coupling.im - by_angle_slope.re};
+  return {
+      inertia_a - 2.0 * from_d.re + k.crank_inertia + k.rod_inertia + 2.0 * coupling.re + p.rocker_inertia_about_pivot,
+      by_angle.im - swing * coupling.im, by_angle_slope.im - l.dv * coupling.im - swing * swing * coupling.re,
+      k.crank_inertia + k.rod_inertia * l.v + p.rocker_inertia_about_pivot * u + (1.0 + l.v) * coupling.re -
+          by_angle.re,
+      k.rod_inertia * l.dv + p.rocker_inertia_about_pivot * l.rocker.du + l.dv * coupling.re -
+          (1.0 + l.v) * swing * coupling.im - by_angle_slope.re};
 }
 
 }  // namespace hammer_loads

@@ -22,8 +22,8 @@ void check(const Rule& rule, std::vector<std::string>& problems) {
                                                          : -kMostParameter;
   if (rule.value >= least && rule.value <= kMostParameter) return;
   const char* sign = rule.sign == Sign::kPositive ? "> 0" : rule.sign == Sign::kNotNegative ? ">= 0" : "finite";
-  problems.push_back(format("%s: %.9g %s, must be %s, from %g to %g", rule.key, rule.value, rule.unit, sign, least,
-                            kMostParameter));
+  problems.push_back(
+      format("%s: %.9g %s, must be %s, from %g to %g", rule.key, rule.value, rule.unit, sign, least, kMostParameter));
 }
 
 double squaredSize(Planar a) { return a.re * a.re + a.im * a.im; }

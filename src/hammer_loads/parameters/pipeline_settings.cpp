@@ -22,8 +22,8 @@ void readBoom(ParameterReader& reader, PipelineSettings& s) {
   s.boom_wrench_links = reader.names("boom_wrench_links");
   for (const std::string& link : s.boom_wrench_links) {
     if (namesATopic(link)) continue;
-    reader.addProblem(format("boom_wrench_links: %s, must be names of a letter first, then letters, digits, _ and /",
-                             link.c_str()));
+    reader.addProblem(
+        format("boom_wrench_links: %s, must be names of a letter first, then letters, digits, _ and /", link.c_str()));
   }
   s.tf_max_wait = reader.number("tf_max_wait_s", "s", NumberRule::positive());
 }

@@ -71,32 +71,32 @@ constexpr std::array<std::pair<const char*, HullMotionSource>, 3> kHullMotionNam
     {{"fixed", HullMotionSource::kFixed}, {"imu", HullMotionSource::kImu}, {"model", HullMotionSource::kModel}}};
 
 struct PipelineSettings {
-  Level level{};                          ///< in force; where it was `auto`, the one chosen
-  bool choose_level{};                    ///< the file says `auto`
-  double tolerance{};                     ///< of the wrench's peak, for `auto` [-], > 0
-  double turn_rate{};                     ///< of the working turn by which `auto` judges [Hz], > 0
+  Level level{};        ///< in force; where it was `auto`, the one chosen
+  bool choose_level{};  ///< the file says `auto`
+  double tolerance{};   ///< of the wrench's peak, for `auto` [-], > 0
+  double turn_rate{};   ///< of the working turn by which `auto` judges [Hz], > 0
   OutputKind output{};
-  double output_rate{};                   ///< of hull_wrench [Hz]; 0: one per crank sample
+  double output_rate{};  ///< of hull_wrench [Hz]; 0: one per crank sample
   CrankEstimator crank_estimator{};
   std::string crank_joint;                ///< joint whose position is the crank angle
   std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
   double hull_pitch{};                    ///< until every pitch joint has been heard [rad]
   HullMotionSource hull_motion{};
-  HullImuSettings imu;                    ///< where the IMU sits
-  double gravity{};                       ///< [m/s2], >= 0
-  double crank_angle_resolution{};        ///< encoder count [rad], > 0
-  double crank_angle_noise{};             ///< standard deviation beside the count [rad], >= 0
-  double crank_speed_noise{};             ///< standard deviation of a measured speed [rad/s], > 0
-  double torque_walk{};                   ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
-  double speed_walk{};                    ///< [rad/s/sqrt(s)], >= 0
-  double inertia_walk{};                  ///< relative to the drive inertia [1/sqrt(s)], >= 0
-  double initial_torque_deviation{};      ///< of the net torque per rocker inertia about D [rad/s2], > 0
-  double initial_inertia_deviation{};     ///< relative to the drive inertia [-], >= 0
-  double torque_deviation_part{};         ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
-  double near_blow{};                     ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
-  double stale_after{};                   ///< no crank sample for longer: nothing is published [s], > 0
-  double max_crank_speed{};               ///< a faster sample is implausible [rad/s], > 0
-  double withhold_above{};                ///< predicted error of the wrench over the turn's peak [-], > 0
+  HullImuSettings imu;                 ///< where the IMU sits
+  double gravity{};                    ///< [m/s2], >= 0
+  double crank_angle_resolution{};     ///< encoder count [rad], > 0
+  double crank_angle_noise{};          ///< standard deviation beside the count [rad], >= 0
+  double crank_speed_noise{};          ///< standard deviation of a measured speed [rad/s], > 0
+  double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
+  double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0
+  double inertia_walk{};               ///< relative to the drive inertia [1/sqrt(s)], >= 0
+  double initial_torque_deviation{};   ///< of the net torque per rocker inertia about D [rad/s2], > 0
+  double initial_inertia_deviation{};  ///< relative to the drive inertia [-], >= 0
+  double torque_deviation_part{};      ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
+  double near_blow{};                  ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
+  double stale_after{};                ///< no crank sample for longer: nothing is published [s], > 0
+  double max_crank_speed{};            ///< a faster sample is implausible [rad/s], > 0
+  double withhold_above{};             ///< predicted error of the wrench over the turn's peak [-], > 0
   BoomModel boom{};
   BoomAcceleration boom_acceleration{};
   double joint_max_age{};                      ///< between a crank sample and a joint's nearest state [s], > 0

@@ -23,8 +23,8 @@ class CrankStep {
     double time{};
     std::int64_t blow{};  ///< index as in CrankPosition
     bool forward{};
-    double speed{};       ///< of the crank there [rad/s]
-    bool strikes{};       ///< forward, for the first time, and not creeping: the rocker hits the tool
+    double speed{};  ///< of the crank there [rad/s]
+    bool strikes{};  ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 
   explicit CrankStep(const CrankTracker& tracker) : tracker_(&tracker) {}

@@ -1,9 +1,8 @@
 #include "hammer_loads/pipeline/hull_imu.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/Geometry>
 
 namespace hammer_loads {
 namespace {
@@ -41,8 +40,8 @@ std::optional<HullMotion> HullImu::at(StampNs stamp) const noexcept {
   const Eigen::Vector3d rate = now_.rate + part * (now_.rate - before_.rate);
   const Eigen::Vector3d acceleration = (now_.rate - before_.rate) / interval;
   const Eigen::Vector3d& r = settings_.position;
-  const Eigen::Vector3d force = now_.force + part * (now_.force - before_.force) - acceleration.cross(r) -
-                                rate.cross(rate.cross(r));
+  const Eigen::Vector3d force =
+      now_.force + part * (now_.force - before_.force) - acceleration.cross(r) - rate.cross(rate.cross(r));
   return HullMotion{{-force.x(), -force.z()}, rate.y(), acceleration.y()};
 }
 

@@ -1,11 +1,10 @@
 /// Motion of the hull from an inertial measurement unit fixed to it.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <optional>
-
-#include <Eigen/Core>
 
 #include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/parameters/hull_imu_settings.h"

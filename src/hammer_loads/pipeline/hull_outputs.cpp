@@ -60,8 +60,7 @@ bool HullOutputs::next(HullOutput& output) noexcept {
     output.wrench = (1.0 / output.interval) * impulse_;
     impulse_ = {};
   } else {
-    output.wrench = at_sample ? wrench_
-                              : hullWrench(*model_, motionOf(output.crank), hull_);
+    output.wrench = at_sample ? wrench_ : hullWrench(*model_, motionOf(output.crank), hull_);
   }
   last_output_ = output.stamp;
   if (at_sample) ready_ = false;

@@ -1,5 +1,5 @@
-/// When the hull wrench is published and what it is then: at each sample or at a rate of its own, as it is at the instant
-/// or as its mean since the output before.
+/// When the hull wrench is published and what it is then: at each sample or at a rate of its own, as it is at the
+/// instant or as its mean since the output before.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct HullOutput {
   HullWrench wrench;
 };
 
-/// After a restart the outputs begin with the first sample: that one is the zero of the fixed rate's grid and of the first
-/// mean's interval. Means times intervals add up to the wrench's impulse whatever the rate (blows' own impulses are in
-/// RockerBlow, not here). Refers to model and step, which must outlive it.
+/// After a restart the outputs begin with the first sample: that one is the zero of the fixed rate's grid and of the
+/// first mean's interval. Means times intervals add up to the wrench's impulse whatever the rate (blows' own impulses
+/// are in RockerBlow, not here). Refers to model and step, which must outlive it.
 class HullOutputs {
  public:
   HullOutputs(const HullModel& model, const CrankStep& step, const PipelineSettings& settings);
@@ -28,8 +28,7 @@ class HullOutputs {
   /// Outputs begin anew with the next sample.
   void forget() noexcept { begun_ = false, ready_ = false; }
   /// The step has been taken that ends with this sample.
-  void sample(StampNs stamp, const CrankEstimate& crank, const HullWrench& wrench,
-              const HullMotion& hull) noexcept;
+  void sample(StampNs stamp, const CrankEstimate& crank, const HullWrench& wrench, const HullMotion& hull) noexcept;
   /// The next output up to the last sample; false when there is none left.
   bool next(HullOutput& output) noexcept;
 
@@ -42,9 +41,9 @@ class HullOutputs {
   OutputKind kind_;
   double rate_;
   bool begun_{}, ready_{};
-  StampNs origin_{};      ///< of the grid
-  std::uint64_t index_{}; ///< of the next output on the grid
-  StampNs stamp_{};       ///< of the last sample
+  StampNs origin_{};       ///< of the grid
+  std::uint64_t index_{};  ///< of the next output on the grid
+  StampNs stamp_{};        ///< of the last sample
   StampNs last_output_{};
   double added_up_to_{};  ///< part of the step whose impulse is in impulse_ [s]
   HullWrench impulse_;    ///< since the last output

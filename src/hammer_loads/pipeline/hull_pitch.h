@@ -7,8 +7,8 @@
 
 namespace hammer_loads {
 
-/// Sum of the pitch joints' latest angles (contract: boom + arm + hammer, all about +y). Messages may hold any subset of
-/// joints in any order.
+/// Sum of the pitch joints' latest angles (contract: boom + arm + hammer, all about +y). Messages may hold any subset
+/// of joints in any order.
 class HullPitch {
  public:
   /// initial: pitch until every joint has been heard [rad].
@@ -18,9 +18,9 @@ class HullPitch {
   /// or beyond 1e4 rad are refused and counted.
   bool update(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
-  double pitch() const noexcept { return pitch_; }            ///< [rad]
-  bool known() const noexcept { return unheard_ == 0; }       ///< every pitch joint has been heard
-  std::uint64_t refused() const noexcept { return refused_; } ///< joint angles refused
+  double pitch() const noexcept { return pitch_; }             ///< [rad]
+  bool known() const noexcept { return unheard_ == 0; }        ///< every pitch joint has been heard
+  std::uint64_t refused() const noexcept { return refused_; }  ///< joint angles refused
   /// The latest angle of some joint lies beyond a whole turn: no boom reaches there.
   bool looksLikeDegrees() const noexcept;
   /// Joints not heard yet, for diagnostics.

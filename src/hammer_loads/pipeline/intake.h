@@ -29,10 +29,10 @@ constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRe
 class Intake {
  public:
   struct Limits {
-    double max_speed{};    ///< of any crank [rad/s]
-    double stale_after{};  ///< age of the last sample from which on a new one starts anew [s]
-    double frozen_turn{};  ///< a crank that turned further does not give the same angle again [rad]
-    double frozen_speed{}; ///< nor does one that turns faster, however soon [rad/s]
+    double max_speed{};     ///< of any crank [rad/s]
+    double stale_after{};   ///< age of the last sample from which on a new one starts anew [s]
+    double frozen_turn{};   ///< a crank that turned further does not give the same angle again [rad]
+    double frozen_speed{};  ///< nor does one that turns faster, however soon [rad/s]
   };
   explicit Intake(const Limits& limits) : limits_(limits), stamps_(limits.stale_after) {}
 

@@ -54,16 +54,16 @@ class JointBuffer {
   struct State {
     StampNs stamp{};
     double position{}, velocity{};
-    double acceleration{};   ///< mean since the state before it
-    double velocity_age{};   ///< velocity belongs to so long before the stamp [s]
+    double acceleration{};  ///< mean since the state before it
+    double velocity_age{};  ///< velocity belongs to so long before the stamp [s]
   };
   /// Some 0.6 s at 100 Hz: how far a crank sample may lie behind the joint states.
   static constexpr std::uint64_t kKept = 64;
   struct Track {
     std::array<State, kKept> states;
-    std::uint64_t count{};            ///< of states since the beginning; the newest is count - 1
-    std::optional<StampNs> rewound;   ///< of the last state, if it was refused as out of order
-    bool turns_freely{};              ///< no limits: positions may wind, the shorter way counts
+    std::uint64_t count{};           ///< of states since the beginning; the newest is count - 1
+    std::optional<StampNs> rewound;  ///< of the last state, if it was refused as out of order
+    bool turns_freely{};             ///< no limits: positions may wind, the shorter way counts
 
     const State& back(std::uint64_t steps) const noexcept { return states[(count - 1 - steps) % kKept]; }
     double difference(double from, double to) const noexcept;

@@ -135,7 +135,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
     }
   }
   intake_.accept(stamp, sample.angle);
-    last_position_ = loads_.crank.position;
+  last_position_ = loads_.crank.position;
   if (!settled()) {
     boom_follows_ = false;
     return refuse(Refusal::kUnsettled);
@@ -246,8 +246,8 @@ void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
   end.blow = blowAtCrankSpeed(mechanism_, settings_.level, passage.speed);
   end.pulse = turn_.end(instant(time, step_.besides(passage, Side::kBeforeBlow)));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
-  end.mean_press_force = last_blow_ ? end.blow.tool_impulse_z / seconds(stamp - *last_blow_)
-                                    : std::numeric_limits<double>::quiet_NaN();
+  end.mean_press_force =
+      last_blow_ ? end.blow.tool_impulse_z / seconds(stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
   if (loads_.turn_ends < loads_.ends.size()) loads_.ends[loads_.turn_ends++] = end;
   last_blow_ = stamp;
   turn_.begin(instant(time, step_.besides(passage, Side::kAfterBlow)));

@@ -27,10 +27,10 @@ namespace hammer_loads {
 
 /// A blow and, if the turn before it was seen whole, its pulse.
 struct TurnEnd {
-  StampNs stamp{};              ///< instant of the blow, found between samples [ns]
-  std::uint64_t turn{};         ///< blows since the start, 1 for the first
+  StampNs stamp{};       ///< instant of the blow, found between samples [ns]
+  std::uint64_t turn{};  ///< blows since the start, 1 for the first
   RockerBlow blow;
-  double mean_press_force{};    ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
+  double mean_press_force{};  ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
   std::optional<HalfSinePulse> pulse;
 };
 
@@ -39,9 +39,9 @@ struct Loads {
   StampNs stamp{};
   std::optional<Refusal> refusal;  ///< if set, crank and wrench are void (the turn ends are not)
   CrankEstimate crank;
-  HullWrench wrench;               ///< at the sample
-  const BoomState* boom{};         ///< null: no boom, or not wanted
-  std::size_t turn_ends{};         ///< how many of `ends` are meant; more than one only for sparse samples
+  HullWrench wrench;        ///< at the sample
+  const BoomState* boom{};  ///< null: no boom, or not wanted
+  std::size_t turn_ends{};  ///< how many of `ends` are meant; more than one only for sparse samples
   std::array<TurnEnd, 4> ends;
 };
 
@@ -132,11 +132,11 @@ class Pipeline {
   IntakeCounts counts_;
   Loads loads_;
   TurnRecorder turn_;
-  StampNs epoch_{};                        ///< first sample since the last beginning
-  CrankPosition last_position_;            ///< at the last accepted sample
-  std::optional<StampNs> last_blow_;       ///< if the turn since then was seen whole
+  StampNs epoch_{};                   ///< first sample since the last beginning
+  CrankPosition last_position_;       ///< at the last accepted sample
+  std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole
   std::uint64_t turns_{};
-  double peak_force_{};                    ///< of the last whole turn [N], 0 before the first
+  double peak_force_{};  ///< of the last whole turn [N], 0 before the first
   bool want_turns_{true}, want_boom_{true};
   bool unsettled_{};
   bool speed_measured_{};

@@ -23,7 +23,8 @@ void forEachSmoothPart(const CrankStep& step, double from, double to, const Visi
   double start_time = from;
   for (const CrankStep::Passage& passage : step) {
     if (passage.time <= from || passage.time > to) continue;
-    visit(start_time, start, passage.time, step.besides(passage, passage.forward ? Side::kBeforeBlow : Side::kAfterBlow));
+    visit(start_time, start, passage.time,
+          step.besides(passage, passage.forward ? Side::kBeforeBlow : Side::kAfterBlow));
     start = step.besides(passage, passage.forward ? Side::kAfterBlow : Side::kBeforeBlow);
     start_time = passage.time;
   }
@@ -70,21 +71,22 @@ LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept {
   LoadStep result;
   if (!step.known()) return result;
   const CrankStep::Passage* passage = step.begin();
-  forEachSmoothPart(step, 0.0, step.length(), [&](double from, const CrankEstimate& a, double to, const CrankEstimate& b) {
-    const CrankStep::Passage* ends_at = passage == step.end() ? nullptr : passage++;
-    if (result.count == result.pieces.size()) return;
-    LoadPiece& piece = result.pieces[result.count++];
-    piece.duration = to - from;
-    piece.from = motionWrench(model, a);
-    piece.to = motionWrench(model, b);
-    const HullWrench impulse = change(momentum(model, a), momentum(model, b));
-    piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
-    if (ends_at == nullptr || !ends_at->strikes) return;
-    const RockerBlow blow = blowAtCrankSpeed(model.mechanism(), model.level(), ends_at->speed);
-    piece.ends_in_blow = true;
-    piece.blow_x = blow.support_impulse_x;
-    piece.blow_z = blow.support_impulse_z;
-  });
+  forEachSmoothPart(
+      step, 0.0, step.length(), [&](double from, const CrankEstimate& a, double to, const CrankEstimate& b) {
+        const CrankStep::Passage* ends_at = passage == step.end() ? nullptr : passage++;
+        if (result.count == result.pieces.size()) return;
+        LoadPiece& piece = result.pieces[result.count++];
+        piece.duration = to - from;
+        piece.from = motionWrench(model, a);
+        piece.to = motionWrench(model, b);
+        const HullWrench impulse = change(momentum(model, a), momentum(model, b));
+        piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
+        if (ends_at == nullptr || !ends_at->strikes) return;
+        const RockerBlow blow = blowAtCrankSpeed(model.mechanism(), model.level(), ends_at->speed);
+        piece.ends_in_blow = true;
+        piece.blow_x = blow.support_impulse_x;
+        piece.blow_z = blow.support_impulse_z;
+      });
   return result;
 }
 

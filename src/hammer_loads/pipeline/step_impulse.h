@@ -7,9 +7,9 @@
 
 namespace hammer_loads {
 
-/// Impulse [N s, N s, N m s] over [from, to] of the part from the links' motion relative to the hull: minus the change of
-/// their momentum, the jumps at the blow left out (they are the blow's own, in RockerBlow). No quadrature, so the sum
-/// over any division of a time is the same.
+/// Impulse [N s, N s, N m s] over [from, to] of the part from the links' motion relative to the hull: minus the change
+/// of their momentum, the jumps at the blow left out (they are the blow's own, in RockerBlow). No quadrature, so the
+/// sum over any division of a time is the same.
 HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept;
 
 /// Impulse over [from, to] of what weight and motion of the hull add (frameWrench). Gauss-Legendre of order 6 on pieces
@@ -17,8 +17,8 @@ HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double f
 HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
                         double to) noexcept;
 
-/// The load over the whole step as the boom takes it, blows included; pieces beyond those that a LoadStep holds are left
-/// out (a step of several turns).
+/// The load over the whole step as the boom takes it, blows included; pieces beyond those that a LoadStep holds are
+/// left out (a step of several turns).
 LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept;
 
 inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {

@@ -10,11 +10,11 @@ namespace hammer_loads {
 
 /// State of the mechanism at an instant of a turn, as the recorder needs it.
 struct TurnInstant {
-  double time{};         ///< since any fixed origin [s]
-  HullWrench wrench;     ///< weight included where the published wrench includes it
-  LinkMomentum momentum; ///< relative to the hull
-  double weight_x{};     ///< weight within the wrench from here to the next instant [N]
-  double weight_z{};     ///< likewise [N]
+  double time{};          ///< since any fixed origin [s]
+  HullWrench wrench;      ///< weight included where the published wrench includes it
+  LinkMomentum momentum;  ///< relative to the hull
+  double weight_x{};      ///< weight within the wrench from here to the next instant [N]
+  double weight_z{};      ///< likewise [N]
 };
 
 /// Keeps the force and the exact impulses of the present turn in a track of bounded size: a turn with too many instants

@@ -18,7 +18,7 @@ struct BagJob {
   std::string joint_topic{"/joint_states"};
   std::string imu_topic{"/hammer/hull_imu"};  ///< read with hull_motion imu alone
   std::string output_prefix{"/hammer_loads"};
-  bool pins{};  ///< pin forces as well
+  bool pins{};                             ///< pin forces as well
   std::optional<GrappleSettings> grapple;  ///< the grapple as well; then a bag without the crank topic will do
   std::string grapple_prefix{"/grapple"};
 };

@@ -87,7 +87,7 @@ const BoomVibration& BoomMessages::vibration() {
 }
 
 const geometry_msgs::WrenchStamped& BoomMessages::wrench(std::size_t link, const ros::Time& stamp,
-                                                          const HullWrench& load) {
+                                                         const HullWrench& load) {
   geometry_msgs::WrenchStamped& message = wrenches_[link];
   const Wrench w = follower_.wrenchAtLink(indices_[link], load);
   message.header.stamp = stamp;

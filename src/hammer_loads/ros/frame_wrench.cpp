@@ -114,8 +114,8 @@ std::string FrameWrenches::complaint(std::size_t frame) const {
   if (queue.unknown.isZero()) return {};
   std::string why;
   const bool late = transforms_.canTransform(frames_[frame], hull_, queue.unknown, &why);
-  return frames_[frame] + ": no transform from " + hull_ +
-         format(" within %.3g s", max_wait_.toSec()) + (late || why.empty() ? "" : ": " + onOneLine(why));
+  return frames_[frame] + ": no transform from " + hull_ + format(" within %.3g s", max_wait_.toSec()) +
+         (late || why.empty() ? "" : ": " + onOneLine(why));
 }
 
 }  // namespace hammer_loads

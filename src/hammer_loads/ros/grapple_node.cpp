@@ -25,7 +25,8 @@ GrappleNode::GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, con
       mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kQueue)),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       diagnostics_(node, private_node, flow_, *log_),
-      log_services_(private_node, *log_, [this] { beginRun(); }, [] {}) {
+      log_services_(
+          private_node, *log_, [this] { beginRun(); }, [] {}) {
   RunInfo info = flow_.runInfoMessage();
   info.header.stamp = ros::Time::now();
   run_info_.publish(info);
@@ -79,7 +80,8 @@ void GrappleNode::mechanism(const sensor_msgs::JointState& message, const ros::T
 
 bool GrappleNode::wants(Jaw jaw) const {
   const JawPublishers& p = publishers(jaw);
-  return log_->isRecording() || p.edge.getNumSubscribers() > 0 || p.twist.getNumSubscribers() > 0 || p.accel.getNumSubscribers() > 0;
+  return log_->isRecording() || p.edge.getNumSubscribers() > 0 || p.twist.getNumSubscribers() > 0 ||
+         p.accel.getNumSubscribers() > 0;
 }
 
 bool GrappleNode::wantsMechanism() const { return log_->isRecording() || mechanism_.getNumSubscribers() > 0; }

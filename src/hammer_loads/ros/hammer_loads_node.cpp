@@ -27,7 +27,8 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       diagnostics_(node, private_node, flow_, *log_),
       reconfigure_(reconfigure_mutex_, private_node),
-      log_services_(private_node, *log_, [this] { beginRun(); }, [this] { logSwitched(); }) {
+      log_services_(
+          private_node, *log_, [this] { beginRun(); }, [this] { logSwitched(); }) {
   for (const std::string& link : settings.pipeline.boom_wrench_links)
     boom_wrench_[link] = private_node.advertise<geometry_msgs::WrenchStamped>("boom_wrench/" + link, kQueue);
   announceRun();

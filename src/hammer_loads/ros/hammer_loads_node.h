@@ -1,7 +1,6 @@
 /// The live node: subscriptions and publications around a LoadsFlow. Single-threaded, driven by its input messages.
 #pragma once
 
-#include <boost/thread/recursive_mutex.hpp>
 #include <dynamic_reconfigure/server.h>
 #include <hammer_loads/HammerLoadsConfig.h>
 #include <ros/message_event.h>
@@ -9,6 +8,7 @@
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
 
+#include <boost/thread/recursive_mutex.hpp>
 #include <map>
 #include <memory>
 #include <string>

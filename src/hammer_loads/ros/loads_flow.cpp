@@ -18,8 +18,8 @@ double crankAngle(CrankAngle angle) { return angle.offset < 0.0 ? angle.offset +
 LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink) : settings_(settings), sink_(sink) {
   run_info_.version = HAMMER_LOADS_VERSION;
   run_info_.revision = HAMMER_LOADS_REVISION;
-  for (std_msgs::Header* header : {&wrench_.header, &hull_loads_.header, &mechanism_.header, &pin_forces_.header,
-                                   &blow_.header, &pulse_.header})
+  for (std_msgs::Header* header :
+       {&wrench_.header, &hull_loads_.header, &mechanism_.header, &pin_forces_.header, &blow_.header, &pulse_.header})
     header->frame_id = kHullFrame;
   mechanism_.name = {settings.pipeline.crank_joint, "hammer_rod_joint", "hammer_rocker_joint"};
   mechanism_.position.resize(mechanism_.name.size());
@@ -27,10 +27,11 @@ LoadsFlow::LoadsFlow(const Settings& settings, LoadsSink& sink) : settings_(sett
   const std::vector<std::string> frames =
       framesBesideChain(settings.pipeline.boom_wrench_links, settings.boom ? &*settings.boom : nullptr);
   if (!frames.empty()) {
-    frame_wrenches_.emplace(frames, kHullFrame, settings.pipeline.tf_max_wait,
-                            [this](std::size_t frame, const geometry_msgs::WrenchStamped& wrench, const ros::Time& time) {
-                              sink_.boomWrench(frame_wrenches_->frames()[frame], wrench, time);
-                            });
+    frame_wrenches_.emplace(
+        frames, kHullFrame, settings.pipeline.tf_max_wait,
+        [this](std::size_t frame, const geometry_msgs::WrenchStamped& wrench, const ros::Time& time) {
+          sink_.boomWrench(frame_wrenches_->frames()[frame], wrench, time);
+        });
   }
   reset();
 }
@@ -111,8 +112,7 @@ bool LoadsFlow::wantsAny(const std::vector<std::string>& links) const {
 }
 
 bool LoadsFlow::wantsBoom() const {
-  return boom_messages_ &&
-         (sink_.wantsJointLoads() || sink_.wantsBoomVibration() || wantsAny(boom_messages_->links()));
+  return boom_messages_ && (sink_.wantsJointLoads() || sink_.wantsBoomVibration() || wantsAny(boom_messages_->links()));
 }
 
 void LoadsFlow::publishBoom(const ros::Time& record_time) {
@@ -159,7 +159,8 @@ void LoadsFlow::publishPinForces(const Loads& loads, const ros::Time& record_tim
   const Mechanism& mechanism = pipeline_->mechanism();
   const PipelineSettings& settings = pipeline_->settings();
   const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
-  const PinReactions pins = pinForces(mechanism, settings.level, crank, pipeline_->hullMotion(), NearBlow(settings.near_blow));
+  const PinReactions pins =
+      pinForces(mechanism, settings.level, crank, pipeline_->hullMotion(), NearBlow(settings.near_blow));
   pin_forces_.header.stamp = timeOf(loads.stamp);
   pin_forces_.crank_angle_rad = crankAngle(crank.angle);
   pin_forces_.crank_speed_rad_s = crank.speed;

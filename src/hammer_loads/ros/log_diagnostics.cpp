@@ -7,10 +7,18 @@ using diagnostic_msgs::DiagnosticStatus;
 void describeLog(const BagLog& log, diagnostic_updater::DiagnosticStatusWrapper& status) {
   const LogHealth health = log.health();
   switch (health.state) {
-    case LogState::kOff: status.summary(DiagnosticStatus::OK, "off"); break;
-    case LogState::kRecording: status.summary(DiagnosticStatus::OK, "recording"); break;
-    case LogState::kDiskFull: status.summary(DiagnosticStatus::ERROR, "stopped: " + health.reason); break;
-    case LogState::kFailed: status.summary(DiagnosticStatus::ERROR, "failed: " + health.reason); break;
+    case LogState::kOff:
+      status.summary(DiagnosticStatus::OK, "off");
+      break;
+    case LogState::kRecording:
+      status.summary(DiagnosticStatus::OK, "recording");
+      break;
+    case LogState::kDiskFull:
+      status.summary(DiagnosticStatus::ERROR, "stopped: " + health.reason);
+      break;
+    case LogState::kFailed:
+      status.summary(DiagnosticStatus::ERROR, "failed: " + health.reason);
+      break;
   }
   if (health.messages_dropped > 0) status.mergeSummary(DiagnosticStatus::WARN, "messages were dropped");
   status.add("file", health.file);

@@ -11,8 +11,8 @@
 
 namespace hammer_loads {
 
-/// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request carries nothing: where to and under which names
-/// the log is written comes from the parameters alone. The answer says what was done or why not.
+/// `~log/start`, `~log/stop`, `~log/split` (std_srvs/Trigger). A request carries nothing: where to and under which
+/// names the log is written comes from the parameters alone. The answer says what was done or why not.
 class LogServices {
  public:
   /// begin: called when a log begins or goes on in a new file, so that the file holds a run from its beginning.

@@ -1,0 +1,22 @@
+/// Waiting for what other processes do, without sleeping.
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <functional>
+
+namespace hammer_loads::test {
+
+/// Spins until the condition holds; false if it still does not after some seconds [s] of wall time. What is waited for
+/// takes milliseconds: the limit is for a machine that stands still.
+inline bool eventually(const std::function<bool()>& condition, double seconds = 20.0) {
+  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(seconds);
+  while (!condition()) {
+    if (ros::WallTime::now() > deadline || !ros::ok()) return false;
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(1e-3));
+  }
+  return true;
+}
+
+}  // namespace hammer_loads::test
