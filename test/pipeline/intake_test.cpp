@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "hammer_loads/linkage/crank_angle.h"
 #include "support/main.h"
 
 namespace hammer_loads {
@@ -15,7 +16,7 @@ class IntakeTest : public testing::Test {
   Intake::Verdict judge(StampNs stamp, std::optional<double> given = {}, double speed = 10.0) {
     const double angle = given.value_or(1e-9 * static_cast<double>(stamp));
     const Intake::Verdict verdict = intake_.judge(stamp, {angle, speed});
-    if (!verdict.refusal) intake_.accept(stamp, angle);
+    if (!verdict.refusal) intake_.accept(stamp, {angle, speed});
     return verdict;
   }
   Intake intake_{{300.0, 0.25, 0.01, 1.5}};
@@ -76,6 +77,15 @@ TEST_F(IntakeTest, TheSameAngleIsNoFaultOfACrankThatStandsOrCreepsOrTurnedRound)
   for (int i = 1; i <= 100; ++i) EXPECT_FALSE(judge(i * kMs, 1.0, i % 2 == 0 ? 1.4 : -1.4).refusal) << "noise";
   for (int i = 101; i <= 104; ++i) EXPECT_FALSE(judge(i * kMs, 1.0, 9.0).refusal) << "0.009 rad: within a few counts";
   EXPECT_FALSE(judge(304 * kMs, 1.0, 31.4).refusal) << "one whole turn later";
+}
+
+TEST_F(IntakeTest, ASpeedOfNothingButZerosIsNoneWhileTheAngleMoves) {
+  EXPECT_FALSE(judge(0, 1.00, 0.0).speed_is_dead) << "one zero may be true";
+  EXPECT_TRUE(judge(1 * kMs, 1.02, 0.0).speed_is_dead);
+  EXPECT_FALSE(judge(2 * kMs, 1.021, 0.0).speed_is_dead) << "it creeps";
+  EXPECT_FALSE(judge(3 * kMs, 1.05, 0.001).speed_is_dead);
+  EXPECT_FALSE(judge(4 * kMs, 1.07, 0.0).speed_is_dead);
+  EXPECT_TRUE(judge(5 * kMs, kTwoPi + 1.09, 0.0).speed_is_dead) << "whatever the winding";
 }
 
 }  // namespace

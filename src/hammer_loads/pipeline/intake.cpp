@@ -26,17 +26,21 @@ Intake::Verdict Intake::judge(StampNs stamp, const CrankSample& sample) noexcept
       break;
   }
   if (isFrozen(step, sample)) return {Refusal::kImplausible};
-  return {std::nullopt, place == StampOrder::Place::kFirst ? Order::kFirst : Order::kNext, step};
+  return {std::nullopt, place == StampOrder::Place::kFirst ? Order::kFirst : Order::kNext, step, isSpeedDead(sample)};
 }
 
-/// A sensor may stand still while its speed goes on. The other way round, a speed that is always zero, is common and
-/// harmless: the filter learns not to believe it.
+/// A sensor may stand still while its speed goes on.
 bool Intake::isFrozen(double step, const CrankSample& sample) noexcept {
   const double speed = std::abs(sample.speed.value_or(0.0)), turn = speed * step;
   const bool turns = speed > limits_.frozen_speed && (frozen_ || (turn > limits_.frozen_turn && turn < 0.5 * kTwoPi));
   // Bits, not nearness: counts repeat exactly, and any living sensor moves by its noise.
-  frozen_ = turns && sample.angle == angle_;
+  frozen_ = turns && sample.angle == accepted_.angle;
   return frozen_;
+}
+
+bool Intake::isSpeedDead(const CrankSample& sample) const noexcept {
+  return sample.speed == 0.0 && accepted_.speed == 0.0 &&
+         std::abs(CrankAngle::wrapToPi(sample.angle - accepted_.angle)) > limits_.frozen_turn;
 }
 
 }  // namespace hammer_loads

@@ -40,23 +40,25 @@ class Intake {
   struct Verdict {
     std::optional<Refusal> refusal;
     Order order{Order::kFirst};
-    double step{};  ///< since the last accepted sample [s]
+    double step{};         ///< since the last accepted sample [s]
+    bool speed_is_dead{};  ///< nothing but zeros while the angle moves: many drivers fill in what they do not measure
   };
 
   Verdict judge(StampNs stamp, const CrankSample& sample) noexcept;
-  void accept(StampNs stamp, double angle) noexcept {
+  void accept(StampNs stamp, const CrankSample& sample) noexcept {
     stamps_.accept(stamp);
-    angle_ = angle;
+    accepted_ = sample;
   }
   const std::optional<StampNs>& last() const noexcept { return stamps_.last(); }
 
  private:
   bool isFrozen(double step, const CrankSample& sample) noexcept;
+  bool isSpeedDead(const CrankSample& sample) const noexcept;
 
   Limits limits_;
   StampOrder stamps_;
-  double angle_{};  ///< of the last accepted sample
-  bool frozen_{};   ///< the same reading ever since, while the crank turned
+  CrankSample accepted_;  ///< last
+  bool frozen_{};         ///< the same reading ever since, while the crank turned
 };
 
 }  // namespace hammer_loads

@@ -26,7 +26,9 @@ HullMotion withVibration(Gravity weight, const BoomState* boom) noexcept {
 }
 
 Intake::Limits limitsOf(const PipelineSettings& s) noexcept {
-  const double frozen_turn = kFrozenCounts * s.crank_angle_resolution + kFrozenDeviations * s.crank_angle_noise;
+  double frozen_turn = kFrozenCounts * s.crank_angle_resolution + kFrozenDeviations * s.crank_angle_noise;
+  // The trackers for comparison take every reading as it is.
+  if (s.crank_estimator != CrankEstimator::kMechanism) frozen_turn = std::numeric_limits<double>::infinity();
   return {s.max_crank_speed, s.stale_after, frozen_turn, kFrozenDeviations * s.crank_speed_noise};
 }
 
@@ -108,14 +110,15 @@ const Loads& Pipeline::refuse(Refusal refusal) noexcept {
   return loads_;
 }
 
-const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noexcept {
+const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& measured) noexcept {
   loads_.stamp = stamp;
   loads_.turn_ends = 0;
   loads_.refusal.reset();
-  unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, sample.angle, sample.speed);
+  unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
   last_raw_stamp_ = stamp;
-  const Intake::Verdict verdict = intake_.judge(stamp, sample);
+  const Intake::Verdict verdict = intake_.judge(stamp, measured);
   if (verdict.refusal) return refuse(*verdict.refusal);
+  const CrankSample sample{measured.angle, verdict.speed_is_dead ? std::nullopt : measured.speed};
 
   predictHull(stamp);
   if (verdict.order == Intake::Order::kFirst) {
@@ -134,7 +137,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& sample) noe
       if (want_turns_ || boom_) followTurn();
     }
   }
-  intake_.accept(stamp, sample.angle);
+  intake_.accept(stamp, measured);
   last_position_ = loads_.crank.position;
   if (!settled()) {
     boom_follows_ = false;
