@@ -8,6 +8,7 @@
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
@@ -82,6 +83,14 @@ class NodeTest : public testing::Test {
       if (name.find("hull pitch") != std::string::npos) return status.message == "known";
     }
     return false;
+  }
+
+  bool crankError(const std::string& words) const {
+    return std::any_of(statuses_.begin(), statuses_.end(), [&](const auto& entry) {
+      const auto& [name, status] = entry;
+      return name.find("crank") != std::string::npos && status.level == diagnostic_msgs::DiagnosticStatus::ERROR &&
+             status.message.find(words) != std::string::npos;
+    });
   }
 
   std::string diagnostic(const std::string& key) {
@@ -181,14 +190,7 @@ TEST_F(NodeTest, RefusesEachBadSampleCountsItAndTakesTheNextGoodOne) {
 TEST_F(NodeTest, SaysWhenTheCrankIsStaleAndGoesOnWhenItIsBack) {
   settle();
   ASSERT_TRUE(goodSamplesPass(20));
-  const auto stale = [&] {
-    for (const auto& [name, status] : statuses_) {
-      if (status.message.find("stale") != std::string::npos && status.level == diagnostic_msgs::DiagnosticStatus::ERROR)
-        return true;
-    }
-    return false;
-  };
-  EXPECT_TRUE(eventually(stale));
+  EXPECT_TRUE(eventually([this] { return crankError("stale"); }));
   time_ += 10.0;
   settle();
   const std::size_t before = wrenches_.size();
@@ -196,6 +198,37 @@ TEST_F(NodeTest, SaysWhenTheCrankIsStaleAndGoesOnWhenItIsBack) {
   EXPECT_EQ(wrenches_.size(), before + 20);
   statuses_.clear();
   EXPECT_TRUE(eventually([&] { return !statuses_.empty(); }));
+}
+
+TEST_F(NodeTest, SaysWhenTheAngleStandsStillWhileTheSpeedGoesOn) {
+  settle();
+  ASSERT_FALSE(crankError("stands still"));
+  const std::size_t before = wrenches_.size();
+  const double angle = 5.0 * (time_ - 1e-3);
+  EXPECT_TRUE(eventually([&] {
+    crank_.publish(crankMessage(start_ + ros::Duration(time_ += 2e-3), angle, 30.0));
+    return crankError("the angle stands still while the speed goes on");
+  }));
+  EXPECT_EQ(wrenches_.size(), before);
+  time_ += 10.0;
+  settle();
+  EXPECT_TRUE(eventually([this] { return !crankError("stands still"); }));
+}
+
+TEST_F(NodeTest, SaysWhenTheCrankSeemsToBeInDegrees) {
+  settle();
+  ASSERT_FALSE(crankError("degrees"));
+  constexpr double kDegrees = 57.29577951308232;
+  EXPECT_TRUE(eventually([&] {
+    time_ += 1e-3;
+    crank_.publish(crankMessage(start_ + ros::Duration(time_), kDegrees * 30.0 * time_, kDegrees * 30.0));
+    return crankError("degrees");
+  }));
+  time_ += 10.0;
+  EXPECT_TRUE(eventually([this] {
+    publishGoodSamples(1);
+    return !crankError("degrees");
+  }));
 }
 
 TEST_F(NodeTest, TakesAnglesWithoutSpeeds) {

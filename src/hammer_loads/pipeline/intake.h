@@ -50,6 +50,7 @@ class Intake {
     accepted_ = sample;
   }
   const std::optional<StampNs>& last() const noexcept { return stamps_.last(); }
+  bool angleIsFrozen() const noexcept { return frozen_; }  ///< the last sample was refused for that
 
  private:
   bool isFrozen(double step, const CrankSample& sample) noexcept;

@@ -89,6 +89,8 @@ class Pipeline {
 
   const IntakeCounts& counts() const noexcept { return counts_; }
   const UnitCheck& unitCheck() const noexcept { return unit_check_; }
+  /// The crank's angle stands still while its speed goes on.
+  bool angleIsFrozen() const noexcept { return intake_.angleIsFrozen(); }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }
   const HullPitch& hullPitch() const noexcept { return hull_pitch_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }

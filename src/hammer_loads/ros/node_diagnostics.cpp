@@ -47,6 +47,8 @@ void NodeDiagnostics::describeCrank(diagnostic_updater::DiagnosticStatusWrapper&
     status.summary(DiagnosticStatus::WARN, "no crank sample yet");
   } else if (pipeline.unitCheck().looksLikeDegrees()) {
     status.summary(DiagnosticStatus::ERROR, "implausible: angle or speed seems to be in degrees, radians are agreed");
+  } else if (pipeline.angleIsFrozen()) {
+    status.summary(DiagnosticStatus::ERROR, "implausible: the angle stands still while the speed goes on");
   } else if (age > pipeline.settings().stale_after) {
     status.summaryf(DiagnosticStatus::ERROR, "stale: no crank sample for %.1f s, nothing is published", age);
   } else if (refused > 0) {
