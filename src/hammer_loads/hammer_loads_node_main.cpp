@@ -6,8 +6,10 @@
 #include <iostream>
 
 #include "hammer_loads/ros/hammer_loads_node.h"
+#include "hammer_loads/ros/steady_memory.h"
 
 int main(int argc, char** argv) {
+  hammer_loads::keepMemorySteady();
   ros::init(argc, argv, "hammer_loads");
   // roscpp ends cleanly on SIGINT only; a log must survive SIGTERM as well.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "ros/log_test_support.h"
+#include "soak/resident_memory.h"
 
 namespace hammer_loads::test {
 namespace {
@@ -320,40 +321,14 @@ TEST(RecordTime, RisesWhateverTheClockDoes) {
   EXPECT_EQ(BagLog::nextRecordTime(end, end), end);
 }
 
-TEST(LogQueue, HandsOverEveryByteBetweenThreads) {
-  LogQueue queue(16384);
-  LogTopic topic(0, "/t", {}, false, "");
-  constexpr std::uint32_t kCount = 50000;
-  std::thread producer([&] {
-    for (std::uint32_t i = 0; i < kCount;) {
-      const std::uint32_t size = i * 7 % 600;
-      std::uint8_t* bytes = queue.reserve(size);
-      if (bytes == nullptr) {
-        std::this_thread::yield();
-        continue;
-      }
-      std::fill_n(bytes, size, static_cast<std::uint8_t>(i));
-      queue.commit(topic, ros::Time(i + 1, 0));
-      ++i;
-    }
-  });
-  std::uint32_t wrong = 0;
-  for (std::uint32_t i = 0; i < kCount;) {
-    LogQueue::Record* record = queue.front();
-    if (record == nullptr) {
-      std::this_thread::yield();
-      continue;
-    }
-    wrong += record->topic != &topic || record->time.sec != i + 1 || record->size != i * 7 % 600;
-    for (std::uint32_t k = 0; k < record->size; ++k) wrong += record->bytes()[k] != static_cast<std::uint8_t>(i);
-    queue.pop();
-    ++i;
-  }
-  producer.join();
-  EXPECT_EQ(wrong, 0u);
-  EXPECT_EQ(queue.front(), nullptr);
-  EXPECT_EQ(queue.fill(), 0.0);
-  EXPECT_EQ(queue.reserve(16384), nullptr);  // never fits
+TEST_F(LogTest, NeedsTheMemoryOfItsQueueOnlyFromTheFirstStartOn) {
+  settings_.queue_size = 100'000'000;
+  const auto queue = static_cast<double>(settings_.queue_size);
+  const double before = soak::residentMemory();
+  BagLog log(settings_);
+  EXPECT_LT(soak::residentMemory() - before, 0.2 * queue);
+  ASSERT_EQ(log.start(), std::vector<std::string>{});
+  EXPECT_GT(soak::residentMemory() - before, 0.9 * queue);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/ros/steady_memory.h"
 #include "soak/endless_session.h"
 #include "soak/resident_memory.h"
 #include "soak/verdict.h"
@@ -163,6 +164,7 @@ int run(const std::string& directory, double machine_seconds) {
 }  // namespace hammer_loads::soak
 
 int main(int argc, char** argv) {
+  hammer_loads::keepMemorySteady();  // as the nodes
   const double seconds = argc > 2 ? std::strtod(argv[2], nullptr) : 3600.0;
   if (argc < 2 || argc > 3 || !(seconds >= 600.0) || !std::filesystem::is_empty(argv[1])) {
     std::fprintf(stderr, "usage: log_soak EMPTY_DIRECTORY [SECONDS], at least 600\n");

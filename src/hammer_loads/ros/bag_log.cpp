@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "hammer_loads/linkage/format.h"
@@ -59,6 +60,11 @@ std::vector<std::string> BagLog::start() {
   if (free < settings_.min_free_space) {
     return {format("log_min_free_mb: %.9g MB, must be <= the free space of log_directory %.300s = %.9g MB",
                    mb(settings_.min_free_space), directory.value->c_str(), mb(free))};
+  }
+  try {
+    queue_.take();
+  } catch (const std::bad_alloc&) {
+    return {format("log_queue_mb: %.9g MB, must be <= the free memory", mb(settings_.queue_size))};
   }
   LogOrder order;
   Checked<LogName> name = LogName::take(*directory.value, settings_.prefix, order.next_number);

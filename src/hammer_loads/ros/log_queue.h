@@ -7,8 +7,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <new>
-#include <vector>
 
 #include "hammer_loads/ros/log_topic.h"
 
@@ -30,8 +30,13 @@ class LogQueue {
     std::uint8_t* bytes() noexcept { return reinterpret_cast<std::uint8_t*>(this) + sizeof(Record); }
   };
 
-  /// All memory is taken and touched here; `bytes` is rounded down to whole units.
-  explicit LogQueue(std::size_t bytes) : units_(std::max<std::size_t>(bytes / sizeof(Unit), 8)) {}
+  /// `bytes` is rounded down to whole units. Has no memory until take().
+  explicit LogQueue(std::size_t bytes) : unit_count_(std::max<std::size_t>(bytes / sizeof(Unit), 8)) {}
+
+  /// All memory is taken and touched here, once; throws std::bad_alloc. By the producing thread, before it reserves.
+  void take() {
+    if (!units_) units_ = std::make_unique<Unit[]>(unit_count_);
+  }
 
   /// Room for a message of `size` bytes, or null if there is none now. Larger than half the ring never fits.
   std::uint8_t* reserve(std::uint32_t size) noexcept {
@@ -74,7 +79,7 @@ class LogQueue {
 
   std::uint64_t begin() const noexcept { return begin_.load(std::memory_order_acquire); }  ///< position of the oldest
   std::uint64_t end() const noexcept { return end_.load(std::memory_order_acquire); }      ///< behind the newest
-  std::uint64_t capacity() const noexcept { return units_.size() * sizeof(Unit); }         ///< [bytes]
+  std::uint64_t capacity() const noexcept { return unit_count_ * sizeof(Unit); }           ///< [bytes]
 
   /// Share in use [0..1]. From any thread.
   double fill() const noexcept {
@@ -98,7 +103,8 @@ class LogQueue {
     return new (&units_[(position % capacity()) / sizeof(Unit)]) Record(record);
   }
 
-  std::vector<Unit> units_;
+  const std::size_t unit_count_;
+  std::unique_ptr<Unit[]> units_;
   std::uint64_t reserved_{};  // producing thread only
   alignas(64) std::atomic<std::uint64_t> begin_{};
   alignas(64) std::atomic<std::uint64_t> end_{};
