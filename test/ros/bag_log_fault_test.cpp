@@ -49,13 +49,6 @@ class Gate {
   bool is_open_{true};
 };
 
-std::uint64_t residentBytes() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t total = 0, resident = 0;
-  file >> total >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
 TEST_F(LogTest, StandingDiskBlocksNobodyAndDropsAreCounted) {
   settings_.queue_size = 100'000;
   Gate gate;
@@ -273,24 +266,6 @@ TEST_F(LogTest, TakesAnyRecordTime) {
     log.write("/a", ros::Time(5.0), wrench(2));
   }
   EXPECT_EQ(readAll().size(), 3u);
-}
-
-/// rosbag keeps a copy of what passed through chunks that were not ended by their size.
-TEST_F(LogTest, MemoryStaysFlatWhenChunksAreEndedByTime) {
-  unsigned number = 0;
-  LogFile file(std::move(*LogName::take(directory_, "test", number).value), 768 * 1024);
-  ASSERT_FALSE(file.open());
-  LogTopic topic(0, "/a", {"std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n"}, false, "");
-  std::vector<std::uint8_t> bytes(100'000);
-  auto now = LogFile::Clock::now();
-  std::uint64_t before = 0;
-  for (std::size_t i = 0; i < 1500; ++i, now += LogFile::kChunkPeriod / 5) {  // 1 MB/s for 150 s
-    if (i == 500) before = residentBytes();
-    ASSERT_FALSE(file.write(topic, at(i), bytes.data(), static_cast<std::uint32_t>(bytes.size()), now));
-    ASSERT_FALSE(file.closeChunkInTime(now));
-  }
-  EXPECT_LT(residentBytes(), before + 5'000'000) << "100 MB passed";
-  ASSERT_FALSE(file.close());
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "hammer_loads/ros/log_queue.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <thread>
+
+#include "support/main.h"
 
 namespace hammer_loads::test {
 namespace {
@@ -48,7 +48,4 @@ TEST(LogQueue, HandsOverEveryByteBetweenThreads) {
 }  // namespace
 }  // namespace hammer_loads::test
 
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}
+HAMMER_LOADS_TEST_MAIN

@@ -9,8 +9,8 @@
 #include <deque>
 
 #include "soak/endless_session.h"
-#include "soak/resident_memory.h"
 #include "soak/verdict.h"
+#include "support/resident_memory.h"
 
 namespace hammer_loads::soak {
 namespace {
@@ -42,14 +42,14 @@ class LiveSoak {
       while (sent_ < due) send();
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(5e-4));
       if (elapsed > seconds / 400.0 * static_cast<double>(memory_samples_)) {
-        memory.add(residentMemory(node_process));
+        memory.add(test::residentMemory(node_process));
         ++memory_samples_;
       }
     }
     wait([this] { return last_received_ == message_.header.stamp.toNSec(); });
   }
 
-  MemoryRecord memory;
+  test::MemoryRecord memory;
   std::uint64_t sent() const { return sent_; }
   std::uint64_t received() const { return received_; }
   std::uint64_t lost() const { return lost_; }

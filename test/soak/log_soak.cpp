@@ -15,8 +15,8 @@
 #include "hammer_loads/ros/bag_log.h"
 #include "hammer_loads/ros/steady_memory.h"
 #include "soak/endless_session.h"
-#include "soak/resident_memory.h"
 #include "soak/verdict.h"
+#include "support/resident_memory.h"
 
 namespace hammer_loads::soak {
 namespace {
@@ -78,7 +78,7 @@ struct Written {
   LogHealth health;
   std::uint32_t wrenches{};
   double most_on_disk{};  ///< [byte]
-  MemoryRecord memory;
+  test::MemoryRecord memory;
 };
 
 double sizeOf(const std::string& directory) {
@@ -118,7 +118,7 @@ Written write(const std::string& directory, std::uint64_t samples) {
     if (i % 1000 != 0) continue;
     while (log.health().queue_fill > 0.25) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (i % (samples / 400 / 1000 * 1000 + 1000) == 0) {
-      if (i > samples / 10) written.memory.add(residentMemory());  // by then every buffer has had its size
+      if (i > samples / 10) written.memory.add(test::residentMemory());  // by then every buffer has had its size
       written.most_on_disk = std::max(written.most_on_disk, sizeOf(directory));
     }
   }

@@ -6,8 +6,8 @@
 #include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "soak/endless_session.h"
-#include "soak/resident_memory.h"
 #include "soak/verdict.h"
+#include "support/resident_memory.h"
 
 namespace hammer_loads::soak {
 namespace {
@@ -35,7 +35,7 @@ int run(std::uint64_t samples) {
   const double peak = session.peakForce();
   const std::uint64_t piece = session.pieceSize();
   const std::uint64_t pieces = samples / piece;
-  MemoryRecord memory;
+  test::MemoryRecord memory;
   Errors first, last;
   std::uint64_t turns = 0, pulses = 0, not_finite = 0;
   for (std::uint64_t i = 0; i < pieces * piece; ++i) {
@@ -43,7 +43,7 @@ int run(std::uint64_t samples) {
     const Loads& loads = pipeline.crankSample(sample.stamp, sample.crank);
     turns += loads.turn_ends;
     for (std::size_t k = 0; k < loads.turn_ends; ++k) pulses += loads.ends[k].pulse.has_value();
-    if (i % (samples / kMemorySamples) == 0) memory.add(residentMemory());
+    if (i % (samples / kMemorySamples) == 0) memory.add(test::residentMemory());
     if (loads.refusal) continue;
     const double error = (loads.wrench.force_z - session.truth(sample.place).load.force_z) / peak;
     not_finite += !std::isfinite(error);

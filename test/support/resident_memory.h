@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace hammer_loads::soak {
+namespace hammer_loads::test {
 
 /// Resident memory of a process [byte]; 0 if there is none.
 inline double residentMemory(const std::string& process = "self") {
@@ -34,4 +34,4 @@ class MemoryRecord {
   std::vector<double> samples_;
 };
 
-}  // namespace hammer_loads::soak
+}  // namespace hammer_loads::test
