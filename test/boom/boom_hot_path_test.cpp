@@ -1,9 +1,10 @@
 // Everything per sample: no allocation, a few microseconds.
+#include <gtest/gtest.h>
+
 #include <chrono>
 
 #include "boom/booms.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -78,5 +79,3 @@ TEST(BoomHotPath, TakesAtMostThreeMicrosecondsASample) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

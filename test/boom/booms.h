@@ -10,8 +10,8 @@
 #include <string>
 
 #include "hammer_loads/boom/boom.h"
-#include "hammer_loads/boom/read_boom.h"
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/settings/read_boom.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads::test {
 

@@ -1,11 +1,12 @@
 #include "hammer_loads/boom/chain.h"
 
+#include <gtest/gtest.h>
+
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
 #include "boom/booms.h"
 #include "hammer_loads/boom/chain_pose.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -190,5 +191,3 @@ TEST(Chain, OutlivesItsMaker) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,7 +1,8 @@
 #include "hammer_loads/boom/cylinder.h"
 
+#include <gtest/gtest.h>
+
 #include "boom/booms.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -170,5 +171,3 @@ TEST_F(Cylinders, BothSignsOfTheJointAxisGiveOneForce) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

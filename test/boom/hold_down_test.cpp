@@ -1,7 +1,8 @@
 #include "hammer_loads/boom/hold_down.h"
 
+#include <gtest/gtest.h>
+
 #include "boom/booms.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -95,5 +96,3 @@ TEST_F(Press, NoLoadHoldsForEver) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

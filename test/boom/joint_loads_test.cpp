@@ -1,9 +1,10 @@
+#include <gtest/gtest.h>
+
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 
 #include "boom/booms.h"
 #include "hammer_loads/boom/boom.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -214,5 +215,3 @@ TEST(JointLoads, GravityAtTheTipFollowsPitch) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

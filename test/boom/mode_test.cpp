@@ -1,13 +1,14 @@
 #include "hammer_loads/boom/mode.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <random>
 #include <vector>
 
-#include "hammer_loads/linkage/format.h"
-#include "support/main.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
@@ -228,5 +229,3 @@ TEST(ModeAdvance, StepsOfAHundredPeriodsStayBounded) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

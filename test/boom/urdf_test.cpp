@@ -1,3 +1,4 @@
+#include <gtest/gtest.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <kdl/chainfksolverpos_recursive.hpp>
@@ -5,9 +6,8 @@
 
 #include "boom/booms.h"
 #include "hammer_loads/linkage/link_motion.h"
-#include "hammer_loads/parameters/hammer_parameters.h"
-#include "hammer_loads/parameters/parameter_reader.h"
-#include "support/main.h"
+#include "hammer_loads/settings/hammer_parameters.h"
+#include "hammer_loads/settings/parameter_reader.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -152,5 +152,3 @@ TEST_F(Model, StaysWithinThePublishedSize) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,10 +1,11 @@
+#include <gtest/gtest.h>
+
 #include <Eigen/Eigenvalues>
 #include <boost/numeric/odeint.hpp>
 
 #include "boom/booms.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/shaft_load.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -243,5 +244,3 @@ TEST(VibrationSession, MovingPoseAt200HzWithMeans) { expectWithin(session(200.0,
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,9 @@
 #include "hammer_loads/boom/vibration.h"
 
+#include <gtest/gtest.h>
+
 #include "boom/booms.h"
 #include "hammer_loads/boom/rigid_error.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -239,5 +240,3 @@ TEST_F(ShippedBoom, RigidErrorFollowsPulseLength) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,9 +1,10 @@
 #include "hammer_loads/boom/wrench.h"
 
+#include <gtest/gtest.h>
+
 #include <random>
 
 #include "boom/booms.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -81,5 +82,3 @@ TEST(WrenchShift, EqualsTheMatrixAndConservesPower) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

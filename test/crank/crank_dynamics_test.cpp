@@ -1,9 +1,10 @@
 #include "hammer_loads/crank/crank_dynamics.h"
 
+#include <gtest/gtest.h>
+
 #include <boost/numeric/odeint.hpp>
 #include <vector>
 
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -165,5 +166,3 @@ TEST(CrankPosition, PassesABlowOnlyWhenItIsAtOrBehindIt) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,9 @@
 #include "hammer_loads/crank/crank_filter.h"
 
+#include <gtest/gtest.h>
+
 #include "hammer_loads/crank/plain_tracker.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -256,5 +257,3 @@ TEST(PlainTracker, AssumesNoAccelerationAsThePaper) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

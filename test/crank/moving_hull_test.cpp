@@ -1,11 +1,12 @@
 // The crank filter in a hull that moves, against hull and mechanism simulated as one free system.
+#include <gtest/gtest.h>
+
 #include <random>
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "support/free_run.h"
 #include "support/imu_on_hull.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -102,5 +103,3 @@ TEST(FilterInMovingHull, WithAnImuItIsNearlyAsGoodAndFarBetterThanWithout) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,4 +1,6 @@
 // README.md and doc/model.md against what they speak of: parameter files, topics, messages, commands, C++ names.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -6,8 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "hammer_loads/parameters/load.h"
-#include "support/main.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 namespace {
@@ -251,5 +252,3 @@ TEST(Model, EverySourceFileItNamesExists) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,4 +1,6 @@
 // What the fuzzer begins with, what it has ever found, and a fixed number of mutations of both, without the fuzzer.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -7,8 +9,6 @@
 #include <random>
 #include <sstream>
 #include <vector>
-
-#include "support/main.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
@@ -81,5 +81,3 @@ TEST(Corpus, MutationsPass) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -6,10 +6,11 @@
 #include <cstdlib>
 #include <string>
 
-#include "hammer_loads/parameters/hammer_parameters.h"
-#include "hammer_loads/parameters/log_settings.h"
-#include "hammer_loads/parameters/parameter_reader.h"
-#include "hammer_loads/parameters/pipeline_settings.h"
+#include "hammer_loads/log/log_settings.h"
+#include "hammer_loads/settings/hammer_parameters.h"
+#include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/settings/read_log.h"
 
 namespace hammer_loads {
 namespace {

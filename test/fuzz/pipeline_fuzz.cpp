@@ -10,9 +10,9 @@
 #include <cstring>
 #include <numeric>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/pipeline/unit_check.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,11 +1,12 @@
 /// Properties over random linkages of the grapple's topology: one branch, kept, and right to 50 digits.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <vector>
 
 #include "grapple/explicit_curve.h"
 #include "grapple/grapples.h"
 #include "hammer_loads/grapple/slider_drive.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -195,5 +196,3 @@ TEST(RandomGrapples, RefuseEverythingBeyondTheirLimits) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

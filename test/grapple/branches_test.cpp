@@ -1,10 +1,11 @@
 #include "hammer_loads/grapple/branches.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <vector>
 
 #include "grapple/grapples.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -191,5 +192,3 @@ TEST(Branches, ParallelogramMovesByItself) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

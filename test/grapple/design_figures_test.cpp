@@ -1,12 +1,13 @@
 #include "hammer_loads/grapple/design_figures.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <sstream>
 #include <vector>
 
 #include "grapple/grapples.h"
 #include "hammer_loads/grapple/grapple_table.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -206,5 +207,3 @@ TEST(GrappleTable, SummaryAndOpening) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

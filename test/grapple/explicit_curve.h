@@ -1,7 +1,7 @@
 /// The price list's reference of the grapple, for the tests.
 #pragma once
 
-#include "hammer_loads/accuracy/explicit_curve.h"
+#include "hammer_loads/bench/explicit_curve.h"
 
 namespace hammer_loads::test {
 

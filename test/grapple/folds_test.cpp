@@ -1,10 +1,11 @@
 #include "hammer_loads/grapple/folds.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 
 #include "grapple/explicit_curve.h"
 #include "grapple/grapples.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -155,5 +156,3 @@ TEST(SliderLimits, FoldsOfRandomGrapplesEqualTheExplicitCurve) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,13 +1,13 @@
 #include "hammer_loads/grapple/grapple.h"
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
 #include <limits>
 
 #include "grapple/grapples.h"
-#include "hammer_loads/grapple/read_grapple.h"
-#include "support/main.h"
+#include "hammer_loads/settings/read_grapple.h"
 
 namespace hammer_loads {
 namespace {
@@ -172,5 +172,3 @@ TEST(Grapple, SaysWhyThereIsNoPose) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

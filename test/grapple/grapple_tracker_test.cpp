@@ -1,9 +1,10 @@
 #include "hammer_loads/grapple/grapple_tracker.h"
 
+#include <gtest/gtest.h>
+
 #include <limits>
 
 #include "grapple/grapples.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -105,5 +106,3 @@ TEST(GrappleTracker, JawsAreInTime) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,10 +1,11 @@
+#include <gtest/gtest.h>
+
 #include <algorithm>
 
 #include "grapple/explicit_curve.h"
 #include "grapple/grapples.h"
 #include "hammer_loads/grapple/grapple_motion.h"
 #include "support/csv.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -261,5 +262,3 @@ TEST(GrappleMotion, RegularWhereATriangleFormulaWouldChangeSign) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

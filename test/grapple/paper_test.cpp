@@ -1,8 +1,9 @@
 /// What the paper's printed formulas give, beside what holds.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 
 #include "grapple/grapples.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -81,5 +82,3 @@ TEST(GebelsFormulas, APathDemandedStraightStretchesTheLinks) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

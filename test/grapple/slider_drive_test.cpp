@@ -1,9 +1,10 @@
 #include "hammer_loads/grapple/slider_drive.h"
 
+#include <gtest/gtest.h>
+
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "grapple/grapples.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -118,5 +119,3 @@ TEST(SliderDrive, FindsTheSliderOfARockerAngle) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

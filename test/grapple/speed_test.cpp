@@ -1,4 +1,6 @@
 /// What one step costs: time and heap.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <chrono>
 #include <vector>
@@ -7,7 +9,6 @@
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple_tracker.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -107,5 +108,3 @@ TEST(Heap, NeitherWarmNorColdNorRefusedSamplesAllocate) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

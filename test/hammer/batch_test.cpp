@@ -1,11 +1,12 @@
 #include "hammer_loads/hammer/batch.h"
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <vector>
 
 #include "hammer_loads/hammer/link_loads.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 #include "support/mo100.h"
 #include "support/newton_euler.h"
 
@@ -252,5 +253,3 @@ TEST(Batch, NeverAllocates) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,9 @@
 #include "hammer_loads/hammer/blow.h"
 
+#include <gtest/gtest.h>
+
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/shaft_load.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -191,5 +192,3 @@ TEST(Blow, IdealCentreOfMassFreesTheSupportOfAnyRocker) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

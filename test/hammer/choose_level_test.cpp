@@ -1,6 +1,7 @@
 #include "hammer_loads/hammer/choose_level.h"
 
-#include "support/main.h"
+#include <gtest/gtest.h>
+
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -41,5 +42,3 @@ TEST(ChooseLevel, SaysWhichAndWhyWithTheFigures) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

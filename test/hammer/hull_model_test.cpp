@@ -1,9 +1,10 @@
 #include "hammer_loads/hammer/hull_model.h"
 
+#include <gtest/gtest.h>
+
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include "hammer_loads/hammer/pulse.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -114,5 +115,3 @@ TEST(LevelPulse, MomentumDifferenceIsTheImpulse) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

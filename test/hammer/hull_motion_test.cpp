@@ -1,4 +1,6 @@
 // Loads in a hull that moves, against hull and mechanism simulated as one free system.
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <random>
 
@@ -7,7 +9,6 @@
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/link_loads.h"
 #include "support/free_run.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -262,5 +263,3 @@ INSTANTIATE_TEST_SUITE_P(Levels, HullMotionTest, testing::Values(Level::kRocker,
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,11 +1,12 @@
 #include "hammer_loads/hammer/hull_wrench.h"
 
+#include <gtest/gtest.h>
+
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include "hammer_loads/linkage/pin_forces.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "support/csv.h"
-#include "support/main.h"
 #include "support/mo100.h"
 #include "support/newton_euler.h"
 
@@ -288,5 +289,3 @@ TEST(PrintedFormulas, AsPrintedPeakAtAThirdAndPushOneWayOnly) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,10 +1,11 @@
 #include "hammer_loads/hammer/pulse.h"
 
+#include <gtest/gtest.h>
+
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <vector>
 
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -215,5 +216,3 @@ TEST(PulseOfTurn, HandlesFlatNegativeAndTooShortTracks) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

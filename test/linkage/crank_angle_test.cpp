@@ -1,10 +1,10 @@
 #include "hammer_loads/linkage/crank_angle.h"
 
+#include <gtest/gtest.h>
+
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <random>
-
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -85,5 +85,3 @@ TEST(CrankAngle, TwoPiAsDoubleLiesJustBeforeTheBlow) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,9 +1,9 @@
 #include "hammer_loads/linkage/crank_rocker.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <limits>
-
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -86,5 +86,3 @@ TEST(CrankRocker, ScalesFromMicrometresToKilometres) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,8 @@
 #include "hammer_loads/linkage/half_angle_sine.h"
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <gtest/gtest.h>
 
-#include "support/main.h"
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 namespace hammer_loads {
 namespace {
@@ -46,5 +46,3 @@ TEST(HalfAngleSine, ServesAnyAngle) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

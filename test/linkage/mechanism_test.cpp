@@ -1,10 +1,11 @@
 #include "hammer_loads/linkage/mechanism.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <functional>
 #include <limits>
 
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -96,5 +97,3 @@ TEST(Mechanism, MassesAtRestHaveTheFirstMomentOfTheDrawing) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,6 +1,7 @@
+#include <gtest/gtest.h>
+
 #include "hammer_loads/linkage/link_motion.h"
 #include "support/csv.h"
-#include "support/main.h"
 #include "support/mo100.h"
 #include "support/newton_euler.h"
 
@@ -195,5 +196,3 @@ TEST(Motion, DirectionsAreUnitVectors) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

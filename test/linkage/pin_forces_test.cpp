@@ -1,7 +1,8 @@
 #include "hammer_loads/linkage/pin_forces.h"
 
+#include <gtest/gtest.h>
+
 #include "support/csv.h"
-#include "support/main.h"
 #include "support/mo100.h"
 #include "support/newton_euler.h"
 
@@ -168,5 +169,3 @@ TEST(PinForces, MasslessCrankAndRodLeaveTheRockersForces) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,9 +1,10 @@
 #include "hammer_loads/linkage/shaft_load.h"
 
+#include <gtest/gtest.h>
+
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include "support/csv.h"
-#include "support/main.h"
 #include "support/mo100.h"
 #include "support/newton_euler.h"
 
@@ -116,5 +117,3 @@ TEST(ShaftLoad, LevelPulseTurnsLikeTheRocker) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

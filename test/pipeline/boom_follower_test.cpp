@@ -1,10 +1,11 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 
+#include <gtest/gtest.h>
+
 #include <chrono>
 
 #include "boom/booms.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -345,5 +346,3 @@ TEST(BoomFollower, TakesAtMostThreeMicrosecondsASample) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,12 +1,13 @@
 #include "hammer_loads/pipeline/hull_deviation.h"
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cmath>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -118,5 +119,3 @@ TEST(Deviations, OfAKnownCovarianceAreThoseOfManyDraws) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

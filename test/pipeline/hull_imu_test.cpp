@@ -1,12 +1,13 @@
 #include "hammer_loads/pipeline/hull_imu.h"
 
+#include <gtest/gtest.h>
+
 #include <limits>
 
 #include "hammer_loads/hammer/hull_model.h"
 #include "support/counting_new.h"
 #include "support/free_run.h"
 #include "support/imu_on_hull.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -174,5 +175,3 @@ TEST(HullImu, GivesTheWrenchOfAMovingHullFromAnywhereOnIt) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,11 +1,12 @@
 #include "hammer_loads/pipeline/hull_outputs.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -150,5 +151,3 @@ TEST(MeanOutput, BeginsAnewAfterADropOut) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,8 @@
 #include "hammer_loads/pipeline/hull_pitch.h"
 
-#include <limits>
+#include <gtest/gtest.h>
 
-#include "support/main.h"
+#include <limits>
 
 namespace hammer_loads {
 namespace {
@@ -40,5 +40,3 @@ TEST(HullPitch, NoJointsKeepThePitch) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,12 +1,13 @@
 // Hostile input: whatever comes, loads are finite or refused and counted, and one turn after it all is well again.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -368,5 +369,3 @@ TEST(InputAttack, AnglesOfTheBoomThatCannotBeAreCounted) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

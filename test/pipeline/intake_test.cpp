@@ -1,10 +1,11 @@
 #include "hammer_loads/pipeline/intake.h"
 
+#include <gtest/gtest.h>
+
 #include <limits>
 #include <optional>
 
 #include "hammer_loads/linkage/crank_angle.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -90,5 +91,3 @@ TEST_F(IntakeTest, ASpeedOfNothingButZerosIsNoneWhileTheAngleMoves) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,10 +1,11 @@
 #include "hammer_loads/pipeline/joint_buffer.h"
 
+#include <gtest/gtest.h>
+
 #include <limits>
 
 #include "boom/booms.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -191,5 +192,3 @@ TEST_F(Joints, AllocateNothing) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,10 +1,11 @@
 /// The pipeline with the shipped boom under it, over a working session: cost, what the joints get, and what becomes of
 /// it when joint states or crank samples fail.
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <cstdio>
 
 #include "support/counting_new.h"
-#include "support/main.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
@@ -189,5 +190,3 @@ TEST(PipelineWithBoom, VibrationBeginsAnewAfterADropOut) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,7 +1,8 @@
 /// The hull's own motion in the wrench of a working session: none, its IMU's, the compliant boom's.
+#include <gtest/gtest.h>
+
 #include <cstdio>
 
-#include "support/main.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
@@ -129,5 +130,3 @@ TEST(PipelineHullMotion, ASilentImuLeavesTheWeightByPitchAndIsCounted) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

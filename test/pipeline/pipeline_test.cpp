@@ -1,10 +1,11 @@
 #include "hammer_loads/pipeline/pipeline.h"
 
-#include "hammer_loads/accuracy/session_run.h"
-#include "hammer_loads/parameters/load.h"
+#include <gtest/gtest.h>
+
+#include "hammer_loads/bench/session_run.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 #include "support/mo100.h"
 #include "support/session_bounds.h"
 
@@ -174,5 +175,3 @@ TEST(Pipeline, ABlowIsOnlyWhatStrikes) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

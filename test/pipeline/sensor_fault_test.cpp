@@ -1,13 +1,14 @@
 // Faults of the crank's sensor, live ones in the middle of work: what is accepted stays good, during the fault and
 // after.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <functional>
 #include <optional>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -113,5 +114,3 @@ TEST(SensorFault, ASpeedThatSaysNothing) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

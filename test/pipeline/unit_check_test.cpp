@@ -1,9 +1,10 @@
 #include "hammer_loads/pipeline/unit_check.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "hammer_loads/simulation/session.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -115,5 +116,3 @@ TEST(UnitCheck, ABoomInDegreesIsBeyondAWholeTurn) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,4 +1,6 @@
 // Laws of mechanics that every machine must keep, on a hundred thousand random ones.
+#include <gtest/gtest.h>
+
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <complex>
@@ -9,7 +11,6 @@
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/linkage/pin_forces.h"
 #include "hammer_loads/linkage/shaft_load.h"
-#include "support/main.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -361,5 +362,3 @@ TEST(RandomMachines, GarbageIsRefusedWithReasonsOrGivesFiniteLoads) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

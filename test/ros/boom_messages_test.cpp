@@ -1,8 +1,9 @@
 #include "hammer_loads/ros/boom_messages.h"
 
+#include <gtest/gtest.h>
+
 #include "boom/booms.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -126,5 +127,3 @@ TEST_F(Messages, AllocateNothing) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,8 @@
 #include "hammer_loads/ros/frame_wrench.h"
 
-#include <cmath>
+#include <gtest/gtest.h>
 
-#include "support/main.h"
+#include <cmath>
 
 namespace hammer_loads {
 namespace {
@@ -165,5 +165,3 @@ TEST_F(Frames, ABadTransformIsNotTaken) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,9 @@
 #include "hammer_loads/ros/grapple_flow.h"
 
+#include <gtest/gtest.h>
+
 #include "ros/grapple_messages.h"
 #include "support/csv.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -244,5 +245,3 @@ TEST(GrappleSettingsTest, AGrappleHasNoDefault) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,6 +1,7 @@
+#include <gtest/gtest.h>
+
 #include "ros/grapple_messages.h"
 #include "support/counting_new.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -34,5 +35,3 @@ TEST(GrappleHotPath, AllocatesNothing) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

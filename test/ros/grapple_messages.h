@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/ros/grapple_flow.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::test {
 

@@ -1,11 +1,11 @@
 // The description that scripts/grapple_urdf writes, with the joint positions that a GrappleFlow gives.
+#include <gtest/gtest.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <kdl_parser/kdl_parser.hpp>
 
 #include "ros/grapple_messages.h"
 #include "support/command.h"
-#include "support/main.h"
 
 namespace hammer_loads {
 namespace {
@@ -121,5 +121,3 @@ TEST(GrappleDescription, ABadFileIsToldInOneLine) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-HAMMER_LOADS_TEST_MAIN

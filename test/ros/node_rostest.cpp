@@ -14,8 +14,8 @@
 #include <map>
 #include <mutex>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "ros/eventually.h"
 

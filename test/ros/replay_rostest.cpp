@@ -13,8 +13,8 @@
 #include <filesystem>
 #include <numeric>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/ros/bag_processing.h"
+#include "hammer_loads/settings/load.h"
 #include "ros/eventually.h"
 
 namespace hammer_loads {

@@ -1,11 +1,12 @@
 #include "hammer_loads/simulation/machine_parameters.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/main.h"
 
 namespace hammer_loads::simulation {
 namespace {
@@ -118,5 +119,3 @@ TEST(MachineParameters, OneHammerKeyNeedsThemAll) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,12 +1,13 @@
 #include "hammer_loads/simulation/moving_links.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/motion.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/simulation/machine_settings.h"
-#include "support/main.h"
 
 namespace hammer_loads::simulation {
 namespace {
@@ -151,5 +152,3 @@ TEST(MovingLinks, StrikeOfMo100AtConstantSpeed) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
-
-HAMMER_LOADS_TEST_MAIN

@@ -1,8 +1,8 @@
 #include "hammer_loads/simulation/session.h"
 
-#include <cmath>
+#include <gtest/gtest.h>
 
-#include "support/main.h"
+#include <cmath>
 
 namespace hammer_loads::simulation {
 namespace {
@@ -173,5 +173,3 @@ TEST(Session, HoldsAtOtherRatesAndCounts) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
-
-HAMMER_LOADS_TEST_MAIN

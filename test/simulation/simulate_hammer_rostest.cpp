@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/machine_parameters.h"
 #include "hammer_loads/simulation/session.h"
 

@@ -1,10 +1,10 @@
 #include "hammer_loads/simulation/working_machine.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "support/main.h"
 
 namespace hammer_loads::simulation {
 namespace {
@@ -194,5 +194,3 @@ TEST(WorkingMachine, ImpossibleLinkageIsRefused) {
 
 }  // namespace
 }  // namespace hammer_loads::simulation
-
-HAMMER_LOADS_TEST_MAIN

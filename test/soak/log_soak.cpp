@@ -10,10 +10,10 @@
 #include <filesystem>
 #include <thread>
 
-#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/pipeline/pipeline.h"
-#include "hammer_loads/ros/bag_log.h"
 #include "hammer_loads/ros/steady_memory.h"
+#include "hammer_loads/settings/load.h"
 #include "soak/endless_session.h"
 #include "soak/verdict.h"
 #include "support/resident_memory.h"

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "soak/endless_session.h"
 #include "soak/verdict.h"
 #include "support/resident_memory.h"

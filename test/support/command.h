@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "parameters/temporary_file.h"
+#include "settings/temporary_file.h"
 
 namespace hammer_loads::test {
 

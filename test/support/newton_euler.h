@@ -1,7 +1,7 @@
 /// The price list's reference, for the tests.
 #pragma once
 
-#include "hammer_loads/accuracy/newton_euler.h"
+#include "hammer_loads/bench/newton_euler.h"
 
 namespace hammer_loads::test {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hammer_loads/accuracy/session_errors.h"
+#include "hammer_loads/bench/session_errors.h"
 
 namespace hammer_loads::test {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "boom/booms.h"
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "parameters/temporary_file.h"
+#include "settings/temporary_file.h"
 #include "support/imu_on_hull.h"
 
 namespace hammer_loads::test {

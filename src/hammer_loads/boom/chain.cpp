@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "hammer_loads/boom/urdf_text.h"
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/joint_space.h"
-#include "hammer_loads/linkage/checked.h"
+#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

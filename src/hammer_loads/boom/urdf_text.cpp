@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

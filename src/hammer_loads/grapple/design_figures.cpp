@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

@@ -14,7 +14,7 @@
 #include "hammer_loads/grapple/grapple_parameters.h"
 #include "hammer_loads/grapple/lever_group.h"
 #include "hammer_loads/grapple/slider_drive.h"
-#include "hammer_loads/linkage/checked.h"
+#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
 

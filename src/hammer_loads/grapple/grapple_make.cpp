@@ -3,7 +3,7 @@
 
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple.h"
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

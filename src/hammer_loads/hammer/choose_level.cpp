@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "hammer_loads/linkage/format.h"
 #include "hammer_loads/linkage/shaft_load.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

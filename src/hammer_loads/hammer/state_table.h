@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/linkage/checked.h"
 #include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
 

@@ -6,7 +6,7 @@
 
 #include "hammer_loads/hammer/batch.h"
 #include "hammer_loads/hammer/evaluate.h"
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

@@ -1,7 +1,7 @@
 /// Geometry of the change-point crank-rocker: the constants that its motion needs.
 #pragma once
 
-#include "hammer_loads/linkage/checked.h"
+#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/linkage/inline.h"
+#include "hammer_loads/util/inline.h"
 
 namespace hammer_loads {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/linkage/format.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "hammer_loads/hammer/hull_model.h"
-#include "hammer_loads/parameters/pipeline_settings.h"
 #include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/settings/pipeline_settings.h"
 
 namespace hammer_loads {
 

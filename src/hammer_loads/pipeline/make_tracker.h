@@ -5,7 +5,7 @@
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/linkage/mechanism.h"
-#include "hammer_loads/parameters/pipeline_settings.h"
+#include "hammer_loads/settings/pipeline_settings.h"
 
 namespace hammer_loads {
 

@@ -12,7 +12,6 @@
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/pulse.h"
-#include "hammer_loads/parameters/pipeline_settings.h"
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
@@ -22,6 +21,7 @@
 #include "hammer_loads/pipeline/intake.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
 #include "hammer_loads/pipeline/unit_check.h"
+#include "hammer_loads/settings/pipeline_settings.h"
 
 namespace hammer_loads {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
-#include "hammer_loads/ros/grapple_settings.h"
+#include "hammer_loads/settings/grapple_settings.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 

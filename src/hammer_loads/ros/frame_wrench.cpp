@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "hammer_loads/boom/wrench.h"
-#include "hammer_loads/linkage/format.h"
-#include "hammer_loads/parameters/yaml_value.h"
+#include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

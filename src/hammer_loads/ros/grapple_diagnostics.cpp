@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "hammer_loads/linkage/format.h"
 #include "hammer_loads/ros/log_diagnostics.h"
 #include "hammer_loads/ros/steady_time.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {

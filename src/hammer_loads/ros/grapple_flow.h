@@ -18,7 +18,7 @@
 
 #include "hammer_loads/grapple/grapple_tracker.h"
 #include "hammer_loads/pipeline/stamp_order.h"
-#include "hammer_loads/ros/grapple_settings.h"
+#include "hammer_loads/settings/grapple_settings.h"
 
 namespace hammer_loads {
 

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/ros/ros_parameters.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 namespace {

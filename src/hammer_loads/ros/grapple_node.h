@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/grapple_diagnostics.h"
 #include "hammer_loads/ros/grapple_flow.h"
 #include "hammer_loads/ros/log_services.h"
-#include "hammer_loads/ros/record_clock.h"
 
 namespace hammer_loads {
 

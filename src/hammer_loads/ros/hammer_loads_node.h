@@ -13,12 +13,12 @@
 #include <memory>
 #include <string>
 
-#include "hammer_loads/parameters/load.h"
-#include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/loads_flow.h"
 #include "hammer_loads/ros/log_services.h"
 #include "hammer_loads/ros/node_diagnostics.h"
-#include "hammer_loads/ros/record_clock.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 

@@ -13,10 +13,10 @@
 #include <optional>
 #include <string>
 
-#include "hammer_loads/parameters/load.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/boom_messages.h"
 #include "hammer_loads/ros/frame_wrench.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 

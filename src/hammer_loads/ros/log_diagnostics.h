@@ -3,7 +3,7 @@
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
-#include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/log/bag_log.h"
 
 namespace hammer_loads {
 

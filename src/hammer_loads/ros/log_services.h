@@ -7,7 +7,7 @@
 
 #include <functional>
 
-#include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/log/bag_log.h"
 
 namespace hammer_loads {
 

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstdint>
 
-#include "hammer_loads/ros/bag_log.h"
+#include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/ros/loads_flow.h"
 
 namespace hammer_loads {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/parameters/yaml_value.h"
+#include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/parameters/load.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 

@@ -3,10 +3,10 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/linkage/format.h"
-#include "hammer_loads/parameters/hammer_parameters.h"
-#include "hammer_loads/parameters/parameter_reader.h"
-#include "hammer_loads/parameters/pipeline_settings.h"
+#include "hammer_loads/settings/hammer_parameters.h"
+#include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads::simulation {
 namespace {

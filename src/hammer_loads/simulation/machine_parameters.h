@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "hammer_loads/linkage/checked.h"
-#include "hammer_loads/parameters/parameter_map.h"
+#include "hammer_loads/settings/parameter_map.h"
 #include "hammer_loads/simulation/machine_settings.h"
+#include "hammer_loads/util/checked.h"
 
 namespace hammer_loads::simulation {
 

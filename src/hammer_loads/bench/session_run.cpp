@@ -1,0 +1,50 @@
+#include "hammer_loads/bench/session_run.h"
+
+#include <string>
+
+namespace hammer_loads::accuracy {
+
+SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
+                      const PipelineSettings& settings) {
+  Pipeline pipeline(mechanism, settings);
+  const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+  const auto seconds = [start](std::int64_t stamp) { return 1e-9 * static_cast<double>(stamp - start); };
+  std::size_t next_joints = 0;
+  SessionRun run;
+  for (const simulation::CrankReading& reading : session.crank) {
+    for (; next_joints < session.joints.size() && session.joints[next_joints].stamp <= reading.stamp; ++next_joints) {
+      const simulation::JointReading& joints = session.joints[next_joints];
+      pipeline.boomJoints(joints.stamp, names, {joints.position.begin(), joints.position.end()},
+                          {joints.velocity.begin(), joints.velocity.end()});
+    }
+    const Loads& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    for (std::size_t i = 0; i < loads.turn_ends; ++i) {
+      const TurnEnd& end = loads.ends[i];
+      BlowAt blow{seconds(end.stamp), end.blow.energy, end.blow.tool_impulse_z};
+      if (end.pulse) {
+        blow.turn_peak = end.pulse->amplitude;
+        blow.turn_impulse_z = end.pulse->turn_impulse_z;
+      }
+      run.blows.push_back(blow);
+    }
+    if (loads.refusal) continue;
+    run.wrenches.push_back({seconds(reading.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y});
+  }
+  run.counts = pipeline.counts();
+  return run;
+}
+
+SessionErrors judge(const SessionRun& run, const simulation::Session& session,
+                    const simulation::MachineSettings& machine) {
+  std::vector<WrenchAt> truth;
+  for (const simulation::CrankTruth& t : session.truth)
+    truth.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y});
+  std::vector<BlowAt> blows;
+  for (const simulation::BlowTruth& b : session.blows)
+    blows.push_back({b.time, b.strike.energy, b.strike.tool_impulse, b.turn_peak_force_z, b.turn_impulse_z});
+  Judged judged{3.0, machine.duration - 3.0, {}};
+  for (const auto& gap : machine.crank.drop_outs) judged.drop_outs.push_back(gap.to);
+  return sessionErrors(run.wrenches, truth, run.blows, blows, judged);
+}
+
+}  // namespace hammer_loads::accuracy

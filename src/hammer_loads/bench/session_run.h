@@ -1,0 +1,24 @@
+/// A simulated session through the pipeline, judged by its truth.
+#pragma once
+
+#include "hammer_loads/bench/session_errors.h"
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::accuracy {
+
+struct SessionRun {
+  std::vector<WrenchAt> wrenches;  ///< of accepted samples
+  std::vector<BlowAt> blows;
+  IntakeCounts counts;
+};
+
+/// Reads a session into a pipeline, joint states in their place between the crank samples. start: stamp of t = 0 [ns].
+SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
+                      const PipelineSettings& settings);
+
+/// Judged from 3 s after the start to 3 s before the end, without the two turns after each drop-out.
+SessionErrors judge(const SessionRun& run, const simulation::Session& session,
+                    const simulation::MachineSettings& machine);
+
+}  // namespace hammer_loads::accuracy

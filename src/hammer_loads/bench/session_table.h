@@ -1,0 +1,28 @@
+/// Price list, second part: error of a whole session by crank estimator, sample rate and encoder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/bench/session_errors.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads::accuracy {
+
+struct SessionRow {
+  std::string estimator;
+  double rate{};  ///< of crank samples [Hz]
+  int counts{};   ///< of the encoder per turn
+  bool speed{};   ///< speeds are measured too
+  SessionErrors errors;
+};
+
+/// Simulated working sessions of the given hammer (seeded: the same on every run), some 20 s of computing.
+std::vector<SessionRow> sessionTable(const Settings& settings);
+
+/// As a table in Markdown.
+std::string markdown(const std::vector<SessionRow>& rows);
+/// As a JSON array of objects, errors as parts of one.
+std::string json(const std::vector<SessionRow>& rows);
+
+}  // namespace hammer_loads::accuracy

@@ -1,0 +1,69 @@
+#include "hammer_loads/bench/step_prices.h"
+
+#include "hammer_loads/pipeline/make_tracker.h"
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::accuracy {
+namespace {
+
+constexpr double kWorkBegins = 3.0, kWorkEnds = 8.0;  // [s]
+
+/// Crank readings of a hammer at work at 1 kHz, links with the masses that the level knows.
+std::vector<simulation::CrankReading> workingReadings(const Settings& settings, Level level) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.hammer = settings.mechanism.parameters();
+  machine.level = level;
+  machine.drive.stop_time = kWorkEnds + 1.0;
+  machine.duration = kWorkEnds;
+  const std::vector<simulation::CrankReading> all = simulation::recordSession(machine).crank;
+  std::vector<simulation::CrankReading> work;
+  for (const simulation::CrankReading& reading : all) {
+    if (1e-9 * static_cast<double>(reading.stamp - machine.start_stamp) >= kWorkBegins) work.push_back(reading);
+  }
+  return work;
+}
+
+PipelineSettings settingsOf(const Settings& settings, Level level, CrankEstimator estimator) {
+  PipelineSettings s = settings.pipeline;
+  s.level = level;
+  s.crank_estimator = estimator;
+  s.crank_angle_resolution = kTwoPi / 4096.0;  // the simulated encoder
+  return s;
+}
+
+PriceRow trackerPrice(const Settings& settings, const char* name, Level level, CrankEstimator estimator) {
+  const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
+  const auto tracker = makeTracker(settings.mechanism, settingsOf(settings, level, estimator));
+  const auto pass = [&] {
+    tracker->start({readings.front().angle, readings.front().speed});
+    for (std::size_t i = 1; i < readings.size(); ++i) {
+      const double step = 1e-9 * static_cast<double>(readings[i].stamp - readings[i - 1].stamp);
+      keep(tracker->update(step, {readings[i].angle, readings[i].speed}));
+      keep(tracker->estimate());
+    }
+  };
+  return {"crank", name, costOf(readings.size(), pass), {}, {}};
+}
+
+PriceRow pipelinePrice(const Settings& settings, const char* name, Level level) {
+  const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
+  Pipeline pipeline(settings.mechanism, settingsOf(settings, level, CrankEstimator::kMechanism));
+  const auto pass = [&] {
+    for (const simulation::CrankReading& r : readings) keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}));
+  };  // the second pass begins with time running back: one restart
+  return {"pipeline", name, costOf(readings.size(), pass), {}, {}};
+}
+
+}  // namespace
+
+std::vector<PriceRow> stepPrices(const Settings& settings) {
+  return {trackerPrice(settings, "none", Level::kRocker, CrankEstimator::kNone),
+          trackerPrice(settings, "difference", Level::kRocker, CrankEstimator::kDifference),
+          trackerPrice(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
+          trackerPrice(settings, "mechanism, linkage", Level::kLinkage, CrankEstimator::kMechanism),
+          pipelinePrice(settings, "rocker", Level::kRocker),
+          pipelinePrice(settings, "linkage", Level::kLinkage)};
+}
+
+}  // namespace hammer_loads::accuracy

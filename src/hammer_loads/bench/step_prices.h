@@ -1,0 +1,14 @@
+/// Prices of one crank sample of a working session: the tracker's step by kind, and the whole pipeline.
+#pragma once
+
+#include <vector>
+
+#include "hammer_loads/bench/price_row.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads::accuracy {
+
+/// At 1 kHz; errors are the session table's. Some 5 s.
+std::vector<PriceRow> stepPrices(const Settings& settings);
+
+}  // namespace hammer_loads::accuracy

@@ -1,0 +1,100 @@
+#include "hammer_loads/commands/command_line.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+std::string ruleText(double least, double most) {
+  std::string rule = "a finite number";
+  if (std::isfinite(least)) rule += (least == 0.0 ? " > " : " >= ") + numberText(least);
+  if (std::isfinite(most)) rule += (std::isfinite(least) ? " and <= " : " <= ") + numberText(most);
+  return rule;
+}
+
+/// Nothing when it cannot be read or holds nothing; one line on stderr says so.
+std::optional<std::string> textOf(const std::string& file) {
+  std::ostringstream text;
+  errno = 0;
+  std::ifstream stream(file);
+  text << stream.rdbuf();  // fails for nothing at all to read as well
+  if (stream && text) return text.str();
+  const int error = errno;
+  std::cerr << file << ": cannot be read: " << (error != 0 ? std::strerror(error) : "is empty") << '\n';
+  return std::nullopt;
+}
+
+}  // namespace
+
+void addParamsOption(CLI::App& app, std::vector<std::string>& files) {
+  app.add_option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
+      ->allow_extra_args(false)
+      ->type_name("FILE.yaml");
+}
+
+void addLevelOption(CLI::App& app, std::optional<Level>& level) {
+  std::vector<std::string> words;
+  for (const auto& [word, meaning] : kLevelNames) words.emplace_back(word);
+  app.add_option_function<std::string>(
+         "--level",
+         [&level](const std::string& given) {
+           for (const auto& [word, meaning] : kLevelNames) {
+             if (given == word) level = meaning;
+           }
+         },
+         "how much of the mechanism has mass; without it as in the parameters")
+      ->check(CLI::IsMember(words))
+      ->type_name("LEVEL");
+}
+
+CLI::Validator numberWithin(double least, double most, const std::string& unit) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        const std::optional<double> value = asNumber(YAML::Node(text));
+        const bool positive = least != 0.0 || (value && *value > 0.0);
+        const bool good = value && std::isfinite(*value) && *value >= least && *value <= most && positive;
+        return good ? std::string{} : text + (unit.empty() ? "" : " " + unit) + ", must be " + ruleText(least, most);
+      },
+      "");
+}
+
+std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << app.get_name() << ": " << onOneLine(error.what()) << " (--help shows the options)\n";
+    return kExitWrongUsage;
+  }
+}
+
+int finishOutput() {
+  if (std::cout.flush()) return 0;
+  std::cerr << "stdout: cannot be written\n";
+  return kExitFailure;
+}
+
+void addUrdfOption(CLI::App& app, std::string& file) {
+  app.add_option("--urdf", file, "robot description; with it the boom's loads as well")->type_name("FILE.urdf");
+}
+
+std::optional<Settings> loadOrReport(const std::vector<std::string>& files, const std::string& urdf_file) {
+  const std::optional<std::string> description = urdf_file.empty() ? std::string{} : textOf(urdf_file);
+  if (!description) return std::nullopt;
+  Checked<Settings> settings = loadFiles(configDirectory(), files, *description);
+  for (const std::string& problem : settings.problems) std::cerr << problem << '\n';
+  if (!settings.value) return std::nullopt;
+  for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
+  return std::move(settings.value);
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,38 @@
+/// What the commands share: options in, one line per error on stderr, exit codes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+
+constexpr int kExitFailure = 1;     ///< bad parameters or input
+constexpr int kExitWrongUsage = 2;  ///< bad command line
+
+/// Adds `--params FILE.yaml`, which may be repeated.
+void addParamsOption(CLI::App& app, std::vector<std::string>& files);
+
+/// Adds `--level`, limited to the levels of the model; without it `level` stays as it is.
+void addLevelOption(CLI::App& app, std::optional<Level>& level);
+
+/// For an option: a finite number in [least, most]; least itself is excluded when it is 0.
+CLI::Validator numberWithin(double least, double most, const std::string& unit);
+
+/// Nothing when the command may go on, else the exit code (0 after --help).
+std::optional<int> parse(CLI::App& app, int argc, const char* const* argv);
+
+/// Exit code of a command that has written its result to stdout; tells when that cannot be written.
+int finishOutput();
+
+/// Adds `--urdf FILE`, the robot description that the boom is made from.
+void addUrdfOption(CLI::App& app, std::string& file);
+
+/// Settings from files over the shipped ones and the robot description in `urdf_file` (empty: none); every problem and
+/// note on stderr, one line each.
+std::optional<Settings> loadOrReport(const std::vector<std::string>& files, const std::string& urdf_file = {});
+
+}  // namespace hammer_loads

@@ -1,0 +1,55 @@
+/// simulate_grapple: a slider that opens and closes a grapple for ever, on topic `joint_states`.
+#include <ros/init.h>
+#include <ros/node_handle.h>
+#include <ros/rate.h>
+#include <sensor_msgs/JointState.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "hammer_loads/ros/ros_parameters.h"
+#include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/read_grapple.h"
+
+namespace hammer_loads {
+namespace {
+
+/// period: of opening and closing together [s]; samples_per_second [Hz].
+void play(const GrappleParameters& grapple, const std::string& joint, double period, double samples_per_second) {
+  ros::NodeHandle node;
+  const ros::Publisher publisher = node.advertise<sensor_msgs::JointState>("joint_states", 100);
+  const double turn = 2.0 * 3.14159265358979324 / period, half = 0.5 * (grapple.slider_closed - grapple.slider_open);
+  sensor_msgs::JointState message;
+  message.name = {joint};
+  ros::Rate rate(samples_per_second);
+  for (const ros::Time start = ros::Time::now(); ros::ok(); rate.sleep()) {
+    message.header.stamp = ros::Time::now();
+    const double phase = turn * (message.header.stamp - start).toSec();
+    message.position = {grapple.slider_open + half * (1.0 + std::cos(phase))};
+    message.velocity = {-turn * half * std::sin(phase)};
+    publisher.publish(message);
+  }
+}
+
+int run() {
+  std::vector<std::string> problems;
+  ParameterReader reader(privateParameters(ros::NodeHandle("~"), problems));
+  const std::optional<Grapple> grapple = readGrapple(reader);
+  const std::string joint = reader.text("slider_joint");
+  const double period = reader.number("period_s", "s", NumberRule::positive());
+  const double rate = reader.number("rate_Hz", "Hz", NumberRule::positive());
+  reader.reportUnknownKeys();
+  problems.insert(problems.end(), reader.problems().begin(), reader.problems().end());
+  for (const std::string& problem : problems) std::cerr << problem << '\n';
+  if (!grapple || !problems.empty()) return 1;
+  play(grapple->parameters(), joint, period, rate);
+  return 0;
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "simulate_grapple");
+  return hammer_loads::run();
+}

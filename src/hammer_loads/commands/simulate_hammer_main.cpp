@@ -1,0 +1,35 @@
+/// simulate_hammer: a working machine on topics `crank` and `joint_states`. Parameters: config/simulated_machine.yaml.
+#include <ros/init.h>
+
+#include <iostream>
+
+#include "hammer_loads/ros/machine_player.h"
+#include "hammer_loads/ros/ros_parameters.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+namespace {
+
+int run() {
+  const ros::NodeHandle private_node("~");
+  std::vector<std::string> problems;
+  const ParameterMap given = privateParameters(private_node, problems);
+  const Checked<simulation::SimulatorSettings> settings = simulation::loadSimulator(configDirectory(), given);
+  problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
+  if (settings.value && settings.value->play.publish_clock && !ros::Time::isSimTime())
+    problems.emplace_back("publish_clock: true, must be false while /use_sim_time is not true");
+  for (const std::string& problem : problems) std::cerr << problem << '\n';
+  if (!problems.empty()) return 1;
+  for (const std::string& note : settings.notes) ROS_INFO("%s", note.c_str());
+
+  MachinePlayer(ros::NodeHandle(), *settings.value).run();
+  return 0;
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "simulate_hammer");
+  return hammer_loads::run();
+}

@@ -1,0 +1,116 @@
+/// The node's own bag writer: takes messages as the node has them, never waits for the disk, outlives its faults.
+#pragma once
+
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "hammer_loads/log/log_queue.h"
+#include "hammer_loads/log/log_settings.h"
+#include "hammer_loads/log/log_status.h"
+#include "hammer_loads/log/log_topic.h"
+#include "hammer_loads/log/log_writer.h"
+
+namespace hammer_loads {
+
+/// doc/log.md says what is guaranteed. health() may be called from any thread; all else from one at a time.
+class BagLog {
+ public:
+  /// LogSettings::enabled is the caller's affair.
+  explicit BagLog(const LogSettings& settings, const LogDisk& disk = {});
+  /// Writes what is queued and closes the bag: waits for the disk.
+  ~BagLog() = default;
+
+  /// Begins a bag. Empty, or one line per reason why not (key, value, rule); then nothing is changed.
+  std::vector<std::string> start();
+  /// Closes the bag behind what has been written so far; health() tells when that is done.
+  void stop();
+  /// Goes on in a new bag; false if there is none to split.
+  bool split();
+
+  /// Queues a copy for the disk if the log is recording. A message that finds no room is dropped and counted.
+  /// topic: resolved name. time: see nextRecordTime; an output gets that of the input that caused it.
+  template <typename Message>
+  void write(const std::string& topic, const ros::Time& time, const Message& message);
+
+  /// As write, but also remembered, recording or not, and repeated at the start of every bag.
+  /// caller: node that published it, where several latch on one topic (/tf_static): one message of each is kept.
+  template <typename Message>
+  void writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
+                    const std::string& caller = {});
+  /// What has been latched there holds no longer: later bags begin without it.
+  void forgetLatched(const std::string& topic, const std::string& caller = {});
+
+  bool isRecording() const noexcept { return session_ != 0 && writer_.faultySession() != session_; }
+  LogHealth health() const;
+
+  /// Record time of an input: its arrival, but at least 1 ns after the input before. So record times of inputs rise in
+  /// their order of arrival whatever the clock does, and a bag read in time order gives the inputs as they came.
+  static ros::Time nextRecordTime(const ros::Time& arrival, const ros::Time& last) noexcept;
+
+ private:
+  using Names = std::unordered_map<std::string, LogTopic*>;
+
+  std::vector<std::string> settingProblems() const;
+  static std::string latchedKey(const std::string& topic, const std::string& caller) { return topic + '\n' + caller; }
+  LogTopic& addTopic(Names& names, const std::string& key, const std::string& topic, const LogType& type, bool latched,
+                     const std::string& caller);
+  void latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint8_t> bytes);
+
+  template <typename Message>
+  static LogType typeOf(const Message& message) {
+    using namespace ros::message_traits;
+    return {DataType<Message>::value(message), MD5Sum<Message>::value(message), Definition<Message>::value(message)};
+  }
+
+  const LogSettings settings_;
+  const LogDisk disk_;
+  std::uint64_t session_{};  // of the current recording; 0: none is wanted
+  std::uint64_t last_session_{};
+  mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads
+  std::deque<LogTopic> topics_;
+  Names plain_, latched_;
+  LogQueue queue_;
+  LogWriter writer_;  // last: its thread uses the others
+};
+
+template <typename Message>
+void BagLog::write(const std::string& topic, const ros::Time& time, const Message& message) {
+  if (!isRecording()) return;
+  const LogType type = typeOf(message);
+  const auto known = plain_.find(topic);
+  LogTopic& entry = known != plain_.end() ? *known->second : addTopic(plain_, topic, topic, type, false, {});
+  const std::uint32_t size = ros::serialization::serializationLength(message);
+  std::uint8_t* bytes = std::strcmp(entry.type.md5sum, type.md5sum) == 0 ? queue_.reserve(size) : nullptr;
+  if (bytes == nullptr) {
+    entry.refused.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  ros::serialization::OStream stream(bytes, size);
+  ros::serialization::serialize(stream, message);
+  queue_.commit(entry, time);
+}
+
+template <typename Message>
+void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
+                          const std::string& caller) {
+  const std::string key = latchedKey(topic, caller);
+  const auto known = latched_.find(key);
+  LogTopic& entry =
+      known != latched_.end() ? *known->second : addTopic(latched_, key, topic, typeOf(message), true, caller);
+  const std::uint32_t size = ros::serialization::serializationLength(message);
+  std::vector<std::uint8_t> bytes(size);
+  ros::serialization::OStream stream(bytes.data(), size);
+  ros::serialization::serialize(stream, message);
+  latch(entry, time, std::move(bytes));
+}
+
+}  // namespace hammer_loads

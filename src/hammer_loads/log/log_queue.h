@@ -1,0 +1,113 @@
+/// Bounded queue of serialised messages from one thread to one other: no lock, no allocation, no system call.
+#pragma once
+
+#include <ros/time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+
+#include "hammer_loads/log/log_topic.h"
+
+namespace hammer_loads {
+
+/// Ring of bytes. Positions count all bytes that ever passed, so they only grow and order events among records.
+///
+/// The producing thread calls reserve(), fills in the bytes and calls commit(); the consuming thread calls front() and
+/// pop(). A record is contiguous: where it would run over the end of the ring, the rest of the ring is skipped.
+class LogQueue {
+ public:
+  /// One message as it lies in the ring.
+  struct Record {
+    LogTopic* topic;     ///< null: skip to the start of the ring
+    ros::Time time;      ///< record time
+    std::uint64_t step;  ///< bytes to the next record
+    std::uint32_t size;  ///< of the message [bytes]
+
+    std::uint8_t* bytes() noexcept { return reinterpret_cast<std::uint8_t*>(this) + sizeof(Record); }
+  };
+
+  /// `bytes` is rounded down to whole units. Has no memory until take().
+  explicit LogQueue(std::size_t bytes) : unit_count_(std::max<std::size_t>(bytes / sizeof(Unit), 8)) {}
+
+  /// All memory is taken and touched here, once; throws std::bad_alloc. By the producing thread, before it reserves.
+  void take() {
+    if (!units_) units_ = std::make_unique<Unit[]>(unit_count_);
+  }
+
+  /// Room for a message of `size` bytes, or null if there is none now. Larger than half the ring never fits.
+  std::uint8_t* reserve(std::uint32_t size) noexcept {
+    const std::uint64_t step = roundUp(sizeof(Record) + size);
+    if (step > capacity() / 2) return nullptr;
+    const std::uint64_t end = end_.load(std::memory_order_relaxed);
+    const std::uint64_t to_edge = capacity() - end % capacity();
+    const std::uint64_t skip = step > to_edge ? to_edge : 0;
+    if (end + skip + step - begin_.load(std::memory_order_acquire) > capacity()) return nullptr;
+    if (skip > 0) put(end, Record{nullptr, {}, skip, 0});
+    reserved_ = end + skip;
+    return put(reserved_, Record{nullptr, {}, step, size})->bytes();
+  }
+
+  /// Hands over what was last reserved.
+  void commit(LogTopic& topic, const ros::Time& time) noexcept {
+    Record* record = at(reserved_);
+    record->topic = &topic;
+    record->time = time;
+    end_.store(reserved_ + record->step, std::memory_order_release);
+  }
+
+  /// Oldest record, or null. Valid until pop().
+  Record* front() noexcept {
+    const std::uint64_t end = end_.load(std::memory_order_acquire);
+    std::uint64_t begin = begin_.load(std::memory_order_relaxed);
+    if (begin == end) return nullptr;
+    if (at(begin)->topic == nullptr) {  // never the last one: it is handed over together with the record behind it
+      begin += at(begin)->step;
+      begin_.store(begin, std::memory_order_release);
+    }
+    return at(begin);
+  }
+
+  /// Frees what front() gave.
+  void pop() noexcept {
+    const std::uint64_t begin = begin_.load(std::memory_order_relaxed);
+    begin_.store(begin + at(begin)->step, std::memory_order_release);
+  }
+
+  std::uint64_t begin() const noexcept { return begin_.load(std::memory_order_acquire); }  ///< position of the oldest
+  std::uint64_t end() const noexcept { return end_.load(std::memory_order_acquire); }      ///< behind the newest
+  std::uint64_t capacity() const noexcept { return unit_count_ * sizeof(Unit); }           ///< [bytes]
+
+  /// Share in use [0..1]. From any thread.
+  double fill() const noexcept {
+    const std::uint64_t begin = this->begin();  // first: end never lies before it then
+    return std::min(1.0, static_cast<double>(end() - begin) / static_cast<double>(capacity()));
+  }
+
+ private:
+  struct alignas(32) Unit {
+    std::uint8_t bytes[32];
+  };
+  static_assert(sizeof(Record) <= sizeof(Unit) && alignof(Record) <= alignof(Unit), "a skip must fit into any rest");
+
+  static std::uint64_t roundUp(std::uint64_t size) noexcept {
+    return (size + sizeof(Unit) - 1) / sizeof(Unit) * sizeof(Unit);
+  }
+  Record* at(std::uint64_t position) noexcept {
+    return std::launder(reinterpret_cast<Record*>(&units_[(position % capacity()) / sizeof(Unit)]));
+  }
+  Record* put(std::uint64_t position, const Record& record) noexcept {
+    return new (&units_[(position % capacity()) / sizeof(Unit)]) Record(record);
+  }
+
+  const std::size_t unit_count_;
+  std::unique_ptr<Unit[]> units_;
+  std::uint64_t reserved_{};  // producing thread only
+  alignas(64) std::atomic<std::uint64_t> begin_{};
+  alignas(64) std::atomic<std::uint64_t> end_{};
+};
+
+}  // namespace hammer_loads

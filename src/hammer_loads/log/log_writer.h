@@ -1,0 +1,109 @@
+/// The thread that takes messages from the queue to the disk.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hammer_loads/log/log_file.h"
+#include "hammer_loads/log/log_queue.h"
+#include "hammer_loads/log/log_settings.h"
+#include "hammer_loads/log/log_status.h"
+
+namespace hammer_loads {
+
+/// What the writing thread is told, at its place among the messages. Never lost, unlike a message.
+struct LogOrder {
+  enum class Kind { kStart, kStop, kSplit, kLatched, kForget, kQuit };
+  Kind kind{};
+  std::uint64_t position{};         ///< in the queue: carried out behind what was queued before
+  std::uint64_t session{};          ///< kStart: number of this recording, from 1
+  std::string directory;            ///< kStart
+  std::optional<LogName> name;      ///< kStart: first file
+  unsigned next_number{};           ///< kStart: in the name of the second file
+  LogTopic* topic{};                ///< kLatched, kForget
+  ros::Time time;                   ///< kLatched: record time
+  std::vector<std::uint8_t> bytes;  ///< kLatched: serialised message
+};
+
+/// Only the constructor, the destructor, post(), status() and faultySession() are for other threads.
+class LogWriter {
+ public:
+  LogWriter(LogSettings settings, LogDisk disk, LogQueue& queue);
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
+  /// Carries out all orders, writes all messages, closes the file.
+  ~LogWriter();
+
+  /// False if far too many orders wait already.
+  bool post(LogOrder order);
+  LogStatus status() const;
+  /// The recording that stopped by itself last; 0: none.
+  std::uint64_t faultySession() const noexcept { return faulty_session_.load(std::memory_order_acquire); }
+
+ private:
+  using Clock = LogFile::Clock;
+  struct Latched {
+    LogTopic* topic;
+    ros::Time time;
+    std::vector<std::uint8_t> bytes;
+  };
+  struct ClosedFile {
+    std::string path;
+    std::uint64_t size;
+  };
+
+  void run();
+  std::optional<LogOrder> nextOrder();
+  void carryOut(LogOrder& order);
+  void drain(std::uint64_t position);
+  void write(LogQueue::Record& record);
+  void keepHouse(Clock::time_point now);
+  std::optional<LogFault> checkDisk();
+
+  void begin(LogName name);
+  void end();
+  void split();
+  void stopFor(LogFault fault);
+  void settle();
+  void deleteOldest();
+  void latch(LogOrder& order);
+  void forget(const LogTopic* topic);
+  void repeatLatched(const ros::Time* time);
+  void report(LogState state, const std::string& reason);
+
+  const LogSettings settings_;
+  const LogDisk disk_;
+  LogQueue& queue_;
+
+  // The writing thread's own.
+  std::unique_ptr<LogFile> file_;
+  std::uint64_t session_{};
+  std::string directory_;
+  unsigned next_number_{};
+  bool quit_{};
+  bool repeat_{};  // latched messages still to be repeated in this file
+  Clock::time_point opened_{}, next_check_{};
+  std::uint64_t checked_allocation_{};  // of the file when the disk was looked at last [byte]
+  std::vector<Latched> latched_;
+  std::deque<ClosedFile> closed_;  // oldest first
+  std::uint64_t closed_size_{};    // of them together [byte]
+  LogStatus totals_;               // only its sums
+
+  std::atomic<std::uint64_t> faulty_session_{};
+  mutable std::mutex mutex_;
+  std::condition_variable woken_;
+  std::deque<LogOrder> orders_;     // guarded by mutex_
+  LogStatus status_;                // guarded by mutex_
+  std::uint64_t status_session_{};  // guarded by mutex_
+  std::thread thread_;              // last: starts when all else is there
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,68 @@
+#include "hammer_loads/settings/hammer_parameters.h"
+
+#include <algorithm>
+
+#include "hammer_loads/settings/parameter_reader.h"
+
+namespace hammer_loads {
+namespace {
+
+using P = HammerParameters;
+
+struct HammerKey {
+  const char* key;
+  const char* unit;
+  double& (*field)(P&);
+};
+
+constexpr HammerKey kHammerKeys[] = {
+    {"crank_length_m", "m", [](P& p) -> double& { return p.lengths.crank; }},
+    {"rod_length_m", "m", [](P& p) -> double& { return p.lengths.rod; }},
+    {"rocker_length_m", "m", [](P& p) -> double& { return p.lengths.rocker; }},
+    {"pivot_distance_m", "m", [](P& p) -> double& { return p.lengths.pivot_distance; }},
+    {"rocker_com_distance_m", "m", [](P& p) -> double& { return p.rocker_com_distance; }},
+    {"rocker_com_angle_deg", "deg", [](P& p) -> double& { return p.rocker_com_angle; }},
+    {"rocker_mass_kg", "kg", [](P& p) -> double& { return p.rocker_mass; }},
+    {"rocker_inertia_about_pivot_kg_m2", "kg m2", [](P& p) -> double& { return p.rocker_inertia_about_pivot; }},
+    {"striking_distance_m", "m", [](P& p) -> double& { return p.striking_distance; }},
+    {"striking_friction", "", [](P& p) -> double& { return p.striking_friction; }},
+    {"crank_mass_kg", "kg", [](P& p) -> double& { return p.crank_mass; }},
+    {"crank_com_along_m", "m", [](P& p) -> double& { return p.crank_com_along; }},
+    {"crank_com_across_m", "m", [](P& p) -> double& { return p.crank_com_across; }},
+    {"crank_inertia_about_com_kg_m2", "kg m2", [](P& p) -> double& { return p.crank_inertia_about_com; }},
+    {"rod_mass_kg", "kg", [](P& p) -> double& { return p.rod_mass; }},
+    {"rod_com_along_m", "m", [](P& p) -> double& { return p.rod_com_along; }},
+    {"rod_com_across_m", "m", [](P& p) -> double& { return p.rod_com_across; }},
+    {"rod_inertia_about_com_kg_m2", "kg m2", [](P& p) -> double& { return p.rod_inertia_about_com; }},
+    {"drive_inertia_kg_m2", "kg m2", [](P& p) -> double& { return p.drive_inertia; }},
+};
+
+}  // namespace
+
+std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes) {
+  const std::size_t problems_before = reader.problems().size();
+  HammerParameters parameters;
+  // Signs and what keys demand of each other are the mechanism's to judge.
+  for (const HammerKey& key : kHammerKeys) key.field(parameters) = reader.number(key.key, key.unit, NumberRule::any());
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  parameters.rocker_com_angle *= kDegree;
+
+  Checked<Mechanism> mechanism = Mechanism::make(parameters);
+  for (const std::string& problem : mechanism.problems) reader.addProblem(problem);
+  notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
+  if (reader.problems().size() != problems_before) return std::nullopt;
+  return mechanism.value;
+}
+
+std::vector<std::string> hammerKeys() {
+  std::vector<std::string> keys;
+  for (const HammerKey& key : kHammerKeys) keys.emplace_back(key.key);
+  return keys;
+}
+
+bool hasHammerKey(const ParameterMap& parameters) {
+  return std::any_of(std::begin(kHammerKeys), std::end(kHammerKeys),
+                     [&](const HammerKey& key) { return parameters.count(key.key) != 0; });
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,125 @@
+#include "hammer_loads/settings/load.h"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "hammer_loads/hammer/choose_level.h"
+#include "hammer_loads/settings/hammer_parameters.h"
+#include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/settings/read_boom.h"
+#include "hammer_loads/settings/read_log.h"
+#include "hammer_loads/settings/yaml_value.h"
+
+#ifndef HAMMER_LOADS_CONFIG_DIR
+#error "HAMMER_LOADS_CONFIG_DIR must name the source tree's config directory"
+#endif
+
+namespace hammer_loads {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What model, boom file and robot description demand of each other; empty when they agree.
+std::string boomConflict(BoomModel model, bool boom_file, bool description) {
+  if (description && model == BoomModel::kCompliant && !boom_file)
+    return "boom: compliant, must be none, rigid or auto without a boom file: its cylinders' oil is the spring";
+  if (description || model == BoomModel::kNone) return {};
+  if (boom_file) return "robot_description: missing, must be given (a URDF) with a boom file, or boom must be none";
+  if (model == BoomModel::kAuto) return {};
+  return "robot_description: missing, must be given (a URDF), or boom must be none or auto";
+}
+
+/// Nothing when there is none, or the reader got a problem with it.
+std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel model, const std::string& description,
+                             std::vector<std::string>& notes) {
+  const std::size_t problems_before = reader.problems().size();
+  const BoomParameters parameters = boom_file ? readBoomParameters(reader) : BoomParameters{};
+  const std::string conflict = boomConflict(model, boom_file, !description.empty());
+  if (!conflict.empty()) reader.addProblem(conflict);
+  if (description.empty() || model == BoomModel::kNone || reader.problems().size() != problems_before) return {};
+  Checked<Boom> boom = boom_file ? Boom::make(description, parameters) : Boom::make(description);
+  for (const std::string& problem : boom.problems) reader.addProblem(problem);
+  notes.insert(notes.end(), boom.notes.begin(), boom.notes.end());
+  return std::move(boom.value);
+}
+
+Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description) {
+  Checked<Settings> result;
+  const bool boom_file = hasBoomKey(parameters);
+  ParameterReader reader(std::move(parameters));
+  const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes);
+  PipelineSettings pipeline = readPipelineSettings(reader);
+  const LogSettings log = readLogSettings(reader);
+  std::optional<Boom> boom = readBoom(reader, boom_file, pipeline.boom, robot_description, result.notes);
+  if (pipeline.hull_motion == HullMotionSource::kModel && !boom_file)
+    reader.addProblem("hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring");
+  reader.reportUnknownKeys();
+  result.problems = reader.problems();
+  if (!mechanism || !result.problems.empty()) return result;
+  if (pipeline.choose_level) {
+    const LevelChoice choice = chooseLevel(*mechanism, pipeline.tolerance, pipeline.turn_rate, pipeline.gravity);
+    pipeline.level = choice.level;
+    result.notes.push_back(describe(choice));
+  }
+  result.value = Settings{*mechanism, pipeline, log, std::move(boom), robot_description, reader.yaml(), {}};
+  return result;
+}
+
+}  // namespace
+
+Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
+                       const std::string& robot_description) {
+  std::vector<std::string> shipped{config_directory + "/pipeline.yaml", config_directory + "/log.yaml"};
+  if (!hasHammerKey(given)) shipped.push_back(config_directory + "/hammer_mo100.yaml");
+
+  std::vector<std::string> problems;
+  ParameterMap parameters;
+  const bool all_read = addFiles(shipped, parameters, problems);
+  merge(given, parameters);
+  Checked<Settings> result;
+  if (all_read) result = settingsFrom(std::move(parameters), robot_description);
+  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
+  if (!result.problems.empty()) result.value.reset();
+  if (result.value) result.value->notes = result.notes;
+  return result;
+}
+
+Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
+                            const std::string& robot_description) {
+  std::vector<std::string> problems;
+  ParameterMap given;
+  const bool all_read = addFiles(files, given, problems);
+  Checked<Settings> result;
+  // Else keys would seem missing that the unread file may have.
+  if (all_read) result = load(config_directory, given, robot_description);
+  result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
+  if (!result.problems.empty()) result.value.reset();
+  return result;
+}
+
+Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes) {
+  std::vector<std::string> problems;
+  ParameterMap parameters = parameterMap(YAML::Load(settings.yaml), {}, problems).value();
+  for (const auto& [key, value] : changes) parameters.at(key).value = YAML::Node(numberText(value));
+  Checked<Settings> changed = settingsFrom(std::move(parameters), settings.robot_description);
+  changed.value.value().notes = std::move(changed.notes);
+  return *std::move(changed.value);
+}
+
+std::string configDirectory() {
+  std::error_code error;
+  std::vector<fs::path> candidates;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);  // PREFIX/lib/hammer_loads/PROGRAM
+  if (!error) candidates.push_back(program.parent_path() / "../../share/hammer_loads/config");
+  Dl_info library{};  // PREFIX/lib/LIBRARY, for a nodelet in another package's program
+  if (dladdr(reinterpret_cast<void*>(&configDirectory), &library) != 0 && library.dli_fname != nullptr)
+    candidates.push_back(fs::path(library.dli_fname).parent_path() / "../share/hammer_loads/config");
+  for (const fs::path& candidate : candidates) {
+    if (fs::exists(candidate / "pipeline.yaml", error)) return candidate.lexically_normal().string();
+  }
+  return HAMMER_LOADS_CONFIG_DIR;
+}
+
+}  // namespace hammer_loads

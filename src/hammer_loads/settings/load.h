@@ -1,0 +1,49 @@
+/// From parameter files to checked settings.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/log/log_settings.h"
+#include "hammer_loads/settings/parameter_map.h"
+#include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/util/checked.h"
+
+namespace hammer_loads {
+
+struct Settings {
+  Mechanism mechanism;
+  PipelineSettings pipeline;
+  LogSettings log;
+  std::optional<Boom> boom;        ///< nothing: no robot description, or `boom: none`
+  std::string robot_description;   ///< the URDF's text, as given
+  std::string yaml;                ///< every parameter in force; loading it alone with the same robot description
+                                   ///< gives the same settings
+  std::vector<std::string> notes;  ///< accepted peculiarities, one line each
+};
+
+/// Settings from what was given over what is shipped in `config_directory`, or every problem at once, one line each.
+///
+/// Pipeline and log: each key given replaces the shipped one. Hammer: physical parameters have no defaults, so a single
+/// hammer key given means that all must be; with none given hammer_mo100.yaml is used.
+///
+/// Boom: from the text of a robot description (URDF; empty: none) and the boom file's keys, of which a single one given
+/// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`.
+Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
+                       const std::string& robot_description = {});
+
+/// The same from files; a later file's key replaces an earlier one's.
+Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
+                            const std::string& robot_description = {});
+
+/// Settings in force with some numbers changed. The keys must be among those in force and the values allowed.
+Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
+
+/// Where the shipped files are: beside the installed program or library, else in the source tree it was built from.
+std::string configDirectory();
+
+}  // namespace hammer_loads

@@ -1,0 +1,117 @@
+#include "hammer_loads/settings/parameter_map.h"
+
+#include <yaml-cpp/eventhandler.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+std::string at(const std::string& origin, const YAML::Mark& mark) {
+  return mark.is_null() ? origin : origin + ":" + std::to_string(mark.line + 1);
+}
+
+/// Nothing, with the reason in `problem`, when the file cannot be read to its end.
+std::optional<std::string> contents(const std::string& file, std::string& problem) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    problem = file + ": is a directory, must be a YAML file";
+    return std::nullopt;
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (stream && stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
+  if (!stream.is_open() || stream.bad()) {
+    problem = file + ": cannot be read: " + std::strerror(errno);
+    return std::nullopt;
+  }
+  return text.str();
+}
+
+struct IgnoreEvents final : YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+/// At most 100: of some texts that are no YAML, yaml-cpp 0.7 reads documents without end. Throws YAML::Exception.
+int countDocuments(const std::string& text) {
+  constexpr int kMost = 100;
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  IgnoreEvents ignore;
+  int count = 0;
+  while (count < kMost && parser.HandleNextDocument(ignore)) ++count;
+  return count;
+}
+
+}  // namespace
+
+std::optional<ParameterMap> parameterMap(const YAML::Node& node, const std::string& origin,
+                                         std::vector<std::string>& problems) {
+  if (!node.IsMap()) {
+    problems.push_back(origin + ": " + describe(node) + ", must be a map of keys to values");
+    return std::nullopt;
+  }
+  ParameterMap map;
+  for (const auto& pair : node) {
+    const std::string place = at(origin, pair.first.Mark());
+    if (!pair.first.IsScalar()) {
+      problems.push_back(place + ": " + describe(pair.first) + " as a key, must be a text");
+      continue;
+    }
+    const std::string& key = pair.first.Scalar();
+    const auto [known, added] = map.emplace(key, Parameter{pair.second, place});
+    if (!added) {
+      const std::string places = known->second.origin + ", " + place;
+      problems.push_back(onOneLine(key) + ": given twice, must be given once (" + places + ")");
+    }
+  }
+  return map;
+}
+
+std::optional<ParameterMap> readParameterFile(const std::string& file, std::vector<std::string>& problems) {
+  std::string problem;
+  const std::optional<std::string> text = contents(file, problem);
+  if (!text) {
+    problems.push_back(problem);
+    return std::nullopt;
+  }
+  try {
+    const int documents = countDocuments(*text);
+    if (documents == 1) return parameterMap(YAML::Load(*text), file, problems);
+    problems.push_back(file + ": " + std::to_string(documents) + " YAML documents, must be one");
+  } catch (const YAML::Exception& error) {
+    problems.push_back(at(file, error.mark) + ": not valid YAML: " + onOneLine(error.msg));
+  }
+  return std::nullopt;
+}
+
+void merge(const ParameterMap& over, ParameterMap& base) {
+  for (const auto& [key, parameter] : over) base.insert_or_assign(key, parameter);
+}
+
+bool addFiles(const std::vector<std::string>& files, ParameterMap& parameters, std::vector<std::string>& problems) {
+  bool all_read = true;
+  for (const std::string& file : files) {
+    const std::optional<ParameterMap> read = readParameterFile(file, problems);
+    if (read) merge(*read, parameters);
+    all_read = all_read && read.has_value();
+  }
+  return all_read;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,81 @@
+/// Reads typed parameters and collects everything that is wrong with them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hammer_loads/settings/parameter_map.h"
+
+namespace hammer_loads {
+
+/// What a number may be. NaN and infinity never are.
+struct NumberRule {
+  enum class Kind { kAny, kPositive, kNotNegative, kWithin };
+  Kind kind{Kind::kAny};
+  double least{}, most{};  ///< inclusive, for kWithin, in the parameter's unit
+
+  static constexpr NumberRule any() { return {}; }
+  static constexpr NumberRule positive() { return {Kind::kPositive, 0.0, 0.0}; }
+  static constexpr NumberRule notNegative() { return {Kind::kNotNegative, 0.0, 0.0}; }
+  static constexpr NumberRule within(double least, double most) { return {Kind::kWithin, least, most}; }
+};
+
+/// One word of a choice and what it stands for.
+template <typename T>
+using Named = std::pair<const char*, T>;
+
+/// Each read returns a usable value only if problems() stays empty: otherwise NaN, 0, false, "" or the first choice.
+/// Nothing throws for bad content. A problem is one line: `KEY: VALUE UNIT, must be RULE (FILE:LINE)`.
+class ParameterReader {
+ public:
+  explicit ParameterReader(ParameterMap parameters) : parameters_(std::move(parameters)) {}
+
+  /// In the parameter's unit, which is only for the report; "" for none. An integer literal will do.
+  double number(const std::string& key, const std::string& unit, NumberRule rule);
+  /// In [least, most].
+  std::int64_t integer(const std::string& key, const std::string& unit, std::int64_t least, std::int64_t most);
+  bool boolean(const std::string& key);
+  /// Not empty.
+  std::string text(const std::string& key);
+  /// List of texts, each not empty and given once; the list may be empty.
+  std::vector<std::string> names(const std::string& key);
+  /// One of several words.
+  template <typename T, std::size_t N>
+  T choice(const std::string& key, const std::array<Named<T>, N>& choices) {
+    std::vector<std::string> words;
+    for (const auto& [word, meaning] : choices) words.emplace_back(word);
+    return choices[choiceIndex(key, words)].second;
+  }
+
+  /// A line `KEY: ...` found by whoever knows more than one key's rule. Left out when the parameter KEY has a problem
+  /// already; where KEY came from is added.
+  void addProblem(const std::string& line);
+  /// Call after every read: each key that nobody asked for, with the nearest known one.
+  void reportUnknownKeys();
+
+  const std::vector<std::string>& problems() const { return problems_; }
+  /// Every valid parameter read so far, in the order of reading, one `key: value` a line: numbers with as many of 17
+  /// digits as it takes to read back the same, texts in quotes.
+  const std::string& yaml() const { return yaml_; }
+
+ private:
+  const Parameter* find(const std::string& key, const std::string& unit, const std::string& rule);
+  void refuse(const std::string& key, const Parameter& parameter, const std::string& unit, const std::string& rule);
+  void report(const std::string& key, const std::string& line);
+  void keep(const std::string& key, const std::string& value) { yaml_ += key + ": " + value + "\n"; }
+  std::size_t choiceIndex(const std::string& key, const std::vector<std::string>& words);
+  std::string nearestKnownKey(const std::string& key) const;
+
+  ParameterMap parameters_;
+  std::set<std::string> known_;   ///< keys asked for
+  std::set<std::string> faulty_;  ///< keys with a problem
+  std::vector<std::string> problems_;
+  std::string yaml_;
+};
+
+}  // namespace hammer_loads

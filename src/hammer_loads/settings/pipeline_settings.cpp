@@ -1,0 +1,81 @@
+#include "hammer_loads/settings/pipeline_settings.h"
+
+#include <algorithm>
+
+#include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads {
+namespace {
+
+/// Fit to be a part of a topic's name.
+bool namesATopic(const std::string& link) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '/'; };
+  return letter(link.front()) && link.back() != '/' && std::all_of(link.begin(), link.end(), allowed);
+}
+
+void readBoom(ParameterReader& reader, PipelineSettings& s) {
+  s.boom = reader.choice("boom", kBoomModelNames);
+  s.boom_acceleration = reader.choice("boom_acceleration", kBoomAccelerationNames);
+  s.joint_max_age = reader.number("joint_max_age_s", "s", NumberRule::positive());
+  s.boom_wrench_links = reader.names("boom_wrench_links");
+  for (const std::string& link : s.boom_wrench_links) {
+    if (namesATopic(link)) continue;
+    reader.addProblem(
+        format("boom_wrench_links: %s, must be names of a letter first, then letters, digits, _ and /", link.c_str()));
+  }
+  s.tf_max_wait = reader.number("tf_max_wait_s", "s", NumberRule::positive());
+}
+
+void readHullMotion(ParameterReader& reader, PipelineSettings& s) {
+  constexpr NumberRule kAny = NumberRule::any();
+  s.hull_motion = reader.choice("hull_motion", kHullMotionNames);
+  if (s.hull_motion == HullMotionSource::kModel && (s.boom == BoomModel::kNone || s.boom == BoomModel::kRigid))
+    reader.addProblem("hull_motion: model, must be fixed or imu with a boom that is none or rigid");
+  const double x = reader.number("imu_x_m", "m", kAny), y = reader.number("imu_y_m", "m", kAny);
+  s.imu.position = {x, y, reader.number("imu_z_m", "m", kAny)};
+  const double roll = reader.number("imu_roll_rad", "rad", kAny), pitch = reader.number("imu_pitch_rad", "rad", kAny);
+  s.imu.rotation = rotationOf(roll, pitch, reader.number("imu_yaw_rad", "rad", kAny));
+  s.imu.max_age = reader.number("imu_max_age_s", "s", NumberRule::positive());
+}
+
+}  // namespace
+
+PipelineSettings readPipelineSettings(ParameterReader& reader) {
+  constexpr NumberRule kAny = NumberRule::any();
+  constexpr NumberRule kPositive = NumberRule::positive();
+  constexpr NumberRule kNotNegative = NumberRule::notNegative();
+  PipelineSettings s;
+  const std::optional<Level> level = reader.choice("level", kLevelChoices);
+  s.choose_level = !level;
+  s.level = level.value_or(Level::kLinkage);
+  s.tolerance = reader.number("tolerance", "", kPositive);
+  s.turn_rate = reader.number("turn_rate_Hz", "Hz", kPositive);
+  s.output = reader.choice("output", kOutputNames);
+  s.output_rate = reader.number("output_rate_Hz", "Hz", NumberRule::within(0.0, 1e5));
+  s.crank_estimator = reader.choice("crank_estimator", kCrankEstimatorNames);
+  s.crank_joint = reader.text("crank_joint");
+  s.pitch_joints = reader.names("pitch_joints");
+  s.hull_pitch = reader.number("hull_pitch_rad", "rad", kAny);
+  s.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
+  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kPositive);
+  s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", kNotNegative);
+  s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kPositive);
+  s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", kPositive);
+  s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", kNotNegative);
+  s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", kNotNegative);
+  s.initial_torque_deviation = reader.number("initial_torque_deviation_rad_s2", "rad/s2", kPositive);
+  s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", kNotNegative);
+  s.torque_deviation_part = reader.number("torque_deviation_part", "", NumberRule::within(0.0, 1.0));
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  s.near_blow = kDegree * reader.number("near_blow_deg", "deg", NumberRule::within(0.0, 89.0));
+  s.stale_after = reader.number("stale_after_s", "s", kPositive);
+  s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", kPositive);
+  s.withhold_above = reader.number("withhold_above", "", kPositive);
+  readBoom(reader, s);
+  readHullMotion(reader, s);
+  return s;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,110 @@
+/// How samples become loads: what config/pipeline.yaml sets. Keys there carry the units.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/settings/hull_imu_settings.h"
+
+namespace hammer_loads {
+
+class ParameterReader;
+
+/// Where the crank's acceleration comes from.
+enum class CrankEstimator {
+  kMechanism,   ///< Kalman filter on the mechanism
+  kDifference,  ///< difference of measured speeds
+  kNone,        ///< zero, as P0 assumes
+};
+
+/// What the published hull wrench is.
+enum class OutputKind {
+  kInstantaneous,  ///< at the stamp
+  kMean,           ///< over the time since the output before: no impulse is lost at any rate
+};
+
+/// The words that `level` may be; auto takes the cheapest level within `tolerance`.
+constexpr std::array<std::pair<const char*, std::optional<Level>>, 4> kLevelChoices{
+    {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}, {"auto", std::nullopt}}};
+constexpr std::array<std::pair<const char*, Level>, 3> kLevelNames{
+    {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
+constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorNames{
+    {{"mechanism", CrankEstimator::kMechanism},
+     {"difference", CrankEstimator::kDifference},
+     {"none", CrankEstimator::kNone}}};
+
+constexpr std::array<std::pair<const char*, OutputKind>, 2> kOutputNames{
+    {{"instantaneous", OutputKind::kInstantaneous}, {"mean", OutputKind::kMean}}};
+/// How the boom answers the hammer.
+enum class BoomModel {
+  kNone,       ///< nothing of it is computed
+  kRigid,      ///< it follows its joint states alone
+  kCompliant,  ///< it also vibrates on the oil of its cylinders
+  kAuto,       ///< compliant unless rigid is within rigid_tolerance for the last turn's pulse
+};
+
+/// What the boom's own acceleration is taken for.
+enum class BoomAcceleration {
+  kNone,        ///< zero
+  kDifference,  ///< of the joints' velocities
+};
+
+constexpr std::array<std::pair<const char*, BoomModel>, 4> kBoomModelNames{{{"none", BoomModel::kNone},
+                                                                            {"rigid", BoomModel::kRigid},
+                                                                            {"compliant", BoomModel::kCompliant},
+                                                                            {"auto", BoomModel::kAuto}}};
+constexpr std::array<std::pair<const char*, BoomAcceleration>, 2> kBoomAccelerationNames{
+    {{"none", BoomAcceleration::kNone}, {"difference", BoomAcceleration::kDifference}}};
+
+/// What is known of the hull's own motion.
+enum class HullMotionSource {
+  kFixed,  ///< it is at rest; weight by pitch
+  kImu,    ///< as its IMU tells
+  kModel,  ///< it vibrates as the compliant boom does
+};
+
+constexpr std::array<std::pair<const char*, HullMotionSource>, 3> kHullMotionNames{
+    {{"fixed", HullMotionSource::kFixed}, {"imu", HullMotionSource::kImu}, {"model", HullMotionSource::kModel}}};
+
+struct PipelineSettings {
+  Level level{};        ///< in force; where it was `auto`, the one chosen
+  bool choose_level{};  ///< the file says `auto`
+  double tolerance{};   ///< of the wrench's peak, for `auto` [-], > 0
+  double turn_rate{};   ///< of the working turn by which `auto` judges [Hz], > 0
+  OutputKind output{};
+  double output_rate{};  ///< of hull_wrench [Hz]; 0: one per crank sample
+  CrankEstimator crank_estimator{};
+  std::string crank_joint;                ///< joint whose position is the crank angle
+  std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
+  double hull_pitch{};                    ///< until every pitch joint has been heard [rad]
+  HullMotionSource hull_motion{};
+  HullImuSettings imu;                 ///< where the IMU sits
+  double gravity{};                    ///< [m/s2], >= 0
+  double crank_angle_resolution{};     ///< encoder count [rad], > 0
+  double crank_angle_noise{};          ///< standard deviation beside the count [rad], >= 0
+  double crank_speed_noise{};          ///< standard deviation of a measured speed [rad/s], > 0
+  double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
+  double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0
+  double inertia_walk{};               ///< relative to the drive inertia [1/sqrt(s)], >= 0
+  double initial_torque_deviation{};   ///< of the net torque per rocker inertia about D [rad/s2], > 0
+  double initial_inertia_deviation{};  ///< relative to the drive inertia [-], >= 0
+  double torque_deviation_part{};      ///< of the torque's deviation that the wrench's takes over [-], in [0, 1]
+  double near_blow{};                  ///< transmission angle below which pin forces are flagged [rad], in (0, pi/2)
+  double stale_after{};                ///< no crank sample for longer: nothing is published [s], > 0
+  double max_crank_speed{};            ///< a faster sample is implausible [rad/s], > 0
+  double withhold_above{};             ///< predicted error of the wrench over the turn's peak [-], > 0
+  BoomModel boom{};
+  BoomAcceleration boom_acceleration{};
+  double joint_max_age{};                      ///< between a crank sample and a joint's nearest state [s], > 0
+  std::vector<std::string> boom_wrench_links;  ///< links and TF frames at which the hull wrench is told as well
+  double tf_max_wait{};                        ///< of a wrench for the transform to its frame [s], > 0
+};
+
+/// Usable only if the reader got no problem.
+PipelineSettings readPipelineSettings(ParameterReader& reader);
+
+}  // namespace hammer_loads

@@ -1,0 +1,92 @@
+#include "hammer_loads/settings/read_boom.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "hammer_loads/settings/parameter_reader.h"
+
+namespace hammer_loads {
+namespace {
+
+struct CylinderKey {
+  const char* key;
+  const char* unit;
+  double CylinderParameters::*field;
+};
+
+constexpr CylinderKey kCylinderKeys[] = {
+    {"base_x_m", "m", &CylinderParameters::base_x},
+    {"base_z_m", "m", &CylinderParameters::base_z},
+    {"rod_x_m", "m", &CylinderParameters::rod_x},
+    {"rod_z_m", "m", &CylinderParameters::rod_z},
+    {"bore_m", "m", &CylinderParameters::bore},
+    {"rod_diameter_m", "m", &CylinderParameters::rod_diameter},
+    {"closed_length_m", "m", &CylinderParameters::closed_length},
+    {"stroke_m", "m", &CylinderParameters::stroke},
+    {"bore_hose_volume_m3", "m3", &CylinderParameters::bore_hose_volume},
+    {"rod_hose_volume_m3", "m3", &CylinderParameters::rod_hose_volume},
+    {"relief_pressure_Pa", "Pa", &CylinderParameters::relief_pressure},
+};
+
+CylinderParameters readCylinder(ParameterReader& reader, const std::string& name) {
+  CylinderParameters cylinder;
+  cylinder.name = name;
+  cylinder.joint = reader.text(name + "_joint");
+  for (const CylinderKey& key : kCylinderKeys) {
+    cylinder.*key.field = reader.number(name + "_" + key.key, key.unit, NumberRule::any());
+  }
+  return cylinder;
+}
+
+}  // namespace
+
+BoomParameters readBoomParameters(ParameterReader& reader) {
+  BoomParameters p;
+  p.chain.root = reader.text("root_link");
+  p.chain.tip = reader.text("tip_link");
+  for (const std::string& name : reader.names("cylinders")) p.cylinders.push_back(readCylinder(reader, name));
+  p.bulk_modulus = reader.number("bulk_modulus_Pa", "Pa", NumberRule::any());
+  p.vibration.damping_ratio = reader.number("damping_ratio", "", NumberRule::any());
+  p.vibration.refresh_angle = reader.number("mode_refresh_angle_rad", "rad", NumberRule::any());
+  p.rigid_tolerance = reader.number("rigid_tolerance", "", NumberRule::any());
+  Supports& s = p.supports.emplace();
+  s.front_x = reader.number("support_front_x_m", "m", NumberRule::any());
+  s.front_half_width = reader.number("support_front_half_width_m", "m", NumberRule::any());
+  s.rear_x = reader.number("support_rear_x_m", "m", NumberRule::any());
+  s.rear_half_width = reader.number("support_rear_half_width_m", "m", NumberRule::any());
+  return p;
+}
+
+bool hasBoomKey(const ParameterMap& parameters) {
+  constexpr const char* kKeys[] = {"root_link",
+                                   "tip_link",
+                                   "cylinders",
+                                   "bulk_modulus_Pa",
+                                   "damping_ratio",
+                                   "mode_refresh_angle_rad",
+                                   "rigid_tolerance",
+                                   "support_front_x_m",
+                                   "support_front_half_width_m",
+                                   "support_rear_x_m",
+                                   "support_rear_half_width_m"};
+  return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return parameters.count(key) != 0; });
+}
+
+Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {
+  Checked<Boom> result;
+  ParameterMap parameters;
+  addFiles(files, parameters, result.problems);
+  if (!result.problems.empty()) return result;
+  ParameterReader reader(std::move(parameters));
+  const BoomParameters given = readBoomParameters(reader);
+  reader.reportUnknownKeys();
+  if (reader.problems().empty()) {
+    result = Boom::make(urdf_text, given);
+    for (const std::string& problem : result.problems) reader.addProblem(problem);
+  }
+  result.problems = reader.problems();
+  return result;
+}
+
+}  // namespace hammer_loads

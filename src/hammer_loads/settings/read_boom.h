@@ -1,0 +1,26 @@
+/// The boom file: cylinders, damping, supports; every key required.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/settings/parameter_map.h"
+
+namespace hammer_loads {
+
+class ParameterReader;
+
+/// `cylinders` names them; the keys of each begin with its name. Usable only if the reader got no problem; what values
+/// demand of each other and of the chain is Boom::make()'s to judge.
+BoomParameters readBoomParameters(ParameterReader& reader);
+
+/// Whether any key of a boom file is there that is not a cylinder's own.
+bool hasBoomKey(const ParameterMap& parameters);
+
+/// A boom alone from the text of its description and files; a later file's key replaces an earlier one's. Unknown keys
+/// are problems.
+Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files);
+
+}  // namespace hammer_loads

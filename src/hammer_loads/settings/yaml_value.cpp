@@ -1,0 +1,131 @@
+#include "hammer_loads/settings/yaml_value.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <limits>
+
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads {
+namespace {
+
+/// Scalar written without quotes: its meaning depends on its characters.
+bool isPlain(const YAML::Node& value) {
+  if (!value.IsScalar()) return false;
+  const std::string& tag = value.Tag();
+  return tag.empty() || tag == "?" || tag == "tag:yaml.org,2002:float" || tag == "tag:yaml.org,2002:int" ||
+         tag == "tag:yaml.org,2002:bool";
+}
+
+std::optional<double> specialNumber(const std::string& text) {
+  std::string name = text;
+  const bool negative = !name.empty() && name[0] == '-';
+  if (!name.empty() && (name[0] == '-' || name[0] == '+')) name.erase(0, 1);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (name == ".inf" || name == ".Inf" || name == ".INF") return negative ? -kInfinity : kInfinity;
+  if (name == ".nan" || name == ".NaN" || name == ".NAN") return std::numeric_limits<double>::quiet_NaN();
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> asNumber(const YAML::Node& value) {
+  if (!isPlain(value)) return std::nullopt;
+  const std::string& text = value.Scalar();
+  if (const auto special = specialNumber(text)) return special;
+  // strtod would also take hexadecimal digits and names
+  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return std::nullopt;
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::optional<std::int64_t> asInteger(const YAML::Node& value) {
+  if (!isPlain(value)) return std::nullopt;
+  const std::string& text = value.Scalar();
+  if (text.empty() || text.find_first_not_of("0123456789+-") != std::string::npos) return std::nullopt;
+  char* end = nullptr;
+  errno = 0;
+  const std::int64_t number = std::strtoll(text.c_str(), &end, 10);
+  if (errno != 0 || end != text.c_str() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::optional<bool> asBoolean(const YAML::Node& value) {
+  bool answer = false;
+  if (!isPlain(value) || !YAML::convert<bool>::decode(value, answer)) return std::nullopt;
+  return answer;
+}
+
+std::optional<std::string> asText(const YAML::Node& value) {
+  if (!value.IsScalar()) return std::nullopt;
+  const bool means_something_else = isPlain(value) && (value.Scalar().empty() || asNumber(value) || asBoolean(value));
+  if (means_something_else) return std::nullopt;
+  return value.Scalar();
+}
+
+std::optional<std::vector<std::string>> asTexts(const YAML::Node& value) {
+  if (!value.IsSequence()) return std::nullopt;
+  std::vector<std::string> texts;
+  for (const YAML::Node& item : value) {
+    const std::optional<std::string> text = asText(item);
+    if (!text) return std::nullopt;
+    texts.push_back(*text);
+  }
+  return texts;
+}
+
+YAML::Node textNode(const std::string& text) {
+  YAML::Node node(text);
+  node.SetTag("!");
+  return node;
+}
+
+std::string numberText(double value) {
+  std::string text;
+  for (int digits = 15; digits <= 17; ++digits) {
+    text = format("%.*g", digits, value);
+    if (std::strtod(text.c_str(), nullptr) == value) break;
+  }
+  if (text.find_first_of(".n") == std::string::npos) {  // n: inf, nan
+    const std::size_t exponent = text.find('e');
+    text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");
+  }
+  return text;
+}
+
+std::string quotedText(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      quoted += format("\\x%02x", static_cast<unsigned>(c));
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + '"';
+}
+
+std::string describe(const YAML::Node& value) {
+  if (!value.IsDefined() || value.IsNull()) return "(empty)";
+  if (value.IsSequence()) return "(a list)";
+  if (value.IsMap()) return "(a map)";
+  constexpr std::size_t kLongest = 60;
+  std::string text = value.Scalar();
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return isPlain(value) ? onOneLine(text) : quotedText(text);
+}
+
+std::string onOneLine(const std::string& text) {
+  std::string line = text;
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  }
+  return line;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,216 @@
+/// process_bag with a robot description, as its user runs it, on bags written here.
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <filesystem>
+#include <map>
+
+#include "commands/recording_sink.h"
+#include "hammer_loads/ros/stamp.h"
+#include "support/command.h"
+#include "support/session_player.h"
+
+namespace hammer_loads {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kGravity = 9.80665;
+constexpr double kSide = 0.8;  // [m] from arm_link back to the strain gauge
+const std::string kUrdf = test::sourceFile("urdf/eo2621_mo100.urdf");
+const std::string kBoomFile = configDirectory() + "/boom_eo2621.yaml";
+
+/// Two and a half seconds of a machine that soon strikes; `moving`: its boom moves as well.
+simulation::MachineSettings machine(bool moving) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 2.5;
+  machine.drive.start_time = 0.1;
+  machine.drive.start_ramp = 0.2;
+  for (simulation::JointMotion& joint : machine.boom) joint.amplitude *= moving ? 1.0 : 0.0;
+  return machine;
+}
+
+geometry_msgs::TransformStamped transform(const ros::Time& stamp, const std::string& parent, const std::string& child,
+                                          double x, double z, double pitch = 0.0) {
+  geometry_msgs::TransformStamped t;
+  t.header.stamp = stamp;
+  t.header.frame_id = parent;
+  t.child_frame_id = child;
+  t.transform.translation.x = x;
+  t.transform.translation.z = z;
+  t.transform.rotation.y = std::sin(0.5 * pitch);
+  t.transform.rotation.w = std::cos(0.5 * pitch);
+  return t;
+}
+
+/// Inputs of a session as they would be recorded, 2 ms late.
+class InputBag {
+ public:
+  InputBag(const std::string& path, const simulation::Session& session) : bag_(path, rosbag::bagmode::Write) {
+    writeStatic(session.joints.front().stamp);
+    for (const simulation::JointReading& reading : session.joints) writeJoints(reading);
+    for (const simulation::CrankReading& reading : session.crank) {
+      sensor_msgs::JointState m;
+      m.header.stamp = timeOf(reading.stamp);
+      m.name = {"hammer_crank_joint"};
+      m.position = {reading.angle};
+      m.velocity = {*reading.speed};
+      write("/hammer/crank", m.header.stamp, m);
+    }
+  }
+  void writeImu(const ros::Time& stamp, const ImuReading& reading) {
+    sensor_msgs::Imu m;
+    m.header.stamp = stamp;
+    m.linear_acceleration.x = reading.specific_force.x();
+    m.linear_acceleration.y = reading.specific_force.y();
+    m.linear_acceleration.z = reading.specific_force.z();
+    write("/machine/imu", stamp, m);
+  }
+
+ private:
+  template <typename Message>
+  void write(const std::string& topic, const ros::Time& stamp, const Message& message) {
+    bag_.write(topic, stamp + ros::Duration(0.002), message);
+  }
+  void writeStatic(StampNs first) {
+    tf2_msgs::TFMessage m;
+    m.transforms = {transform({}, "hammer_link", "hammer_hull", 0.10, -0.55),
+                    transform({}, "arm_link", "strain_gauge", -kSide, 0.0)};
+    write("/tf_static", timeOf(first), m);
+  }
+  void writeJoints(const simulation::JointReading& reading) {
+    sensor_msgs::JointState joints;
+    joints.header.stamp = timeOf(reading.stamp);
+    joints.name.assign(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+    joints.position.assign(reading.position.begin(), reading.position.end());
+    joints.velocity.assign(reading.velocity.begin(), reading.velocity.end());
+    write("/joint_states", joints.header.stamp, joints);
+    tf2_msgs::TFMessage m;
+    m.transforms = {transform(joints.header.stamp, "arm_link", "hammer_link", 1.70, 0.0, reading.position[3])};
+    write("/tf", joints.header.stamp, m);
+  }
+
+  rosbag::Bag bag_;
+};
+
+class BoomBag : public testing::Test {
+ protected:
+  BoomBag() : directory_(fs::temp_directory_path() / ("boom_bag_test_" + std::to_string(getpid()))) {
+    fs::create_directories(directory_);
+  }
+  ~BoomBag() override { fs::remove_all(directory_); }
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+  test::Outcome process(const std::string& out, const std::string& parameters, const std::string& more = {}) const {
+    const test::TemporaryFile given(parameters);
+    return test::runCommand(HAMMER_LOADS_PROCESS_BAG, path("in.bag") + " " + path(out) + " --pins --urdf " + kUrdf +
+                                                          " --params " + kBoomFile + " --params " + given.path() + " " +
+                                                          more);
+  }
+  /// What the live node's flow makes of the same messages.
+  test::Recorded live(const std::string& parameters, const std::string& imu_topic = {}) const {
+    const test::TemporaryFile given(parameters);
+    const Settings settings = *loadFiles(configDirectory(), {kBoomFile, given.path()}, test::textOf(kUrdf)).value;
+    return test::recordedLive(path("in.bag"), settings, imu_topic);
+  }
+
+  fs::path directory_;
+};
+
+std::map<std::string, std::size_t> countsOf(const test::Recorded& recorded) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [topic, messages] : recorded) counts[topic] = messages.size();
+  return counts;
+}
+
+TEST_F(BoomBag, HoldsEveryOutputAsTheLiveFlowGivesItAndIsByteIdenticalOnASecondRun) {
+  const simulation::Session session = simulation::recordSession(machine(true));
+  InputBag(path("in.bag"), session);
+  const std::string parameters = "boom_wrench_links: [arm_link, strain_gauge]\nboom: compliant\nhull_motion: model\n";
+  const test::Outcome outcome = process("out.bag", parameters);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const test::Recorded written = test::recordedIn(path("out.bag"));
+  auto counts = countsOf(written);
+  const std::size_t samples = session.crank.size();
+  // Before the first joint states and beyond the last transform nothing is known: 20 ms at most each.
+  for (const char* topic : {"boom_wrench/arm_link", "joint_loads", "boom_vibration", "boom_wrench/strain_gauge"}) {
+    EXPECT_GE(counts[topic], samples - 40) << topic;
+    EXPECT_LT(counts[topic], samples) << topic;
+  }
+  for (const char* topic : {"hull_wrench", "hull_loads", "mechanism", "pin_forces"}) EXPECT_EQ(counts[topic], samples);
+  EXPECT_GE(counts["blow"], 8U);
+  EXPECT_EQ(counts["pulse"], counts["blow"] - 1);
+  EXPECT_EQ(counts["run_info"], 1U);
+  EXPECT_EQ(counts.size(), 11U);
+
+  const test::Recorded right = live(parameters);
+  EXPECT_EQ(countsOf(right), counts);
+  EXPECT_TRUE(written == right);
+
+  ASSERT_EQ(process("again.bag", parameters).exit_code, 0);
+  const std::string bytes = test::contentOf(path("out.bag"));
+  EXPECT_GT(bytes.size(), 1000000U);
+  EXPECT_TRUE(bytes == test::contentOf(path("again.bag")));
+}
+
+/// By hand: from the gauge's frame to D, on the hammer joint's angle between its two states.
+TEST_F(BoomBag, TellsTheLoadAtATfFrameWithItsLeverArm) {
+  const simulation::Session session = simulation::recordSession(machine(true));
+  InputBag(path("in.bag"), session);
+  ASSERT_EQ(process("out.bag", "boom_wrench_links: [strain_gauge]\n").exit_code, 0);
+  const auto hull = test::wrenchesIn(path("out.bag"), "/hammer_loads/hull_wrench");
+  const auto gauge = test::wrenchesIn(path("out.bag"), "/hammer_loads/boom_wrench/strain_gauge");
+  ASSERT_GT(gauge.size(), 2400U);
+  double largest = 0.0;
+  std::size_t next = 1;
+  for (const auto& [stamp, told] : gauge) {
+    while (next + 1 < session.joints.size() && session.joints[next].stamp < stamp) ++next;
+    const simulation::JointReading &before = session.joints[next - 1], &after = session.joints[next];
+    const double part = static_cast<double>(stamp - before.stamp) / static_cast<double>(after.stamp - before.stamp);
+    const double angle = before.position[3] + part * (after.position[3] - before.position[3]);
+    const double c = std::cos(angle), s = std::sin(angle);
+    const geometry_msgs::Wrench& w = hull.at(stamp);
+    const double force_x = c * w.force.x + s * w.force.z, force_z = -s * w.force.x + c * w.force.z;
+    const double x = kSide + 1.70 + 0.10 * c - 0.55 * s, z = -0.10 * s - 0.55 * c;
+    const double torque = w.torque.y + z * force_x - x * force_z;
+    // Slerp of half angles 0.02 rad apart and quaternions that TF rounds: 1e-12 of the load.
+    ASSERT_NEAR(told.force.x, force_x, 1e-8) << stamp;
+    ASSERT_NEAR(told.force.z, force_z, 1e-8) << stamp;
+    ASSERT_NEAR(told.torque.y, torque, 1e-8) << stamp;
+    largest = std::max(largest, std::abs(torque));
+  }
+  EXPECT_GT(largest, 1e4) << "some 8 kN at some 2.5 m";
+}
+
+TEST_F(BoomBag, ReadsTheHullsImu) {
+  const simulation::Session session = simulation::recordSession(machine(false));
+  const auto& q = session.joints.front().position;
+  const double pitch = q[1] + q[2] + q[3];
+  {
+    InputBag in(path("in.bag"), session);
+    const ImuReading reading = test::atRest(pitch, {});
+    for (int i = -2; i < 510; ++i) in.writeImu(timeOf(machine(false).start_stamp) + ros::Duration(0.005 * i), reading);
+  }
+  const std::string links = "boom_wrench_links: [arm_link, strain_gauge]\n", imu = links + "hull_motion: imu\n";
+  ASSERT_EQ(process("out.bag", imu, "--imu-topic /machine/imu").exit_code, 0);
+  ASSERT_EQ(process("again.bag", imu, "--imu-topic /machine/imu").exit_code, 0);
+  EXPECT_TRUE(test::contentOf(path("out.bag")) == test::contentOf(path("again.bag")));
+  const test::Recorded written = test::recordedIn(path("out.bag"));
+  EXPECT_EQ(written.size(), 11U);
+  EXPECT_TRUE(written == live(imu, "/machine/imu"));
+
+  // At rest it says what pitch says, but from the first sample on: compared once the pitch joints have been heard too.
+  ASSERT_EQ(process("fixed.bag", links + format("hull_pitch_rad: %.17g\n", pitch)).exit_code, 0);
+  const auto measured = test::wrenchesIn(path("out.bag"), "/hammer_loads/hull_wrench");
+  const auto fixed = test::wrenchesIn(path("fixed.bag"), "/hammer_loads/hull_wrench");
+  ASSERT_EQ(measured.size(), fixed.size());
+  for (const auto& [stamp, wrench] : measured) {
+    ASSERT_NEAR(wrench.force.x, fixed.at(stamp).force.x, 1e-9 * 8e3) << stamp;
+    ASSERT_NEAR(wrench.force.z, fixed.at(stamp).force.z, 1e-9 * 8e3) << stamp;
+  }
+  const auto loads = test::messagesIn<HullLoads>(path("out.bag"), "/hammer_loads/hull_loads");
+  for (const HullLoads& m : loads) ASSERT_TRUE(m.flags & HullLoads::FLAG_HULL_MOTION) << m.header.stamp;
+}
+
+}  // namespace
+}  // namespace hammer_loads

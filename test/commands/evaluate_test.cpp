@@ -1,0 +1,297 @@
+// evaluate: states in, loads out, as the library's function and as the command.
+#include "hammer_loads/hammer/evaluate.h"
+
+#include <boost/multiprecision/cpp_dec_float.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "hammer_loads/hammer/state_table.h"
+#include "settings/hammer_yaml.h"
+#include "support/command.h"
+#include "support/csv.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::linesOf;
+using test::Outcome;
+using test::TemporaryFile;
+
+const std::string kHeader = "crank_angle_rad,crank_speed_rad_s,crank_accel_rad_s2,hull_pitch_rad,gravity_m_s2";
+const std::string kResultHeader =
+    kHeader +
+    ",rocker_angle_rad,rod_angle_rad,rocker_speed_rad_s,rocker_accel_rad_s2,hull_force_x_N,hull_force_z_N,"
+    "hull_torque_y_Nm,drive_torque_y_Nm,R01_x_N,R01_z_N,R12_x_N,R12_z_N,R23_x_N,R23_z_N,R03_x_N,R03_z_N";
+
+struct Table {
+  std::vector<std::string> problems;
+  std::string out;
+};
+
+Table evaluated(const std::string& input, Level level = Level::kLinkage,
+                const HammerParameters& parameters = test::mo100LinkageParameters()) {
+  const Mechanism mechanism = test::mechanismOf(parameters);
+  std::istringstream in(input);
+  std::ostringstream out;
+  Table table;
+  table.problems = evaluateTable(HullModel(mechanism, level), in, out);
+  table.out = out.str();
+  return table;
+}
+
+std::map<std::string, double> rowOf(const std::string& csv, std::size_t row) {
+  const TemporaryFile file(csv, ".csv");
+  const test::Csv table(file.path());
+  std::map<std::string, double> numbers;
+  for (const std::string& column : table.columns()) numbers[column] = table.number(row, column);
+  return numbers;
+}
+
+double offsetOf(const std::string& text) { return crankAngleFromText(text).value().offset; }
+
+/// 2 pi turns + offset with so many decimals.
+std::string angleText(int turns, const std::string& offset, int decimals) {
+  using Decimal = boost::multiprecision::cpp_dec_float_100;
+  const Decimal two_pi("6.28318530717958647692528676655900576839433879875021164194988918461563");
+  return Decimal(turns * two_pi + Decimal(offset)).str(decimals, std::ios::fixed);
+}
+
+TEST(CrankAngleText, KeepsTheOffsetThatItsDigitsWereWrittenFor) {
+  EXPECT_EQ(offsetOf("6.2831853061795864769"), -1e-9);
+  for (int turns : {-1000, -3, -1, 1, 2, 7, 1000000}) {
+    for (const std::string offset : {"-0.1", "0.1", "-1e-6", "2.7e-9", "-1e-9", "1e-9", "-3.1e-12", "1e-14"}) {
+      for (int decimals : {18, 19, 25, 38}) {
+        const std::string text = angleText(turns, offset, decimals);
+        EXPECT_EQ(offsetOf(text), std::stod(offset)) << text;
+      }
+    }
+  }
+}
+
+TEST(CrankAngleText, FewDigitsMeanWhatTheySay) {
+  EXPECT_DOUBLE_EQ(offsetOf("6.28"), -0.00318530717958647692528676655900);
+  EXPECT_DOUBLE_EQ(offsetOf("6.2832"), 0.00001469282041352307471323344099);
+  EXPECT_DOUBLE_EQ(offsetOf("-12.566"), 0.00037061435917295385057353311801);
+  EXPECT_DOUBLE_EQ(offsetOf("6.283185307179586"), -4.76925286766559e-16);   // 2 pi as double, 16 digits
+  EXPECT_DOUBLE_EQ(offsetOf("6.2831853071795862"), -2.76925286766559e-16);  // and 17
+  EXPECT_DOUBLE_EQ(offsetOf("0.62831853071795862e1"), -2.76925286766559e-16);
+  EXPECT_EQ(offsetOf("1.25"), 1.25);
+  EXPECT_EQ(offsetOf("-1e-300"), -1e-300);
+  EXPECT_EQ(offsetOf("+.5"), 0.5);
+}
+
+TEST(CrankAngleText, TellsTheSideOfTheBlow) {
+  for (const char* before : {"-1e-300", "-1", "6.2831853071795864769", "6.283185307179586476925286766559", "5"})
+    EXPECT_EQ(crankAngleFromText(before).value().side, Side::kBeforeBlow) << before;
+  for (const char* after :
+       {"0", "-0.0", "1e-300", "3", "6.2831853071795864770", "6.283185307179586476925286766560", "7"})
+    EXPECT_EQ(crankAngleFromText(after).value().side, Side::kAfterBlow) << after;
+}
+
+TEST(CrankAngleText, RefusesWhatIsNoAngle) {
+  for (const char* text : {"", "x", "nan", "inf", "-inf", "0x1p3", "1,5", "1.5.2", "1e", "--1", "1 2", "1e16",
+                           "-1.1e15", "1e400", "\"1\""}) {
+    EXPECT_FALSE(crankAngleFromText(text)) << text;
+  }
+}
+
+/// Errors over the column's peak, angles absolute; every row of a reference table.
+void expectReference(const std::string& name, Level level, const HammerParameters& parameters, double angle_error,
+                     double load_error) {
+  const std::string path = std::string(HAMMER_LOADS_TEST_DATA) + "/" + name;
+  const Table table = evaluated(test::contentOf(path), level, parameters);
+  ASSERT_EQ(table.problems, std::vector<std::string>{});
+  const TemporaryFile file(table.out, ".csv");
+  const test::Csv result(file.path()), reference(path);
+  ASSERT_EQ(result.size(), reference.size());
+  EXPECT_EQ(result.columns(), reference.columns());
+  double worst = 0.0;
+  for (const std::string& column : reference.columns()) {
+    const bool is_angle = column.find("angle_rad") != std::string::npos;
+    const bool is_motion = column.find("rocker_") == 0 || column.find("rod_") == 0;
+    const double peak = is_angle ? 1.0 : reference.peak(column);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const double error = std::abs(result.number(i, column) - reference.number(i, column));
+      EXPECT_LE(error, (is_motion ? angle_error : load_error) * peak) << name << ' ' << column << " row " << i + 1;
+      if (peak > 0.0) worst = std::max(worst, error / peak);
+    }
+  }
+  std::printf("%s: %zu rows, worst error over the column's peak %.2e\n", name.c_str(), result.size(), worst);
+}
+
+TEST(Evaluate, EqualsTheReferenceAtConstantSpeed) {
+  expectReference("mo100_constant_speed.csv", Level::kRocker, test::mo100LinkageParameters(), 1e-12, 1e-13);
+}
+
+TEST(Evaluate, EqualsTheReferenceAtLevelLinkageWithAMasslessCrankAndRod) {
+  expectReference("mo100_constant_speed.csv", Level::kLinkage, test::mo100Parameters(), 1e-12, 1e-13);
+}
+
+TEST(Evaluate, EqualsTheReferenceOfTheWholeLinkage) {
+  expectReference("mo100_linkage.csv", Level::kLinkage, test::mo100LinkageParameters(), 1e-12, 1e-12);
+}
+
+TEST(Evaluate, TakesColumnsInAnyOrderAndIgnoresOthers) {
+  const Table usual = evaluated(kHeader + "\n5.9,30,-200,0.3,9.81\n1,2,3,4,5\n");
+  ASSERT_EQ(usual.problems, std::vector<std::string>{});
+  EXPECT_EQ(linesOf(usual.out).at(0), kResultHeader);
+  const Table other = evaluated(
+      "\xEF\xBB\xBFnote, gravity_m_s2,hull_pitch_rad "
+      ",crank_speed_rad_s,rocker_angle_rad,crank_accel_rad_s2,crank_angle_rad\r\n"
+      "peak, 9.81,0.3 ,30,7,-200,5.9\r\n\r\n,5,4,2,,3,1");
+  EXPECT_EQ(other.out, usual.out);
+  EXPECT_EQ(evaluated(usual.out).out, usual.out);  // results can be read again
+}
+
+TEST(Evaluate, RepeatsTheStateAsGivenAndPrintsSeventeenDigits) {
+  const std::string state = "6.2831853061795864769,3.10e1,+200.,-0,9.80665000";
+  const std::string line = linesOf(evaluated(kHeader + "\n" + state + "\n").out).at(1);
+  EXPECT_EQ(line.rfind(state + ",", 0), 0U) << line;
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  const HullWrench right =
+      hullWrench(mechanism, Level::kLinkage, {CrankAngle::fromOffset(-1e-9), 31.0, 200.0}, {0.0, -9.80665});
+  const auto row = rowOf(kResultHeader + "\n" + line + "\n", 0);
+  EXPECT_EQ(row.at("hull_force_x_N"), right.force_x);
+  EXPECT_EQ(row.at("hull_force_z_N"), right.force_z);
+  EXPECT_EQ(row.at("hull_torque_y_Nm"), right.torque_y);
+}
+
+TEST(Evaluate, AnEmptyTableGivesAnEmptyTable) {
+  EXPECT_EQ(evaluated(kHeader + "\n").out, kResultHeader + "\n");
+  EXPECT_EQ(evaluated(kHeader).out, kResultHeader + "\n");
+}
+
+TEST(Evaluate, WeightAtRestFollowsPitchAndGravity) {
+  const HammerParameters p = test::mo100LinkageParameters();
+  const std::string out = evaluated(kHeader + "\n2,0,0,0.4,9.5\n").out;
+  const auto row = rowOf(out, 0);
+  const double mass = p.crank_mass + p.rod_mass + p.rocker_mass;
+  EXPECT_NEAR(row.at("hull_force_x_N"), mass * 9.5 * std::sin(0.4), 1e-10);
+  EXPECT_NEAR(row.at("hull_force_z_N"), -mass * 9.5 * std::cos(0.4), 1e-10);
+  EXPECT_NEAR(row.at("R01_x_N") + row.at("R03_x_N"), -row.at("hull_force_x_N"), 1e-10);
+  EXPECT_NEAR(row.at("R01_z_N") + row.at("R03_z_N"), -row.at("hull_force_z_N"), 1e-10);
+}
+
+TEST(Evaluate, DriveTorqueIsPositiveAboutHullYWhenItSpeedsTheCrankUp) {
+  const auto row = rowOf(evaluated(kHeader + "\n2,0,100,0,0\n").out, 0);
+  EXPECT_GT(row.at("drive_torque_y_Nm"), 0.0);
+  EXPECT_GT(row.at("rocker_accel_rad_s2"), 0.0);
+}
+
+TEST(Evaluate, LevelPulseHasItsOwnForceAndTheRockersPins) {
+  const std::string state = kHeader + "\n6,31.416,0,0,0\n";
+  const auto pulse = rowOf(evaluated(state, Level::kPulse).out, 0);
+  const auto rocker = rowOf(evaluated(state, Level::kRocker).out, 0);
+  EXPECT_EQ(pulse.at("hull_force_x_N"), 0.0);
+  EXPECT_NEAR(pulse.at("hull_force_z_N"), 40558.0395215 * std::sin(167.866273972 * (6.0 / 31.416 - 0.181284679239)),
+              1e-4);
+  for (const char* same : {"rocker_angle_rad", "rocker_accel_rad_s2", "R03_x_N", "drive_torque_y_Nm"})
+    EXPECT_EQ(pulse.at(same), rocker.at(same)) << same;
+}
+
+void expectProblems(const std::string& input, const std::vector<std::string>& problems) {
+  const Table table = evaluated(input);
+  EXPECT_EQ(table.problems, problems);
+  EXPECT_EQ(table.out, "");
+}
+
+TEST(Evaluate, BadRowsAreNamedAndNothingIsWritten) {
+  const std::string good = "1,2,3,0.4,5\n";
+  expectProblems(kHeader + "\n" + good + "x,2,3,4,5\n" + "1,,3,4,5\n\n" + "1,2,nan,4,-9.81\n" + good,
+                 {"row 2: crank_angle_rad: x rad, must be a finite number of size <= 1e15",
+                  "row 3: crank_speed_rad_s: (empty) rad/s, must be a finite number",
+                  "row 5: crank_accel_rad_s2: nan rad/s2, must be a finite number",
+                  "row 5: gravity_m_s2: -9.81 m/s2, must be a finite number >= 0"});
+  expectProblems(kHeader + "\n1,2,3,1e999,5\n2e15,2,3,0x4,5\n",
+                 {"row 1: hull_pitch_rad: 1e999 rad, must be a finite number",
+                  "row 2: crank_angle_rad: 2e15 rad, must be a finite number of size <= 1e15",
+                  "row 2: hull_pitch_rad: 0x4 rad, must be a finite number"});
+  expectProblems(kHeader + "\n" + good + "1,2,3,4\n1,2,3,4,5,6\n",
+                 {"row 2: 4 cells, must be 5 as in the header", "row 3: 6 cells, must be 5 as in the header"});
+  expectProblems(kHeader + "\n1,1e200,3,4,5\n",
+                 {"row 1: rocker_accel_rad_s2: -inf, must be finite: the state is too large"});
+}
+
+TEST(Evaluate, ManyBadRowsGiveTwentyLines) {
+  std::string input = kHeader + "\n";
+  for (int i = 0; i < 1000; ++i) input += "1,2,3,4,bad\n";
+  const Table table = evaluated(input);
+  ASSERT_EQ(table.problems.size(), 20U);
+  EXPECT_EQ(table.problems.back(), "and 981 more");
+  EXPECT_EQ(table.out, "");
+}
+
+TEST(Evaluate, ABadHeaderIsNamed) {
+  const std::string missing = "header: missing, must be a line with the names of the columns";
+  expectProblems("", {missing});
+  expectProblems("\n", {missing});
+  expectProblems("crank_angle_rad,crank_speed,crank_accel_rad_s2,hull_pitch_rad,gravity_m_s2\n1,2,3,4,5\n",
+                 {"header: crank_speed_rad_s: found 0 times, must be there once"});
+  expectProblems(kHeader + ",crank_angle_rad\n1,2,3,4,5,6\n",
+                 {"header: crank_angle_rad: found 2 times, must be there once"});
+}
+
+Outcome run(const std::string& arguments, const std::string& input) {
+  return test::runCommand(HAMMER_LOADS_EVALUATE, arguments, input);
+}
+
+TEST(EvaluateCommand, PrintsWhatTheLibraryWrites) {
+  for (const auto& [name, word, level] : {std::tuple{"mo100_constant_speed.csv", "rocker", Level::kRocker},
+                                          std::tuple{"mo100_linkage.csv", "linkage", Level::kLinkage},
+                                          std::tuple{"mo100_linkage.csv", "pulse", Level::kPulse}}) {
+    const std::string input = test::contentOf(std::string(HAMMER_LOADS_TEST_DATA) + "/" + name);
+    const Settings settings = loadFiles(configDirectory(), {}).value.value();
+    std::istringstream in(input);
+    std::ostringstream out;
+    ASSERT_TRUE(evaluateTable(HullModel(settings.mechanism, level), in, out).empty());
+    const Outcome outcome = run(std::string("--level ") + word, input);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(outcome.out, out.str()) << name << ' ' << word;
+  }
+}
+
+TEST(EvaluateCommand, TakesLevelAndMachineFromFilesInOrder) {
+  const std::string input = kHeader + "\n6,31.416,0,0.2,9.8\n";
+  const TemporaryFile linkage("level: linkage\n"), pulse("level: pulse\n");
+  const TemporaryFile light(test::hammerYaml({{"rocker_mass_kg", "17.6"}}));
+  EXPECT_EQ(run("", input).out, run("--level rocker", input).out);
+  EXPECT_EQ(run("--params " + linkage.path(), input).out, run("--level linkage", input).out);
+  EXPECT_EQ(run("--params " + linkage.path() + " --params " + pulse.path(), input).out,
+            run("--level pulse", input).out);
+  EXPECT_EQ(run("--params " + linkage.path() + " --level rocker", input).out, run("--level rocker", input).out);
+  const double force = rowOf(run("", input).out, 0).at("hull_force_x_N");
+  EXPECT_NEAR(rowOf(run("--params " + light.path(), input).out, 0).at("hull_force_x_N"), 0.5 * force, 1e-9);
+}
+
+TEST(EvaluateCommand, BadInputIsOneLineEachAndExitCode1) {
+  const Outcome outcome = run("", kHeader + "\n1,2,3,4,5\n1,2,3,4,-5\n1,fast,3,4,5\n");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err,
+            "stdin: row 2: gravity_m_s2: -5 m/s2, must be a finite number >= 0\n"
+            "stdin: row 3: crank_speed_rad_s: fast rad/s, must be a finite number\n");
+  EXPECT_EQ(run("", "").exit_code, 1);
+  EXPECT_EQ(run("--params /no/such/file.yaml", kHeader + "\n").exit_code, 1);
+}
+
+TEST(EvaluateCommand, WrongUsageIsOneLineAndExitCode2) {
+  for (const char* arguments : {"--level hammer", "--level", "--params", "states.csv", "--no-such-option"}) {
+    const Outcome outcome = run(arguments, kHeader + "\n1,2,3,4,5\n");
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
+  }
+  EXPECT_EQ(run("--help", "").exit_code, 0);
+}
+
+TEST(EvaluateCommand, UnwritableOutputIsAnError) {
+  const TemporaryFile in(kHeader + "\n1,2,3,4,5\n", ".csv"), err({}, ".err");
+  const std::string command = std::string(HAMMER_LOADS_EVALUATE) + " <" + in.path() + " >/dev/full 2>" + err.path();
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+  EXPECT_EQ(test::contentOf(err.path()), "stdout: cannot be written\n");
+}
+
+}  // namespace
+}  // namespace hammer_loads

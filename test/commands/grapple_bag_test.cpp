@@ -1,0 +1,144 @@
+/// process_bag --grapple, as its user runs it, on bags written here.
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <filesystem>
+
+#include "grapple/grapples.h"
+#include "ros/grapple_messages.h"
+#include "support/command.h"
+
+namespace hammer_loads {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSamples = 400;
+
+double sliderAt(int i) { return 0.332 + 0.3 * std::sin(0.02 * i); }
+
+class GrappleBag : public testing::Test {
+ protected:
+  GrappleBag() : directory_(fs::temp_directory_path() / ("grapple_bag_test_" + std::to_string(getpid()))) {
+    fs::create_directories(directory_);
+  }
+  ~GrappleBag() override { fs::remove_all(directory_); }
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+  /// 100 Hz; sample `bad` lies across the fold. Record times are 5 ms late.
+  std::string writeBag(const std::string& name, const std::string& topic, int bad = -1) const {
+    rosbag::Bag bag(path(name), rosbag::bagmode::Write);
+    for (int i = 0; i < kSamples; ++i) {
+      const ros::Time stamp(100.0 + 0.01 * i);
+      const double slider = i == bad ? 0.74 : sliderAt(i);
+      bag.write(topic, stamp + ros::Duration(0.005), test::sliderMessage(stamp, slider, 0.1));
+    }
+    return path(name);
+  }
+  test::Outcome run(const std::string& arguments) const {
+    return test::runCommand(HAMMER_LOADS_PROCESS_BAG, arguments);
+  }
+  static std::map<std::string, std::size_t> counts(const std::string& path) {
+    rosbag::Bag bag(path);
+    std::map<std::string, std::size_t> counts;
+    for (const rosbag::MessageInstance& item : rosbag::View(bag)) ++counts[item.getTopic()];
+    return counts;
+  }
+
+  fs::path directory_;
+  const std::string grapple_ = "--grapple " + test::claimsFile();
+};
+
+TEST_F(GrappleBag, WritesBothJawsAtTheRecordTimeOfTheirInput) {
+  const test::Outcome outcome = run(writeBag("in.bag", "/joint_states") + " " + path("out.bag") + " " + grapple_);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto written = counts(path("out.bag"));
+  for (const char* topic : {"left", "left_twist", "left_accel", "right", "right_twist", "right_accel"})
+    EXPECT_EQ(written.at(std::string("/grapple/jaw_edge/") + topic), kSamples) << topic;
+  EXPECT_EQ(written.at("/grapple/mechanism"), kSamples);
+  EXPECT_EQ(written.at("/grapple/run_info"), 1u);
+  EXPECT_EQ(written.size(), 8u) << "nothing of the hammer";
+  rosbag::Bag bag(path("out.bag"));
+  const Grapple grapple = test::grappleOf(test::claimsParameters());
+  int i = 0;
+  for (const rosbag::MessageInstance& item : rosbag::View(bag, rosbag::TopicQuery("/grapple/jaw_edge/right"))) {
+    const auto edge = item.instantiate<geometry_msgs::PointStamped>();
+    ASSERT_EQ(edge->header.stamp, ros::Time(100.0 + 0.01 * i));
+    ASSERT_EQ(item.getTime(), edge->header.stamp + ros::Duration(0.005));
+    ASSERT_NEAR(edge->point.x, grapple.at(sliderAt(i))->p.re, 1e-13);  // cold against warm: rounding
+    ++i;
+  }
+}
+
+TEST_F(GrappleBag, IsByteIdenticalOnASecondRun) {
+  const std::string in = writeBag("in.bag", "/joint_states");
+  ASSERT_EQ(run(in + " " + path("a.bag") + " " + grapple_).exit_code, 0);
+  ASSERT_EQ(run(in + " " + path("b.bag") + " " + grapple_).exit_code, 0);
+  const std::string a = test::contentOf(path("a.bag"));
+  EXPECT_GT(a.size(), 50000u);
+  EXPECT_TRUE(a == test::contentOf(path("b.bag")));
+}
+
+TEST_F(GrappleBag, TellsRefusedSamplesWithTheLimit) {
+  const test::Outcome outcome = run(writeBag("in.bag", "/joint_states", 200) + " " + path("out.bag") + " " + grapple_);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "slider samples without a jaw edge, across fold: 1; the last one: grapple_slider_joint: 0.74 m, across "
+            "fold: must lie between the dead point at -0.27 m and the fold at 0.7331923934967 m\n");
+  EXPECT_EQ(counts(path("out.bag")).at("/grapple/jaw_edge/left"), kSamples - 1u);
+}
+
+TEST_F(GrappleBag, TopicAndPrefixCanBeGiven) {
+  const std::string in = writeBag("in.bag", "/machine/joints");
+  const test::Outcome missing = run(in + " " + path("out.bag") + " " + grapple_);
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_EQ(missing.err, in + ": no topic /joint_states in it, must be there; topics: /machine/joints\n");
+  EXPECT_FALSE(fs::exists(path("out.bag")));
+  ASSERT_EQ(
+      run(in + " " + path("out.bag") + " " + grapple_ + " --joint-states-topic /machine/joints --grapple-prefix /claw")
+          .exit_code,
+      0);
+  EXPECT_EQ(counts(path("out.bag")).at("/claw/jaw_edge/right_accel"), kSamples);
+}
+
+TEST_F(GrappleBag, HammerAndGrappleComeFromOneBag) {
+  const std::string in = writeBag("in.bag", "/joint_states");
+  {
+    rosbag::Bag bag(in, rosbag::bagmode::Append);
+    for (int i = 0; i < 100; ++i) {
+      sensor_msgs::JointState m;
+      m.header.stamp = ros::Time(100.0 + 0.001 * i);
+      m.name = {"hammer_crank_joint"};
+      m.position = {0.005 * i};
+      m.velocity = {5.0};
+      bag.write("/hammer/crank", m.header.stamp, m);
+    }
+  }
+  const test::Outcome outcome = run(in + " " + path("both.bag") + " " + grapple_);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto both = counts(path("both.bag"));
+  EXPECT_EQ(both.at("/grapple/mechanism"), kSamples);
+  ASSERT_EQ(run(in + " " + path("hammer.bag")).exit_code, 0);
+  const auto hammer = counts(path("hammer.bag"));
+  EXPECT_EQ(both.at("/hammer_loads/hull_wrench"), hammer.at("/hammer_loads/hull_wrench"));
+  EXPECT_EQ(hammer.count("/grapple/mechanism"), 0u);
+}
+
+TEST_F(GrappleBag, BadParametersAreOneLineEachAndNothingIsWritten) {
+  const std::string in = writeBag("in.bag", "/joint_states");
+  const test::TemporaryFile bad("bd_length_m: -1\nslider_acceleration: guess\nno_such_key: 1\n");
+  const test::Outcome outcome = run(in + " " + path("out.bag") + " " + grapple_ + " --grapple " + bad.path());
+  EXPECT_EQ(outcome.exit_code, 1);
+  const auto lines = test::linesOf(outcome.err);
+  ASSERT_EQ(lines.size(), 3u) << outcome.err;
+  for (const char* key : {"bd_length_m", "slider_acceleration", "no_such_key"})
+    EXPECT_NE(outcome.err.find(key), std::string::npos) << key;
+  const test::Outcome same = run(in + " " + path("out.bag") + " " + grapple_ + " --grapple-prefix /hammer_loads");
+  EXPECT_EQ(same.exit_code, 1);
+  EXPECT_EQ(test::linesOf(same.err).size(), 1u) << same.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "only the input";
+}
+
+}  // namespace
+}  // namespace hammer_loads

@@ -1,0 +1,215 @@
+/// process_bag on the recorded sessions, judged by their truth.
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "hammer_loads/ros/bag_processing.h"
+#include "hammer_loads/ros/loads_flow.h"
+#include "support/csv.h"
+#include "support/session_bounds.h"
+
+namespace hammer_loads {
+namespace {
+
+namespace fs = std::filesystem;
+using accuracy::BlowAt;
+using accuracy::WrenchAt;
+
+constexpr double kStart = 1700000000.0;  // [s] of both sessions
+
+std::string data(const std::string& name) { return std::string(HAMMER_LOADS_TEST_DATA) + "/" + name; }
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Settings settingsWithInertia(double factor) {
+  ParameterMap given =
+      *readParameterFile(configDirectory() + "/hammer_mo100.yaml", *std::make_unique<std::vector<std::string>>());
+  given["drive_inertia_kg_m2"].value = YAML::Load(std::to_string(0.6 * factor));
+  return *load(configDirectory(), given).value;
+}
+
+double sinceStart(const ros::Time& time) { return (time - ros::Time(kStart)).toSec(); }
+
+struct Truth {
+  std::vector<WrenchAt> wrenches;
+  std::vector<BlowAt> blows;
+};
+
+Truth truthOf(const std::string& session) {
+  Truth truth;
+  const test::Csv samples = test::dataCsv(session + "_truth.csv"), blows = test::dataCsv(session + "_blows.csv");
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    truth.wrenches.push_back({samples.number(i, "t_s"), samples.number(i, "hull_force_x_N"),
+                              samples.number(i, "hull_force_z_N"), samples.number(i, "hull_torque_y_Nm")});
+  for (std::size_t i = 0; i < blows.size(); ++i)
+    truth.blows.push_back({blows.number(i, "t_s"), blows.number(i, "blow_energy_J"), blows.number(i, "tool_impulse_Ns"),
+                           blows.number(i, "turn_peak_force_z_N"), blows.number(i, "turn_impulse_z_Ns")});
+  return truth;
+}
+
+std::vector<double> endsOfDropOuts(const std::vector<WrenchAt>& samples) {
+  std::vector<double> ends;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (samples[i].time - samples[i - 1].time > 0.02) ends.push_back(samples[i].time);
+  }
+  return ends;
+}
+
+struct Output {
+  std::vector<WrenchAt> wrenches;
+  std::vector<BlowAt> blows;
+};
+
+Output outputOf(const std::string& path) {
+  Output output;
+  std::map<double, Pulse> pulses;
+  rosbag::Bag bag(path);
+  for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
+    if (const auto w = item.instantiate<geometry_msgs::WrenchStamped>()) {
+      output.wrenches.push_back(
+          {sinceStart(w->header.stamp), w->wrench.force.x, w->wrench.force.z, w->wrench.torque.y});
+    } else if (const auto b = item.instantiate<Blow>()) {
+      output.blows.push_back({sinceStart(b->header.stamp), b->energy_J, b->tool_impulse_z_Ns});
+    } else if (const auto p = item.instantiate<Pulse>()) {
+      pulses[sinceStart(p->header.stamp)] = *p;
+    }
+  }
+  for (BlowAt& blow : output.blows) {
+    const auto pulse = pulses.find(blow.time);  // stamped with the blow that ends its turn
+    if (pulse == pulses.end()) continue;
+    blow.turn_peak = pulse->second.amplitude_N;
+    blow.turn_impulse_z = pulse->second.turn_impulse_z_Ns;
+  }
+  return output;
+}
+
+class ProcessBag : public testing::Test {
+ protected:
+  ProcessBag() : directory_(fs::temp_directory_path() / ("process_bag_test_" + std::to_string(getpid()))) {
+    fs::create_directories(directory_);
+  }
+  ~ProcessBag() override { fs::remove_all(directory_); }
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+  std::string process(const std::string& input, const std::string& output, double inertia_factor = 1.0) {
+    BagJob job;
+    job.input = input;
+    job.output = output;
+    return processBag(
+        job, settingsWithInertia(inertia_factor), [](double) {}, report_);
+  }
+
+  fs::path directory_;
+  BagReport report_;
+};
+
+struct SessionCase {
+  const char* session;
+  test::SessionBounds bounds;
+};
+
+class RecordedSession : public ProcessBag, public testing::WithParamInterface<std::tuple<SessionCase, double>> {};
+
+TEST_P(RecordedSession, StaysWithinTheBounds) {
+  const auto& [session_case, inertia_factor] = GetParam();
+  const std::string session = session_case.session;
+  ASSERT_EQ(process(data(session + ".bag"), path("out.bag"), inertia_factor), "");
+  const Truth truth = truthOf(session);
+  const Output output = outputOf(path("out.bag"));
+  EXPECT_EQ(output.wrenches.size(), report_.crank.accepted);
+  const accuracy::Judged judged{3.0, truth.wrenches.back().time - 3.0, endsOfDropOuts(truth.wrenches)};
+  const auto e = accuracy::sessionErrors(output.wrenches, truth.wrenches, output.blows, truth.blows, judged);
+  test::expectWithin(e, session_case.bounds);
+  EXPECT_GT(e.blows, 50);
+  // For the README: scripts/update_accuracy.
+  std::printf("| %s | %.0f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n",
+              session_case.session, 100 * (inertia_factor - 1), 100 * e.rms_x, 100 * e.rms_z, 100 * e.rms_torque,
+              100 * e.turn_peak, 100 * e.turn_impulse, 1e3 * e.blow_time, 100 * e.energy);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sessions, RecordedSession,
+                         testing::Combine(testing::Values(SessionCase{"mo100_1khz", test::kBounds1kHz},
+                                                          SessionCase{"mo100_100hz", test::kBounds100Hz}),
+                                          testing::Values(1.0, 0.5, 1.5)));
+
+TEST_F(ProcessBag, IsByteIdenticalOnASecondRunAndFast) {
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(process(data("mo100_1khz.bag"), path("a.bag")), "");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ASSERT_EQ(process(data("mo100_1khz.bag"), path("b.bag")), "");
+  const std::string a = contents(path("a.bag"));
+  EXPECT_GT(a.size(), 1000000u);
+  EXPECT_TRUE(a == contents(path("b.bag")));
+  EXPECT_LT(seconds, 5.0) << "0.3 s on an idle core; the bound only catches what is grossly wrong";
+}
+
+TEST_F(ProcessBag, WritesOutputsAtTheRecordTimeOfTheirInput) {
+  ASSERT_EQ(process(data("mo100_100hz.bag"), path("out.bag")), "");
+  rosbag::Bag in(data("mo100_100hz.bag")), out(path("out.bag"));
+  rosbag::View inputs(in, rosbag::TopicQuery(std::string("/hammer/crank")));
+  rosbag::View outputs(out, rosbag::TopicQuery(std::string("/hammer_loads/hull_wrench")));
+  ASSERT_EQ(inputs.size(), outputs.size());
+  for (auto i = inputs.begin(), o = outputs.begin(); i != inputs.end(); ++i, ++o) {
+    ASSERT_EQ(i->getTime(), o->getTime());
+    ASSERT_EQ(i->instantiate<sensor_msgs::JointState>()->header.stamp,
+              o->instantiate<geometry_msgs::WrenchStamped>()->header.stamp);
+  }
+}
+
+TEST_F(ProcessBag, RunInfoHoldsEveryParameterInForce) {
+  ASSERT_EQ(process(data("mo100_100hz.bag"), path("out.bag")), "");
+  rosbag::Bag out(path("out.bag"));
+  rosbag::View view(out, rosbag::TopicQuery(std::string("/hammer_loads/run_info")));
+  ASSERT_EQ(view.size(), 1u);
+  const auto info = view.begin()->instantiate<RunInfo>();
+  EXPECT_FALSE(info->version.empty());
+  std::ofstream(path("again.yaml")) << info->parameters_yaml;
+  const Checked<Settings> again = loadFiles(configDirectory(), {path("again.yaml")});
+  ASSERT_TRUE(again.value);
+  EXPECT_EQ(again.value->yaml, info->parameters_yaml);
+}
+
+void expectRefused(const std::string& problem, const std::string& input, const std::string& output) {
+  EXPECT_NE(problem.find(input), std::string::npos) << problem;
+  EXPECT_EQ(problem.find('\n'), std::string::npos) << "one line: " << problem;
+  EXPECT_FALSE(fs::exists(output));
+}
+
+TEST_F(ProcessBag, TellsABagThatIsMissingTruncatedOrNone) {
+  std::ofstream(path("text.bag")) << "no bag at all\n";
+  std::ofstream(path("cut.bag"), std::ios::binary) << contents(data("mo100_100hz.bag")).substr(0, 200000);
+  for (const char* name : {"missing.bag", "text.bag", "cut.bag"}) {
+    expectRefused(process(path(name), path("out.bag")), path(name), path("out.bag"));
+  }
+  EXPECT_TRUE(fs::is_empty(directory_) || std::distance(fs::directory_iterator(directory_), {}) == 2)
+      << "nothing half-written";
+}
+
+TEST_F(ProcessBag, TellsABagOfAnotherTypeOrWithoutTheCrank) {
+  {
+    rosbag::Bag bag(path("type.bag"), rosbag::bagmode::Write);
+    bag.write("/hammer/crank", ros::Time(1.0), geometry_msgs::WrenchStamped());
+    rosbag::Bag other(path("other.bag"), rosbag::bagmode::Write);
+    other.write("/something", ros::Time(1.0), sensor_msgs::JointState());
+  }
+  expectRefused(process(path("type.bag"), path("out.bag")), "type.bag", path("out.bag"));
+  expectRefused(process(path("other.bag"), path("out.bag")), "/something", path("out.bag"));
+}
+
+TEST_F(ProcessBag, TellsAnOutputThatCannotBeWritten) {
+  const std::string problem = process(data("mo100_100hz.bag"), path("no/such/directory/out.bag"));
+  EXPECT_NE(problem.find("out.bag"), std::string::npos) << problem;
+}
+
+}  // namespace
+}  // namespace hammer_loads

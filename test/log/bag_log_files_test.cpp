@@ -1,0 +1,121 @@
+/// Names, directories and deletion of the log's files.
+#include <ctime>
+#include <random>
+
+#include "hammer_loads/log/bag_log.h"
+#include "log/log_test_support.h"
+
+namespace hammer_loads::test {
+namespace {
+
+TEST_F(LogTest, NeverOverwritesAFile) {
+  // Every name of the next seconds that the log would choose first is taken, by a bag or by one being written.
+  std::vector<std::string> taken;
+  const std::time_t now = std::time(nullptr);
+  for (int second = -1; second < 30; ++second) {
+    const std::time_t time = now + second;
+    std::tm parts{};
+    localtime_r(&time, &parts);
+    char stamp[32];
+    std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H-%M-%S", &parts);
+    taken.push_back(path(std::string("test_") + stamp + "_0.bag"));
+    taken.push_back(path(std::string("test_") + stamp + "_1.bag.active"));
+  }
+  for (const std::string& file : taken) writeFile(file, "precious");
+  std::string late;
+  {
+    BagLog first(settings_), second(settings_);
+    ASSERT_TRUE(first.start().empty());
+    ASSERT_TRUE(second.start().empty());
+    first.write("/wrench", at(1), wrench(1));
+    second.write("/wrench", at(2), wrench(2));
+    late = first.health().file;
+    late = late.substr(0, late.size() - std::string(".active").size());
+    writeFile(late, "precious");  // its final name, taken while it writes
+  }
+  taken.push_back(late);
+  for (const std::string& file : taken) EXPECT_EQ(readFile(file), "precious") << file;
+  std::size_t wrenches = 0;
+  for (const std::string& file : files())
+    if (std::filesystem::file_size(file) > 100) wrenches += readBag(file).size();
+  EXPECT_EQ(wrenches, 2u);
+}
+
+TEST_F(LogTest, SaysBeforehandWhyItCannotStart) {
+  writeFile(path("file"), "");
+  std::filesystem::create_directory(path("empty"));
+  using Change = std::function<void(LogSettings&)>;
+  const std::vector<std::pair<Change, std::string>> cases = {
+      {[&](LogSettings& s) { s.directory = path("missing"); }, "missing', must exist: No such file or directory"},
+      {[&](LogSettings& s) { s.directory = path("file/below"); }, "file/below', must exist: Not a directory"},
+      {[&](LogSettings& s) { s.directory = path("file"); }, "file', must be a directory"},
+      {[&](LogSettings& s) { s.directory = ""; }, "log_directory: '', must exist"},
+      {[&](LogSettings& s) { s.directory = "/sys"; }, "log_directory: '/sys', must be writable"},
+      {[&](LogSettings& s) { s.prefix = "../up"; }, "log_prefix: '../up', must be a file name's beginning"},
+      {[&](LogSettings& s) { s.prefix = ""; }, "log_prefix: ''"},
+      {[&](LogSettings& s) { s.prefix = "a\nb"; }, "log_prefix"},
+      {[&](LogSettings& s) { s.split_size = 0; }, "log_split_mb: 0 MB, must be >= 0.064 MB"},
+      {[&](LogSettings& s) { s.total_size = s.split_size; }, "log_total_mb: 100 MB, must be 0 (no limit) or >= 2 x"},
+      {[&](LogSettings& s) { s.queue_size = 5'000'000'000; }, "log_queue_mb: 5000 MB, must be <= 4000 MB"},
+      {[&](LogSettings& s) { s.min_free_space = 1'000'000'000'000'000'000; }, "log_min_free_mb: 1e+12 MB, must be <="},
+  };
+  for (const auto& [change, line] : cases) {
+    LogSettings changed = settings_;
+    changed.directory = path("empty");
+    change(changed);
+    BagLog log(changed);
+    const auto problems = log.start();
+    ASSERT_EQ(problems.size(), 1u) << line;
+    EXPECT_NE(problems[0].find(line), std::string::npos) << problems[0];
+    EXPECT_EQ(log.health().state, LogState::kOff);
+    log.write("/wrench", at(0), wrench(0));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(path("empty")));
+  EXPECT_FALSE(std::filesystem::exists(path("missing")));
+}
+
+TEST_F(LogTest, MakesItsDirectoryBelowHomeOnly) {
+  const std::string home = std::getenv("HOME") != nullptr ? std::getenv("HOME") : "";
+  setenv("HOME", directory_.c_str(), 1);
+  settings_.directory = "~/.ros/hammer_loads";
+  {
+    BagLog log(settings_);
+    EXPECT_EQ(log.start(), std::vector<std::string>{});
+  }
+  setenv("HOME", home.c_str(), 1);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path(".ros/hammer_loads")), {}), 1);
+}
+
+TEST_F(LogTest, DeletesOldestFilesOfItsOwnOnly) {
+  settings_.split_size = 100'000;
+  settings_.total_size = 350'000;
+  writeFile(path("test_2001-01-01-00-00-00_0.bag"), "of another run");
+  std::mt19937 random(1);
+  LogHealth health;
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    for (std::size_t i = 0; i < 20000; ++i) {
+      auto message = wrench(i);
+      message.wrench.force.z = static_cast<double>(random());
+      log.write("/wrench", at(i), message);
+    }
+    log.stop();
+    ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+    health = log.health();
+  }
+  EXPECT_GT(health.files_deleted, 2u);
+  EXPECT_EQ(health.files_closed, health.files_deleted + files().size() - 1);
+  EXPECT_EQ(readFile(path("test_2001-01-01-00-00-00_0.bag")), "of another run");
+  std::filesystem::remove(path("test_2001-01-01-00-00-00_0.bag"));
+  std::uint64_t total = 0;
+  for (const std::string& file : files()) total += std::filesystem::file_size(file);
+  EXPECT_LE(total, settings_.total_size + settings_.split_size / 4);
+  const auto left = readAll();
+  ASSERT_FALSE(left.empty());
+  EXPECT_EQ(number(left.back()), 19999u);
+  EXPECT_EQ(number(left.back()) - number(left.front()) + 1, left.size());
+}
+
+}  // namespace
+}  // namespace hammer_loads::test

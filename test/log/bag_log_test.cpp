@@ -1,0 +1,223 @@
+#include "hammer_loads/log/bag_log.h"
+
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/String.h>
+
+#include <random>
+
+#include "log/log_test_support.h"
+#include "support/resident_memory.h"
+
+namespace hammer_loads::test {
+namespace {
+
+constexpr char kRunInfo[] = "/node/run_info";
+
+std_msgs::String text(const std::string& data) {
+  std_msgs::String message;
+  message.data = data;
+  return message;
+}
+
+TEST_F(LogTest, KeepsEveryMessageWithTypeTimeAndOrder) {
+  constexpr std::size_t kCount = 3000;
+  {
+    BagLog log(settings_);
+    ASSERT_EQ(log.start(), std::vector<std::string>{});
+    for (std::size_t i = 0; i < kCount; ++i) {
+      sensor_msgs::JointState input;
+      input.name = {"hammer_crank_joint"};
+      input.position.assign(1 + i % 50, 0.01 * static_cast<double>(i));  // all sizes
+      log.write("/hammer/crank", at(i), input);
+      log.write("/node/hull_wrench", at(i), wrench(i));
+    }
+  }
+  ASSERT_EQ(files().size(), 1u);
+  ASSERT_TRUE(files(".active").empty());
+  const auto entries = readAll();
+  ASSERT_EQ(entries.size(), 2 * kCount);
+  const auto inputs = onTopic(entries, "/hammer/crank");
+  const auto outputs = onTopic(entries, "/node/hull_wrench");
+  ASSERT_EQ(outputs.size(), kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    ASSERT_EQ(inputs[i].time, at(i));
+    ASSERT_EQ(outputs[i].time, at(i));
+    ASSERT_EQ(inputs[i].as<sensor_msgs::JointState>().position.size(), 1 + i % 50);
+    ASSERT_EQ(outputs[i].as<geometry_msgs::WrenchStamped>(), wrench(i));
+  }
+  EXPECT_EQ(inputs[0].datatype, "sensor_msgs/JointState");
+  EXPECT_EQ(inputs[0].md5sum, ros::message_traits::md5sum<sensor_msgs::JointState>());
+  EXPECT_EQ(inputs[0].definition, ros::message_traits::definition<sensor_msgs::JointState>());
+  EXPECT_FALSE(inputs[0].latched);
+}
+
+TEST_F(LogTest, EverySplitStandsAlone) {
+  settings_.split_size = 200'000;
+  constexpr std::size_t kCount = 20000;
+  std::mt19937 random(1);
+  std::vector<geometry_msgs::WrenchStamped> sent;
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    log.writeLatched("/tf_static", at(0), text("one arm"), "/first");
+    log.writeLatched("/tf_static", at(0), text("other arm"), "/second");
+    for (std::size_t i = 0; i < kCount; ++i) {
+      sent.push_back(wrench(i));
+      sent.back().wrench.force.z = static_cast<double>(random());  // hardly compressible
+      log.write("/wrench", at(i), sent.back());
+      if (i == 0) log.writeLatched(kRunInfo, at(i), text("old"), "/node");
+      if (i == 1) log.writeLatched(kRunInfo, at(i), text("new"), "/node");
+    }
+  }
+  ASSERT_GE(files().size(), 4u);
+  std::size_t next = 0;
+  for (std::size_t n = 0; n < files().size(); ++n) {
+    const std::string file = files()[n];
+    EXPECT_LT(std::filesystem::file_size(file), settings_.split_size * 3 / 2) << file;
+    const auto entries = readBag(file);
+    const auto wrenches = onTopic(entries, "/wrench");
+    ASSERT_FALSE(wrenches.empty());
+    for (const Entry& entry : wrenches) ASSERT_EQ(entry.as<geometry_msgs::WrenchStamped>(), sent[next++]);
+    const auto transforms = onTopic(entries, "/tf_static");
+    ASSERT_EQ(transforms.size(), 2u);
+    for (const Entry& entry : transforms) {
+      EXPECT_TRUE(entry.latched);
+      EXPECT_EQ(entry.time, wrenches[0].time);
+    }
+    EXPECT_NE(transforms[0].caller, transforms[1].caller);
+    const auto info = onTopic(entries, kRunInfo);
+    ASSERT_EQ(info.size(), n == 0 ? 2u : 1u);
+    EXPECT_EQ(info.back().as<std_msgs::String>().data, "new");
+    EXPECT_EQ(info.back().caller, "/node");
+  }
+  EXPECT_EQ(next, kCount);
+}
+
+TEST_F(LogTest, StartsStopsAndSplitsOnRequest) {
+  BagLog log(settings_);
+  EXPECT_FALSE(log.split());
+  log.writeLatched(kRunInfo, at(0), text("remembered while off"));
+  log.write("/wrench", at(1), wrench(1));  // off: not kept, not counted
+  EXPECT_EQ(log.health().state, LogState::kOff);
+  ASSERT_TRUE(log.start().empty());
+  EXPECT_EQ(log.health().state, LogState::kRecording);
+  EXPECT_NE(log.health().file.find(directory_), std::string::npos);
+  ASSERT_EQ(log.start().size(), 1u);  // already recording
+  log.write("/wrench", at(2), wrench(2));
+  EXPECT_TRUE(log.split());
+  log.write("/wrench", at(3), wrench(3));
+  log.stop();
+  log.write("/wrench", at(4), wrench(4));
+  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+  EXPECT_EQ(log.health().files_closed, 2u);
+  EXPECT_EQ(readBag(log.health().file).size(), 2u);  // whole while the log lives on
+  ASSERT_TRUE(log.start().empty());
+  log.stop();
+  ASSERT_TRUE(log.start().empty());  // at once, whatever the disk is at
+  log.write("/wrench", at(5), wrench(5));
+  log.stop();
+  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+  ASSERT_EQ(files().size(), 4u);
+  std::vector<std::size_t> kept;
+  for (const std::string& file : files()) {
+    const auto entries = readBag(file);
+    EXPECT_EQ(onTopic(entries, kRunInfo).size(), 1u) << "even where there is nothing else";
+    for (const Entry& entry : onTopic(entries, "/wrench")) kept.push_back(number(entry));
+  }
+  std::sort(kept.begin(), kept.end());
+  EXPECT_EQ(kept, (std::vector<std::size_t>{2, 3, 5}));
+  EXPECT_EQ(log.health().messages_written, 3u);
+  EXPECT_EQ(log.health().messages_dropped, 0u);
+}
+
+TEST_F(LogTest, WhatIsForgottenIsNotRepeated) {
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    log.forgetLatched(kRunInfo);  // nothing there
+    log.writeLatched(kRunInfo, at(0), text("old"));
+    log.writeLatched("/tf_static", at(0), text("arm"), "/publisher");
+    log.write("/wrench", at(0), wrench(0));
+    log.forgetLatched(kRunInfo);
+    log.split();
+    log.write("/wrench", at(1), wrench(1));
+    log.writeLatched(kRunInfo, at(1), text("new"));
+    log.split();
+    log.write("/wrench", at(2), wrench(2));
+  }
+  ASSERT_EQ(files().size(), 3u);
+  std::vector<std::string> infos;
+  for (const std::string& file : files()) {
+    const auto entries = readBag(file);
+    EXPECT_EQ(onTopic(entries, "/tf_static").size(), 1u) << file;
+    for (const Entry& entry : onTopic(entries, kRunInfo)) infos.push_back(entry.as<std_msgs::String>().data);
+  }
+  EXPECT_EQ(infos, (std::vector<std::string>{"old", "new", "new"}));
+}
+
+TEST_F(LogTest, SameInputsGiveSameContents) {
+  for (const char* prefix : {"one", "two"}) {
+    settings_.prefix = prefix;
+    settings_.split_size = prefix[0] == 'o' ? 64'000 : 100'000'000;
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    for (std::size_t i = 0; i < 5000; ++i) {
+      log.write("/a", at(i), wrench(i));
+      if (i % 3 == 0) log.write("/b", at(i), wrench(2 * i));
+      if (i % 3 == 0) log.write("/b", at(i), wrench(2 * i + 1));  // two at one time
+    }
+  }
+  std::vector<Entry> one, two;
+  for (const std::string& file : files()) {
+    auto& entries = file.find("/one_") != std::string::npos ? one : two;
+    for (const Entry& entry : readBag(file)) entries.push_back(entry);
+  }
+  EXPECT_EQ(two.size(), 5000u + 2 * 1667u);
+  for (const char* topic : {"/a", "/b"}) EXPECT_EQ(onTopic(one, topic), onTopic(two, topic));
+}
+
+/// rosbag loads a plugin for every bag, which two threads must not do at once.
+TEST_F(LogTest, ManyLogsLiveInOneProcess) {
+  constexpr std::size_t kSplits = 20;
+  {
+    BagLog logs[] = {BagLog(settings_), BagLog(settings_), BagLog(settings_)};
+    for (BagLog& log : logs) ASSERT_TRUE(log.start().empty());
+    for (std::size_t i = 0; i <= kSplits; ++i) {
+      for (BagLog& log : logs) log.write("/wrench", at(i), wrench(i));
+      for (BagLog& log : logs) ASSERT_TRUE(i == kSplits || log.split());
+    }
+  }
+  EXPECT_EQ(files().size(), 3 * (kSplits + 1));
+  EXPECT_EQ(readAll().size(), 3 * (kSplits + 1));
+}
+
+TEST_F(LogTest, NeedsTheMemoryOfItsQueueOnlyFromTheFirstStartOn) {
+  settings_.queue_size = 100'000'000;
+  const auto queue = static_cast<double>(settings_.queue_size);
+  const double before = residentMemory();
+  BagLog log(settings_);
+  EXPECT_LT(residentMemory() - before, 0.2 * queue);
+  ASSERT_EQ(log.start(), std::vector<std::string>{});
+  EXPECT_GT(residentMemory() - before, 0.9 * queue);
+}
+
+/// rosbag keeps a copy of what passed through chunks that were not ended by their size.
+TEST_F(LogTest, MemoryStaysFlatWhenChunksAreEndedByTime) {
+  unsigned number = 0;
+  LogFile file(std::move(*LogName::take(directory_, "test", number).value), 768 * 1024);
+  ASSERT_FALSE(file.open());
+  LogTopic topic(0, "/a", {"std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n"}, false, "");
+  std::vector<std::uint8_t> bytes(100'000);
+  auto now = LogFile::Clock::now();
+  double before = 0.0;
+  for (std::size_t i = 0; i < 1500; ++i, now += LogFile::kChunkPeriod / 5) {  // 1 MB/s for 150 s
+    if (i == 500) before = residentMemory();
+    ASSERT_FALSE(file.write(topic, at(i), bytes.data(), static_cast<std::uint32_t>(bytes.size()), now));
+    ASSERT_FALSE(file.closeChunkInTime(now));
+  }
+  EXPECT_LT(residentMemory(), before + 5e6) << "100 MB passed";
+  ASSERT_FALSE(file.close());
+}
+
+}  // namespace
+}  // namespace hammer_loads::test

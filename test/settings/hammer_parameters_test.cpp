@@ -1,0 +1,144 @@
+#include "hammer_loads/settings/hammer_parameters.h"
+
+#include <cmath>
+
+#include "hammer_loads/settings/parameter_reader.h"
+#include "settings/hammer_yaml.h"
+#include "settings/temporary_file.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+using Lines = std::vector<std::string>;
+using test::hammerYaml;
+using test::TemporaryFile;
+
+Lines problemsWith(const std::map<std::string, std::string>& altered, const std::string& added = {}) {
+  const TemporaryFile file(hammerYaml(altered) + added);
+  Lines problems = loadFiles(configDirectory(), {file.path()}).problems;
+  for (std::string& line : problems) {  // the file's name is another one in every run
+    const std::size_t place = line.find(" (" + file.path());
+    if (place != std::string::npos) line.erase(place);
+  }
+  return problems;
+}
+
+bool beginsWith(const std::string& text, const std::string& beginning) { return text.rfind(beginning, 0) == 0; }
+
+class EveryHammerKey : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryHammerKey, IsRequired) {
+  EXPECT_EQ(problemsWith({}), Lines{});
+  const Lines problems = problemsWith({{GetParam(), ""}});
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_TRUE(beginsWith(problems[0], GetParam() + ": missing, must be a finite number")) << problems[0];
+}
+
+TEST_P(EveryHammerKey, MustBeAFiniteNumber) {
+  for (const char* text : {"\"0.1\"", "word", "true", "[0.1]", ".nan", ".inf", "~"}) {
+    const Lines problems = problemsWith({{GetParam(), text}});
+    ASSERT_EQ(problems.size(), 1U) << text;
+    EXPECT_TRUE(beginsWith(problems[0], GetParam() + ": ")) << problems[0];
+    EXPECT_NE(problems[0].find(", must be a finite number"), std::string::npos) << problems[0];
+  }
+}
+
+TEST_P(EveryHammerKey, MustHaveItsSign) {
+  const bool any_sign = GetParam().find("_com_a") != std::string::npos;  // angle, along, across
+  const Lines problems = problemsWith({{GetParam(), "-0.003"}});
+  if (any_sign) {
+    EXPECT_EQ(problems, Lines{});
+  } else {
+    ASSERT_EQ(problems.size(), 1U);
+    EXPECT_TRUE(beginsWith(problems[0], GetParam() + ": -0.003")) << problems[0];
+    EXPECT_NE(problems[0].find(", must be >"), std::string::npos) << problems[0];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Hammer, EveryHammerKey, testing::ValuesIn(hammerKeys()),
+                         [](const testing::TestParamInfo<std::string>& key) { return key.param; });
+
+TEST(HammerParameters, ShippedFileIsTheMo100) {
+  const Checked<Settings> settings = loadFiles(configDirectory(), {configDirectory() + "/hammer_mo100.yaml"});
+  ASSERT_EQ(settings.problems, Lines{});
+  const HammerParameters& read = settings.value->mechanism.parameters();
+  const HammerParameters right = test::mo100LinkageParameters();
+  EXPECT_EQ(read.lengths.crank, right.lengths.crank);
+  EXPECT_NEAR(read.lengths.rod, right.lengths.rod, 1e-15);
+  EXPECT_EQ(read.lengths.rocker, right.lengths.rocker);
+  EXPECT_EQ(read.lengths.pivot_distance, right.lengths.pivot_distance);
+  EXPECT_EQ(read.rocker_com_distance, right.rocker_com_distance);
+  EXPECT_NEAR(read.rocker_com_angle, right.rocker_com_angle, 1e-15);
+  EXPECT_EQ(read.rocker_mass, right.rocker_mass);
+  EXPECT_EQ(read.rocker_inertia_about_pivot, right.rocker_inertia_about_pivot);
+  EXPECT_NEAR(read.striking_distance, right.striking_distance, 5e-5);  // given to four digits
+  EXPECT_EQ(read.striking_friction, 0.0);
+  EXPECT_EQ(read.crank_mass, right.crank_mass);
+  EXPECT_EQ(read.crank_com_along, right.crank_com_along);
+  EXPECT_EQ(read.crank_com_across, right.crank_com_across);
+  EXPECT_EQ(read.crank_inertia_about_com, right.crank_inertia_about_com);
+  EXPECT_EQ(read.rod_mass, right.rod_mass);
+  EXPECT_EQ(read.rod_com_along, right.rod_com_along);
+  EXPECT_EQ(read.rod_com_across, right.rod_com_across);
+  EXPECT_EQ(read.rod_inertia_about_com, right.rod_inertia_about_com);
+  EXPECT_EQ(read.drive_inertia, 0.6);
+}
+
+TEST(HammerParameters, KeysAreTheContracts) {
+  EXPECT_EQ(hammerKeys(),
+            (Lines{"crank_length_m", "rod_length_m", "rocker_length_m", "pivot_distance_m", "rocker_com_distance_m",
+                   "rocker_com_angle_deg", "rocker_mass_kg", "rocker_inertia_about_pivot_kg_m2", "striking_distance_m",
+                   "striking_friction", "crank_mass_kg", "crank_com_along_m", "crank_com_across_m",
+                   "crank_inertia_about_com_kg_m2", "rod_mass_kg", "rod_com_along_m", "rod_com_across_m",
+                   "rod_inertia_about_com_kg_m2", "drive_inertia_kg_m2"}));
+}
+
+TEST(HammerParameters, RefusesAnImpossibleLinkageWithItsNumbers) {
+  const Lines problems = problemsWith({{"rod_length_m", "0.151"}});
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_TRUE(beginsWith(problems[0], "rod_length_m: impossible linkage: ")) << problems[0];
+  EXPECT_NE(problems[0].find("0.048 + 0.151 - 0.078 - 0.12"), std::string::npos) << problems[0];
+}
+
+TEST(HammerParameters, AcceptsASmallMissOfTheChangePointAndNotesIt) {
+  const TemporaryFile file(hammerYaml({{"rod_length_m", "0.15004"}}));
+  const Checked<Settings> settings = loadFiles(configDirectory(), {file.path()});
+  ASSERT_EQ(settings.problems, Lines{});
+  EXPECT_NEAR(settings.value->mechanism.parameters().lengths.rod, 0.150, 1e-15);
+  ASSERT_FALSE(settings.notes.empty());
+  EXPECT_TRUE(beginsWith(settings.notes[0], "rod_length_m: 0.15004 m corrected")) << settings.notes[0];
+  EXPECT_NE(settings.value->yaml.find("rod_length_m: 0.15004\n"), std::string::npos);
+}
+
+TEST(HammerParameters, RefusesAnInertiaAboutTheWrongPoint) {
+  const Lines problems = problemsWith({{"rocker_inertia_about_pivot_kg_m2", "0.3415"}});  // P0's about S
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems[0].find("about the pivot D"), std::string::npos) << problems[0];
+}
+
+TEST(HammerParameters, ReportsSeveralProblemsTogetherOneLineEach) {
+  const Lines problems = problemsWith(
+      {{"crank_length_m", ""}, {"rod_length_m", "-0.15"}, {"rocker_mass_kg", "heavy"}, {"rod_mass_kg", "-1"}},
+      "rocker_mas_kg: 35.2\nlevel: 3\nlog_split_mb: 0\n");
+  ASSERT_EQ(problems.size(), 7U);
+  const Lines beginnings{"crank_length_m: missing",
+                         "rocker_mass_kg: heavy kg, must be a finite number",
+                         "rod_length_m: -0.15 m, must be > 0",
+                         "rod_mass_kg: -1 kg, must be >= 0",
+                         "level: 3, must be one of pulse, rocker, linkage",
+                         "log_split_mb: 0 MB, must be an integer in [1, ",
+                         "rocker_mas_kg: unknown key, perhaps rocker_mass_kg was meant"};
+  for (std::size_t i = 0; i < beginnings.size(); ++i)
+    EXPECT_TRUE(beginsWith(problems[i], beginnings[i])) << problems[i];
+}
+
+TEST(HammerParameters, ProblemOfSeveralKeysNamesTheFile) {
+  const TemporaryFile file(hammerYaml({{"rod_length_m", "0.2"}}));
+  const Lines problems = loadFiles(configDirectory(), {file.path()}).problems;
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems[0].find("(" + file.path() + ":2)"), std::string::npos) << problems[0];
+}
+
+}  // namespace
+}  // namespace hammer_loads

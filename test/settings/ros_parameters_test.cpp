@@ -1,0 +1,82 @@
+#include "hammer_loads/ros/ros_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "hammer_loads/settings/hammer_parameters.h"
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+using Lines = std::vector<std::string>;
+
+Lines problemsOf(const XmlRpcValue& parameters) {
+  Lines problems;
+  const ParameterMap map = parameterMap(yamlFromXmlRpc(parameters), "/node", problems).value();
+  const Lines found = load(configDirectory(), map).problems;
+  problems.insert(problems.end(), found.begin(), found.end());
+  return problems;
+}
+
+TEST(RosParameters, KeepsTypesAndValues) {
+  EXPECT_EQ(asBoolean(yamlFromXmlRpc(XmlRpcValue(true))), true);
+  EXPECT_EQ(asInteger(yamlFromXmlRpc(XmlRpcValue(-7))), -7);
+  for (const double number : {0.1, 1.0 / 3.0, -5e-324, 1.7976931348623157e308, 3.0})
+    EXPECT_EQ(asNumber(yamlFromXmlRpc(XmlRpcValue(number))), number);
+  EXPECT_FALSE(asInteger(yamlFromXmlRpc(XmlRpcValue(3.0))).has_value());
+  for (const char* text : {"word", "1.5", "true", ""}) {
+    EXPECT_EQ(asText(yamlFromXmlRpc(XmlRpcValue(text))), text);
+    EXPECT_FALSE(asNumber(yamlFromXmlRpc(XmlRpcValue(text))).has_value());
+  }
+}
+
+TEST(RosParameters, KeepsListsAndMaps) {
+  XmlRpcValue list;
+  list[0] = "a";
+  list[1] = "2";
+  EXPECT_EQ(asTexts(yamlFromXmlRpc(list)), (Lines{"a", "2"}));
+  list[1] = 2;
+  EXPECT_FALSE(asTexts(yamlFromXmlRpc(list)).has_value());
+  list.setSize(0);
+  XmlRpcValue map;
+  map["x"] = 1.5;
+  map["list"] = list;
+  const YAML::Node node = yamlFromXmlRpc(map);
+  ASSERT_TRUE(node.IsMap());
+  EXPECT_EQ(node.size(), 2U);
+  EXPECT_EQ(asNumber(node["x"]), 1.5);
+  XmlRpcValue invalid;
+  EXPECT_TRUE(yamlFromXmlRpc(invalid).IsNull());
+}
+
+TEST(RosParameters, ReachTheSameReaderAsFiles) {
+  XmlRpcValue parameters;
+  parameters["gravity_m_s2"] = 9;
+  parameters["crank_estimator"] = "none";
+  parameters["pitch_joints"][0] = "boom_joint";
+  EXPECT_EQ(problemsOf(parameters), Lines{});
+}
+
+TEST(RosParameters, ProblemsNameTheNameSpace) {
+  XmlRpcValue parameters;
+  parameters["gravity_m_s2"] = "9.8";
+  parameters["hull_pitch_rad"] = std::numeric_limits<double>::quiet_NaN();
+  parameters["stale_after_s"] = -1.5;
+  parameters["excavator"]["length_m"] = 3.0;
+  EXPECT_EQ(problemsOf(parameters),
+            (Lines{"hull_pitch_rad: .nan rad, must be a finite number (/node)",
+                   "gravity_m_s2: \"9.8\" m/s2, must be a finite number >= 0 (/node)",
+                   "stale_after_s: -1.5 s, must be a finite number > 0 (/node)", "excavator: unknown key (/node)"}));
+}
+
+TEST(RosParameters, OneHammerKeyMeansThatAllMustBeGiven) {
+  XmlRpcValue parameters;
+  parameters["rocker_mass_kg"] = 35.2;
+  EXPECT_EQ(problemsOf(parameters).size(), hammerKeys().size() - 1);
+}
+
+}  // namespace
+}  // namespace hammer_loads
