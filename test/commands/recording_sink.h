@@ -11,47 +11,25 @@
 #include <utility>
 #include <vector>
 
-#include "hammer_loads/ros/loads_flow.h"
+#include "hammer_loads/ros/hammer_bridge.h"
 
 namespace hammer_loads::test {
 
 /// Record time and content of each message, by topic without its prefix.
 using Recorded = std::map<std::string, std::vector<std::pair<ros::Time, std::vector<std::uint8_t>>>>;
 
-/// Takes everything.
-class RecordingSink final : public LoadsSink {
- public:
-  void runInfo(const RunInfo& m, const ros::Time& t) override { add("run_info", m, t); }
-  void hullWrench(const geometry_msgs::WrenchStamped& m, const ros::Time& t) override { add("hull_wrench", m, t); }
-  void boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& m, const ros::Time& t) override {
-    add("boom_wrench/" + link, m, t);
-  }
-  void jointLoads(const JointLoads& m, const ros::Time& t) override { add("joint_loads", m, t); }
-  void boomVibration(const BoomVibration& m, const ros::Time& t) override { add("boom_vibration", m, t); }
-  void hullLoads(const HullLoads& m, const ros::Time& t) override { add("hull_loads", m, t); }
-  void mechanism(const sensor_msgs::JointState& m, const ros::Time& t) override { add("mechanism", m, t); }
-  void pinForces(const PinForces& m, const ros::Time& t) override { add("pin_forces", m, t); }
-  void blow(const Blow& m, const ros::Time& t) override { add("blow", m, t); }
-  void pulse(const Pulse& m, const ros::Time& t) override { add("pulse", m, t); }
-  bool wantsBoomWrench(const std::string&) const override { return true; }
-  bool wantsJointLoads() const override { return true; }
-  bool wantsBoomVibration() const override { return true; }
-  bool wantsHullLoads() const override { return true; }
-  bool wantsMechanism() const override { return true; }
-  bool wantsPinForces() const override { return true; }
-  bool wantsTurns() const override { return true; }
-
-  Recorded recorded;
-
- private:
-  template <typename Message>
-  void add(const std::string& topic, const Message& message, const ros::Time& time) {
-    std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
-    ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-    ros::serialization::serialize(stream, message);
-    recorded[topic].emplace_back(time, std::move(bytes));
-  }
-};
+/// Keeps every message of a table of outputs.
+template <typename Outputs>
+void attachRecorder(Outputs& outputs, Recorded& recorded) {
+  outputs.forEach([&](auto& output) {
+    output.attach([&messages = recorded[output.name()]](const auto& message, const ros::Time& time) {
+      std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+      ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+      ros::serialization::serialize(stream, message);
+      messages.emplace_back(time, std::move(bytes));
+    });
+  });
+}
 
 inline Recorded recordedIn(const std::string& path) {
   const std::string prefix = "/hammer_loads/";
@@ -66,10 +44,11 @@ inline Recorded recordedIn(const std::string& path) {
   return recorded;
 }
 
-/// The messages of a bag through a LoadsFlow, as the node hands them on.
+/// The messages of a bag through a HammerBridge, as the node hands them on; topics without a message are left out.
 inline Recorded recordedLive(const std::string& path, const Settings& settings, const std::string& imu_topic) {
-  RecordingSink sink;
-  LoadsFlow flow(settings, sink);
+  Recorded recorded;
+  HammerBridge flow(settings);
+  attachRecorder(flow.outputs(), recorded);
   rosbag::Bag bag(path);
   for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
     const std::string topic = item.getTopic();
@@ -80,7 +59,9 @@ inline Recorded recordedLive(const std::string& path, const Settings& settings, 
       flow.transforms(*item.instantiate<tf2_msgs::TFMessage>(), topic == "/tf_static", time);
     if (topic == imu_topic) flow.hullImu(*item.instantiate<sensor_msgs::Imu>(), time);
   }
-  return sink.recorded;
+  for (auto topic = recorded.begin(); topic != recorded.end();)
+    topic = topic->second.empty() ? recorded.erase(topic) : std::next(topic);
+  return recorded;
 }
 
 template <typename Message>

@@ -65,7 +65,7 @@ class Session {
 
   void run() {
     while (!bytes_.empty()) step();
-    const IntakeCounts& counts = pipeline_->counts();
+    const SampleCounts& counts = pipeline_->counts();
     require(std::accumulate(counts.refused.begin(), counts.refused.end(), counts.accepted) == messages_);
   }
 
@@ -73,7 +73,7 @@ class Session {
   void step() {
     const auto operation = bytes_.take<std::uint8_t>();
     if (operation == 255) {
-      const IntakeCounts counts = pipeline_->counts();
+      const SampleCounts counts = pipeline_->counts();
       pipeline_.emplace(shipped().mechanism, settings_, std::nullopt, counts);
       return;
     }
@@ -112,7 +112,7 @@ class Session {
   void boom() {
     const auto angle = bytes_.take<double>();
     pipeline_->boomJoints(0, {"arm_joint", "boom_joint", "hammer_joint"}, {0.1, angle, -0.2}, {});
-    require(std::isfinite(pipeline_->hullPitch().pitch()));
+    require(std::isfinite(pipeline_->hull().pitch().pitch()));
   }
 
   void shapes() {
@@ -132,7 +132,7 @@ class Session {
              const std::vector<double>& speeds) {
     stamp_ %= kLastStamp + 1;
     ++messages_;
-    const Loads& loads = pipeline_->crankJoint(static_cast<StampNs>(stamp_), names, angles, speeds);
+    const SampleResult& loads = pipeline_->crankJoint(static_cast<StampNs>(stamp_), names, angles, speeds);
     if (!angles.empty()) check_.add(1e-3, angles[0], speeds.empty() ? std::nullopt : std::make_optional(speeds[0]));
     require(loads.turn_ends <= loads.ends.size());
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {

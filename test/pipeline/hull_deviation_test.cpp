@@ -27,21 +27,19 @@ Coverage coverage(const MachineSettings& machine) {
   Coverage inside{};
   double count = 0;
   std::size_t joints = 0;
-  HullOutput output;
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
     const auto& reading = session.crank[i];
     for (; joints < session.joints.size() && session.joints[joints].stamp <= reading.stamp; ++joints) {
       const auto& position = session.joints[joints].position;
       pipeline.boomJoints(session.joints[joints].stamp, names, {position.begin(), position.end()}, {});
     }
-    pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
-    while (pipeline.nextOutput(output)) {
+    for (const WrenchOutput& output : pipeline.crankSample(reading.stamp, {reading.angle, reading.speed}).outputs) {
       const double time = 1e-9 * static_cast<double>(reading.stamp - machine.start_stamp);
       const auto truth = std::lower_bound(session.truth.begin(), session.truth.end(), time - 1e-6,
                                           [](const auto& t, double at) { return t.time < at; });
       if (truth == session.truth.end() || std::abs(truth->time - time) > 1e-6 || time < 2.0) continue;
       if (time > machine.drive.stop_time - 0.3) continue;
-      const HullDeviation deviation = pipeline.deviation(output);
+      const HullDeviation& deviation = output.deviation;
       const std::array<double, 6> error{output.wrench.force_x - truth->load.force_x,
                                         output.wrench.force_z - truth->load.force_z,
                                         output.wrench.torque_y - truth->load.torque_y,

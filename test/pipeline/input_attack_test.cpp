@@ -59,15 +59,15 @@ class Victim {
         instead(reading);
         continue;
       }
-      const Loads& loads = crank(reading.stamp, kCrank, {reading.angle}, {*reading.speed});
+      const SampleResult& loads = crank(reading.stamp, kCrank, {reading.angle}, {*reading.speed});
       if (loads.refusal) continue;
       if (first_accepted_ < from) first_accepted_ = time;
       worst_ = std::max(worst_, std::abs(loads.wrench.force_z - session().truth[i].load.force_z) / peak_);
     }
   }
-  const Loads& good(const CrankReading& r) { return crank(r.stamp, kCrank, {r.angle}, {*r.speed}); }
-  const Loads& crank(StampNs stamp, const Names& names, const Numbers& position, const Numbers& velocity) {
-    const Loads& loads = pipeline_.crankJoint(stamp, names, position, velocity);
+  const SampleResult& good(const CrankReading& r) { return crank(r.stamp, kCrank, {r.angle}, {*r.speed}); }
+  const SampleResult& crank(StampNs stamp, const Names& names, const Numbers& position, const Numbers& velocity) {
+    const SampleResult& loads = pipeline_.crankJoint(stamp, names, position, velocity);
     if (!loads.refusal) {
       for (const double value : {loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y, loads.crank.speed,
                                  loads.crank.acceleration, loads.crank.position.angle.offset}) {
@@ -337,7 +337,7 @@ TEST(InputAttack, TheBoomsAngles) {
       victim.boom(attack.names, attack.angles);
       victim.work(kAttack, kBack, [&](const CrankReading& r) { victim.good(r); });
       EXPECT_GT(victim.accepted(), accepted + 90u) << "the crank goes on";
-      EXPECT_TRUE(std::isfinite(victim.pipeline().hullPitch().pitch()));
+      EXPECT_TRUE(std::isfinite(victim.pipeline().hull().pitch().pitch()));
       victim.forgetErrors();
       victim.work(kBack, kTo);
       EXPECT_TRUE(victim.finite());

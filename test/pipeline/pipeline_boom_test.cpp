@@ -20,16 +20,15 @@ using test::settingsWith;
 constexpr double kGravity = 9.80665;
 constexpr double kJointsHeard = 0.02;  // [s]: the first joint states come within a period of theirs
 
-const auto kNothing = [](double, const Loads&) {};
+const auto kNothing = [](double, const SampleResult&) {};
 
 /// Everything that a node publishes per sample but the messages.
 struct Everything {
   Pipeline& pipeline;
   double& sum;
-  void operator()(double, const Loads& loads) const {
-    HullOutput output;
-    while (pipeline.nextOutput(output)) {
-      sum += pipeline.deviation(output).wrench.force_z;
+  void operator()(double, const SampleResult& loads) const {
+    for (const WrenchOutput& output : loads.outputs) {
+      sum += output.deviation.wrench.force_z;
       if (!pipeline.boom() || !pipeline.boom()->known()) continue;
       for (int link = 1; link < 5; ++link) sum += pipeline.boom()->wrenchAtLink(link, output.wrench).torque.y();
     }
@@ -104,14 +103,14 @@ TEST(PipelineWithBoom, JointsCarryTheLinksMotionAndTheirWeightOnce) {
   Player player(settings);
   double peak = 0.0;
   player.playTo(kJointsHeard, kNothing);
-  player.playTo(kSessionEnd, [&](double time, const Loads& loads) {
+  player.playTo(kSessionEnd, [&](double time, const SampleResult& loads) {
     ASSERT_TRUE(loads.boom != nullptr && !loads.boom->fault) << time;
     const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
     const HullWrench w = hullWrench(HullModel(settings.mechanism, settings.pipeline.level), crank, Gravity{});
     const BoomLoads& told = loads.boom->loads;
     // By hand about hammer_joint, from which D is (0.10, -0.55) m away in the hull's axes; bracket 50 kg, hull 350 kg.
     const double hammer = w.torque_y - 0.55 * w.force_x - 0.10 * w.force_z;
-    const double pitch = player.pipeline.hullPitch().pitch();
+    const double pitch = player.pipeline.hull().pitch().pitch();
     const double lever_x = 50.0 * 0.03 + 350.0 * (0.10 - 0.08), lever_z = -50.0 * 0.06 - 350.0 * (0.55 - 0.05);
     const double weight = kGravity * (lever_x * std::cos(pitch) + lever_z * std::sin(pitch));
     ASSERT_NEAR(told.hammer[3], hammer, 1e-12 * 1e4) << time;
@@ -128,7 +127,7 @@ TEST(PipelineWithBoom, StaleJointsSilenceTheBoomAloneUntilTheyAreBack) {
   constexpr double kSilent = 3.0, kBack = 4.0, kMaxAge = 0.2, kPeriod = 0.02;
   Player player(settings);
   int known = 0, faults = 0;
-  const auto watch = [&](double time, const Loads& loads) {
+  const auto watch = [&](double time, const SampleResult& loads) {
     ASSERT_FALSE(loads.refusal) << time;
     ASSERT_NE(loads.boom, nullptr) << time;
     const bool stale = time > kSilent + kMaxAge && time < kBack;
@@ -146,7 +145,7 @@ TEST(PipelineWithBoom, StaleJointsSilenceTheBoomAloneUntilTheyAreBack) {
   EXPECT_EQ(player.pipeline.boom()->joints().complaints(player.pipeline.boom()->state().stamp).size(), 4U);
   player.joints_speak = true;
   bool first = true;
-  player.playTo(kSessionEnd, [&](double time, const Loads& loads) {
+  player.playTo(kSessionEnd, [&](double time, const SampleResult& loads) {
     watch(time, loads);
     if (loads.boom->fault) return;
     EXPECT_TRUE(!first || loads.boom->tip.displacement.isZero(0.0)) << "nothing is known of it: from rest";
@@ -164,7 +163,7 @@ TEST(PipelineWithBoom, VibrationBeginsAnewAfterADropOut) {
   constexpr double kFrom = 3.5, kTo = 3.9, kShortFrom = 3.0, kShortTo = 3.005;
   const simulation::Session session = test::record({{kShortFrom, kShortTo}, {kFrom, kTo}});
   Player player(settings, true, session);
-  player.playTo(kFrom, [&](double time, const Loads& loads) {
+  player.playTo(kFrom, [&](double time, const SampleResult& loads) {
     if (time < kSessionWorks + 0.5) return;
     ASSERT_NE(loads.boom, nullptr) << time;
     ASSERT_GT(loads.boom->tip.displacement.norm(), 0.0) << "a gap of a few samples ends nothing: " << time;
@@ -172,7 +171,7 @@ TEST(PipelineWithBoom, VibrationBeginsAnewAfterADropOut) {
   const std::uint64_t restarts = player.pipeline.counts().restarts;
   std::optional<double> first;
   double largest = 0.0;
-  player.playTo(kSessionEnd, [&](double time, const Loads& loads) {
+  player.playTo(kSessionEnd, [&](double time, const SampleResult& loads) {
     if (loads.boom == nullptr) return;
     if (!first) {
       first = time;

@@ -13,7 +13,7 @@ using test::Player;
 using test::session;
 using test::settingsWith;
 
-const auto kNothing = [](double, const Loads&) {};
+const auto kNothing = [](double, const SampleResult&) {};
 
 void expectSame(const std::vector<HullWrench>& a, const std::vector<HullWrench>& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -27,7 +27,7 @@ void expectSame(const std::vector<HullWrench>& a, const std::vector<HullWrench>&
 /// Wrenches of accepted samples.
 std::vector<HullWrench> wrenchesOf(Player& player) {
   std::vector<HullWrench> wrenches;
-  player.playTo(kSessionEnd, [&](double, const Loads& loads) {
+  player.playTo(kSessionEnd, [&](double, const SampleResult& loads) {
     if (!loads.refusal) wrenches.push_back(loads.wrench);
   });
   return wrenches;
@@ -95,9 +95,9 @@ TEST(PipelineHullMotion, AnImuOnATiltedHullAtRestGivesTheWeightByPitch) {
       ASSERT_NEAR(given[i].force_z, right[i].force_z, 1e-9 * peak) << pitch << ' ' << i;
       ASSERT_NEAR(given[i].torque_y, right[i].torque_y, 1e-9 * peak) << pitch << ' ' << i;
     }
-    EXPECT_EQ(with.pipeline.imuCounts().missed, 0U);
-    EXPECT_EQ(with.pipeline.imuCounts().accepted, session().crank.size() + 1);
-    EXPECT_TRUE(with.pipeline.hullMotionKnown());
+    EXPECT_EQ(with.pipeline.hull().imuCounts().missed, 0U);
+    EXPECT_EQ(with.pipeline.hull().imuCounts().accepted, session().crank.size() + 1);
+    EXPECT_TRUE(with.pipeline.hull().motionKnown());
   }
 }
 
@@ -106,26 +106,26 @@ TEST(PipelineHullMotion, ASilentImuLeavesTheWeightByPitchAndIsCounted) {
   Player silent(settings), fixed(settingsWith("hull_motion: fixed\n"));
   const auto right = wrenchesOf(fixed), given = wrenchesOf(silent);
   expectSame(given, right);
-  EXPECT_EQ(silent.pipeline.imuCounts().missed, session().crank.size());
-  EXPECT_FALSE(silent.pipeline.hullMotionKnown());
+  EXPECT_EQ(silent.pipeline.hull().imuCounts().missed, session().crank.size());
+  EXPECT_FALSE(silent.pipeline.hull().motionKnown());
 
   Player failing(settings);
-  const ImuCounts& counts = failing.pipeline.imuCounts();
+  const ImuCounts& counts = failing.pipeline.hull().imuCounts();
   failing.imu = test::atRest(0.0, settings.pipeline.imu);
   failing.playTo(3.0, kNothing);
   EXPECT_EQ(counts.missed, 1U);
   failing.imu.reset();
   failing.playTo(3.049, kNothing);  // 50 ms: imu_max_age_s
   EXPECT_EQ(counts.missed, 1U);
-  EXPECT_TRUE(failing.pipeline.hullMotionKnown());
-  failing.playTo(4.0, [](double time, const Loads& loads) { ASSERT_FALSE(loads.refusal) << time; });
+  EXPECT_TRUE(failing.pipeline.hull().motionKnown());
+  failing.playTo(4.0, [](double time, const SampleResult& loads) { ASSERT_FALSE(loads.refusal) << time; });
   EXPECT_NEAR(static_cast<double>(counts.missed), 1.0 + 950.0, 2.0);
-  EXPECT_FALSE(failing.pipeline.hullMotionKnown());
+  EXPECT_FALSE(failing.pipeline.hull().motionKnown());
   const std::uint64_t missed = counts.missed;
   failing.imu = test::atRest(0.0, settings.pipeline.imu);
   failing.playTo(kSessionEnd, kNothing);
   EXPECT_EQ(counts.missed, missed + 1);
-  EXPECT_TRUE(failing.pipeline.hullMotionKnown());
+  EXPECT_TRUE(failing.pipeline.hull().motionKnown());
 }
 
 }  // namespace

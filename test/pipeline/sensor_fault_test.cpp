@@ -49,7 +49,7 @@ Result play(const Session& session, const Fault& fault) {
     CrankSample sample = good;
     fault(session.truth[i].time, sample);
     result.faulty += sample.angle != good.angle || sample.speed != good.speed;
-    const Loads& loads = pipeline.crankSample(session.crank[i].stamp, sample);
+    const SampleResult& loads = pipeline.crankSample(session.crank[i].stamp, sample);
     if (session.truth[i].time < kFrom) continue;
     result.lost += loads.refusal.has_value();
     if (loads.refusal) continue;

@@ -17,6 +17,7 @@ constexpr double kRounding = 1e-13;  // between a cold and a warm start, doc/gra
 
 class GrappleFlowTest : public testing::Test {
  protected:
+  GrappleFlowTest() { kept_.attachTo(flow_.outputs()); }
   /// A sample one step after the last one.
   void send(double position, std::optional<double> velocity) {
     stamp_ += ros::Duration(kStep);
@@ -37,7 +38,7 @@ class GrappleFlowTest : public testing::Test {
   }
 
   KeptMessages kept_;
-  GrappleFlow flow_{test::grappleSettings(), kept_};
+  GrappleFlow flow_{test::grappleSettings()};
   ros::Time stamp_{1000.0};
 };
 
@@ -169,7 +170,8 @@ TEST_F(GrappleFlowTest, AfterResetGivesWhatAFreshOneGivesBitForBit) {
   flow_.reset();
   stamp_ -= ros::Duration(10.0);
   KeptMessages fresh_kept;
-  GrappleFlow fresh(test::grappleSettings(), fresh_kept);
+  GrappleFlow fresh(test::grappleSettings());
+  fresh_kept.attachTo(fresh.outputs());
   for (int i = 0; i < 20; ++i) {
     send(0.2 + 0.013 * i, 0.2);
     fresh.jointStates(sliderMessage(stamp_, 0.2 + 0.013 * i, 0.2), recordTime());
@@ -179,14 +181,18 @@ TEST_F(GrappleFlowTest, AfterResetGivesWhatAFreshOneGivesBitForBit) {
   EXPECT_EQ(flow_.accepted(), 70u) << "counts stay";
 }
 
-TEST_F(GrappleFlowTest, WhatNobodyTakesIsNotComputed) {
-  kept_.wanted_jaws = {false, true};
-  kept_.wanted_mechanism = false;
-  send(0.3, 0.1);
-  EXPECT_TRUE(kept_.edges[kLeft].empty());
-  EXPECT_EQ(kept_.edges[kRight].size(), 1u);
-  EXPECT_TRUE(kept_.mechanisms.empty());
-  EXPECT_EQ(flow_.accepted(), 1u);
+TEST_F(GrappleFlowTest, AnOutputThatNothingIsAttachedToChangesNoOther) {
+  KeptMessages one;
+  GrappleFlow other(test::grappleSettings());
+  other.outputs().right.edge.attach(
+      [&one](const auto& message, const ros::Time& time) { one.edges[kRight].emplace_back(time, message); });
+  for (int i = 0; i < 20; ++i) {
+    send(0.2 + 0.013 * i, 0.2);
+    other.jointStates(sliderMessage(stamp_, 0.2 + 0.013 * i, 0.2), recordTime());
+    ASSERT_EQ(one.edges[kRight].size(), kept_.edges[kRight].size());
+    EXPECT_EQ(one.edges[kRight].back().second.point.x, kept_.edges[kRight].back().second.point.x);
+  }
+  EXPECT_EQ(other.accepted(), flow_.accepted());
 }
 
 TEST_F(GrappleFlowTest, RunInfoComesOnceAndItsParametersGiveTheSameSettings) {
@@ -203,7 +209,8 @@ TEST_F(GrappleFlowTest, RunInfoComesOnceAndItsParametersGiveTheSameSettings) {
 
 TEST(SliderAccelerationTest, DifferenceIsThatOfTheLastTwoVelocities) {
   KeptMessages kept;
-  GrappleFlow flow(test::grappleSettings(SliderAcceleration::kDifference), kept);
+  GrappleFlow flow(test::grappleSettings(SliderAcceleration::kDifference));
+  kept.attachTo(flow.outputs());
   const auto send = [&](double time, double position, std::optional<double> velocity) {
     flow.jointStates(sliderMessage(ros::Time(time), position, velocity), ros::Time(time));
   };

@@ -63,33 +63,31 @@ inline std::vector<BadSample> badSamples(const ros::Time& last, double position)
           {"outside stroke", sliderMessage(next, 0.7, 0.1)}};
 }
 
-struct KeptMessages final : GrappleSink {
+/// Keeps what a GrappleFlow gives; must outlive it.
+struct KeptMessages {
   template <typename Message>
   using Kept = std::vector<std::pair<ros::Time, Message>>;  // with record time
 
-  void runInfo(const RunInfo& m, const ros::Time& time) override { run_infos.emplace_back(time, m); }
-  void edge(Jaw jaw, const geometry_msgs::PointStamped& m, const ros::Time& time) override {
-    edges[index(jaw)].emplace_back(time, m);
+  void attachTo(GrappleOutputs& outputs) {
+    keep(outputs.run_info, run_infos), keep(outputs.mechanism, mechanisms);
+    std::size_t jaw = 0;
+    for (JawOutputs* of : {&outputs.left, &outputs.right}) {
+      keep(of->edge, edges[jaw]), keep(of->twist, twists[jaw]), keep(of->accel, accels[jaw]);
+      ++jaw;
+    }
   }
-  void twist(Jaw jaw, const geometry_msgs::TwistStamped& m, const ros::Time& time) override {
-    twists[index(jaw)].emplace_back(time, m);
-  }
-  void accel(Jaw jaw, const geometry_msgs::AccelStamped& m, const ros::Time& time) override {
-    accels[index(jaw)].emplace_back(time, m);
-  }
-  void mechanism(const sensor_msgs::JointState& m, const ros::Time& time) override { mechanisms.emplace_back(time, m); }
-  bool wants(Jaw jaw) const override { return wanted_jaws[index(jaw)]; }
-  bool wantsMechanism() const override { return wanted_mechanism; }
 
-  static std::size_t index(Jaw jaw) { return static_cast<std::size_t>(jaw); }
-
-  std::array<bool, 2> wanted_jaws{true, true};
-  bool wanted_mechanism{true};
   Kept<RunInfo> run_infos;
-  std::array<Kept<geometry_msgs::PointStamped>, 2> edges;
+  std::array<Kept<geometry_msgs::PointStamped>, 2> edges;  // left, right
   std::array<Kept<geometry_msgs::TwistStamped>, 2> twists;
   std::array<Kept<geometry_msgs::AccelStamped>, 2> accels;
   Kept<sensor_msgs::JointState> mechanisms;
+
+ private:
+  template <typename Message>
+  static void keep(Output<Message>& output, Kept<Message>& kept) {
+    output.attach([&kept](const Message& message, const ros::Time& time) { kept.emplace_back(time, message); });
+  }
 };
 
 }  // namespace hammer_loads::test

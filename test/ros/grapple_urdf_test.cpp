@@ -48,7 +48,8 @@ KDL::Vector polar(double length, double angle) { return {length * std::cos(angle
 
 void expectPinsMeet(const std::string& parameter_file) {
   test::KeptMessages kept;
-  GrappleFlow flow(test::grappleSettings(SliderAcceleration::kNone, parameter_file), kept);
+  GrappleFlow flow(test::grappleSettings(SliderAcceleration::kNone, parameter_file));
+  kept.attachTo(flow.outputs());
   const GrappleParameters& k = flow.tracker().grapple().parameters();
   const Description description(described(parameter_file));
   constexpr int kPositions = 200;
@@ -102,7 +103,8 @@ TEST(GrappleDescription, TheShippedOneIsWhatTheScriptWrites) {
 
 TEST(GrappleDescription, StandsUprightAndHasNoOtherMovableJoint) {
   test::KeptMessages kept;
-  GrappleFlow flow(test::grappleSettings(), kept);
+  GrappleFlow flow(test::grappleSettings());
+  kept.attachTo(flow.outputs());
   flow.jointStates(test::sliderMessage(ros::Time(1.0), 0.3, 0.1), ros::Time(1.0));
   const Description description(test::contentOf(kSource + "urdf/grapple_claims.urdf"));
   EXPECT_EQ(description.tree().getNrOfJoints(), kept.mechanisms.back().second.name.size());

@@ -129,7 +129,7 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   joints_.publish(joints);
   pipeline.boomJoints(0, names, joints.position, {});
   ASSERT_TRUE(eventually([&] { return pitchIsKnown(); })) << "the joint states must be there before the first sample";
-  std::vector<Loads> expected;
+  std::vector<SampleResult> expected;
   std::size_t blows = 0;
   for (const auto& reading : session.crank) {
     ros::Time stamp;

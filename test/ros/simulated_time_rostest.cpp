@@ -71,7 +71,7 @@ class SimulatedTime : public testing::Test {
   SimulatedTime() {
     ros::Time::setNow(ros::Time());  // no /clock yet
     std::vector<std::string> problems;
-    node_ = makeNode(handle_, ros::NodeHandle("~"), problems);
+    node_ = makeHammerNode(handle_, ros::NodeHandle("~"), problems);
     EXPECT_TRUE(problems.empty());
     // Behind the node's own subscriptions: what has come here has been worked on there.
     const auto count = [this](const JointState::ConstPtr&) { ++arrived_; };
@@ -119,13 +119,12 @@ class SimulatedTime : public testing::Test {
   void expectWrenchesOf(const Inputs& inputs) {
     const auto told = takeWrenches(inputs.back().header.stamp);
     Pipeline pipeline(settings_.mechanism, settings_.pipeline);
-    pipeline.wantTurns(false);
     std::size_t n = 0;
     for (const JointState& input : inputs) {
       const StampNs stamp = stampOf(input.header);
       if (!isCrank(input)) pipeline.boomJoints(stamp, input.name, input.position, input.velocity);
       if (!isCrank(input)) continue;
-      const Loads& loads = pipeline.crankJoint(stamp, input.name, input.position, input.velocity);
+      const SampleResult& loads = pipeline.crankJoint(stamp, input.name, input.position, input.velocity);
       if (loads.refusal) continue;
       ASSERT_LT(n, told.size());
       const geometry_msgs::WrenchStamped& wrench = told[n++];

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/util/stamp.h"
 #include "hammer_loads/simulation/session.h"
 
 namespace hammer_loads::soak {

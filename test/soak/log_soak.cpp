@@ -107,7 +107,7 @@ Written write(const std::string& directory, std::uint64_t samples) {
     crank.position = {sample.crank.angle};
     crank.velocity = {*sample.crank.speed};
     log.write(kCrank, crank.header.stamp, crank);
-    const Loads& loads = pipeline.crankJoint(sample.stamp, crank.name, crank.position, crank.velocity);
+    const SampleResult& loads = pipeline.crankJoint(sample.stamp, crank.name, crank.position, crank.velocity);
     if (!loads.refusal) {
       wrench.header.seq = ++written.wrenches;
       wrench.wrench.force.x = loads.wrench.force_x;

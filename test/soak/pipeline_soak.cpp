@@ -40,7 +40,7 @@ int run(std::uint64_t samples) {
   std::uint64_t turns = 0, pulses = 0, not_finite = 0;
   for (std::uint64_t i = 0; i < pieces * piece; ++i) {
     const EndlessSample sample = session.next();
-    const Loads& loads = pipeline.crankSample(sample.stamp, sample.crank);
+    const SampleResult& loads = pipeline.crankSample(sample.stamp, sample.crank);
     turns += loads.turn_ends;
     for (std::size_t k = 0; k < loads.turn_ends; ++k) pulses += loads.ends[k].pulse.has_value();
     if (i % (samples / kMemorySamples) == 0) memory.add(test::residentMemory());
@@ -51,7 +51,7 @@ int run(std::uint64_t samples) {
     if (i / piece == pieces - 1) last.add(error);
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const IntakeCounts& counts = pipeline.counts();
+  const SampleCounts& counts = pipeline.counts();
   const std::uint64_t refused = std::accumulate(counts.refused.begin(), counts.refused.end(), std::uint64_t{0});
 
   Verdict verdict;

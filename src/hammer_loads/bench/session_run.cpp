@@ -17,7 +17,7 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
       pipeline.boomJoints(joints.stamp, names, {joints.position.begin(), joints.position.end()},
                           {joints.velocity.begin(), joints.velocity.end()});
     }
-    const Loads& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    const SampleResult& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
       const TurnEnd& end = loads.ends[i];
       BlowAt blow{seconds(end.stamp), end.blow.energy, end.blow.tool_impulse_z};

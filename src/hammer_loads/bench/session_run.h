@@ -10,7 +10,7 @@ namespace hammer_loads::accuracy {
 struct SessionRun {
   std::vector<WrenchAt> wrenches;  ///< of accepted samples
   std::vector<BlowAt> blows;
-  IntakeCounts counts;
+  SampleCounts counts;
 };
 
 /// Reads a session into a pipeline, joint states in their place between the crank samples. start: stamp of t = 0 [ns].

@@ -6,7 +6,7 @@
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/linkage/crank_motion.h"
-#include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 

@@ -10,8 +10,6 @@ namespace {
 constexpr double kLargestForce = 2000.0;  // [m/s2]: 200 g, some twenty times a hull's under the MO-100's full pulse
 constexpr double kLargestRate = 100.0;    // [rad/s]
 
-double seconds(StampNs from, StampNs to) noexcept { return static_cast<double>(to - from) * kSecondsPerNs; }
-
 }  // namespace
 
 std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& reading) noexcept {
@@ -26,7 +24,7 @@ std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& readi
     readings_ = 0;
   }
   rewound_.reset();
-  if (readings_ > 0 && seconds(now_.stamp, stamp) > settings_.max_age) readings_ = 0;
+  if (readings_ > 0 && seconds(stamp - now_.stamp) > settings_.max_age) readings_ = 0;
   before_ = now_;
   now_ = {stamp, settings_.rotation * reading.specific_force, settings_.rotation * reading.rate};
   readings_ = std::min(readings_ + 1, 2);
@@ -34,9 +32,9 @@ std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& readi
 }
 
 std::optional<HullMotion> HullImu::at(StampNs stamp) const noexcept {
-  if (readings_ < 2 || std::abs(seconds(now_.stamp, stamp)) > settings_.max_age) return std::nullopt;
-  const double interval = seconds(before_.stamp, now_.stamp);
-  const double part = std::clamp(seconds(now_.stamp, stamp) / interval, -1.0, 1.0);
+  if (readings_ < 2 || std::abs(seconds(stamp - now_.stamp)) > settings_.max_age) return std::nullopt;
+  const double interval = seconds(now_.stamp - before_.stamp);
+  const double part = std::clamp(seconds(stamp - now_.stamp) / interval, -1.0, 1.0);
   const Eigen::Vector3d rate = now_.rate + part * (now_.rate - before_.rate);
   const Eigen::Vector3d acceleration = (now_.rate - before_.rate) / interval;
   const Eigen::Vector3d& r = settings_.position;

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "hammer_loads/linkage/hull_motion.h"
-#include "hammer_loads/pipeline/intake.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 

@@ -8,11 +8,7 @@
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
-namespace {
-
-double seconds(StampNs from, StampNs to) noexcept { return static_cast<double>(to - from) * kSecondsPerNs; }
-
-}  // namespace
+namespace {}  // namespace
 
 double JointBuffer::Track::difference(double from, double to) const noexcept {
   return turns_freely ? std::remainder(to - from, kTwoPi) : to - from;
@@ -73,7 +69,7 @@ void JointBuffer::add(Track& track, StampNs stamp, double position, std::optiona
   State next{stamp, position, velocity.value_or(0.0), 0.0, 0.0};
   if (track.count > 0) {
     const State& last = track.back(0);
-    const double step = seconds(last.stamp, stamp);
+    const double step = seconds(stamp - last.stamp);
     if (!velocity) {
       next.velocity = track.difference(last.position, position) / step;
       next.velocity_age = 0.5 * step;
@@ -92,13 +88,13 @@ JointBuffer::Bracket JointBuffer::around(const Track& track, StampNs stamp) noex
   for (std::uint64_t i = 0; i < kept; ++i) {
     const State& state = track.back(i);
     if (state.stamp <= stamp) {
-      const double age = seconds(state.stamp, stamp);
-      return {&state, after, after == nullptr ? age : std::min(age, seconds(stamp, after->stamp))};
+      const double age = seconds(stamp - state.stamp);
+      return {&state, after, after == nullptr ? age : std::min(age, seconds(after->stamp - stamp))};
     }
     after = &state;
   }
   if (after == nullptr) return {nullptr, nullptr, std::numeric_limits<double>::infinity()};
-  return {after, nullptr, seconds(stamp, after->stamp)};
+  return {after, nullptr, seconds(after->stamp - stamp)};
 }
 
 std::optional<JointFault> JointBuffer::fault(int joint, const Bracket& bracket) const noexcept {
@@ -120,7 +116,7 @@ std::optional<JointFault> JointBuffer::at(StampNs stamp, JointMotion& motion) co
     motion.velocity[j] = newest.velocity;
     motion.acceleration[j] = differentiate_ ? newest.acceleration : 0.0;
     if (bracket.after == nullptr) continue;
-    const double part = seconds(before.stamp, stamp) / seconds(before.stamp, newest.stamp);
+    const double part = seconds(stamp - before.stamp) / seconds(newest.stamp - before.stamp);
     motion.position[j] += part * track.difference(before.position, newest.position);
     if (newest.velocity_age == 0.0) motion.velocity[j] += (1.0 - part) * (before.velocity - newest.velocity);
   }

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "hammer_loads/boom/chain.h"
-#include "hammer_loads/pipeline/intake.h"
 #include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 

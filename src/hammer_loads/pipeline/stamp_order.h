@@ -1,15 +1,11 @@
 /// A sample's place in time by its header stamp.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
+#include "hammer_loads/util/stamp.h"
+
 namespace hammer_loads {
-
-/// Header stamp [ns]. The only time the pipeline knows.
-using StampNs = std::int64_t;
-
-constexpr double kSecondsPerNs = 1e-9;
 
 class StampOrder {
  public:
@@ -39,7 +35,7 @@ class StampOrder {
       return {};
     }
     rewound_.reset();
-    const double step = static_cast<double>(stamp - *last_) * kSecondsPerNs;
+    const double step = seconds(stamp - *last_);
     if (step > stale_after_) return {};
     return {Place::kNext, step};
   }

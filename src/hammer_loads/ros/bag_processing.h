@@ -24,7 +24,7 @@ struct BagJob {
 };
 
 struct BagReport {
-  IntakeCounts crank;
+  SampleCounts crank;
   std::string grapple;  ///< refusalReport of the grapple, if there was one
 };
 

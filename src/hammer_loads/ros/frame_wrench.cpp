@@ -1,5 +1,7 @@
 #include "hammer_loads/ros/frame_wrench.h"
 
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "hammer_loads/boom/wrench.h"
@@ -11,7 +13,7 @@ namespace {
 
 Eigen::Vector3d vector(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
 
-geometry_msgs::Vector3 message(const Eigen::Vector3d& v) {
+geometry_msgs::Vector3 vectorMessage(const Eigen::Vector3d& v) {
   geometry_msgs::Vector3 m;
   m.x = v.x(), m.y = v.y(), m.z = v.z();
   return m;
@@ -22,6 +24,18 @@ Pose pose(const geometry_msgs::Transform& transform) {
   // TF takes quaternions whose length is wrong by 1e-6.
   const Eigen::Quaterniond rotation = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
   return Eigen::Translation3d(vector(transform.translation)) * rotation;
+}
+
+/// tf2 adds its ten seconds to stamps, multiplies what it chains, and throws where that overflows.
+bool isSound(const geometry_msgs::TransformStamped& transform) {
+  constexpr std::uint32_t kLatest = std::numeric_limits<std::uint32_t>::max() - 3600;  // [s]
+  constexpr double kFurthest = 1e6;                                                    // [m]
+  const geometry_msgs::Vector3& t = transform.transform.translation;
+  const geometry_msgs::Quaternion& q = transform.transform.rotation;
+  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  return transform.header.stamp.sec < kLatest && std::abs(t.x) < kFurthest && std::abs(t.y) < kFurthest &&
+         std::abs(t.z) < kFurthest && std::abs(norm - 1.0) < 1e-2 && !transform.header.frame_id.empty() &&
+         !transform.child_frame_id.empty();
 }
 
 }  // namespace
@@ -38,19 +52,20 @@ void FrameWrenches::Queue::drop(std::uint64_t& count) {
   pop();
 }
 
-FrameWrenches::FrameWrenches(std::vector<std::string> frames, std::string hull, double max_wait, Tell tell)
+FrameWrenches::FrameWrenches(std::vector<std::string> frames, std::string hull, double max_wait, Publish publish)
     : frames_(std::move(frames)),
       hull_(std::move(hull)),
       max_wait_(max_wait),
-      tell_(std::move(tell)),
+      publish_(std::move(publish)),
       queues_(frames_.size()),
       messages_(frames_.size()) {
   for (std::size_t i = 0; i < frames_.size(); ++i) messages_[i].header.frame_id = frames_[i];
 }
 
 void FrameWrenches::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
-  for (const geometry_msgs::TransformStamped& transform : message.transforms)
-    transforms_.setTransform(transform, "tf", is_static);
+  for (const geometry_msgs::TransformStamped& transform : message.transforms) {
+    if (!isSound(transform) || !transforms_.setTransform(transform, "tf", is_static)) ++refused_transforms_;
+  }
   for (std::size_t i = 0; i < frames_.size(); ++i) release(i, record_time);
 }
 
@@ -81,9 +96,9 @@ void FrameWrenches::release(std::size_t frame, const ros::Time& record_time) {
   while (queue.size > 0) {
     const Pending& oldest = queue.front();
     if (known(frame, oldest.stamp)) {
-      tell(frame, oldest, record_time);
+      publish(frame, oldest, record_time);
       queue.pop();
-    } else if (record_time - oldest.arrival > max_wait_ || past(frame, oldest.stamp)) {
+    } else if (record_time.toSec() - oldest.arrival.toSec() > max_wait_ || past(frame, oldest.stamp)) {
       queue.drop(queue.counts.dropped);
     } else {
       return;  // nor can the younger ones be known
@@ -91,15 +106,15 @@ void FrameWrenches::release(std::size_t frame, const ros::Time& record_time) {
   }
 }
 
-void FrameWrenches::tell(std::size_t frame, const Pending& pending, const ros::Time& record_time) {
+void FrameWrenches::publish(std::size_t frame, const Pending& pending, const ros::Time& record_time) {
   const Pose X_QH = pose(transforms_.lookupTransform(frames_[frame], hull_, pending.stamp).transform);
   const Wrench w = shifted(X_QH, {vector(pending.load.force), vector(pending.load.torque)});
-  geometry_msgs::WrenchStamped& told = messages_[frame];
-  told.header.stamp = pending.stamp;
-  told.wrench.force = message(w.force);
-  told.wrench.torque = message(w.torque);
-  tell_(frame, told, record_time);
-  ++queues_[frame].counts.told;
+  geometry_msgs::WrenchStamped& message = messages_[frame];
+  message.header.stamp = pending.stamp;
+  message.wrench.force = vectorMessage(w.force);
+  message.wrench.torque = vectorMessage(w.torque);
+  publish_(frame, message, record_time);
+  ++queues_[frame].counts.published;
   queues_[frame].unknown = ros::Time();
 }
 
@@ -114,7 +129,7 @@ std::string FrameWrenches::complaint(std::size_t frame) const {
   if (queue.unknown.isZero()) return {};
   std::string why;
   const bool late = transforms_.canTransform(frames_[frame], hull_, queue.unknown, &why);
-  return frames_[frame] + ": no transform from " + hull_ + format(" within %.3g s", max_wait_.toSec()) +
+  return frames_[frame] + ": no transform from " + hull_ + format(" within %.3g s", max_wait_) +
          (late || why.empty() ? "" : ": " + onOneLine(why));
 }
 

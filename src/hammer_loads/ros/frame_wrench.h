@@ -14,24 +14,25 @@ namespace hammer_loads {
 
 /// What became of the wrenches for a frame.
 struct FrameWrenchCounts {
-  std::uint64_t told{};
+  std::uint64_t published{};
   std::uint64_t dropped{};  ///< no transform at their stamp: none within the wait, or TF began later
   std::uint64_t crowded{};  ///< dropped because too many waited
   std::size_t waiting{};
 };
 
 /// Transforms and wrenches in, wrenches at the frames out. A wrench that has no transform at its stamp waits for it in
-/// a queue, of bounded time and length; what does not get it is never told. Single-threaded, nothing blocks: whatever
-/// arrives may release waiting wrenches, which then have the record time of what released them.
+/// a queue, of bounded time and length; what does not get it is never published. Single-threaded, nothing blocks:
+/// whatever arrives may release waiting wrenches, which then have the record time of what released them.
 class FrameWrenches {
  public:
-  using Tell =
+  using Publish =
       std::function<void(std::size_t frame, const geometry_msgs::WrenchStamped&, const ros::Time& record_time)>;
 
   /// hull: the wrenches' frame. max_wait: between record times of a wrench and of what releases it [s].
-  FrameWrenches(std::vector<std::string> frames, std::string hull, double max_wait, Tell tell);
+  FrameWrenches(std::vector<std::string> frames, std::string hull, double max_wait, Publish publish);
 
-  /// A message of /tf, or of /tf_static.
+  /// A message of /tf, or of /tf_static. A transform that tf2 cannot hold (not finite, beyond 1e6 m, no rotation, no
+  /// name, a stamp near the end of time) is ignored and counted.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
   /// A load on the hull about its origin, axes of the hull; stamps grow.
   void wrench(const geometry_msgs::WrenchStamped& load, const ros::Time& record_time);
@@ -40,7 +41,8 @@ class FrameWrenches {
 
   const std::vector<std::string>& frames() const { return frames_; }
   FrameWrenchCounts counts(std::size_t frame) const;
-  /// Why the last wrench of a frame that was not told could not be, in one line; empty if one was told since.
+  std::uint64_t refusedTransforms() const { return refused_transforms_; }
+  /// Why the last wrench of a frame that was not published could not be, in one line; empty if one was since.
   std::string complaint(std::size_t frame) const;
 
  private:
@@ -54,7 +56,7 @@ class FrameWrenches {
     std::vector<Pending> ring = std::vector<Pending>(kMostPending);
     std::size_t first{}, size{};
     FrameWrenchCounts counts;
-    ros::Time unknown;  ///< stamp of the last wrench dropped; zero if one was told since
+    ros::Time unknown;  ///< stamp of the last wrench dropped; zero if one was published since
 
     const Pending& front() const { return ring[first]; }
     void pop() { first = (first + 1) % kMostPending, --size; }
@@ -65,13 +67,14 @@ class FrameWrenches {
   bool known(std::size_t frame, const ros::Time& stamp) const;
   bool past(std::size_t frame, const ros::Time& stamp) const;
   void release(std::size_t frame, const ros::Time& record_time);
-  void tell(std::size_t frame, const Pending& pending, const ros::Time& record_time);
+  void publish(std::size_t frame, const Pending& pending, const ros::Time& record_time);
 
   std::vector<std::string> frames_;
   std::string hull_;
-  ros::Duration max_wait_;
-  Tell tell_;
+  double max_wait_;  ///< [s]
+  Publish publish_;
   tf2::BufferCore transforms_;
+  std::uint64_t refused_transforms_{};
   std::vector<Queue> queues_;
   std::vector<geometry_msgs::WrenchStamped> messages_;
 };

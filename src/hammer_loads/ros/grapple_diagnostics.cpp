@@ -17,13 +17,13 @@ std::string limitText(const SliderLimit& limit) { return format("%.13g, %s", lim
 
 GrappleDiagnostics::GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow,
                                        const BagLog& log)
-    : flow_(flow), updater_(node, private_node) {
+    : flow_(flow), updater_(node, private_node, private_node.getNamespace()) {
   updater_.setHardwareID("none");
   updater_.add("slider", this, &GrappleDiagnostics::describeSlider);
   updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
-  timer_ =
-      node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  timer_ = node.createWallTimer(ros::WallDuration(updater_.getPeriod()),
+                                [this](const ros::WallTimerEvent&) { updater_.force_update(); });
 }
 
 void GrappleDiagnostics::summarise(Clock::time_point now, diagnostic_updater::DiagnosticStatusWrapper& status) const {

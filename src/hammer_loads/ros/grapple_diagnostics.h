@@ -12,8 +12,8 @@
 
 namespace hammer_loads {
 
-/// Published once a second of wall time: rate, age, counts of accepted and refused samples by reason, with the slider
-/// positions that are allowed, log health.
+/// Published at `~diagnostic_period` (1 s) of wall time: rate, age, counts of accepted and refused samples by reason,
+/// with the slider positions that are allowed, log health.
 class GrappleDiagnostics {
  public:
   GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleFlow& flow, const BagLog& log);

@@ -5,6 +5,7 @@
 
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/ros/stamp.h"
+#include "hammer_loads/ros/version.h"
 
 namespace hammer_loads {
 namespace {
@@ -12,29 +13,31 @@ namespace {
 constexpr char kGrappleFrame[] = "grapple";
 constexpr std::array<const char*, static_cast<std::size_t>(MessageRefusal::kCount)> kMessageRefusalNames{
     "missing joint", "short array", "out of order", "duplicate"};
-/// Joints of each jaw in the order of publishMechanism.
+/// Joints of each jaw in the order of sendMechanism.
 constexpr std::array<const char*, 6> kLinks{"drive_rod", "rocker", "lever", "jaw", "tie_rod", "main_rocker"};
 
 double betweenPis(double angle) { return std::remainder(angle, kTwoPi); }
 
 }  // namespace
 
-GrappleFlow::GrappleFlow(const GrappleSettings& settings, GrappleSink& sink)
-    : settings_(settings), sink_(sink), tracker_(settings.grapple), stamps_(settings.stale_after) {
-  run_info_.version = HAMMER_LOADS_VERSION;
-  run_info_.revision = HAMMER_LOADS_REVISION;
-  run_info_.parameters_yaml = settings.yaml;
-  for (JawMessages& jaw : jaws_) {
-    for (std_msgs::Header* header : {&jaw.edge.header, &jaw.twist.header, &jaw.accel.header})
+GrappleFlow::GrappleFlow(const GrappleSettings& settings)
+    : settings_(settings), tracker_(settings.grapple), stamps_(settings.stale_after) {
+  RunInfo& run_info = outputs_.run_info.message;
+  run_info.version = packageVersion();
+  run_info.revision = packageRevision();
+  run_info.parameters_yaml = settings.yaml;
+  for (JawOutputs* jaw : {&outputs_.left, &outputs_.right}) {
+    for (std_msgs::Header* header : {&jaw->edge.message.header, &jaw->twist.message.header, &jaw->accel.message.header})
       header->frame_id = kGrappleFrame;
   }
-  mechanism_.header.frame_id = kGrappleFrame;
-  mechanism_.name = {settings.slider_joint};
+  sensor_msgs::JointState& mechanism = outputs_.mechanism.message;
+  mechanism.header.frame_id = kGrappleFrame;
+  mechanism.name = {settings.slider_joint};
   for (const char* side : {"left", "right"}) {
-    for (const char* link : kLinks) mechanism_.name.push_back(std::string("grapple_") + side + "_" + link + "_joint");
+    for (const char* link : kLinks) mechanism.name.push_back(std::string("grapple_") + side + "_" + link + "_joint");
   }
-  mechanism_.position.resize(mechanism_.name.size());
-  mechanism_.velocity.reserve(mechanism_.name.size());
+  mechanism.position.resize(mechanism.name.size());
+  mechanism.velocity.reserve(mechanism.name.size());
 }
 
 void GrappleFlow::reset() noexcept {
@@ -47,8 +50,8 @@ void GrappleFlow::reset() noexcept {
 void GrappleFlow::beginRun(const ros::Time& record_time) {
   if (run_begun_) return;
   run_begun_ = true;
-  run_info_.header.stamp = record_time;
-  sink_.runInfo(run_info_, record_time);
+  outputs_.run_info.message.header.stamp = record_time;
+  outputs_.run_info.send(record_time);
 }
 
 void GrappleFlow::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
@@ -64,10 +67,9 @@ void GrappleFlow::jointStates(const sensor_msgs::JointState& message, const ros:
   has_acceleration_ = slider_acceleration.has_value();
   without_velocity_ += !has_velocity_;
   without_acceleration_ += !has_acceleration_;
-  for (const Jaw jaw : kJaws) {
-    if (sink_.wants(jaw)) publishJaw(jaw, message.header.stamp, record_time);
-  }
-  if (sink_.wantsMechanism()) publishMechanism(message.header.stamp, record_time);
+  sendJaw(tracker_.left(), message.header.stamp, record_time, outputs_.left);
+  sendJaw(tracker_.right(), message.header.stamp, record_time, outputs_.right);
+  sendMechanism(message.header.stamp, record_time);
 }
 
 std::optional<GrappleFlow::Reading> GrappleFlow::read(const sensor_msgs::JointState& message) noexcept {
@@ -115,30 +117,32 @@ bool GrappleFlow::track(const Reading& reading, std::optional<double> accelerati
   return false;
 }
 
-void GrappleFlow::publishJaw(Jaw jaw, const ros::Time& stamp, const ros::Time& record_time) {
-  JawMessages& m = jaws_[static_cast<std::size_t>(jaw)];
-  const JawMotion motion = jaw == Jaw::kLeft ? tracker_.left() : tracker_.right();
-  m.edge.header.stamp = stamp;
-  m.edge.point.x = motion.edge.re;
-  m.edge.point.y = motion.edge.im;
-  sink_.edge(jaw, m.edge, record_time);
+void GrappleFlow::sendJaw(const JawMotion& motion, const ros::Time& stamp, const ros::Time& record_time,
+                          JawOutputs& outputs) {
+  geometry_msgs::PointStamped& edge = outputs.edge.message;
+  edge.header.stamp = stamp;
+  edge.point.x = motion.edge.re;
+  edge.point.y = motion.edge.im;
+  outputs.edge.send(record_time);
   if (!has_velocity_) return;
-  m.twist.header.stamp = stamp;
-  m.twist.twist.linear.x = motion.edge_velocity.re;
-  m.twist.twist.linear.y = motion.edge_velocity.im;
-  m.twist.twist.angular.z = motion.turning_speed;
-  sink_.twist(jaw, m.twist, record_time);
+  geometry_msgs::TwistStamped& twist = outputs.twist.message;
+  twist.header.stamp = stamp;
+  twist.twist.linear.x = motion.edge_velocity.re;
+  twist.twist.linear.y = motion.edge_velocity.im;
+  twist.twist.angular.z = motion.turning_speed;
+  outputs.twist.send(record_time);
   if (!has_acceleration_) return;
-  m.accel.header.stamp = stamp;
-  m.accel.accel.linear.x = motion.edge_acceleration.re;
-  m.accel.accel.linear.y = motion.edge_acceleration.im;
-  m.accel.accel.angular.z = motion.turning_acceleration;
-  sink_.accel(jaw, m.accel, record_time);
+  geometry_msgs::AccelStamped& accel = outputs.accel.message;
+  accel.header.stamp = stamp;
+  accel.accel.linear.x = motion.edge_acceleration.re;
+  accel.accel.linear.y = motion.edge_acceleration.im;
+  accel.accel.angular.z = motion.turning_acceleration;
+  outputs.accel.send(record_time);
 }
 
 /// Each joint turns a link against the one that carries it. The left jaw's linkage is the right one turned by half a
 /// turn about y, so its joints have the same positions.
-void GrappleFlow::publishMechanism(const ros::Time& stamp, const ros::Time& record_time) {
+void GrappleFlow::sendMechanism(const ros::Time& stamp, const ros::Time& record_time) {
   const auto [rocker, lever, jaw, tie_rod, main_rocker, drive_rod] =
       tracker_.grapple().linkDirections(tracker_.motion());
   const auto against = [](const LinkDirection& link, const LinkDirection& carrier) -> LinkDirection {
@@ -147,17 +151,17 @@ void GrappleFlow::publishMechanism(const ros::Time& stamp, const ros::Time& reco
   const std::array<LinkDirection, kLinks.size()> joints{
       drive_rod, rocker, against(lever, rocker), against(jaw, lever), against(tie_rod, lever), main_rocker};
   const SliderMotion& slider = tracker_.slider();
-  mechanism_.header.stamp = stamp;
-  mechanism_.velocity.resize(has_velocity_ ? mechanism_.name.size() : 0);
-  mechanism_.position[0] = slider.position;
-  for (std::size_t i = 1; i < mechanism_.name.size(); ++i)
-    mechanism_.position[i] = joints[(i - 1) % joints.size()].angle;
+  sensor_msgs::JointState& message = outputs_.mechanism.message;
+  message.header.stamp = stamp;
+  message.velocity.resize(has_velocity_ ? message.name.size() : 0);
+  message.position[0] = slider.position;
+  for (std::size_t i = 1; i < message.name.size(); ++i) message.position[i] = joints[(i - 1) % joints.size()].angle;
   if (has_velocity_) {
-    mechanism_.velocity[0] = slider.velocity;
-    for (std::size_t i = 1; i < mechanism_.name.size(); ++i)
-      mechanism_.velocity[i] = joints[(i - 1) % joints.size()].d * slider.velocity;
+    message.velocity[0] = slider.velocity;
+    for (std::size_t i = 1; i < message.name.size(); ++i)
+      message.velocity[i] = joints[(i - 1) % joints.size()].d * slider.velocity;
   }
-  sink_.mechanism(mechanism_, record_time);
+  outputs_.mechanism.send(record_time);
 }
 
 std::uint64_t GrappleFlow::refused() const noexcept {

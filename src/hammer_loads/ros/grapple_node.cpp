@@ -2,36 +2,26 @@
 
 #include <utility>
 
+#include "hammer_loads/ros/attach.h"
 #include "hammer_loads/ros/ros_parameters.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
-namespace {
-
-constexpr std::uint32_t kQueue = 10000;  // ten seconds at 1 kHz, in and out: a stalled machine loses nothing
-
-}  // namespace
-
 GrappleNode::GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
                          std::unique_ptr<BagLog> log)
-    : flow_(settings, *this),
-      log_(std::move(log)),
-      jaws_{{{private_node.advertise<geometry_msgs::PointStamped>("jaw_edge/left", kQueue),
-              private_node.advertise<geometry_msgs::TwistStamped>("jaw_edge/left_twist", kQueue),
-              private_node.advertise<geometry_msgs::AccelStamped>("jaw_edge/left_accel", kQueue)},
-             {private_node.advertise<geometry_msgs::PointStamped>("jaw_edge/right", kQueue),
-              private_node.advertise<geometry_msgs::TwistStamped>("jaw_edge/right_twist", kQueue),
-              private_node.advertise<geometry_msgs::AccelStamped>("jaw_edge/right_accel", kQueue)}}},
-      mechanism_(private_node.advertise<sensor_msgs::JointState>("mechanism", kQueue)),
+    : log_(std::move(log)),
+      flow_(settings),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       diagnostics_(node, private_node, flow_, *log_),
       log_services_(
           private_node, *log_, [this] { beginRun(); }, [] {}) {
-  RunInfo info = flow_.runInfoMessage();
+  attachToNode(flow_.outputs(), private_node, *log_);
+  RunInfo info = flow_.outputs().run_info.message;
   info.header.stamp = ros::Time::now();
   run_info_.publish(info);
-  joint_states_ =
-      node.subscribe("joint_states", kQueue, &GrappleNode::onJointStates, this, ros::TransportHints().tcpNoDelay());
+  joint_states_ = node.subscribe("joint_states", kTopicQueue, &GrappleNode::onJointStates, this,
+                                 ros::TransportHints().tcpNoDelay());
+  topic_ = joint_states_.getTopic();
 }
 
 void GrappleNode::onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
@@ -40,7 +30,7 @@ void GrappleNode::onJointStates(const ros::MessageEvent<const sensor_msgs::Joint
     beginRun();
     log_->split();
   }
-  log_->write(joint_states_.getTopic(), tick.time, *event.getConstMessage());
+  log_->write(topic_, tick.time, *event.getConstMessage());
   const std::uint64_t foreign = flow_.messagesWithoutJoint();
   flow_.jointStates(*event.getConstMessage(), tick.time);
   if (flow_.messagesWithoutJoint() == foreign) diagnostics_.sliderArrived();
@@ -52,43 +42,10 @@ void GrappleNode::beginRun() {
   log_->forgetLatched(run_info_.getTopic());
 }
 
-template <typename Message>
-void GrappleNode::send(const ros::Publisher& publisher, const Message& message, const ros::Time& record_time) {
-  if (publisher.getNumSubscribers() > 0) publisher.publish(message);
-  log_->write(publisher.getTopic(), record_time, message);
-}
-
-void GrappleNode::runInfo(const RunInfo& message, const ros::Time& record_time) {
-  log_->writeLatched(run_info_.getTopic(), record_time, message);
-}
-
-void GrappleNode::edge(Jaw jaw, const geometry_msgs::PointStamped& message, const ros::Time& record_time) {
-  send(publishers(jaw).edge, message, record_time);
-}
-
-void GrappleNode::twist(Jaw jaw, const geometry_msgs::TwistStamped& message, const ros::Time& record_time) {
-  send(publishers(jaw).twist, message, record_time);
-}
-
-void GrappleNode::accel(Jaw jaw, const geometry_msgs::AccelStamped& message, const ros::Time& record_time) {
-  send(publishers(jaw).accel, message, record_time);
-}
-
-void GrappleNode::mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) {
-  send(mechanism_, message, record_time);
-}
-
-bool GrappleNode::wants(Jaw jaw) const {
-  const JawPublishers& p = publishers(jaw);
-  return log_->isRecording() || p.edge.getNumSubscribers() > 0 || p.twist.getNumSubscribers() > 0 ||
-         p.accel.getNumSubscribers() > 0;
-}
-
-bool GrappleNode::wantsMechanism() const { return log_->isRecording() || mechanism_.getNumSubscribers() > 0; }
-
 std::unique_ptr<GrappleNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                                              std::vector<std::string>& problems) {
-  const ParameterMap given = privateParameters(private_node, problems);
+  ParameterMap given = privateParameters(private_node, problems);
+  given.erase("diagnostic_period");  // of diagnostic_updater
   const Checked<GrappleSettings> settings = loadGrappleSettings(configDirectory(), given);
   problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
   if (!problems.empty()) return nullptr;

@@ -6,7 +6,6 @@
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,40 +20,25 @@ namespace hammer_loads {
 
 /// In `joint_states`; out, for each jaw, `~jaw_edge/left`, `~jaw_edge/left_twist`, `~jaw_edge/left_accel`, then
 /// `~mechanism`, `~run_info` (latched), /diagnostics. One of each per accepted slider sample, with the sample's stamp.
-class GrappleNode final : private GrappleSink {
+class GrappleNode final {
  public:
   /// log: recording, unless nothing shall be logged yet.
   GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
               std::unique_ptr<BagLog> log);
 
  private:
-  struct JawPublishers {
-    ros::Publisher edge, twist, accel;
-  };
-
   void beginRun();
   void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event);
 
-  void runInfo(const RunInfo& message, const ros::Time& record_time) override;
-  void edge(Jaw jaw, const geometry_msgs::PointStamped& message, const ros::Time& record_time) override;
-  void twist(Jaw jaw, const geometry_msgs::TwistStamped& message, const ros::Time& record_time) override;
-  void accel(Jaw jaw, const geometry_msgs::AccelStamped& message, const ros::Time& record_time) override;
-  void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) override;
-  bool wants(Jaw jaw) const override;
-  bool wantsMechanism() const override;
-
-  template <typename Message>
-  void send(const ros::Publisher& publisher, const Message& message, const ros::Time& record_time);
-  const JawPublishers& publishers(Jaw jaw) const { return jaws_[static_cast<std::size_t>(jaw)]; }
-
-  GrappleFlow flow_;
+  // What is used stands before what uses it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
-  std::array<JawPublishers, kJaws.size()> jaws_;  // by Jaw
-  ros::Publisher mechanism_, run_info_;
-  ros::Subscriber joint_states_;
+  GrappleFlow flow_;
   RecordClock clock_;
+  ros::Publisher run_info_;
   GrappleDiagnostics diagnostics_;
   LogServices log_services_;
+  ros::Subscriber joint_states_;
+  std::string topic_;  ///< of joint_states_
 };
 
 /// Node from its private parameters; every problem is reported on one line each and gives no node.

@@ -1,4 +1,4 @@
-/// The live node: subscriptions and publications around a LoadsFlow. Single-threaded, driven by its input messages.
+/// The live node: subscriptions and publications around a HammerBridge. Single-threaded, driven by its input messages.
 #pragma once
 
 #include <dynamic_reconfigure/server.h>
@@ -9,13 +9,13 @@
 #include <ros/subscriber.h>
 
 #include <boost/thread/recursive_mutex.hpp>
-#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/log/record_clock.h"
-#include "hammer_loads/ros/loads_flow.h"
+#include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/ros/log_services.h"
 #include "hammer_loads/ros/node_diagnostics.h"
 #include "hammer_loads/settings/load.h"
@@ -24,7 +24,7 @@ namespace hammer_loads {
 
 /// Topics as in the contract. By default one wrench per accepted crank sample, with its stamp. Services `~log/...` and
 /// dynamic_reconfigure change what may safely change; each change begins a new run.
-class HammerLoadsNode final : private LoadsSink {
+class HammerLoadsNode final {
  public:
   /// log: started already where settings.log.enabled.
   HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
@@ -36,6 +36,7 @@ class HammerLoadsNode final : private LoadsSink {
   using JointState = sensor_msgs::JointState;
 
   void subscribe(ros::NodeHandle& node);
+  void sayWhatRuns() const;
   void announceRun();
   void beginRun();
   void onReconfigure(HammerLoadsConfig& config);
@@ -48,49 +49,23 @@ class HammerLoadsNode final : private LoadsSink {
   void onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static);
   ros::Time recordTime(const ros::Time& arrival);
 
-  void runInfo(const RunInfo& message, const ros::Time& record_time) override;
-  void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) override;
-  void boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& message,
-                  const ros::Time& record_time) override;
-  void jointLoads(const JointLoads& message, const ros::Time& record_time) override;
-  void boomVibration(const BoomVibration& message, const ros::Time& record_time) override;
-  void hullLoads(const HullLoads& message, const ros::Time& record_time) override;
-  void mechanism(const JointState& message, const ros::Time& record_time) override;
-  void pinForces(const PinForces& message, const ros::Time& record_time) override;
-  void blow(const Blow& message, const ros::Time& record_time) override;
-  void pulse(const Pulse& message, const ros::Time& record_time) override;
-  bool wantsBoomWrench(const std::string& link) const override { return wanted(boom_wrench_.at(link)); }
-  bool wantsJointLoads() const override { return wanted(joint_loads_); }
-  bool wantsBoomVibration() const override { return wanted(boom_vibration_); }
-  bool wantsHullLoads() const override { return wanted(hull_loads_); }
-  bool wantsMechanism() const override { return wanted(mechanism_); }
-  /// Not logged: they follow from the logged mechanism and would be the largest part of the log.
-  bool wantsPinForces() const override { return pin_forces_.getNumSubscribers() > 0; }
-  bool wantsTurns() const override { return wanted(blow_) || wanted(pulse_); }
-
-  bool wanted(const ros::Publisher& publisher) const {
-    return log_->isRecording() || publisher.getNumSubscribers() > 0;
-  }
-  template <typename Message>
-  void send(const ros::Publisher& publisher, const Message& message, const ros::Time& record_time);
-
-  LoadsFlow flow_;
+  // What is used stands before what uses it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
-  ros::Publisher hull_wrench_, hull_loads_, joint_loads_, boom_vibration_, mechanism_, pin_forces_, blow_, pulse_,
-      run_info_;
-  std::map<std::string, ros::Publisher> boom_wrench_;  ///< by link
-  ros::Subscriber joint_states_, crank_, hull_imu_, tf_, tf_static_;
-  bool one_topic_{};  ///< crank and joint states arrive on the same topic
+  HammerBridge bridge_;
   RecordClock clock_;
-  NodeDiagnostics diagnostics_;
+  bool one_topic_{};  ///< crank and joint states arrive on the same topic
+  ros::Publisher run_info_;
   HammerLoadsConfig config_;  ///< in force
+  NodeDiagnostics diagnostics_;
   boost::recursive_mutex reconfigure_mutex_;
   dynamic_reconfigure::Server<HammerLoadsConfig> reconfigure_;
   LogServices log_services_;
+  ros::Subscriber joint_states_, crank_, hull_imu_, tf_, tf_static_;
+  std::string joint_states_topic_, crank_topic_, hull_imu_topic_;  ///< resolved
 };
 
 /// Node from its private parameters; every problem is reported on one line each and gives no node.
-std::unique_ptr<HammerLoadsNode> makeNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-                                          std::vector<std::string>& problems);
+std::unique_ptr<HammerLoadsNode> makeHammerNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                                                std::vector<std::string>& problems);
 
 }  // namespace hammer_loads

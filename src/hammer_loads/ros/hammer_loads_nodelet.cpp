@@ -10,7 +10,7 @@ namespace hammer_loads {
 class HammerLoadsNodelet : public nodelet::Nodelet {
   void onInit() override {
     std::vector<std::string> problems;
-    node_ = makeNode(getNodeHandle(), getPrivateNodeHandle(), problems);
+    node_ = makeHammerNode(getNodeHandle(), getPrivateNodeHandle(), problems);
     for (const std::string& problem : problems) NODELET_FATAL("%s", problem.c_str());
     if (!node_) throw std::runtime_error("bad parameters: nothing is published");
   }

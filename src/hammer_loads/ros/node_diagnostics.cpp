@@ -1,6 +1,5 @@
 #include "hammer_loads/ros/node_diagnostics.h"
 
-#include <numeric>
 #include <string>
 
 #include "hammer_loads/crank/crank_filter.h"
@@ -12,45 +11,87 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-std::uint64_t refusedTotal(const IntakeCounts& counts) {
-  return std::accumulate(counts.refused.begin(), counts.refused.end(), std::uint64_t{0});
-}
-
 }  // namespace
 
-NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const LoadsFlow& flow,
+NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
                                  const BagLog& log)
-    : flow_(flow), updater_(node, private_node) {
+    : bridge_(bridge),
+      log_(log),
+      // The name space is the node's own, a nodelet's in a manager as well.
+      updater_(node, private_node, private_node.getNamespace()) {
   updater_.setHardwareID("none");
+  updater_.add("inputs", this, &NodeDiagnostics::describeInputs);
   updater_.add("crank", this, &NodeDiagnostics::describeCrank);
   updater_.add("hull pitch", this, &NodeDiagnostics::describePitch);
-  if (flow.pipeline().boom()) updater_.add("boom", this, &NodeDiagnostics::describeBoom);
-  if (flow.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
-  if (flow.needsImu()) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
+  if (bridge.pipeline().boom()) updater_.add("boom", this, &NodeDiagnostics::describeBoom);
+  if (bridge.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
+  if (bridge.needsImu()) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
   updater_.add("model", this, &NodeDiagnostics::describeModel);
-  updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
+  updater_.add("log", [&log](Status& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ =
-      node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+      node.createWallTimer(ros::WallDuration(updater_.getPeriod()), [this](const ros::WallTimerEvent&) { report(); });
 }
 
-void NodeDiagnostics::describeCrank(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const Pipeline& pipeline = flow_.pipeline();
-  const IntakeCounts& counts = pipeline.counts();
+/// Each warning on the console when it is new; a log that stops by itself likewise.
+void NodeDiagnostics::report() {
+  std::set<std::string> present;
+  for (const Warning& warning : warnings()) {
+    present.insert(warning.key);
+    if (said_.count(warning.key) == 0) ROS_WARN("%s", warning.text.c_str());
+  }
+  said_.insert(present.begin(), present.end());
+  const LogHealth health = log_.health();
+  const bool stopped = health.state == LogState::kDiskFull || health.state == LogState::kFailed;
+  if (stopped && health.state != log_state_) ROS_ERROR("log stopped: %s", health.reason.c_str());
+  log_state_ = health.state;
+  updater_.force_update();
+}
+
+std::vector<Warning> NodeDiagnostics::warnings() const {
+  std::vector<Warning> warnings = warningsOf(bridge_.pipeline());
+  for (const ros::Subscriber* input : inputs_) {
+    if (input->getNumPublishers() > 1)
+      warnings.push_back(
+          {"publishers",
+           input->getTopic() + ": " + std::to_string(input->getNumPublishers()) + " publishers, must be one", true});
+  }
+  return warnings;
+}
+
+bool NodeDiagnostics::crankIsStale() const {
+  return secondsBetween(last_crank_, Clock::now()) > bridge_.settings().pipeline.stale_after;
+}
+
+void NodeDiagnostics::describeInputs(Status& status) {
+  const std::vector<Warning> all = warnings();
+  status.summary(DiagnosticStatus::OK, "as they should be");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == 0) status.summary(DiagnosticStatus::WARN, all[i].text);
+    status.add(all[i].key, all[i].text);
+  }
+}
+
+void NodeDiagnostics::describeCrank(Status& status) {
+  const Pipeline& pipeline = bridge_.pipeline();
+  const SampleCounts counts = pipeline.counts();
   const Clock::time_point now = Clock::now();
   const double elapsed = secondsBetween(last_report_, now);
   const double age = secondsBetween(last_crank_, now);
   const bool heard = last_crank_ != Clock::time_point{};
   const std::uint64_t accepted = counts.accepted - last_counts_.accepted;
-  const std::uint64_t refused = refusedTotal(counts) - refusedTotal(last_counts_);
+  const std::uint64_t refused = counts.refusedTotal() - last_counts_.refusedTotal();
   if (!heard) {
     status.summary(DiagnosticStatus::WARN, "no crank sample yet");
-  } else if (pipeline.unitCheck().looksLikeDegrees()) {
-    status.summary(DiagnosticStatus::ERROR, "implausible: angle or speed seems to be in degrees, radians are agreed");
-  } else if (pipeline.angleIsFrozen()) {
+  } else if (pipeline.crank().looksLikeDegrees()) {
+    status.summary(DiagnosticStatus::ERROR,
+                   "implausible: angle or speed seems to be in degrees, must be in radians; nothing is published");
+  } else if (pipeline.crank().angleIsFrozen()) {
     status.summary(DiagnosticStatus::ERROR, "implausible: the angle stands still while the speed goes on");
   } else if (age > pipeline.settings().stale_after) {
     status.summaryf(DiagnosticStatus::ERROR, "stale: no crank sample for %.1f s, nothing is published", age);
+  } else if (counts.backward_passes - last_counts_.backward_passes > counts.blows - last_counts_.blows) {
+    status.summary(DiagnosticStatus::ERROR, "turns backward: the sign of the sensor must be the other one");
   } else if (refused > 0) {
     status.summaryf(DiagnosticStatus::WARN, "%llu of %llu crank samples gave no wrench",
                     static_cast<unsigned long long>(refused), static_cast<unsigned long long>(refused + accepted));
@@ -63,8 +104,10 @@ void NodeDiagnostics::describeCrank(diagnostic_updater::DiagnosticStatusWrapper&
   for (std::size_t i = 0; i < counts.refused.size(); ++i) {
     status.add(std::string("refused: ") + kRefusalNames[i], counts.refused[i]);
   }
-  status.add("beginnings", counts.restarts);
-  if (const auto* filter = dynamic_cast<const CrankFilter*>(&pipeline.tracker())) {
+  status.add("restarts", counts.restarts);
+  status.add("blows", counts.blows);
+  status.add("passages of the blow backward", counts.backward_passes);
+  if (const auto* filter = dynamic_cast<const CrankFilter*>(&pipeline.crank().tracker())) {
     status.add("drive inertia, identified [kg m2]", filter->state().drive_inertia);
     status.add("net torque [N m]", filter->state().torque);
     status.add("speed noise, identified [rad/s]", filter->speedNoise());
@@ -74,17 +117,18 @@ void NodeDiagnostics::describeCrank(diagnostic_updater::DiagnosticStatusWrapper&
   last_report_ = now;
 }
 
-void NodeDiagnostics::describePitch(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const HullPitch& pitch = flow_.pipeline().hullPitch();
+void NodeDiagnostics::describePitch(Status& status) {
+  const HullPitch& pitch = bridge_.pipeline().hull().pitch();
   const auto unheard = pitch.unheard();
   if (unheard.empty()) {
     status.summary(DiagnosticStatus::OK, "known");
     if (pitch.looksLikeDegrees())
-      status.summary(DiagnosticStatus::ERROR, "implausible: joint angles seem to be in degrees, radians are agreed");
+      status.summary(DiagnosticStatus::ERROR,
+                     "implausible: joint angles seem to be in degrees, must be in radians; nothing is published");
   } else {
     std::string names;
     for (const std::string& name : unheard) names += " " + name;
-    status.summary(DiagnosticStatus::WARN, "weight by hull_pitch_rad: joints not heard yet:" + names);
+    status.summary(DiagnosticStatus::WARN, "weight by hull_pitch_rad: joints that have not come yet:" + names);
   }
   status.add("pitch [rad]", pitch.pitch());
   status.add("refused: not finite", pitch.refused());
@@ -92,8 +136,8 @@ void NodeDiagnostics::describePitch(diagnostic_updater::DiagnosticStatusWrapper&
     status.add("age of the last joint states [s]", secondsBetween(last_joint_states_, Clock::now()));
 }
 
-void NodeDiagnostics::describeImu(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const ImuCounts& counts = flow_.pipeline().imuCounts();
+void NodeDiagnostics::describeImu(Status& status) {
+  const ImuCounts& counts = bridge_.pipeline().hull().imuCounts();
   if (counts.missed > last_imu_counts_.missed) {
     status.summary(DiagnosticStatus::WARN, "hull's motion not known at every crank sample: weight by pitch there");
   } else {
@@ -106,22 +150,25 @@ void NodeDiagnostics::describeImu(diagnostic_updater::DiagnosticStatusWrapper& s
   last_imu_counts_ = counts;
 }
 
-void NodeDiagnostics::describeModel(diagnostic_updater::DiagnosticStatusWrapper& status) {
+void NodeDiagnostics::describeModel(Status& status) {
   for (const auto& [name, level] : kLevelNames)
-    if (level == flow_.settings().pipeline.level) status.summaryf(DiagnosticStatus::OK, "level %s", name);
-  for (const std::string& note : flow_.settings().notes) status.add("note", note);
+    if (level == bridge_.settings().pipeline.level) status.summaryf(DiagnosticStatus::OK, "level %s", name);
+  for (const std::string& note : bridge_.settings().notes) status.add("note", note);
 }
 
-void NodeDiagnostics::describeBoom(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const BoomFollower& boom = *flow_.pipeline().boom();
+void NodeDiagnostics::describeBoom(Status& status) {
+  const BoomFollower& boom = *bridge_.pipeline().boom();
   const BoomState& state = boom.state();
-  const auto complaints = boom.joints().complaints(state.stamp);
-  if (!complaints.empty()) {
+  const bool waits = last_crank_ == Clock::time_point{} || crankIsStale();
+  const auto complaints = waits ? std::vector<std::string>{} : boom.joints().complaints(state.stamp);
+  if (waits) {
+    status.summary(DiagnosticStatus::WARN, "waits for crank samples");
+  } else if (!complaints.empty()) {
     std::string text;
     for (const std::string& complaint : complaints) text += "; " + complaint;
-    status.summary(DiagnosticStatus::WARN, "joint loads silent" + text);
+    status.summary(DiagnosticStatus::WARN, "no joint loads" + text);
   } else if (state.dead_point) {
-    status.summary(DiagnosticStatus::WARN, "a cylinder is at its dead point: taken as rigid");
+    status.summary(DiagnosticStatus::WARN, "a cylinder is at its dead centre: taken as rigid");
   } else {
     status.summary(DiagnosticStatus::OK, state.choice.compliant ? "compliant" : "rigid");
   }
@@ -140,8 +187,8 @@ void NodeDiagnostics::describeBoom(diagnostic_updater::DiagnosticStatusWrapper& 
   status.add("joint states refused: out of order", refusals.out_of_order);
 }
 
-void NodeDiagnostics::describeFrames(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const FrameWrenches& wrenches = *flow_.frameWrenches();
+void NodeDiagnostics::describeFrames(Status& status) {
+  const FrameWrenches& wrenches = *bridge_.frameWrenches();
   status.summary(DiagnosticStatus::OK, "every frame known");
   bool silent = false;
   for (std::size_t i = 0; i < wrenches.frames().size(); ++i) {
@@ -151,7 +198,7 @@ void NodeDiagnostics::describeFrames(diagnostic_updater::DiagnosticStatusWrapper
       silent = true;
     }
     const FrameWrenchCounts counts = wrenches.counts(i);
-    status.add(wrenches.frames()[i] + ": told", counts.told);
+    status.add(wrenches.frames()[i] + ": published", counts.published);
     status.add(wrenches.frames()[i] + ": dropped", counts.dropped + counts.crowded);
     status.add(wrenches.frames()[i] + ": waiting", counts.waiting);
   }

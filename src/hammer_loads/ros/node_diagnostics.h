@@ -1,41 +1,58 @@
-/// What the node says of its own health on /diagnostics.
+/// The node's own health on /diagnostics; what is new of it on the console, once.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
+#include <ros/subscriber.h>
 
 #include <chrono>
 #include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "hammer_loads/log/bag_log.h"
-#include "hammer_loads/ros/loads_flow.h"
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/ros/hammer_bridge.h"
 
 namespace hammer_loads {
 
-/// Published once a second of wall time: rates, ages, counts of accepted and refused input by reason, model,
-/// boom, log health.
+/// Published at `~diagnostic_period` (1 s) of wall time: rates, ages, counts of accepted and refused input by reason,
+/// model, boom, log health.
 class NodeDiagnostics {
  public:
-  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const LoadsFlow& flow, const BagLog& log);
+  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge, const BagLog& log);
 
+  /// Topics that should have one publisher each; those without a topic are ignored. They must outlive this or its
+  /// reports.
+  void watch(std::vector<const ros::Subscriber*> inputs) { inputs_ = std::move(inputs); }
   /// An input arrived; its age decides whether the node is stale.
   void crankArrived() { last_crank_ = Clock::now(); }
   void jointStatesArrived() { last_joint_states_ = Clock::now(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
-  void describeCrank(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describePitch(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describeBoom(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describeFrames(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describeImu(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void describeModel(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void report();
+  std::vector<Warning> warnings() const;
+  bool crankIsStale() const;
+  void describeInputs(Status& status);
+  void describeCrank(Status& status);
+  void describePitch(Status& status);
+  void describeBoom(Status& status);
+  void describeFrames(Status& status);
+  void describeImu(Status& status);
+  void describeModel(Status& status);
 
-  const LoadsFlow& flow_;
+  const HammerBridge& bridge_;
+  const BagLog& log_;
+  std::vector<const ros::Subscriber*> inputs_;
   Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
-  IntakeCounts last_counts_;
+  SampleCounts last_counts_;
   ImuCounts last_imu_counts_;
+  std::set<std::string> said_;  ///< keys of warnings on the console already
+  LogState log_state_{LogState::kOff};
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
 };

@@ -64,7 +64,7 @@ std::string robotDescription(const ros::NodeHandle& private_node) {
 Checked<Settings> loadPrivateParameters(const ros::NodeHandle& private_node) {
   std::vector<std::string> problems;
   ParameterMap given = privateParameters(private_node, problems);
-  given.erase("robot_description");  // not from our files
+  for (const char* foreign : {"robot_description", "diagnostic_period"}) given.erase(foreign);  // not from our files
   Checked<Settings> result = load(configDirectory(), given, robotDescription(private_node));
   result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
   if (!result.problems.empty()) result.value.reset();

@@ -14,7 +14,8 @@
 
 namespace hammer_loads {
 
-/// make: as makeNode; null ends the program with code 1. Every problem is a line on stderr. Returns the exit code.
+/// make: as makeHammerNode; null ends the program with code 1. Every problem is a line on stderr. Returns the exit
+/// code.
 template <typename Make>
 int runNode(int argc, char** argv, const char* name, Make make) {
   keepMemorySteady();

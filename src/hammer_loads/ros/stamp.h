@@ -3,7 +3,7 @@
 
 #include <ros/time.h>
 
-#include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 

@@ -45,8 +45,9 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
   return std::move(boom.value);
 }
 
-Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description) {
+Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description, bool hammer_given) {
   Checked<Settings> result;
+  if (!hammer_given) result.notes.push_back("hammer: no file was given, the masses of the shipped MO-100 are used");
   const bool boom_file = hasBoomKey(parameters);
   ParameterReader reader(std::move(parameters));
   const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes);
@@ -63,7 +64,8 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
     pipeline.level = choice.level;
     result.notes.push_back(describe(choice));
   }
-  result.value = Settings{*mechanism, pipeline, log, std::move(boom), robot_description, reader.yaml(), {}};
+  result.value =
+      Settings{*mechanism, pipeline, log, std::move(boom), hammer_given, robot_description, reader.yaml(), {}};
   return result;
 }
 
@@ -79,7 +81,7 @@ Checked<Settings> load(const std::string& config_directory, const ParameterMap& 
   const bool all_read = addFiles(shipped, parameters, problems);
   merge(given, parameters);
   Checked<Settings> result;
-  if (all_read) result = settingsFrom(std::move(parameters), robot_description);
+  if (all_read) result = settingsFrom(std::move(parameters), robot_description, hasHammerKey(given));
   result.problems.insert(result.problems.begin(), problems.begin(), problems.end());
   if (!result.problems.empty()) result.value.reset();
   if (result.value) result.value->notes = result.notes;
@@ -103,7 +105,7 @@ Settings withChanges(const Settings& settings, const std::vector<std::pair<std::
   std::vector<std::string> problems;
   ParameterMap parameters = parameterMap(YAML::Load(settings.yaml), {}, problems).value();
   for (const auto& [key, value] : changes) parameters.at(key).value = YAML::Node(numberText(value));
-  Checked<Settings> changed = settingsFrom(std::move(parameters), settings.robot_description);
+  Checked<Settings> changed = settingsFrom(std::move(parameters), settings.robot_description, settings.hammer_given);
   changed.value.value().notes = std::move(changed.notes);
   return *std::move(changed.value);
 }

@@ -20,6 +20,7 @@ struct Settings {
   PipelineSettings pipeline;
   LogSettings log;
   std::optional<Boom> boom;        ///< nothing: no robot description, or `boom: none`
+  bool hammer_given{};             ///< else the shipped MO-100 is used
   std::string robot_description;   ///< the URDF's text, as given
   std::string yaml;                ///< every parameter in force; loading it alone with the same robot description
                                    ///< gives the same settings

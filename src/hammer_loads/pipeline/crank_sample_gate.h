@@ -1,40 +1,24 @@
-/// Which input is taken, and what becomes of the rest.
+/// Which crank samples are taken: checks that need no model.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <optional>
 
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/pipeline/refusal.h"
 #include "hammer_loads/pipeline/stamp_order.h"
 
 namespace hammer_loads {
 
-/// Why an input gave no wrench.
-enum class Refusal : std::size_t {
-  kMissingJoint,  ///< the crank joint is not in the message
-  kShortArray,    ///< fewer positions (or, where there are any, speeds) than names
-  kNotFinite,     ///< NaN or infinity
-  kImplausible,   ///< faster than any crank, or contradicting the samples before it
-  kOutOfOrder,    ///< older than the last accepted sample
-  kDuplicate,     ///< as old as the last accepted sample
-  kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)
-  kCount
-};
-
-constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRefusalNames{
-    "missing joint", "short array", "not finite", "implausible", "out of order", "duplicate", "unsettled"};
-
-/// Checks that need no model: a sample's own values and its place in time.
-class Intake {
+/// A sample's own values and its place in time.
+class CrankSampleGate {
  public:
   struct Limits {
     double max_speed{};     ///< of any crank [rad/s]
-    double stale_after{};   ///< age of the last sample from which on a new one starts anew [s]
+    double stale_after{};   ///< age of the last sample from which on a new one restarts [s]
     double frozen_turn{};   ///< a crank that turned further does not give the same angle again [rad]
     double frozen_speed{};  ///< nor does one that turns faster, however soon [rad/s]
   };
-  explicit Intake(const Limits& limits) : limits_(limits), stamps_(limits.stale_after) {}
+  explicit CrankSampleGate(const Limits& limits) : limits_(limits), stamps_(limits.stale_after) {}
 
   enum class Order { kFirst, kNext };
   struct Verdict {

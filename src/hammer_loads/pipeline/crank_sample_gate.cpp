@@ -1,4 +1,4 @@
-#include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/pipeline/crank_sample_gate.h"
 
 #include <cmath>
 
@@ -11,7 +11,8 @@ constexpr double kLargestAngle = 1e9;  // [rad]: beyond it a double resolves les
 
 }  // namespace
 
-Intake::Verdict Intake::judge(StampNs stamp, const CrankSample& sample) noexcept {
+CrankSampleGate::Verdict CrankSampleGate::judge(StampNs stamp, const CrankSample& sample) noexcept {
+  if (stamp < 0 || stamp > kLastStamp) return {Refusal::kBadStamp};
   const double speed = sample.speed.value_or(0.0);
   if (!std::isfinite(sample.angle) || !std::isfinite(speed)) return {Refusal::kNotFinite};
   if (std::abs(sample.angle) > kLargestAngle || std::abs(speed) > limits_.max_speed) return {Refusal::kImplausible};
@@ -30,7 +31,7 @@ Intake::Verdict Intake::judge(StampNs stamp, const CrankSample& sample) noexcept
 }
 
 /// A sensor may stand still while its speed goes on.
-bool Intake::isFrozen(double step, const CrankSample& sample) noexcept {
+bool CrankSampleGate::isFrozen(double step, const CrankSample& sample) noexcept {
   const double speed = std::abs(sample.speed.value_or(0.0)), turn = speed * step;
   const bool turns = speed > limits_.frozen_speed && (frozen_ || (turn > limits_.frozen_turn && turn < 0.5 * kTwoPi));
   // Bits, not nearness: counts repeat exactly, and any living sensor moves by its noise.
@@ -38,7 +39,7 @@ bool Intake::isFrozen(double step, const CrankSample& sample) noexcept {
   return frozen_;
 }
 
-bool Intake::isSpeedDead(const CrankSample& sample) const noexcept {
+bool CrankSampleGate::isSpeedDead(const CrankSample& sample) const noexcept {
   return sample.speed == 0.0 && accepted_.speed == 0.0 &&
          std::abs(CrankAngle::wrapToPi(sample.angle - accepted_.angle)) > limits_.frozen_turn;
 }

@@ -1,4 +1,4 @@
-#include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/pipeline/crank_sample_gate.h"
 
 #include <gtest/gtest.h>
 
@@ -14,19 +14,19 @@ constexpr StampNs kMs = 1000000;
 
 class IntakeTest : public testing::Test {
  protected:
-  Intake::Verdict judge(StampNs stamp, std::optional<double> given = {}, double speed = 10.0) {
+  CrankSampleGate::Verdict judge(StampNs stamp, std::optional<double> given = {}, double speed = 10.0) {
     const double angle = given.value_or(1e-9 * static_cast<double>(stamp));
-    const Intake::Verdict verdict = intake_.judge(stamp, {angle, speed});
+    const CrankSampleGate::Verdict verdict = intake_.judge(stamp, {angle, speed});
     if (!verdict.refusal) intake_.accept(stamp, {angle, speed});
     return verdict;
   }
-  Intake intake_{{300.0, 0.25, 0.01, 1.5}};
+  CrankSampleGate intake_{{300.0, 0.25, 0.01, 1.5}};
 };
 
 TEST_F(IntakeTest, GivesTheStepBetweenAcceptedSamples) {
-  EXPECT_EQ(judge(5 * kMs).order, Intake::Order::kFirst);
-  const Intake::Verdict next = judge(7 * kMs);
-  EXPECT_EQ(next.order, Intake::Order::kNext);
+  EXPECT_EQ(judge(5 * kMs).order, CrankSampleGate::Order::kFirst);
+  const CrankSampleGate::Verdict next = judge(7 * kMs);
+  EXPECT_EQ(next.order, CrankSampleGate::Order::kNext);
   EXPECT_DOUBLE_EQ(next.step, 2e-3);
 }
 
@@ -44,15 +44,15 @@ TEST_F(IntakeTest, RefusesEachBadSampleAndTakesTheNextGoodOne) {
 
 TEST_F(IntakeTest, AGapLongerThanStaleBeginsAnew) {
   judge(0);
-  EXPECT_EQ(judge(249 * kMs).order, Intake::Order::kNext);
-  EXPECT_EQ(judge(500 * kMs).order, Intake::Order::kFirst);
+  EXPECT_EQ(judge(249 * kMs).order, CrankSampleGate::Order::kNext);
+  EXPECT_EQ(judge(500 * kMs).order, CrankSampleGate::Order::kFirst);
 }
 
 TEST_F(IntakeTest, TimeRunningBackIsBelievedFromTheSecondSampleOn) {
   judge(1000 * kMs);
   EXPECT_EQ(judge(10 * kMs).refusal, Refusal::kOutOfOrder);
-  EXPECT_EQ(judge(11 * kMs).order, Intake::Order::kFirst);
-  EXPECT_EQ(judge(12 * kMs).order, Intake::Order::kNext);
+  EXPECT_EQ(judge(11 * kMs).order, CrankSampleGate::Order::kFirst);
+  EXPECT_EQ(judge(12 * kMs).order, CrankSampleGate::Order::kNext);
 }
 
 TEST_F(IntakeTest, OneLateSampleChangesNothing) {
@@ -66,9 +66,9 @@ TEST_F(IntakeTest, OneLateSampleChangesNothing) {
 TEST_F(IntakeTest, AnAngleThatStandsStillWhileTheSpeedGoesOnIsRefusedUntilItMoves) {
   judge(0, 1.0, 20.0);
   for (int i = 1; i <= 400; ++i) EXPECT_EQ(judge(i * kMs, 1.0, 20.0).refusal, Refusal::kImplausible) << i;
-  const Intake::Verdict moving = judge(401 * kMs, 1.02, 20.0);
+  const CrankSampleGate::Verdict moving = judge(401 * kMs, 1.02, 20.0);
   EXPECT_FALSE(moving.refusal);
-  EXPECT_EQ(moving.order, Intake::Order::kFirst) << "stale by then";
+  EXPECT_EQ(moving.order, CrankSampleGate::Order::kFirst) << "stale by then";
   EXPECT_EQ(judge(402 * kMs, 1.02, 20.0).refusal, Refusal::kImplausible);
   EXPECT_FALSE(judge(403 * kMs, 1.02, 0.1).refusal) << "now the speed agrees that it stands";
 }

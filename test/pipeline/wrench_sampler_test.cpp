@@ -1,4 +1,4 @@
-#include "hammer_loads/pipeline/hull_outputs.h"
+#include "hammer_loads/pipeline/wrench_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -36,10 +36,8 @@ struct Total {
 Total sum(const Session& session, const MachineSettings& machine, PipelineSettings settings, StampNs until) {
   Pipeline pipeline(test::mechanismOf(machine.hammer), settings);
   Total total;
-  HullOutput output;
   for (const auto& reading : session.crank) {
-    pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
-    while (pipeline.nextOutput(output)) {
+    for (const WrenchOutput& output : pipeline.crankSample(reading.stamp, {reading.angle, reading.speed}).outputs) {
       if (output.stamp > session.crank.front().stamp + until) continue;
       if (total.outputs++ == 0) total.first = output.stamp;
       total.last = output.stamp;
@@ -106,15 +104,14 @@ TEST(InstantaneousOutput, ByDefaultIsTheSamplesOwn) {
   const MachineSettings machine = machineAt(1000.0);
   const Session session = simulation::recordSession(machine);
   Pipeline pipeline(test::mechanismOf(machine.hammer), settingsOf(Level::kRocker, OutputKind::kInstantaneous, 0.0));
-  HullOutput output;
   for (const auto& reading : session.crank) {
-    const Loads& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
-    ASSERT_EQ(pipeline.nextOutput(output), !loads.refusal);
+    const SampleResult& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    ASSERT_EQ(loads.outputs.size(), loads.refusal ? 0U : 1U);
     if (loads.refusal) continue;
+    const WrenchOutput& output = loads.outputs.front();
     ASSERT_EQ(output.stamp, reading.stamp);
     ASSERT_EQ(output.wrench.force_z, loads.wrench.force_z);
     ASSERT_EQ(output.interval, 0.0);
-    ASSERT_FALSE(pipeline.nextOutput(output));
   }
 }
 
@@ -122,12 +119,11 @@ TEST(InstantaneousOutput, AtARateOfItsOwnLiesOnTheSamplesWhereTheyMeet) {
   const MachineSettings machine = machineAt(1000.0);
   const Session session = simulation::recordSession(machine);
   Pipeline pipeline(test::mechanismOf(machine.hammer), settingsOf(Level::kRocker, OutputKind::kInstantaneous, 3000.0));
-  HullOutput output;
   std::size_t outputs = 0, at_samples = 0;
   double before = 0.0;
   for (const auto& reading : session.crank) {
-    const Loads& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
-    while (pipeline.nextOutput(output)) {
+    const SampleResult& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    for (const WrenchOutput& output : loads.outputs) {
       ++outputs;
       if (output.stamp != reading.stamp) continue;
       ++at_samples;

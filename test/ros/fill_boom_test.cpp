@@ -1,4 +1,4 @@
-#include "hammer_loads/ros/boom_messages.h"
+#include "hammer_loads/ros/fill_boom.h"
 
 #include <gtest/gtest.h>
 
@@ -38,14 +38,27 @@ class Messages : public testing::Test {
   }
   const std::vector<double> position_{0.2, -0.35, 1.20, -0.85};
   BoomFollower follower_{test::shippedBoom(), settings(BoomModel::kAuto), 0.1975};
-  BoomMessages messages_{follower_, {"gauge", "arm_link", "left/gauge", "base_link"}};
+  const JointLoads& jointLoads() {
+    fillJointLoads(follower_.state(), joint_loads_);
+    return joint_loads_;
+  }
+  const BoomVibration& vibration() {
+    fillVibration(follower_, vibration_);
+    return vibration_;
+  }
+  void SetUp() override {
+    prepareJointLoads(follower_.boom(), joint_loads_);
+    prepareVibration(follower_.boom(), vibration_);
+  }
+  JointLoads joint_loads_;
+  BoomVibration vibration_;
 };
 
 TEST_F(Messages, HoldTheStateInItsOrder) {
   sample(kStamp - 1000000);
   sample(kStamp);
   const BoomState& state = follower_.state();
-  const JointLoads& loads = messages_.jointLoads();
+  const JointLoads& loads = jointLoads();
   EXPECT_EQ(loads.header.stamp.toNSec(), static_cast<std::uint64_t>(kStamp));
   EXPECT_EQ(loads.header.frame_id, "base_link");
   EXPECT_EQ(loads.joint_name, kFour);
@@ -69,7 +82,7 @@ TEST_F(Messages, HoldTheStateInItsOrder) {
 TEST_F(Messages, TellTheVibrationAndWhy) {
   sample(kStamp - 1000000);
   sample(kStamp);
-  const BoomVibration& before = messages_.vibration();
+  const BoomVibration before = vibration();
   EXPECT_TRUE(before.compliant);
   EXPECT_TRUE(std::isnan(before.rigid_error) && std::isnan(before.pulse_length_s));
   EXPECT_TRUE(std::isnan(before.hold_down_factor));
@@ -79,7 +92,7 @@ TEST_F(Messages, TellTheVibrationAndWhy) {
   follower_.turnEnded(pulse(), 300.0);
   sample(kStamp + 1000000);
   const BoomState& state = follower_.state();
-  const BoomVibration& after = messages_.vibration();
+  const BoomVibration& after = vibration();
   EXPECT_EQ(after.displacement_m.z, state.tip.displacement[2]);
   EXPECT_EQ(after.rotation_rad.y, state.tip.displacement[4]);
   EXPECT_EQ(after.acceleration_m_s2.x, state.tip.acceleration[0]);
@@ -94,32 +107,27 @@ TEST_F(Messages, TellTheVibrationAndWhy) {
   EXPECT_EQ(after.hold_down_limit, "boom_cylinder");
 }
 
-TEST_F(Messages, TellTheLoadAtTheChainsLinks) {
+TEST_F(Messages, HoldTheLoadAtALinkOfTheChain) {
   sample(kStamp);
-  ASSERT_EQ(messages_.links(), (Names{"arm_link", "base_link"}));
-  const geometry_msgs::WrenchStamped& arm = messages_.wrench(0, ros::Time(1.0), kLoad);
-  EXPECT_EQ(arm.header.frame_id, "arm_link");
-  EXPECT_EQ(arm.header.stamp, ros::Time(1.0));
   const Wrench expected = follower_.wrenchAtLink(*follower_.linkIndex("arm_link"), kLoad);
+  geometry_msgs::WrenchStamped arm;
+  fillWrench(1000000000, expected, arm);
+  EXPECT_EQ(arm.header.stamp, ros::Time(1.0));
   EXPECT_EQ(arm.wrench.force.x, expected.force.x());
   EXPECT_EQ(arm.wrench.force.z, expected.force.z());
   EXPECT_EQ(arm.wrench.torque.y, expected.torque.y());
-  EXPECT_EQ(messages_.wrench(1, ros::Time(1.0), kLoad).header.frame_id, "base_link");
-
-  const Names links{"gauge", "arm_link", "left/gauge"};
-  EXPECT_EQ(framesBesideChain(links, &follower_.boom()), (Names{"gauge", "left/gauge"}));
-  EXPECT_EQ(framesBesideChain(links, nullptr), links);
 }
 
 TEST_F(Messages, AllocateNothing) {
   sample(kStamp);
   follower_.turnEnded(pulse(), 300.0);
   const std::size_t before = test::allocations;
+  geometry_msgs::WrenchStamped wrench;
   double sum = 0.0;
   for (int i = 1; i < 1000; ++i) {
     sample(kStamp + i * 1000000);
-    sum += messages_.jointLoads().total_torque_Nm[1] + messages_.vibration().reduced_mass_kg +
-           messages_.wrench(0, ros::Time(1.0), kLoad).wrench.torque.y;
+    fillWrench(kStamp, follower_.wrenchAtLink(2, kLoad), wrench);
+    sum += jointLoads().total_torque_Nm[1] + vibration().reduced_mass_kg + wrench.wrench.torque.y;
   }
   EXPECT_EQ(test::allocations, before);
   EXPECT_TRUE(std::isfinite(sum));

@@ -1,0 +1,52 @@
+/// The hammer as the rooms above see it: loads, momentum, blow, links and pins of one mechanism at one level. They
+/// include this header alone, so that another linkage stays below it.
+#pragma once
+
+#include "hammer_loads/hammer/blow.h"
+#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/linkage/pin_forces.h"
+
+namespace hammer_loads {
+
+/// Where the links stand and how they turn against the hull; angles as the robot description has them.
+struct LinkState {
+  double crank_angle{};         ///< in [0, 2 pi) [rad]
+  double rod_angle{};           ///< beta [rad]
+  double rocker_angle{};        ///< psi [rad]
+  double crank_speed{};         ///< [rad/s]
+  double rod_speed{};           ///< [rad/s]
+  double rocker_speed{};        ///< [rad/s]
+  double transmission_angle{};  ///< psi - beta in [0, pi] [rad]; 0 at the blow only
+};
+
+/// Angle in [0, 2 pi) [rad].
+inline double crankAngle(CrankAngle angle) noexcept {
+  return angle.offset < 0.0 ? angle.offset + kTwoPi : angle.offset;
+}
+
+inline LinkState linkState(const HullModel& model, const CrankMotion& crank) noexcept {
+  const LinkMotion links = linkMotion(model.mechanism().linkage(), crank.angle);
+  return {crankAngle(crank.angle),   rodAngle(links),
+          rockerAngle(links.rocker), crank.speed,
+          links.v * crank.speed,     links.rocker.u * crank.speed,
+          transmissionAngle(links)};
+}
+
+/// Forces in the pins and drive torque at the model's level.
+inline PinReactions pinForces(const HullModel& model, const CrankMotion& crank, const HullMotion& hull,
+                              double near_blow) noexcept {
+  return pinForces(model.mechanism(), model.level(), crank, hull, NearBlow(near_blow));
+}
+
+/// Blow of a crank that passes the blow forward at that speed [rad/s].
+inline RockerBlow blowAtCrankSpeed(const HullModel& model, double crank_speed) noexcept {
+  return blowAtCrankSpeed(model.mechanism(), model.level(), crank_speed);
+}
+
+/// Wrench from motion of the links relative to the hull alone: without weight, in a hull at rest.
+inline HullWrench motionWrench(const HullModel& model, const CrankMotion& crank) noexcept {
+  return hullWrench(model, crank, Gravity{});
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,90 @@
+#include "hammer_loads/pipeline/crank_follower.h"
+
+#include <limits>
+
+#include "hammer_loads/pipeline/hull_deviation.h"
+#include "hammer_loads/pipeline/make_tracker.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
+constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
+constexpr double kFrozenCounts = 5;       // a crank that turned further gives another angle
+constexpr double kFrozenDeviations = 5;   // of a sensor's noise, likewise
+
+CrankSampleGate::Limits limitsOf(const PipelineSettings& s) noexcept {
+  double frozen_turn = kFrozenCounts * s.crank_angle_resolution + kFrozenDeviations * s.crank_angle_noise;
+  // The trackers for comparison take every reading as it is.
+  if (s.crank_estimator != CrankEstimator::kMechanism) frozen_turn = std::numeric_limits<double>::infinity();
+  return {s.max_crank_speed, s.stale_after, frozen_turn, kFrozenDeviations * s.crank_speed_noise};
+}
+
+}  // namespace
+
+CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& settings)
+    : model_(&model),
+      withhold_above_(settings.withhold_above),
+      unit_check_(settings.max_crank_speed),
+      gate_(limitsOf(settings)),
+      tracker_(makeTracker(model.mechanism(), settings)),
+      step_(*tracker_) {}
+
+std::optional<Refusal> CrankFollower::judge(StampNs stamp, const CrankSample& measured) noexcept {
+  stamp_ = stamp;
+  measured_ = measured;
+  unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
+  last_raw_stamp_ = stamp;
+  verdict_ = gate_.judge(stamp, measured);
+  if (verdict_.refusal) return verdict_.refusal;
+  if (unit_check_.looksLikeDegrees()) return Refusal::kDegrees;
+  return std::nullopt;
+}
+
+CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
+  const CrankSample sample{measured_.angle, verdict_.speed_is_dead ? std::nullopt : measured_.speed};
+  tracker_->setHullMotion(hull);
+  if (verdict_.order == CrankSampleGate::Order::kFirst) {
+    tracker_->start(sample);
+    restart();
+    speed_measured_ = sample.speed.has_value();
+    return Taken::kBegan;
+  }
+  const Tracking tracking = tracker_->update(verdict_.step, sample);
+  if (tracking == Tracking::kOutlier) return Taken::kRefused;
+  if (tracking == Tracking::kRestarted) {
+    restart();
+    speed_measured_ = false;
+    return Taken::kRestarted;
+  }
+  estimate_ = tracker_->estimate();
+  step_.take(*gate_.last(), verdict_.step, last_position_);
+  return Taken::kContinued;
+}
+
+void CrankFollower::accept() noexcept {
+  gate_.accept(stamp_, measured_);
+  last_position_ = estimate_.position;
+}
+
+void CrankFollower::restart() noexcept {
+  estimate_ = tracker_->estimate();
+  step_.forget(estimate_.position);
+  unsettled_ = true;
+  samples_since_restart_ = 0;
+}
+
+/// Before the first whole turn there is no peak to compare with: then only the speed must be known.
+bool CrankFollower::isSettled(const HullMotion& hull, double peak_force) noexcept {
+  if (!unsettled_) return true;
+  if (!tracker_->hasSpeed()) return false;
+  if (peak_force > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;
+  if (peak_force > 0.0) {
+    const double deviation = hullDeviation(*model_, estimate_, hull, tracker_->motionCovariance(1.0)).wrench.force_z;
+    if (kSettledDeviations * deviation > withhold_above_ * peak_force) return false;
+  }
+  unsettled_ = false;
+  return true;
+}
+
+}  // namespace hammer_loads

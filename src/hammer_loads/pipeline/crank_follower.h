@@ -1,0 +1,69 @@
+/// From crank samples to the crank's motion: gate, units, tracker, the step since the sample before.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/crank_sample_gate.h"
+#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/unit_check.h"
+#include "hammer_loads/settings/pipeline_settings.h"
+
+namespace hammer_loads {
+
+class CrankFollower {
+ public:
+  /// Refers to the model, which must outlive it.
+  CrankFollower(const HullModel& model, const PipelineSettings& settings);
+  CrankFollower(const CrankFollower&) = delete;
+  CrankFollower& operator=(const CrankFollower&) = delete;
+
+  /// What became of a sample.
+  enum class Taken {
+    kRefused,    ///< not taken: refusal() says why
+    kBegan,      ///< taken as the first one after a start, a gap or a time that ran back
+    kRestarted,  ///< taken; it contradicts what came before, which does not count any more
+    kContinued,  ///< taken; step() is the time since the sample before
+  };
+
+  /// Judges a sample by itself. Only if there is no refusal, take() must follow.
+  std::optional<Refusal> judge(StampNs stamp, const CrankSample& measured) noexcept;
+  /// Takes the judged sample. hull: motion at it.
+  Taken take(const HullMotion& hull) noexcept;
+  /// Ends a step: later steps begin at this sample.
+  void accept() noexcept;
+
+  /// Whether the estimate may be published; peak_force: of the last whole turn [N], 0 before it.
+  bool isSettled(const HullMotion& hull, double peak_force) noexcept;
+
+  const CrankEstimate& estimate() const noexcept { return estimate_; }
+  const CrankStep& step() const noexcept { return step_; }
+  const CrankTracker& tracker() const noexcept { return *tracker_; }
+  bool looksLikeDegrees() const noexcept { return unit_check_.looksLikeDegrees(); }
+  bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
+
+ private:
+  void restart() noexcept;
+
+  const HullModel* model_;
+  double withhold_above_;
+  UnitCheck unit_check_;
+  std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
+  CrankSampleGate gate_;
+  std::unique_ptr<CrankTracker> tracker_;
+  CrankStep step_;
+  CrankEstimate estimate_;
+
+  StampNs stamp_{};  ///< of the judged sample
+  CrankSample measured_;
+  CrankSampleGate::Verdict verdict_;
+
+  CrankPosition last_position_;  ///< at the last accepted sample
+  bool unsettled_{};
+  bool speed_measured_{};
+  int samples_since_restart_{};
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,67 @@
+#include "hammer_loads/pipeline/hull_state.h"
+
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+/// Of the tip of a boom; none if it is rigid.
+HullMotion vibrationOf(const BoomState& boom) noexcept {
+  if (!boom.choice.compliant) return {};
+  const auto& a = boom.tip.acceleration;  // linear, then angular
+  return {{-a[0], -a[2]}, boom.tip.velocity[4], a[4]};
+}
+
+}  // namespace
+
+HullState::HullState(const PipelineSettings& settings)
+    : source_(settings.hull_motion),
+      gravity_(settings.gravity),
+      pitch_(settings.pitch_joints, settings.hull_pitch),
+      imu_(settings.imu) {
+  weigh();
+}
+
+/// Of a fixed hull the weight is all its motion.
+void HullState::weigh() noexcept {
+  const double pitch = pitch_.pitch();
+  weight_ = {gravity_ * std::sin(pitch), -gravity_ * std::cos(pitch)};
+  if (source_ == HullMotionSource::kFixed) now_ = {weight_, false};
+}
+
+bool HullState::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
+  if (!pitch_.update(names, positions)) return false;
+  weigh();
+  return true;
+}
+
+std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& reading) noexcept {
+  const std::optional<ImuRefusal> refusal = imu_.update(stamp, reading);
+  ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
+  return refusal;
+}
+
+void HullState::set(const HullMotion& motion) noexcept { now_ = {motion, known_}; }
+
+const HullMotion& HullState::predict(StampNs stamp) noexcept {
+  if (source_ == HullMotionSource::kImu) {
+    const std::optional<HullMotion> measured = imu_.at(stamp);
+    known_ = measured.has_value();
+    imu_counts_.missed += !known_;
+    set(measured.value_or(HullMotion(weight_)));
+  } else if (source_ == HullMotionSource::kModel) {
+    set({{weight_.x + vibration_.gravity.x, weight_.z + vibration_.gravity.z},
+         vibration_.rate,
+         vibration_.acceleration});
+  }
+  return now_.motion;
+}
+
+void HullState::vibrates(const BoomState* boom) noexcept {
+  if (source_ != HullMotionSource::kModel) return;
+  known_ = boom != nullptr && !boom->fault;
+  vibration_ = known_ ? vibrationOf(*boom) : HullMotion{};
+  predict(0);
+}
+
+}  // namespace hammer_loads

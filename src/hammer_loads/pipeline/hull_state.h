@@ -1,0 +1,67 @@
+/// What is known of the hull: its pitch, its own motion and where that comes from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/pipeline/boom_follower.h"
+#include "hammer_loads/pipeline/hull_imu.h"
+#include "hammer_loads/pipeline/hull_pitch.h"
+#include "hammer_loads/settings/pipeline_settings.h"
+
+namespace hammer_loads {
+
+/// Readings of the hull's IMU since the start.
+struct ImuCounts {
+  std::uint64_t accepted{};
+  std::array<std::uint64_t, static_cast<std::size_t>(ImuRefusal::kCount)> refused{};
+  std::uint64_t missed{};  ///< crank samples at which the hull's motion was not known: weight by pitch then
+};
+
+/// Owns pitch and IMU, and the boom's last vibration.
+class HullState {
+ public:
+  struct Motion {
+    HullMotion motion;  ///< at the sample
+    bool moves{};       ///< the hull's own motion is in it
+  };
+
+  explicit HullState(const PipelineSettings& settings);
+
+  /// Boom joint angles, any subset in any order. Whether a pitch joint was among them.
+  bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+  std::optional<ImuRefusal> imu(StampNs stamp, const ImuReading& reading) noexcept;
+
+  /// Before a sample is taken: its motion as far as it is known by then (of the boom's vibration: that of the sample
+  /// before).
+  const HullMotion& predict(StampNs stamp) noexcept;
+  /// After it: the vibration of the boom at the sample; null: not known.
+  void vibrates(const BoomState* boom) noexcept;
+  /// What follows is not continuous with what was: the boom is at rest.
+  void rest() noexcept { vibration_ = {}; }
+
+  const Motion& motion() const noexcept { return now_; }
+  /// False where IMU or boom ought to give the hull's motion and do not: weight by pitch then.
+  bool motionKnown() const noexcept { return known_; }
+  const HullPitch& pitch() const noexcept { return pitch_; }
+  const ImuCounts& imuCounts() const noexcept { return imu_counts_; }
+
+ private:
+  void weigh() noexcept;
+  void set(const HullMotion& motion) noexcept;
+
+  HullMotionSource source_;
+  double gravity_;  ///< [m/s2]
+  HullPitch pitch_;
+  HullImu imu_;
+  ImuCounts imu_counts_;
+  Gravity weight_;        ///< by the latest pitch, hull axes [m/s2]
+  HullMotion vibration_;  ///< of the boom's tip at the last sample, without weight
+  Motion now_;
+  bool known_{true};
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,43 @@
+/// Why an input gave no wrench, and how often.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+
+namespace hammer_loads {
+
+/// Why a crank sample gave no wrench.
+enum class Refusal : std::size_t {
+  kMissingJoint,  ///< the crank joint is not in the message
+  kShortArray,    ///< fewer positions (or, where there are any, speeds) than names
+  kNotFinite,     ///< NaN or infinity
+  kImplausible,   ///< faster than any crank, or contradicting the samples before it
+  kOutOfOrder,    ///< older than the last accepted sample
+  kDuplicate,     ///< as old as the last accepted sample
+  kBadStamp,      ///< beyond the last time that a message can carry
+  kDegrees,       ///< crank or boom are recognised to send degrees: withheld until that is over
+  kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)
+  kCount
+};
+
+constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRefusalNames{
+    "missing joint", "short array", "not finite", "implausible", "out of order",
+    "duplicate",     "bad stamp",   "degrees",    "unsettled"};
+
+/// Crank samples since the start.
+struct SampleCounts {
+  std::uint64_t accepted{};
+  std::array<std::uint64_t, static_cast<std::size_t>(Refusal::kCount)> refused{};
+  std::uint64_t restarts{};         ///< drop-outs, jumps and time running back
+  std::uint64_t blows{};            ///< forward, for the first time, not creeping
+  std::uint64_t backward_passes{};  ///< passages of the blow backward
+
+  std::uint64_t refusedFor(Refusal reason) const noexcept { return refused[static_cast<std::size_t>(reason)]; }
+  std::uint64_t refusedTotal() const noexcept {
+    return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+  }
+};
+
+}  // namespace hammer_loads

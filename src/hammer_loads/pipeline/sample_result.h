@@ -1,0 +1,53 @@
+/// Everything that one crank sample gives, complete: nobody asks the pipeline for more.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/boom_follower.h"
+#include "hammer_loads/pipeline/hull_deviation.h"
+#include "hammer_loads/pipeline/hull_state.h"
+#include "hammer_loads/pipeline/refusal.h"
+
+namespace hammer_loads {
+
+/// A blow and, if the turn before it was seen whole, its pulse.
+struct TurnEnd {
+  StampNs stamp{};       ///< instant of the blow, found between samples [ns]
+  std::uint64_t turn{};  ///< blows since the start, 1 for the first
+  RockerBlow blow;
+  double mean_press_force{};  ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
+  std::optional<HalfSinePulse> pulse;
+};
+
+/// One publication of the hull wrench.
+struct WrenchOutput {
+  StampNs stamp{};
+  double interval{};    ///< the wrench is the mean over it, before the stamp [s]; 0: at the stamp
+  CrankEstimate crank;  ///< at the stamp
+  HullWrench wrench;
+  HullDeviation deviation;  ///< for a mean that of its end or, if less, what the momentum's at both ends allows
+  bool near_blow{};         ///< transmission angle below near_blow_deg
+};
+
+struct SampleResult {
+  StampNs stamp{};
+  std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
+  CrankEstimate crank;
+  LinkState links;
+  HullState::Motion hull;
+  bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad
+  HullWrench wrench;   ///< at the sample
+  PinReactions pins;
+  const BoomState* boom{};            ///< null: no boom; with a fault in it void but for stamp and fault
+  std::vector<WrenchOutput> outputs;  ///< one at the sample, or those on the grid of output_rate since the one before
+  std::size_t turn_ends{};            ///< how many of `ends` are meant; more than one only for sparse samples
+  std::array<TurnEnd, 4> ends;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,70 @@
+#include "hammer_loads/pipeline/turn_follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kTrackStep = 1.25e-3;  // [s] between points of a turn at most: 15 of them in the MO-100's pulse
+constexpr double kSideOfBlow = 1e-7;    // [s] before and after the blow where its two sides are looked at
+
+}  // namespace
+
+void TurnFollower::restart() noexcept {
+  turn_.abandon();
+  last_blow_.reset();
+}
+
+TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const noexcept {
+  const CrankMotion motion = motionOf(crank);
+  const HullWrench added = frameWrench(*model_, motion.angle, motion.speed, hull_);
+  return {time, hullWrench(*model_, motion, hull_), linkMomentum(*model_, motion.angle, motion.speed), added.force_x,
+          added.force_z};
+}
+
+/// Points of the turn in (from, to] [s] after the step's start.
+void TurnFollower::recordTo(double from, double to) noexcept {
+  if (!turn_.recording() || !(to > from)) return;
+  const double origin = seconds(step_->start() - epoch_);
+  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kTrackStep)));
+  for (int i = 1; i <= count; ++i) {
+    const double time = i == count ? to : from + (to - from) * i / count;
+    turn_.add(instant(origin + time, step_->at(time)));
+  }
+}
+
+void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept {
+  hull_ = hull;
+  double from = 0.0;
+  for (const CrankStep::Passage& passage : *step_) {
+    if (!passage.forward) {
+      turn_.abandon();
+      ++backward_;
+    }
+    if (!passage.strikes) continue;
+    recordTo(from, std::max(from, passage.time - kSideOfBlow));
+    const TurnEnd end = endTurn(passage);
+    if (result.turn_ends < result.ends.size()) result.ends[result.turn_ends++] = end;
+    from = passage.time + kSideOfBlow;
+  }
+  recordTo(from, step_->length());
+}
+
+TurnEnd TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
+  TurnEnd end;
+  end.stamp = step_->start() + static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
+  end.turn = ++turns_;
+  end.blow = blowAtCrankSpeed(*model_, passage.speed);
+  const double time = seconds(step_->start() - epoch_) + passage.time;
+  end.pulse = turn_.end(instant(time, step_->besides(passage, Side::kBeforeBlow)));
+  if (end.pulse) peak_force_ = end.pulse->amplitude;
+  end.mean_press_force = last_blow_ ? end.blow.tool_impulse_z / seconds(end.stamp - *last_blow_)
+                                    : std::numeric_limits<double>::quiet_NaN();
+  last_blow_ = end.stamp;
+  turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
+  return end;
+}
+
+}  // namespace hammer_loads

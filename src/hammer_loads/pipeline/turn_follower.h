@@ -1,0 +1,44 @@
+/// Turns from blow to blow: their blows and their pulses.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/sample_result.h"
+#include "hammer_loads/pipeline/turn_recorder.h"
+
+namespace hammer_loads {
+
+class TurnFollower {
+ public:
+  /// Refers to both, which must outlive it.
+  TurnFollower(const HullModel& model, const CrankStep& step) : model_(&model), step_(&step) {}
+
+  /// Time begins with this stamp.
+  void begin(StampNs stamp) noexcept { epoch_ = stamp; }
+  /// What came before does not belong to the coming turn.
+  void restart() noexcept;
+  /// Follows the step up to the sample of `result`; turns that end in it are its `ends`. hull: motion over the step.
+  void follow(const HullMotion& hull, SampleResult& result) noexcept;
+
+  double peakForce() const noexcept { return peak_force_; }            ///< of the last whole turn [N], 0 before it
+  std::uint64_t blows() const noexcept { return turns_; }              ///< since the start
+  std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, since the start
+
+ private:
+  void recordTo(double from, double to) noexcept;
+  TurnEnd endTurn(const CrankStep::Passage& passage) noexcept;
+  TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
+
+  const HullModel* model_;
+  const CrankStep* step_;
+  TurnRecorder turn_;
+  HullMotion hull_;
+  StampNs epoch_{};                   ///< first sample since the last restart by time
+  std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole
+  std::uint64_t turns_{}, backward_{};
+  double peak_force_{};
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,78 @@
+#include "hammer_loads/pipeline/warnings.h"
+
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr std::uint64_t kBackward = 3;  // passages of the blow: fewer are a crank that falls back after its stop
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string count(std::uint64_t n) { return std::to_string(n); }
+
+void warnOfDegrees(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
+  const bool crank = pipeline.crank().looksLikeDegrees(), boom = pipeline.hull().pitch().looksLikeDegrees();
+  const std::uint64_t withheld = counts.refusedFor(Refusal::kDegrees);
+  if (withheld == 0 && !crank && !boom) return;
+  const char* what = boom ? "boom joints" : "crank";
+  warnings.push_back({"degrees",
+                      std::string(what) + ": angle or speed is in degrees, must be in radians; " + count(withheld) +
+                          " samples withheld",
+                      crank || boom});
+}
+
+void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
+  const std::uint64_t samples = counts.accepted + counts.refusedTotal();
+  if (counts.refusedFor(Refusal::kMissingJoint) == samples && samples > 0)
+    warnings.push_back({"crank joint",
+                        "crank joint " + pipeline.settings().crank_joint + ": in none of " + count(samples) +
+                            " messages, must be the joint's name (crank_joint)",
+                        true});
+  if (pipeline.crank().angleIsFrozen())
+    warnings.push_back({"frozen", "crank: the angle stands still while the speed goes on", true});
+  if (counts.backward_passes >= kBackward && counts.backward_passes > counts.blows)
+    warnings.push_back({"backward",
+                        "crank: turns backward, " + count(counts.backward_passes) + " passages of the blow backward, " +
+                            count(counts.blows) + " blows; the sign of the sensor must be the other one",
+                        true});
+}
+
+void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
+  if (counts.accepted == 0) return;
+  const HullState& hull = pipeline.hull();
+  const std::vector<std::string> unheard = hull.pitch().unheard();
+  if (!unheard.empty())
+    warnings.push_back(
+        {"pitch joints", "pitch joints never came: " + joined(unheard) + "; weight by hull_pitch_rad", true});
+  const bool imu = pipeline.settings().hull_motion == HullMotionSource::kImu;
+  if (imu && hull.imuCounts().accepted == 0)
+    warnings.push_back({"imu", "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead", true});
+}
+
+void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
+  const SampleResult& result = pipeline.result();
+  if (result.boom == nullptr || !result.boom->fault) return;
+  warnings.push_back({"boom joints",
+                      "boom joints: no loads for " + count(pipeline.boom()->faults()) +
+                          " samples: " + joined(pipeline.boom()->joints().complaints(result.stamp)),
+                      true});
+}
+
+}  // namespace
+
+std::vector<Warning> warningsOf(const Pipeline& pipeline) {
+  std::vector<Warning> warnings;
+  const SampleCounts counts = pipeline.counts();
+  warnOfDegrees(pipeline, counts, warnings);
+  warnOfCrank(pipeline, counts, warnings);
+  warnOfHull(pipeline, counts, warnings);
+  warnOfBoom(pipeline, warnings);
+  return warnings;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,20 @@
+/// What a user must know of the inputs: what is missing, what contradicts itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/pipeline/pipeline.h"
+
+namespace hammer_loads {
+
+struct Warning {
+  const char* key;   ///< the same for the same cause
+  std::string text;  ///< one line: what, how much, what to do
+  bool now{};        ///< still so; else it was so since the start
+};
+
+/// Most important first; empty when all is well. Not for the hot path.
+std::vector<Warning> warningsOf(const Pipeline& pipeline);
+
+}  // namespace hammer_loads

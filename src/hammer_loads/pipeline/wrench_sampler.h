@@ -1,0 +1,54 @@
+/// When the hull wrench is published and what it is then: at each sample or at a rate of its own, as it is at the
+/// instant or as its mean since the output before.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/sample_result.h"
+#include "hammer_loads/settings/pipeline_settings.h"
+
+namespace hammer_loads {
+
+/// After a restart the outputs begin with the first sample: that one is the zero of the fixed rate's grid and of the
+/// first mean's interval. Means times intervals add up to the wrench's impulse whatever the rate (blows' own impulses
+/// are in RockerBlow, not here). Refers to its arguments, which must outlive it.
+class WrenchSampler {
+ public:
+  WrenchSampler(const HullModel& model, const CrankStep& step, const CrankTracker& tracker,
+                const PipelineSettings& settings);
+
+  /// Outputs restart with the next sample.
+  void forget() noexcept { begun_ = false; }
+  /// Appends to the result's outputs those up to its sample, with which the step ended. No allocation once the
+  /// outputs have the room of mostOutputs().
+  void sample(SampleResult& result) noexcept;
+  /// Of one sample.
+  std::size_t mostOutputs() const noexcept;
+
+ private:
+  bool begin(const SampleResult& result) noexcept;
+  bool isDue(StampNs sample, StampNs& stamp) const noexcept;
+  WrenchOutput output(StampNs stamp, const SampleResult& result) noexcept;
+  void addUpTo(double time, const HullMotion& hull) noexcept;
+  void addDeviation(const HullMotion& hull, bool at_sample, WrenchOutput& output) noexcept;
+
+  const HullModel* model_;
+  const CrankStep* step_;
+  const CrankTracker* tracker_;
+  OutputKind kind_;
+  double rate_;         ///< [Hz]; 0: at each sample
+  double longest_gap_;  ///< between samples [s]
+  double near_blow_;    ///< [rad]
+  double torque_part_;  ///< PipelineSettings::torque_deviation_part
+  bool begun_{};
+  StampNs origin_{};       ///< of the grid
+  std::uint64_t index_{};  ///< of the next output on the grid
+  StampNs last_output_{};
+  double added_up_to_{};           ///< part of the step whose impulse is in impulse_ [s]
+  HullWrench impulse_;             ///< since the last output
+  HullWrench momentum_deviation_;  ///< at the last output
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,53 @@
+/// Where a table of outputs goes: to a node's topics and its log, or to a bag.
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include <string>
+#include <type_traits>
+
+#include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/output.h"
+
+namespace hammer_loads {
+
+constexpr std::uint32_t kTopicQueue = 10000;  ///< ten seconds at 1 kHz, in and out: a stalled machine loses nothing
+
+/// Private topics, published when subscribed, and logged whether or not they are. A latched output is only logged: the
+/// node itself publishes it. The log must outlive the outputs.
+template <typename Outputs>
+void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) {
+  outputs.forEach([&](auto& output) {
+    using Message = typename std::decay_t<decltype(output)>::Message;
+    if (output.delivery() == Delivery::kLatched) {
+      output.attach([&log, topic = private_node.resolveName(output.name())](
+                        const Message& message, const ros::Time& time) { log.writeLatched(topic, time, message); });
+      return;
+    }
+    const ros::Publisher publisher = private_node.advertise<Message>(output.name(), kTopicQueue);
+    const bool logged = output.delivery() == Delivery::kLogged;
+    output.attach(
+        [&log, publisher, logged, topic = publisher.getTopic()](const Message& message, const ros::Time& time) {
+          if (publisher.getNumSubscribers() > 0) publisher.publish(message);
+          if (logged) log.write(topic, time, message);
+        });
+  });
+}
+
+/// Topics below a prefix (without / at its end). on_request: outputs of that delivery as well.
+template <typename Outputs>
+void attachToBag(Outputs& outputs, rosbag::Bag& bag, const std::string& prefix, bool on_request) {
+  outputs.forEach([&](auto& output) {
+    using Message = typename std::decay_t<decltype(output)>::Message;
+    const std::string topic = prefix + "/" + output.name();
+    if (output.delivery() == Delivery::kOnRequest && !on_request) return;
+    const bool latched = output.delivery() == Delivery::kLatched;
+    output.attach([&bag, topic, latched](const Message& message, const ros::Time& time) {
+      latched ? writeLatched(bag, topic, time, message) : bag.write(topic, time, message);
+    });
+  });
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,77 @@
+#include "hammer_loads/ros/fill_boom.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "hammer_loads/ros/stamp.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kLongestLimit = 256;  // more than a cylinder's name has
+
+void copy(const JointVector& from, std::vector<double>& to) { std::copy(from.begin(), from.end(), to.begin()); }
+
+void copy(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
+  to.x = from.x(), to.y = from.y(), to.z = from.z();
+}
+
+}  // namespace
+
+void prepareJointLoads(const Boom& boom, JointLoads& message) {
+  const auto joints = static_cast<std::size_t>(boom.chain().joints());
+  message.header.frame_id = boom.parameters().chain.root;
+  message.joint_name = boom.chain().jointNames();
+  for (std::vector<double>* torque : {&message.hammer_torque_Nm, &message.weight_torque_Nm, &message.motion_torque_Nm,
+                                      &message.vibration_torque_Nm, &message.total_torque_Nm})
+    torque->resize(joints);
+  for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
+  message.cylinder_force_N.resize(boom.cylinders().size());
+  message.cylinder_pressure_Pa.resize(boom.cylinders().size());
+}
+
+void prepareVibration(const Boom& boom, BoomVibration& message) {
+  message.header.frame_id = boom.parameters().chain.tip;
+  message.natural_frequency_Hz.reserve(kMaxJoints);
+  message.hold_down_limit.reserve(kLongestLimit);
+}
+
+void fillJointLoads(const BoomState& state, JointLoads& message) {
+  message.header.stamp = timeOf(state.stamp);
+  copy(state.loads.hammer, message.hammer_torque_Nm);
+  copy(state.loads.weight, message.weight_torque_Nm);
+  copy(state.loads.motion, message.motion_torque_Nm);
+  copy(state.loads.vibration, message.vibration_torque_Nm);
+  copy(state.loads.total, message.total_torque_Nm);
+  for (std::size_t i = 0; i < message.cylinder_name.size(); ++i) {
+    message.cylinder_force_N[i] = state.loads.cylinder[i].force;
+    message.cylinder_pressure_Pa[i] = state.loads.cylinder[i].pressure;
+  }
+}
+
+void fillVibration(const BoomFollower& follower, BoomVibration& message) {
+  const BoomState& state = follower.state();
+  message.header.stamp = timeOf(state.stamp);
+  copy(state.tip.displacement.head<3>(), message.displacement_m);
+  copy(state.tip.displacement.tail<3>(), message.rotation_rad);
+  copy(state.tip.acceleration.head<3>(), message.acceleration_m_s2);
+  message.natural_frequency_Hz.assign(state.frequency.begin(), state.frequency.end());
+  message.reduced_mass_kg = state.reduced.mass;
+  message.reduced_stiffness_N_m = state.reduced.stiffness;
+  message.compliant = state.choice.compliant;
+  message.dead_point = state.dead_point;
+  message.rigid_error = state.choice.judged ? state.choice.rigid_error : kNaN;
+  message.rigid_tolerance = state.choice.rigid_tolerance;
+  message.pulse_length_s = state.choice.judged ? state.choice.pulse_length : kNaN;
+  message.hold_down_factor = state.hold_down ? state.hold_down->least : kNaN;
+  message.hold_down_limit = follower.firstToGive();
+}
+
+void fillWrench(StampNs stamp, const Wrench& wrench, geometry_msgs::WrenchStamped& message) {
+  message.header.stamp = timeOf(stamp);
+  copy(wrench.force, message.wrench.force);
+  copy(wrench.torque, message.wrench.torque);
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,103 @@
+#include "hammer_loads/ros/fill_hammer.h"
+
+#include "hammer_loads/ros/stamp.h"
+
+namespace hammer_loads {
+
+void prepareMechanism(const std::string& crank_joint, sensor_msgs::JointState& message) {
+  message.name = {crank_joint, "hammer_rod_joint", "hammer_rocker_joint"};
+  message.position.resize(message.name.size());
+  message.velocity.resize(message.name.size());
+}
+
+void prepareHullLoads(Level level, HullLoads& message) {
+  for (const auto& [name, named] : kLevelNames)
+    if (named == level) message.level = name;
+}
+
+void fillWrench(StampNs stamp, const HullWrench& wrench, geometry_msgs::WrenchStamped& message) {
+  message.header.stamp = timeOf(stamp);
+  message.wrench.force.x = wrench.force_x;
+  message.wrench.force.z = wrench.force_z;
+  message.wrench.torque.y = wrench.torque_y;
+}
+
+void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullLoads& message) {
+  const HullDeviation& deviation = output.deviation;
+  message.header.stamp = timeOf(output.stamp);
+  message.force_x_N = output.wrench.force_x;
+  message.force_z_N = output.wrench.force_z;
+  message.torque_y_Nm = output.wrench.torque_y;
+  message.force_x_deviation_N = deviation.wrench.force_x;
+  message.force_z_deviation_N = deviation.wrench.force_z;
+  message.torque_y_deviation_Nm = deviation.wrench.torque_y;
+  message.crank_angle_rad = crankAngle(output.crank.position.angle);
+  message.crank_speed_rad_s = output.crank.speed;
+  message.crank_acceleration_rad_s2 = output.crank.acceleration;
+  message.crank_angle_deviation_rad = deviation.angle;
+  message.crank_speed_deviation_rad_s = deviation.speed;
+  message.crank_acceleration_deviation_rad_s2 = deviation.acceleration;
+  message.interval_s = output.interval;
+  message.flags = 0;
+  if (output.interval > 0.0) message.flags |= HullLoads::FLAG_MEAN;
+  if (!result.pitch_known) message.flags |= HullLoads::FLAG_PITCH_UNKNOWN;
+  if (result.hull.moves) message.flags |= HullLoads::FLAG_HULL_MOTION;
+  if (output.near_blow) message.flags |= HullLoads::FLAG_NEAR_BLOW;
+}
+
+void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message) {
+  const LinkState& links = result.links;
+  message.header.stamp = timeOf(result.stamp);
+  message.position = {links.crank_angle, links.rod_angle, links.rocker_angle};
+  message.velocity = {links.crank_speed, links.rod_speed, links.rocker_speed};
+}
+
+void fillPinForces(const SampleResult& result, PinForces& message) {
+  const PinReactions& pins = result.pins;
+  message.header.stamp = timeOf(result.stamp);
+  message.crank_angle_rad = result.links.crank_angle;
+  message.crank_speed_rad_s = result.crank.speed;
+  message.crank_acceleration_rad_s2 = result.crank.acceleration;
+  message.force_a_x_N = pins.hull_on_crank.x;
+  message.force_a_z_N = pins.hull_on_crank.z;
+  message.force_b_x_N = pins.crank_on_rod.x;
+  message.force_b_z_N = pins.crank_on_rod.z;
+  message.force_c_x_N = pins.rod_on_rocker.x;
+  message.force_c_z_N = pins.rod_on_rocker.z;
+  message.force_d_x_N = pins.hull_on_rocker.x;
+  message.force_d_z_N = pins.hull_on_rocker.z;
+  message.drive_torque_Nm = pins.drive_torque;
+  message.transmission_angle_rad = result.links.transmission_angle;
+  message.near_blow = pins.near_blow;
+}
+
+void fillBlow(const TurnEnd& end, Blow& message) {
+  const RockerBlow& blow = end.blow;
+  message.header.stamp = timeOf(end.stamp);
+  message.turn = end.turn;
+  message.rocker_speed_before_rad_s = blow.rocker_speed_before;
+  message.rocker_speed_after_rad_s = blow.rocker_speed_after;
+  message.restitution = blow.restitution;
+  message.energy_J = blow.energy;
+  message.tool_impulse_x_Ns = blow.tool_impulse_x;
+  message.tool_impulse_z_Ns = blow.tool_impulse_z;
+  message.support_impulse_x_Ns = blow.support_impulse_x;
+  message.support_impulse_z_Ns = blow.support_impulse_z;
+  message.mean_press_force_N = end.mean_press_force;
+}
+
+void fillPulse(const TurnEnd& end, Pulse& message) {
+  const HalfSinePulse& pulse = *end.pulse;
+  message.header.stamp = timeOf(end.stamp);
+  message.turn = end.turn;
+  message.period_s = pulse.period;
+  message.amplitude_N = pulse.amplitude;
+  message.frequency_rad_s = pulse.frequency;
+  message.start_s = pulse.start;
+  message.impulse_Ns = pulse.impulse;
+  message.turn_impulse_x_Ns = pulse.turn_impulse_x;
+  message.turn_impulse_z_Ns = pulse.turn_impulse_z;
+  message.half_sine_rms_error = pulse.half_sine_rms_error;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,139 @@
+#include "hammer_loads/ros/hammer_bridge.h"
+
+#include "hammer_loads/ros/fill_boom.h"
+#include "hammer_loads/ros/fill_hammer.h"
+#include "hammer_loads/ros/stamp.h"
+#include "hammer_loads/ros/version.h"
+
+namespace hammer_loads {
+namespace {
+
+/// Tip of the boom's chain.
+std::string hullFrame(const Settings& settings) {
+  return settings.boom ? settings.boom->parameters().chain.tip : "hammer_hull";
+}
+
+}  // namespace
+
+HammerBridge::HammerBridge(const Settings& settings) : settings_(settings) {
+  prepareOutputs();
+  std::vector<std::string> frames;
+  for (const std::size_t output : frame_outputs_) frames.push_back(settings.pipeline.boom_wrench_links[output]);
+  if (!frames.empty()) {
+    frame_wrenches_.emplace(
+        frames, hullFrame(settings), settings.pipeline.tf_max_wait,
+        [this](std::size_t frame, const geometry_msgs::WrenchStamped& wrench, const ros::Time& time) {
+          auto& output = outputs_.boom_wrench[frame_outputs_[frame]];
+          output.message = wrench;
+          output.send(time);
+        });
+  }
+  reset();
+}
+
+/// What stays the same in every message.
+void HammerBridge::prepareOutputs() {
+  const std::string frame = hullFrame(settings_);
+  for (std_msgs::Header* header :
+       {&outputs_.hull_wrench.message.header, &outputs_.hull_loads.message.header, &outputs_.mechanism.message.header,
+        &outputs_.pin_forces.message.header, &outputs_.blow.message.header, &outputs_.pulse.message.header})
+    header->frame_id = frame;
+  outputs_.run_info.message.version = packageVersion();
+  outputs_.run_info.message.revision = packageRevision();
+  prepareMechanism(settings_.pipeline.crank_joint, outputs_.mechanism.message);
+  if (settings_.boom) {
+    prepareJointLoads(*settings_.boom, outputs_.joint_loads.message);
+    prepareVibration(*settings_.boom, outputs_.boom_vibration.message);
+  }
+  for (const std::string& link : settings_.pipeline.boom_wrench_links) {
+    const std::size_t index = outputs_.boom_wrench.size();
+    const auto of_chain = settings_.boom ? settings_.boom->chain().linkIndex(link) : std::nullopt;
+    if (of_chain) chain_links_.push_back({*of_chain, index});
+    if (!of_chain) frame_outputs_.push_back(index);
+    outputs_.boom_wrench.emplace_back("boom_wrench/" + link).message.header.frame_id = link;
+  }
+}
+
+void HammerBridge::begin(const Settings& settings) {
+  settings_ = settings;
+  const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
+  pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
+  if (frame_wrenches_) frame_wrenches_->reset();
+  RunInfo& run_info = outputs_.run_info.message;
+  run_info.parameters_yaml = settings_.yaml;
+  run_info.robot_description = settings_.robot_description;
+  run_info.notes = settings_.notes;
+  prepareHullLoads(settings_.pipeline.level, outputs_.hull_loads.message);
+  run_begun_ = false;
+}
+
+/// Stamped with the first input: a second run over the same input says the same.
+void HammerBridge::beginRun(const ros::Time& record_time) {
+  if (run_begun_) return;
+  run_begun_ = true;
+  outputs_.run_info.message.header.stamp = record_time;
+  outputs_.run_info.send(record_time);
+}
+
+void HammerBridge::hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time) {
+  beginRun(record_time);
+  const geometry_msgs::Vector3 &a = message.linear_acceleration, &w = message.angular_velocity;
+  pipeline_->hullImu(stampOf(message.header.stamp), {{a.x, a.y, a.z}, {w.x, w.y, w.z}});
+}
+
+void HammerBridge::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
+  if (!frame_wrenches_) return;
+  if (!is_static) beginRun(record_time);
+  frame_wrenches_->transforms(message, is_static, record_time);
+}
+
+void HammerBridge::jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+  beginRun(record_time);
+  pipeline_->boomJoints(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+}
+
+void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+  beginRun(record_time);
+  const SampleResult& result =
+      pipeline_->crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+  for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
+  if (result.refusal) return;
+  for (const WrenchOutput& output : result.outputs) send(output, record_time);
+  if (result.boom != nullptr && !result.boom->fault) sendBoom(record_time);
+  fillMechanism(result, outputs_.mechanism.message);
+  outputs_.mechanism.send(record_time);
+  fillPinForces(result, outputs_.pin_forces.message);
+  outputs_.pin_forces.send(record_time);
+}
+
+void HammerBridge::send(const WrenchOutput& output, const ros::Time& record_time) {
+  fillWrench(output.stamp, output.wrench, outputs_.hull_wrench.message);
+  outputs_.hull_wrench.send(record_time);
+  fillHullLoads(pipeline_->result(), output, outputs_.hull_loads.message);
+  outputs_.hull_loads.send(record_time);
+  if (frame_wrenches_) frame_wrenches_->wrench(outputs_.hull_wrench.message, record_time);
+  if (!pipeline_->boom() || !pipeline_->boom()->known()) return;
+  for (const ChainLink& link : chain_links_) {
+    auto& wrench = outputs_.boom_wrench[link.output];
+    fillWrench(output.stamp, pipeline_->boom()->wrenchAtLink(link.link, output.wrench), wrench.message);
+    wrench.send(record_time);
+  }
+}
+
+void HammerBridge::sendBoom(const ros::Time& record_time) {
+  const BoomFollower& boom = *pipeline_->boom();
+  fillJointLoads(boom.state(), outputs_.joint_loads.message);
+  outputs_.joint_loads.send(record_time);
+  fillVibration(boom, outputs_.boom_vibration.message);
+  outputs_.boom_vibration.send(record_time);
+}
+
+void HammerBridge::send(const TurnEnd& end, const ros::Time& record_time) {
+  fillBlow(end, outputs_.blow.message);
+  outputs_.blow.send(record_time);
+  if (!end.pulse) return;
+  fillPulse(end, outputs_.pulse.message);
+  outputs_.pulse.send(record_time);
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,66 @@
+/// From input messages to output messages: the same for the live node, the nodelet and process_bag.
+#pragma once
+
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/ros/frame_wrench.h"
+#include "hammer_loads/ros/hammer_outputs.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+
+/// Owns the pipeline and the outputs. What it sends depends on its inputs and settings alone. record_time: of an
+/// input, passed on to the outputs that it causes.
+class HammerBridge {
+ public:
+  explicit HammerBridge(const Settings& settings);
+
+  void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
+  void hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time);
+  /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
+  void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
+  bool needsImu() const { return settings_.pipeline.hull_motion == HullMotionSource::kImu; }
+  /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
+  bool needsTransforms() const { return frame_wrenches_.has_value(); }
+  /// A new run begins with the next input, in the state of a bridge just made; counts go on. For a time that jumped and
+  /// for a log that is to be reproduced from its own inputs. Static transforms stay.
+  void reset() { begin(Settings(settings_)); }
+  /// The same with other settings.
+  void begin(const Settings& settings);
+
+  HammerOutputs& outputs() { return outputs_; }
+  const Settings& settings() const { return settings_; }
+  const Pipeline& pipeline() const { return *pipeline_; }
+  const std::optional<FrameWrenches>& frameWrenches() const { return frame_wrenches_; }
+
+ private:
+  /// A boom_wrench link that belongs to the boom's chain.
+  struct ChainLink {
+    int link;            ///< in the chain
+    std::size_t output;  ///< in outputs_.boom_wrench
+  };
+
+  void prepareOutputs();
+  void beginRun(const ros::Time& record_time);
+  void send(const WrenchOutput& output, const ros::Time& record_time);
+  void sendBoom(const ros::Time& record_time);
+  void send(const TurnEnd& end, const ros::Time& record_time);
+
+  Settings settings_;
+  std::optional<Pipeline> pipeline_;  ///< made anew with each run, in its place
+  HammerOutputs outputs_;
+  std::vector<ChainLink> chain_links_;
+  std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
+  std::optional<FrameWrenches> frame_wrenches_;
+  bool run_begun_{};
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,41 @@
+/// Every topic that the hammer's loads are published on.
+#pragma once
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <hammer_loads/Blow.h>
+#include <hammer_loads/BoomVibration.h>
+#include <hammer_loads/HullLoads.h>
+#include <hammer_loads/JointLoads.h>
+#include <hammer_loads/PinForces.h>
+#include <hammer_loads/Pulse.h>
+#include <hammer_loads/RunInfo.h>
+#include <sensor_msgs/JointState.h>
+
+#include <deque>
+#include <string>
+
+#include "hammer_loads/ros/output.h"
+
+namespace hammer_loads {
+
+struct HammerOutputs {
+  Output<RunInfo> run_info{"run_info", Delivery::kLatched};
+  Output<geometry_msgs::WrenchStamped> hull_wrench{"hull_wrench"};
+  Output<HullLoads> hull_loads{"hull_loads"};
+  std::deque<Output<geometry_msgs::WrenchStamped>> boom_wrench;  ///< one per boom_wrench link, in their order
+  Output<JointLoads> joint_loads{"joint_loads"};
+  Output<BoomVibration> boom_vibration{"boom_vibration"};
+  Output<sensor_msgs::JointState> mechanism{"mechanism"};
+  Output<PinForces> pin_forces{"pin_forces", Delivery::kOnRequest};
+  Output<Blow> blow{"blow"};
+  Output<Pulse> pulse{"pulse"};
+
+  template <typename Visit>
+  void forEach(const Visit& visit) {
+    visit(run_info), visit(hull_wrench), visit(hull_loads);
+    for (auto& wrench : boom_wrench) visit(wrench);
+    visit(joint_loads), visit(boom_vibration), visit(mechanism), visit(pin_forces), visit(blow), visit(pulse);
+  }
+};
+
+}  // namespace hammer_loads

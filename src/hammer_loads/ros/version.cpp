@@ -1,0 +1,8 @@
+#include "hammer_loads/ros/version.h"
+
+namespace hammer_loads {
+
+const char* packageVersion() { return HAMMER_LOADS_VERSION; }
+const char* packageRevision() { return HAMMER_LOADS_REVISION; }
+
+}  // namespace hammer_loads

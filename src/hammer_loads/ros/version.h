@@ -1,0 +1,9 @@
+/// What was built.
+#pragma once
+
+namespace hammer_loads {
+
+const char* packageVersion();   ///< e.g. 0.1.0
+const char* packageRevision();  ///< of the source, as git describes it
+
+}  // namespace hammer_loads
