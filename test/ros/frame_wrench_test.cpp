@@ -63,7 +63,7 @@ TEST_F(Frames, TheLeverArmCounts) {
   EXPECT_EQ(told_[0].record_time, 1.1);
   EXPECT_EQ(told_[0].wrench.wrench.force.z, 20e3);
   EXPECT_EQ(told_[0].wrench.wrench.torque.y, 7.0 - 50e3);
-  EXPECT_EQ(frames_.counts(0).told, 1U);
+  EXPECT_EQ(frames_.counts(0).published, 1U);
   EXPECT_EQ(frames_.complaint(0), "");
 }
 
@@ -116,7 +116,7 @@ TEST_F(Frames, WithoutTransformNothingIsToldAndTheFrameIsNamed) {
   EXPECT_EQ(frames_.complaint(0), "");
   // Good again.
   tf({transform(kHull, "other", 0.0, 1.0, 0.0)}, 1.7, true);
-  EXPECT_EQ(frames_.counts(1).told, 2U);
+  EXPECT_EQ(frames_.counts(1).published, 2U);
   EXPECT_EQ(frames_.complaint(1), "");
 }
 

@@ -209,6 +209,10 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   load_ = model_(now_.position.angle);
 }
 
+bool CrankFilter::isPlausible() const noexcept {
+  return std::abs(now_.torque) <= kMostTorque * settings_.initial_torque_deviation;
+}
+
 /// Faster or further than any crank gets within the last step.
 bool CrankFilter::hasRunAway(const ShaftState& state) const noexcept {
   const double most_speed = kSoundSpeeds * settings_.max_speed;

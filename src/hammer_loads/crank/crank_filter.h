@@ -47,6 +47,7 @@ class CrankFilter final : public CrankTracker {
     return motionCovarianceOf(now_, covariance_, torque_part);
   }
   bool hasSpeed() const noexcept override { return has_speed_; }
+  bool isPlausible() const noexcept override;
 
   const ShaftState& state() const noexcept { return now_; }
   /// Covariance of (angle, speed, torque, logarithm of drive inertia) at the last accepted sample.

@@ -45,6 +45,8 @@ class CrankTracker {
   virtual CrankEstimate between(double dt) const noexcept = 0;
   /// False while the speed is still unknown (first sample without one).
   virtual bool hasSpeed() const noexcept = 0;
+  /// False where no drive gives what the estimate needs: degrees instead of radians, for instance.
+  virtual bool isPlausible() const noexcept { return true; }
   /// Covariance of (angle [rad], speed [rad/s], acceleration [rad/s2]) at the same instant as between(dt); zero where
   /// none is estimated. torque_part: how much of the torque's deviation counts, see
   /// PipelineSettings::torque_deviation_part.
