@@ -92,10 +92,12 @@ std::unique_ptr<GrappleNode> makeGrappleNode(const ros::NodeHandle& node, const 
   const Checked<GrappleSettings> settings = loadGrappleSettings(configDirectory(), given);
   problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
   if (!problems.empty()) return nullptr;
-  auto log = std::make_unique<BagLog>(settings.value->log);
+  auto log = std::make_unique<BagLog>(forNode(settings.value->log, private_node.getNamespace()));
   if (settings.value->log.enabled) {
-    problems = log->start();
+    problems = log->settingProblems();
     if (!problems.empty()) return nullptr;
+    for (const std::string& bag : log->unfinishedBags()) ROS_WARN("%s", BagLog::recoveryHint(bag).c_str());
+    for (const std::string& reason : log->start()) ROS_ERROR("%s; the node runs without a log", reason.c_str());
   }
   return std::make_unique<GrappleNode>(node, private_node, *settings.value, std::move(log));
 }

@@ -200,7 +200,7 @@ std::unique_ptr<HammerLoadsNode> makeNode(const ros::NodeHandle& node, const ros
   const Checked<Settings> settings = loadPrivateParameters(private_node);
   problems = settings.problems;
   if (!settings.value) return nullptr;
-  auto log = std::make_unique<BagLog>(settings.value->log);
+  auto log = std::make_unique<BagLog>(forNode(settings.value->log, private_node.getNamespace()));
   if (settings.value->log.enabled) {
     problems = log->start();
     if (!problems.empty()) return nullptr;

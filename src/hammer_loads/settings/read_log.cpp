@@ -23,6 +23,7 @@ LogSettings readLogSettings(ParameterReader& reader) {
     reader.addProblem("log_prefix: " + quotedText(s.prefix) + ", must be a file name's beginning, without /");
   s.split_size = bytes(reader, "log_split_mb", 1);
   s.total_size = bytes(reader, "log_total_mb", 0);
+  s.prune_earlier_runs = reader.boolean("log_prune_earlier_runs");
   s.min_free_space = bytes(reader, "log_min_free_mb", 0);
   s.queue_size = bytes(reader, "log_queue_mb", 1);
   return s;
