@@ -46,6 +46,7 @@ TEST(Load, ShippedFilesAreValid) {
   EXPECT_FALSE(log.directory.empty());
   EXPECT_EQ(log.split_size, 512000000U);
   EXPECT_FALSE(log.prune_earlier_runs);
+  EXPECT_EQ(filePrefix(forNode(log, "/left/hammer_loads")), "left_hammer_loads");
 }
 
 TEST(Load, ShippedFilesOfOneKindEachLoadOverThemselves) {
