@@ -12,6 +12,7 @@
 #include <random>
 
 #include "hammer_loads/log/bag_log.h"
+#include "hammer_loads/log/log_gaps.h"
 #include "log/log_test_support.h"
 
 namespace hammer_loads::test {
@@ -81,7 +82,9 @@ TEST_F(LogTest, StandingDiskBlocksNobodyAndDropsAreCounted) {
     dropped += 2;
     EXPECT_EQ(log.health().messages_dropped, dropped);
   }
-  const auto entries = readAll();
+  auto entries = readAll();
+  const auto is_gap = [](const Entry& entry) { return isGapTopic(entry.topic); };
+  entries.erase(std::remove_if(entries.begin(), entries.end(), is_gap), entries.end());
   EXPECT_EQ(entries.size(), 3003 - dropped + 2);
   const auto a = onTopic(entries, "/a");
   for (const Entry& entry : a) {
@@ -123,7 +126,8 @@ TEST_F(LogTest, StopsCleanlyWhenTheDiskIsNearlyFullAndStartsAgain) {
   EXPECT_FALSE(log.split());
   ASSERT_EQ(log.start().size(), 1u);
   EXPECT_EQ(files("").size(), 1u);
-  EXPECT_EQ(log.health().state, LogState::kDiskFull) << "a refused start changes nothing";
+  EXPECT_EQ(log.health().state, LogState::kDiskFull);
+  EXPECT_TRUE(log.settingProblems().empty()) << "no reason to end the node";
   free = 1'000'000;
   ASSERT_TRUE(log.start().empty());
   log.write("/a", at(101), wrench(101));
@@ -170,6 +174,26 @@ class SmallDiskTest : public LogTest {
 
   bool is_mounted_{};
 };
+
+/// With log_min_free_mb: 0 there is no other limit than the disk's end.
+TEST_F(SmallDiskTest, DoesNotStartOnAFullDisk) {
+  std::ofstream(path("other")) << std::string(26'000'000, 'x');
+  ASSERT_LT(freeSpace(directory_), 1'000'000u);
+  settings_.min_free_space = 0;
+  BagLog log(settings_);
+  EXPECT_TRUE(log.settingProblems().empty()) << "no reason to end the node";
+  const auto problems = log.start();
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].find("must have at least 4 MB free"), std::string::npos) << problems[0];
+  EXPECT_FALSE(log.isRecording());
+  EXPECT_EQ(log.health().state, LogState::kDiskFull);
+  EXPECT_EQ(log.health().reason, problems[0]);
+  EXPECT_EQ(files("").size(), 1u) << "no empty bag is left";
+  std::filesystem::remove(path("other"));
+  EXPECT_TRUE(log.start().empty());
+  EXPECT_EQ(log.health().state, LogState::kRecording);
+  EXPECT_EQ(log.health().reason, "");
+}
 
 TEST_F(SmallDiskTest, StopsBeforeItIsFull) {
   settings_.min_free_space = 6'000'000;
@@ -247,7 +271,27 @@ TEST_F(LogTest, OutlivesWriteErrors) {
   EXPECT_EQ(readAll().size(), 1u);
 }
 
-TEST_F(LogTest, TellsWhenItsFileIsDeleted) {
+TEST_F(LogTest, SaysThatItsDirectoryMayNotBeWritten) {
+  settings_.directory = "/proc";  // not even by root
+  EXPECT_NE(BagLog(settings_).start().at(0).find("log_directory: '/proc', must be writable"), std::string::npos);
+  settings_.directory = path("locked");
+  std::filesystem::create_directory(settings_.directory);
+  std::filesystem::permissions(directory_, std::filesystem::perms(0755));
+  std::filesystem::permissions(settings_.directory, std::filesystem::perms(0555));
+  const int status = inChild([this] {
+    constexpr uid_t kNobody = 65534;
+    ASSERT_TRUE(getuid() != 0 || setuid(kNobody) == 0);
+    BagLog log(settings_);
+    const auto problems = log.settingProblems();
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(problems[0].find("must be writable: Permission denied"), std::string::npos) << problems[0];
+    EXPECT_EQ(log.start(), problems);
+    EXPECT_EQ(log.health().state, LogState::kOff);
+  });
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(LogTest, ReportsThatItsFileWasDeleted) {
   BagLog log(settings_);
   ASSERT_TRUE(log.start().empty());
   log.write("/a", at(0), wrench(0));
@@ -255,6 +299,93 @@ TEST_F(LogTest, TellsWhenItsFileIsDeleted) {
   std::filesystem::remove(log.health().file);
   ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kFailed; }, std::chrono::seconds(3)));
   EXPECT_NE(log.health().reason.find("was deleted"), std::string::npos) << log.health().reason;
+}
+
+/// Records into `logs`, changes something there, waits until the log stops by itself.
+class MovedLogTest : public LogTest {
+ protected:
+  LogHealth recordWhile(const std::function<void(const std::string& file)>& change) {
+    settings_.directory = path("logs");
+    std::filesystem::create_directory(path("logs"));
+    BagLog log(settings_);
+    EXPECT_TRUE(log.start().empty());
+    for (std::size_t i = 0; i < 100; ++i) log.write("/a", at(i), wrench(i));
+    EXPECT_TRUE(waitFor([&] { return log.health().messages_written == 100; }));
+    change(log.health().file);
+    EXPECT_TRUE(waitFor([&] { return log.health().state == LogState::kFailed; }, std::chrono::seconds(3)));
+    EXPECT_FALSE(log.isRecording());
+    return log.health();
+  }
+};
+
+TEST_F(MovedLogTest, ReportsThatItsDirectoryWasRenamedAndLeavesAWholeBagThere) {
+  const LogHealth health = recordWhile([this](const std::string&) {
+    std::filesystem::rename(path("logs"), path("elsewhere"));
+    std::filesystem::create_directory(path("logs"));  // another one under the old name
+  });
+  EXPECT_NE(health.reason.find("moved"), std::string::npos) << health.reason;
+  EXPECT_EQ(std::filesystem::path(health.file).parent_path(), path("elsewhere"));
+  EXPECT_EQ(readBag(health.file).size(), 100u);
+  EXPECT_TRUE(std::filesystem::is_empty(path("logs")));
+}
+
+TEST_F(MovedLogTest, ReportsThatItsDirectoryWasRemoved) {
+  const LogHealth health = recordWhile([this](const std::string&) { std::filesystem::remove_all(path("logs")); });
+  EXPECT_NE(health.reason.find("was deleted"), std::string::npos) << health.reason;
+}
+
+TEST_F(MovedLogTest, ReportsThatItsFileWasReplacedAndLeavesTheOtherAlone) {
+  std::string own;
+  const LogHealth health = recordWhile([&](const std::string& file) {
+    own = file;
+    std::filesystem::rename(file, path("aside"));
+    writeFile(file, "precious");
+  });
+  EXPECT_NE(health.reason.find("replaced"), std::string::npos) << health.reason;
+  EXPECT_EQ(readFile(own), "precious");
+  EXPECT_EQ(readBag(path("aside")).size(), 100u) << "closed in order, only not renamed";
+}
+
+/// In a directory that others may write to, the name may lead elsewhere by the time rosbag opens the file.
+TEST_F(LogTest, WritesToTheFileThatItTookWhateverItsNameLeadsTo) {
+  writeFile(path("precious"), "precious");
+  unsigned number = 0;
+  auto name = LogName::take(directory_, "test", number);
+  ASSERT_TRUE(name.value);
+  const std::string active = name.value->active();
+  std::filesystem::rename(active, path("aside"));
+  std::filesystem::create_symlink(path("precious"), active);
+  LogFile file(std::move(*name.value), 768 * 1024);
+  ASSERT_FALSE(file.open());
+  LogTopic topic(0, "/a", {"std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n"}, false, "");
+  std::vector<std::uint8_t> bytes(1000);
+  ASSERT_FALSE(file.write(topic, at(0), bytes.data(), 1000, LogFile::Clock::now()));
+  EXPECT_FALSE(file.isInPlace());
+  const auto fault = file.close();
+  ASSERT_TRUE(fault);
+  EXPECT_NE(fault->reason.find("replaced"), std::string::npos) << fault->reason;
+  EXPECT_EQ(readFile(path("precious")), "precious");
+  EXPECT_TRUE(std::filesystem::is_symlink(active)) << "not ours to remove or rename";
+  EXPECT_EQ(readBag(path("aside")).size(), 1u);
+}
+
+TEST_F(LogTest, StopsAlsoWhileTooManyOrdersWait) {
+  Gate gate;
+  LogDisk disk;
+  disk.before_write = [&gate] { gate.pass(); };
+  BagLog log(settings_, disk);
+  ASSERT_TRUE(log.start().empty());
+  gate.close();
+  log.write("/a", at(0), wrench(0));  // the writer waits with this one
+  std_msgs::String text;
+  for (std::size_t i = 0; i < 2000; ++i) log.writeLatched("/latched", at(1), text);
+  EXPECT_FALSE(log.split()) << "no order is taken any more";
+  log.stop();
+  EXPECT_FALSE(log.isRecording());
+  log.write("/a", at(2), wrench(2));
+  gate.open();
+  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+  EXPECT_EQ(onTopic(readAll(), "/a").size(), 1u);
 }
 
 TEST_F(LogTest, TakesAnyRecordTime) {

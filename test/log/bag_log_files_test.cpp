@@ -50,14 +50,12 @@ TEST_F(LogTest, SaysBeforehandWhyItCannotStart) {
       {[&](LogSettings& s) { s.directory = path("file/below"); }, "file/below', must exist: Not a directory"},
       {[&](LogSettings& s) { s.directory = path("file"); }, "file', must be a directory"},
       {[&](LogSettings& s) { s.directory = ""; }, "log_directory: '', must exist"},
-      {[&](LogSettings& s) { s.directory = "/sys"; }, "log_directory: '/sys', must be writable"},
       {[&](LogSettings& s) { s.prefix = "../up"; }, "log_prefix: '../up', must be a file name's beginning"},
       {[&](LogSettings& s) { s.prefix = ""; }, "log_prefix: ''"},
       {[&](LogSettings& s) { s.prefix = "a\nb"; }, "log_prefix"},
       {[&](LogSettings& s) { s.split_size = 0; }, "log_split_mb: 0 MB, must be >= 0.064 MB"},
       {[&](LogSettings& s) { s.total_size = s.split_size; }, "log_total_mb: 100 MB, must be 0 (no limit) or >= 2 x"},
       {[&](LogSettings& s) { s.queue_size = 5'000'000'000; }, "log_queue_mb: 5000 MB, must be <= 4000 MB"},
-      {[&](LogSettings& s) { s.min_free_space = 1'000'000'000'000'000'000; }, "log_min_free_mb: 1e+12 MB, must be <="},
   };
   for (const auto& [change, line] : cases) {
     LogSettings changed = settings_;
@@ -65,6 +63,7 @@ TEST_F(LogTest, SaysBeforehandWhyItCannotStart) {
     change(changed);
     BagLog log(changed);
     const auto problems = log.start();
+    EXPECT_EQ(problems, log.settingProblems()) << line;
     ASSERT_EQ(problems.size(), 1u) << line;
     EXPECT_NE(problems[0].find(line), std::string::npos) << problems[0];
     EXPECT_EQ(log.health().state, LogState::kOff);
@@ -84,6 +83,23 @@ TEST_F(LogTest, MakesItsDirectoryBelowHomeOnly) {
   }
   setenv("HOME", home.c_str(), 1);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path(".ros/hammer_loads")), {}), 1);
+}
+
+TEST_F(LogTest, MakesNoDirectoryOutsideHome) {
+  const std::string home = std::getenv("HOME") != nullptr ? std::getenv("HOME") : "";
+  std::filesystem::create_directories(path("home"));
+  std::filesystem::create_directories(path("disk"));
+  std::filesystem::create_directory_symlink(path("disk"), path("home/link"));
+  setenv("HOME", path("home").c_str(), 1);
+  for (const char* given : {"~/../x", "~/a/../../x", "~/link/x", "~/../home/../x"}) {
+    EXPECT_FALSE(findLogDirectory(given).value) << given;
+  }
+  for (const char* given : {"~/a/../b", "~/../home/c", "~/../disk"})
+    EXPECT_TRUE(findLogDirectory(given).value) << given;
+  setenv("HOME", home.c_str(), 1);
+  EXPECT_FALSE(std::filesystem::exists(path("x")));
+  EXPECT_TRUE(std::filesystem::is_empty(path("disk")));
+  EXPECT_TRUE(std::filesystem::exists(path("home/b")));
 }
 
 TEST_F(LogTest, DeletesOldestFilesOfItsOwnOnly) {

@@ -45,6 +45,8 @@ TEST(Load, ShippedFilesAreValid) {
   EXPECT_TRUE(log.enabled);
   EXPECT_FALSE(log.directory.empty());
   EXPECT_EQ(log.split_size, 512000000U);
+  EXPECT_FALSE(log.prune_earlier_runs);
+  EXPECT_EQ(filePrefix(forNode(log, "/left/hammer_loads")), "left_hammer_loads");
 }
 
 TEST(Load, ShippedFilesOfOneKindEachLoadOverThemselves) {
@@ -187,6 +189,8 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
        "boom_wrench_links: /arm_link, must be names of a letter first, then letters, digits, _ and /"},
       {"log_enabled: true", "log_enabled: \"true\"", "log_enabled: \"true\", must be true or false"},
       {"log_prefix: p", "log_prefix: p/q", "log_prefix: \"p/q\", must be a file name's beginning, without /"},
+      {"log_prune_earlier_runs: false", "log_prune_earlier_runs: 1",
+       "log_prune_earlier_runs: 1, must be true or false"},
       {"log_total_mb: 0", "log_total_mb: -1", "log_total_mb: -1 MB, must be an integer in [0, 1000000000]"},
       {"log_queue_mb: 1", "log_queue_mb: 1.5", "log_queue_mb: 1.5 MB, must be an integer in [1, 1000000000]"},
       {"stale_after_s: 1", "stale_after: 1", "stale_after: unknown key, perhaps stale_after_s was meant"}};

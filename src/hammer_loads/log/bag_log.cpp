@@ -1,10 +1,16 @@
 #include "hammer_loads/log/bag_log.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <utility>
 
+#include "hammer_loads/log/log_gaps.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -25,14 +31,15 @@ bool isFileNamePart(const std::string& text) {
 
 BagLog::BagLog(const LogSettings& settings, const LogDisk& disk)
     : settings_(settings),
+      gap_name_(settings.node + kGapTopic),
       disk_(disk),
       queue_(settings.queue_size <= kMostQueue ? settings.queue_size : 0),
       writer_(settings, disk, queue_) {}
 
 std::vector<std::string> BagLog::settingProblems() const {
   std::vector<std::string> problems;
-  if (!isFileNamePart(settings_.prefix)) {
-    problems.push_back("log_prefix: '" + settings_.prefix.substr(0, 250) +
+  if (const std::string prefix = filePrefix(settings_); !isFileNamePart(prefix)) {
+    problems.push_back("log_prefix: '" + prefix.substr(0, 250) +
                        "', must be a file name's beginning: 1 to 200 characters, no /, not . first");
   }
   if (settings_.split_size < kLeastSplit) {
@@ -45,38 +52,58 @@ std::vector<std::string> BagLog::settingProblems() const {
   if (settings_.queue_size > kMostQueue) {
     problems.push_back(format("log_queue_mb: %.9g MB, must be <= %.9g MB", mb(settings_.queue_size), mb(kMostQueue)));
   }
+  const Checked<std::string> directory = findLogDirectory(settings_.directory);
+  problems.insert(problems.end(), directory.problems.begin(), directory.problems.end());
+  if (directory.value && faccessat(AT_FDCWD, directory.value->c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    problems.push_back("log_directory: '" + *directory.value + "', must be writable: " + std::strerror(errno));
   return problems;
+}
+
+/// Settings are right, but disk or memory does not allow it now.
+std::vector<std::string> BagLog::refuse(LogState state, std::string problem) {
+  writer_.refuse(++last_session_, state, problem);
+  return {std::move(problem)};
 }
 
 std::vector<std::string> BagLog::start() {
   if (isRecording()) return {"log: already recording to " + writer_.status().file};
+  session_ = 0;
   std::vector<std::string> problems = settingProblems();
-  Checked<std::string> directory = findLogDirectory(settings_.directory);
-  problems.insert(problems.end(), directory.problems.begin(), directory.problems.end());
   if (!problems.empty()) return problems;
-  if (std::string problem = LogFile::prepare(); !problem.empty()) return {problem};
+  const Checked<std::string> directory = findLogDirectory(settings_.directory);
+  if (!directory.value) return directory.problems;
+  if (std::string problem = LogFile::prepare(); !problem.empty()) return refuse(LogState::kFailed, std::move(problem));
 
   const std::uint64_t free = disk_.free_space(*directory.value);
   if (free < settings_.min_free_space) {
-    return {format("log_min_free_mb: %.9g MB, must be <= the free space of log_directory %.300s = %.9g MB",
-                   mb(settings_.min_free_space), directory.value->c_str(), mb(free))};
+    return refuse(LogState::kDiskFull,
+                  format("log_min_free_mb: %.9g MB, must be <= the free space of log_directory %.300s = %.9g MB",
+                         mb(settings_.min_free_space), directory.value->c_str(), mb(free)));
   }
   try {
     queue_.take();
   } catch (const std::bad_alloc&) {
-    return {format("log_queue_mb: %.9g MB, must be <= the free memory", mb(settings_.queue_size))};
+    return refuse(LogState::kFailed,
+                  format("log_queue_mb: %.9g MB, must be <= the free memory", mb(settings_.queue_size)));
   }
   LogOrder order;
-  Checked<LogName> name = LogName::take(*directory.value, settings_.prefix, order.next_number);
-  if (!name.value) return name.problems;
+  Checked<LogName> name = LogName::take(*directory.value, filePrefix(settings_), order.next_number);
+  if (!name.value) return refuse(LogState::kFailed, name.problems.front());
+  if (!LogFile::hasRoomFor(*name.value, free)) {
+    return refuse(LogState::kDiskFull, format("log_directory: '%.300s', must have at least %.9g MB free",
+                                              directory.value->c_str(), mb(LogFile::kAllocationStep)));
+  }
 
   order.kind = LogOrder::Kind::kStart;
   order.position = queue_.end();
   order.session = last_session_ + 1;
   order.directory = *directory.value;
   order.name.emplace(std::move(*name.value));
-  if (!writer_.post(std::move(order))) return {"log: too many orders wait for the disk"};
+  if (!writer_.post(std::move(order))) return refuse(LogState::kFailed, "log: too many orders wait for the disk");
   session_ = ++last_session_;
+  gapNoted();
+  // What could not be latched meanwhile is missing from the start.
+  for (const LogTopic& topic : topics_) has_gap_ |= topic.latched && topic.refused > 0 && !topic.is_remembered;
   return {};
 }
 
@@ -85,7 +112,10 @@ void BagLog::stop() {
   LogOrder order;
   order.kind = LogOrder::Kind::kStop;
   order.position = queue_.end();
-  if (writer_.post(std::move(order))) session_ = 0;
+  noteGapIn(order);
+  writer_.post(std::move(order));
+  gapNoted();
+  session_ = 0;
 }
 
 bool BagLog::split() {
@@ -93,11 +123,15 @@ bool BagLog::split() {
   LogOrder order;
   order.kind = LogOrder::Kind::kSplit;
   order.position = queue_.end();
-  return writer_.post(std::move(order));
+  noteGapIn(order);
+  if (!writer_.post(std::move(order))) return false;
+  gapNoted();
+  return true;
 }
 
 LogTopic& BagLog::addTopic(Names& names, const std::string& key, const std::string& topic, const LogType& type,
                            bool latched, const std::string& caller) {
+  if (const auto known = names.find(key); known != names.end()) return *known->second;
   const std::lock_guard<std::mutex> lock(topics_mutex_);
   LogTopic& entry = topics_.emplace_back(topics_.size(), topic, type, latched, caller);
   names.emplace(key, &entry);
@@ -111,17 +145,92 @@ void BagLog::latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint
   order.topic = &topic;
   order.time = time;
   order.bytes = std::move(bytes);
-  if (!writer_.post(std::move(order))) topic.refused.fetch_add(1, std::memory_order_relaxed);
+  topic.is_remembered = true;
+  if (writer_.post(std::move(order))) return;
+  lose(topic, time);
+  forget(topic);  // what was latched before holds no longer
 }
 
 void BagLog::forgetLatched(const std::string& topic, const std::string& caller) {
-  const auto known = latched_.find(latchedKey(topic, caller));
-  if (known == latched_.end()) return;
+  if (const auto known = latched_.find(latchedKey(topic, caller)); known != latched_.end()) forget(*known->second);
+}
+
+void BagLog::forget(LogTopic& topic) {
+  if (!std::exchange(topic.is_remembered, false)) return;
   LogOrder order;
   order.kind = LogOrder::Kind::kForget;
   order.position = queue_.end();
-  order.topic = known->second;
+  order.topic = &topic;
   writer_.post(std::move(order));
+}
+
+void BagLog::lose(LogTopic& topic, const ros::Time& time) {
+  topic.refused.fetch_add(1, std::memory_order_relaxed);
+  has_gap_ |= isRecording();
+  gap_time_ = time;
+}
+
+/// Serialised message of what was lost since the last one.
+std::vector<std::uint8_t> BagLog::describeGap() {
+  using Gap = diagnostic_msgs::DiagnosticStatus;
+  if (gap_topic_ == nullptr) {
+    gap_topic_ = &addTopic(plain_, gap_name_, gap_name_, typeOf(Gap()), false, {});
+  }
+  Gap gap;
+  gap.level = Gap::WARN;
+  gap.name = settings_.node + ": log";
+  gap.message = "messages were lost: a bag processed again may differ from what was published (log_queue_mb)";
+  for (LogTopic& topic : topics_) {
+    const std::uint64_t refused = topic.refused.load(std::memory_order_relaxed);
+    const bool is_missing = topic.latched && refused > 0 && !topic.is_remembered;
+    if (refused == topic.noted && !is_missing) continue;
+    gap.values.emplace_back();
+    gap.values.back().key = topic.name;
+    gap.values.back().value = std::to_string(std::max<std::uint64_t>(refused - topic.noted, 1));
+  }
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(gap));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, gap);
+  return bytes;
+}
+
+/// Ahead of the next message of the log, as soon as the queue has room again.
+void BagLog::noteGap(const ros::Time& time) {
+  constexpr double kMuchRoom = 0.5;  // else the next message would be lost as well
+  if (queue_.fill() > kMuchRoom) return;
+  const std::vector<std::uint8_t> bytes = describeGap();
+  std::uint8_t* place = queue_.reserve(static_cast<std::uint32_t>(bytes.size()));
+  if (place == nullptr) return;
+  std::copy(bytes.begin(), bytes.end(), place);
+  queue_.commit(*gap_topic_, time);
+  gapNoted();
+}
+
+void BagLog::gapNoted() {
+  has_gap_ = false;
+  for (LogTopic& topic : topics_) topic.noted = topic.refused.load(std::memory_order_relaxed);
+}
+
+/// At the end of a bag, if the queue had no room until then.
+void BagLog::noteGapIn(LogOrder& order) {
+  if (!has_gap_) return;
+  order.bytes = describeGap();
+  order.topic = gap_topic_;
+  order.time = gap_time_;
+}
+
+std::vector<std::string> BagLog::unfinishedBags() const {
+  std::vector<std::string> paths;
+  const Checked<std::string> directory = findLogDirectory(settings_.directory);
+  if (!directory.value) return paths;
+  for (FoundLog& log : findLogs(*directory.value, filePrefix(settings_)))
+    if (log.is_unfinished) paths.push_back(std::move(log.path));
+  return paths;
+}
+
+std::string BagLog::recoveryHint(const std::string& path) {
+  const std::string bag = path.substr(0, path.rfind(".active"));
+  return path + " was not closed; to recover it: mv '" + path + "' '" + bag + "' && rosbag reindex '" + bag + "'";
 }
 
 LogHealth BagLog::health() const {
@@ -133,7 +242,8 @@ LogHealth BagLog::health() const {
     const std::uint64_t written = topic.written.load(std::memory_order_relaxed);
     const std::uint64_t dropped =
         topic.refused.load(std::memory_order_relaxed) + topic.unsaved.load(std::memory_order_relaxed);
-    health.topics.push_back({topic.name, written, dropped});
+    if (topic.name == gap_name_) continue;  // the log's own
+    health.topics.push_back({topic.name, written, dropped, topic.too_large.load(std::memory_order_relaxed)});
     health.messages_written += written;
     health.messages_dropped += dropped;
   }

@@ -1,4 +1,4 @@
-/// The node's own bag writer: takes messages as the node has them, never waits for the disk, outlives its faults.
+/// A node's own bag writer: takes messages as the node has them, never waits for the disk, goes on after its faults.
 #pragma once
 
 #include <ros/message_traits.h>
@@ -24,14 +24,19 @@ namespace hammer_loads {
 /// doc/log.md says what is guaranteed. health() may be called from any thread; all else from one at a time.
 class BagLog {
  public:
-  /// LogSettings::enabled is the caller's affair.
+  /// LogSettings::enabled is for the caller to obey.
   explicit BagLog(const LogSettings& settings, const LogDisk& disk = {});
   /// Writes what is queued and closes the bag: waits for the disk.
-  ~BagLog() = default;
+  ~BagLog() { stop(); }
 
-  /// Begins a bag. Empty, or one line per reason why not (key, value, rule); then nothing is changed.
+  /// Why these settings can never work, one line each (key, value, rule): a reason not to start the node. Makes the
+  /// directory where findLogDirectory may.
+  std::vector<std::string> settingProblems() const;
+  /// Begins a bag. Empty, or one line per reason why not: a problem of the settings, or the state of disk and memory,
+  /// which health() then reports as well; it is no reason not to start the node.
   std::vector<std::string> start();
-  /// Closes the bag behind what has been written so far; health() tells when that is done.
+  /// Closes the bag behind what has been written so far. Never fails; health() says when the bag is closed, and whether
+  /// that went well.
   void stop();
   /// Goes on in a new bag; false if there is none to split.
   bool split();
@@ -49,6 +54,11 @@ class BagLog {
   /// What has been latched there holds no longer: later bags begin without it.
   void forgetLatched(const std::string& topic, const std::string& caller = {});
 
+  /// Bags of earlier runs with this prefix that were not closed: `rosbag reindex` recovers them (recoveryHint).
+  std::vector<std::string> unfinishedBags() const;
+  /// How to recover such a bag, one line.
+  static std::string recoveryHint(const std::string& path);
+
   bool isRecording() const noexcept { return session_ != 0 && writer_.faultySession() != session_; }
   LogHealth health() const;
 
@@ -58,12 +68,19 @@ class BagLog {
 
  private:
   using Names = std::unordered_map<std::string, LogTopic*>;
+  static constexpr std::size_t kMostLatched = 1000;  // topics and callers
 
-  std::vector<std::string> settingProblems() const;
+  std::vector<std::string> refuse(LogState state, std::string problem);
   static std::string latchedKey(const std::string& topic, const std::string& caller) { return topic + '\n' + caller; }
   LogTopic& addTopic(Names& names, const std::string& key, const std::string& topic, const LogType& type, bool latched,
                      const std::string& caller);
   void latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint8_t> bytes);
+  void forget(LogTopic& topic);
+  void lose(LogTopic& topic, const ros::Time& time);
+  std::vector<std::uint8_t> describeGap();
+  void noteGap(const ros::Time& time);
+  void noteGapIn(LogOrder& order);
+  void gapNoted();
 
   template <typename Message>
   static LogType typeOf(const Message& message) {
@@ -72,12 +89,16 @@ class BagLog {
   }
 
   const LogSettings settings_;
+  const std::string gap_name_;
   const LogDisk disk_;
   std::uint64_t session_{};  // of the current recording; 0: none is wanted
   std::uint64_t last_session_{};
   mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads
   std::deque<LogTopic> topics_;
   Names plain_, latched_;
+  LogTopic* gap_topic_{};  // null: nothing was lost so far
+  bool has_gap_{};         // messages were lost that no bag reports yet
+  ros::Time gap_time_;     // record time of the last of them
   LogQueue queue_;
   LogWriter writer_;  // last: its thread uses the others
 };
@@ -85,14 +106,15 @@ class BagLog {
 template <typename Message>
 void BagLog::write(const std::string& topic, const ros::Time& time, const Message& message) {
   if (!isRecording()) return;
+  if (has_gap_) noteGap(time);
   const LogType type = typeOf(message);
   const auto known = plain_.find(topic);
   LogTopic& entry = known != plain_.end() ? *known->second : addTopic(plain_, topic, topic, type, false, {});
   const std::uint32_t size = ros::serialization::serializationLength(message);
   std::uint8_t* bytes = std::strcmp(entry.type.md5sum, type.md5sum) == 0 ? queue_.reserve(size) : nullptr;
   if (bytes == nullptr) {
-    entry.refused.fetch_add(1, std::memory_order_relaxed);
-    return;
+    if (!queue_.canEverHold(size)) entry.too_large.fetch_add(1, std::memory_order_relaxed);
+    return lose(entry, time);
   }
   ros::serialization::OStream stream(bytes, size);
   ros::serialization::serialize(stream, message);
@@ -104,6 +126,9 @@ void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const
                           const std::string& caller) {
   const std::string key = latchedKey(topic, caller);
   const auto known = latched_.find(key);
+  if (known == latched_.end() && latched_.size() >= kMostLatched) {
+    return lose(addTopic(plain_, topic, topic, typeOf(message), false, {}), time);
+  }
   LogTopic& entry =
       known != latched_.end() ? *known->second : addTopic(latched_, key, topic, typeOf(message), true, caller);
   const std::uint32_t size = ros::serialization::serializationLength(message);

@@ -16,7 +16,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint64_t kAllocationStep = 4'000'000;
 constexpr std::uint64_t kMostHeld = 4'000'000;
 constexpr std::uint64_t kSlack = 64'000;             // file header, buffers of stdio
 constexpr std::uint64_t kMessageOverhead = 160;      // headers and index entry of one message, incompressible
@@ -112,7 +111,7 @@ std::optional<LogFault> LogFile::open() {
       const std::lock_guard<std::mutex> lock(pluginMutex());
       bag_ = std::make_unique<rosbag::Bag>();
     }
-    bag_->open(name_.active(), rosbag::bagmode::Write);
+    bag_->open(name_.openPath(), rosbag::bagmode::Write);
     bag_->setCompression(rosbag::compression::LZ4);
     bag_->setChunkThreshold(chunk_size_);
     is_open_ = true;
@@ -139,6 +138,11 @@ LogFile::Connection& LogFile::connection(const LogTopic& topic) {
     index_bound_ += texts + kConnectionOverhead;
   }
   return *connection;
+}
+
+bool LogFile::hasRoomFor(const LogName& name, std::uint64_t free) noexcept {
+  if (fallocate(name.descriptor(), FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(kAllocationStep)) == 0) return true;
+  return errno != ENOSPC && errno != EDQUOT && free >= kAllocationStep;
 }
 
 /// Takes disk space ahead of the data: close() can always write its index, even if others fill the disk meanwhile.
@@ -215,11 +219,6 @@ std::optional<LogFault> LogFile::close() {
   if (!problem.empty()) return LogFault{LogState::kFailed, problem};
   is_complete_ = true;
   return {};
-}
-
-bool LogFile::isDeleted() const noexcept {
-  struct stat found {};
-  return fstat(name_.descriptor(), &found) == 0 && found.st_nlink == 0;
 }
 
 }  // namespace hammer_loads

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/log/log_directory.h"
 #include "hammer_loads/log/log_name.h"
 #include "hammer_loads/log/log_status.h"
 #include "hammer_loads/log/log_topic.h"
@@ -40,6 +41,10 @@ class LogFile {
   /// Once before the first file, in the thread that sets up the process: keeps rosbag's plugin loaded,
   /// since loading and unloading it beside other threads that do so ends in crashes. Empty or what is wrong.
   static std::string prepare();
+  /// Disk space is taken in steps of this size ahead of the data [byte].
+  static constexpr std::uint64_t kAllocationStep = 4'000'000;
+  /// The disk has room for the first step. free: counts where the file system cannot take space ahead [byte].
+  static bool hasRoomFor(const LogName& name, std::uint64_t free) noexcept;
 
   /// chunk_size: a chunk is closed at the latest with this many bytes before compression.
   LogFile(LogName name, std::uint32_t chunk_size);
@@ -61,7 +66,7 @@ class LogFile {
   const std::string& path() const noexcept { return is_complete_ ? name_.final() : name_.active(); }
   bool isOpen() const noexcept { return is_open_; }
   bool isComplete() const noexcept { return is_complete_; }  ///< closed with its index, under its final name
-  bool isDeleted() const noexcept;                           ///< somebody removed the file
+  bool isInPlace() const noexcept { return name_.isInPlace(); }
 
  private:
   struct Connection {

@@ -1,35 +1,21 @@
 #include "hammer_loads/log/log_name.h"
 
 #include <fcntl.h>
-#include <pwd.h>
+#include <sys/file.h>
 #include <sys/stat.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 #include <utility>
 
 namespace hammer_loads {
 namespace {
 
 constexpr unsigned kMostTries = 10000;
-
-std::string homeDirectory() {
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') return home;
-  const passwd* user = getpwuid(getuid());
-  return user != nullptr ? user->pw_dir : "";
-}
-
-/// Every missing directory on the way, the last one included.
-void makeDirectories(const std::string& path) {
-  for (std::size_t end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1))
-    mkdir(path.substr(0, end).c_str(), 0755);
-  mkdir(path.c_str(), 0755);
-}
 
 std::string localTime() {
   const std::time_t now = std::time(nullptr);
@@ -40,83 +26,86 @@ std::string localTime() {
   return text;
 }
 
+std::string baseName(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
 /// 0 or errno. The target is not replaced if it exists (EEXIST).
-int renameToNew(const std::string& from, const std::string& to) {
-  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+int renameToNew(int directory, const std::string& from, const std::string& to) {
+  if (renameat2(directory, from.c_str(), directory, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
   // A file system that cannot do it in one step: look first.
-  if (access(to.c_str(), F_OK) == 0) return EEXIST;
-  return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+  if (faccessat(directory, to.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) return EEXIST;
+  return renameat(directory, from.c_str(), directory, to.c_str()) == 0 ? 0 : errno;
 }
 
 }  // namespace
 
-Checked<std::string> findLogDirectory(const std::string& given) {
-  Checked<std::string> result;
-  std::string path = given;
-  if (given.rfind("~/", 0) == 0) {
-    path = homeDirectory() + given.substr(1);
-    makeDirectories(path);
-  }
-  struct stat found {};
-  if (stat(path.c_str(), &found) != 0) {
-    result.problems.push_back("log_directory: '" + path + "', must exist: " + std::strerror(errno));
-  } else if (!S_ISDIR(found.st_mode)) {
-    result.problems.push_back("log_directory: '" + path + "', must be a directory");
-  } else {
-    result.value = path;
-  }
-  return result;
-}
-
-std::uint64_t freeSpace(const std::string& directory) {
-  struct statvfs found {};
-  if (statvfs(directory.c_str(), &found) != 0) return 0;
-  return static_cast<std::uint64_t>(found.f_bavail) * found.f_frsize;
-}
-
 Checked<LogName> LogName::take(const std::string& directory, const std::string& prefix, unsigned& number) {
   Checked<LogName> result;
   const std::string stem = directory + '/' + prefix + '_' + localTime() + '_';
-  for (unsigned tries = 0; tries < kMostTries; ++tries) {
-    LogName name;
+  LogName name;
+  name.directory_ = open(directory.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  int error = name.directory_ < 0 ? errno : EEXIST;
+  for (unsigned tries = 0; error == EEXIST && tries < kMostTries; ++tries) {
     name.final_ = stem + std::to_string(number++) + ".bag";
     name.active_ = name.final_ + ".active";
-    if (access(name.final_.c_str(), F_OK) == 0) continue;
-    name.descriptor_ = open(name.active_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (faccessat(name.directory_, baseName(name.final_).c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) continue;
+    name.descriptor_ =
+        openat(name.directory_, baseName(name.active_).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (name.descriptor_ >= 0) {
+      flock(name.descriptor_, LOCK_EX | LOCK_NB);  // a sign to others; without it nothing else changes
       result.value.emplace(std::move(name));
       return result;
     }
-    if (errno == EEXIST) continue;
-    result.problems.push_back("log_directory: '" + directory + "', must be writable: " + std::strerror(errno));
-    return result;
+    error = errno;
   }
-  result.problems.push_back("log_directory: '" + directory + "', must have a free name " + stem + "N.bag");
+  result.problems.push_back(
+      "log_directory: '" + directory + "', must " +
+      (error == EEXIST ? "have a free name " + stem + "N.bag" : std::string("be writable: ") + std::strerror(error)));
   return result;
 }
 
 LogName::LogName(LogName&& other) noexcept
     : active_(std::move(other.active_)),
       final_(std::move(other.final_)),
+      directory_(std::exchange(other.directory_, -1)),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 LogName::~LogName() {
-  if (descriptor_ < 0) return;
   struct stat found {};
-  if (fstat(descriptor_, &found) == 0 && found.st_size == 0) unlink(active_.c_str());
-  ::close(descriptor_);
+  if (descriptor_ >= 0 && fstat(descriptor_, &found) == 0 && found.st_size == 0 &&
+      isOurs(directory_, baseName(active_)))
+    unlinkat(directory_, baseName(active_).c_str(), 0);
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (directory_ >= 0) ::close(directory_);
 }
+
+std::string LogName::openPath() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+bool LogName::isOurs(int directory, const std::string& path) const noexcept {
+  struct stat own {
+  }, found{};
+  return fstat(descriptor_, &own) == 0 && fstatat(directory, path.c_str(), &found, AT_SYMLINK_NOFOLLOW) == 0 &&
+         own.st_dev == found.st_dev && own.st_ino == found.st_ino;
+}
+
+bool LogName::isInPlace() const noexcept { return isOurs(AT_FDCWD, active_); }
 
 std::string LogName::publish() {
   const std::string stem = final_.substr(0, final_.size() - std::strlen(".bag"));
-  int error = renameToNew(active_, final_);
+  const std::string from = baseName(active_);
+  if (!isOurs(directory_, from)) return "log file " + active_ + " was deleted, moved or replaced";
+  int error = renameToNew(directory_, from, baseName(final_));
   for (unsigned i = 1; error == EEXIST && i < kMostTries; ++i) {
     final_ = stem + '-' + std::to_string(i) + ".bag";
-    error = renameToNew(active_, final_);
+    error = renameToNew(directory_, from, baseName(final_));
   }
-  if (error == 0) return {};
-  return "log file " + active_ + " is complete, but cannot be renamed to " + final_ + ": " + std::strerror(error);
+  if (error != 0)
+    return "log file " + active_ + " is complete, but cannot be renamed to " + final_ + ": " + std::strerror(error);
+  if (!isOurs(AT_FDCWD, final_)) {  // the directory was moved: say where to
+    std::error_code unknown;
+    final_ = std::filesystem::read_symlink(openPath(), unknown).string();
+  }
+  return {};
 }
 
 }  // namespace hammer_loads

@@ -1,24 +1,15 @@
-/// Where bags lie and what they are called.
+/// What a bag is called.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
-#include "hammer_loads/log/log_settings.h"
 #include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
 
-/// The log directory with ~/ resolved, once it is known to exist. Below ~/ it is made if missing; anywhere else a
-/// missing directory is a problem: it may be a disk that is not mounted.
-Checked<std::string> findLogDirectory(const std::string& given);
-
-/// Bytes on the directory's disk that this user may still take; 0 if that cannot be found out.
-std::uint64_t freeSpace(const std::string& directory);
-
 /// Name of one bag, PREFIX_YYYY-MM-DD-HH-MM-SS_N.bag (local time), held by an empty file PREFIX_..._N.bag.active that
-/// did not exist before. Neither that file nor one under the final name is ever overwritten.
+/// did not exist before. Neither that file nor one under the final name is ever overwritten. The file is locked
+/// (flock) as long as this lives: so others see that it is still written.
 class LogName {
  public:
   /// number: N of the first try; afterwards behind the one taken.
@@ -32,14 +23,20 @@ class LogName {
   const std::string& active() const noexcept { return active_; }  ///< path while it is written
   const std::string& final() const noexcept { return final_; }    ///< path afterwards
   int descriptor() const noexcept { return descriptor_; }         ///< of the active file
+  /// Path that opens this very file, whatever lies under its name by now.
+  std::string openPath() const;
+  /// active() still leads to this file: neither it nor a directory above it was moved, deleted or replaced.
+  bool isInPlace() const noexcept;
 
-  /// Renames active to final; if somebody took the final name meanwhile, to another one. Empty or what went wrong.
+  /// Renames active to final; if the final name was taken meanwhile, to another one. Empty or what went wrong.
   std::string publish();
 
  private:
   LogName() = default;
+  bool isOurs(int directory, const std::string& path) const noexcept;
 
   std::string active_, final_;
+  int directory_{-1};  // where the file is, also if that is called otherwise by now
   int descriptor_{-1};
 };
 

@@ -38,10 +38,13 @@ class LogQueue {
     if (!units_) units_ = std::make_unique<Unit[]>(unit_count_);
   }
 
-  /// Room for a message of `size` bytes, or null if there is none now. Larger than half the ring never fits.
+  /// A message larger than half the ring never fits.
+  bool canEverHold(std::uint32_t size) const noexcept { return roundUp(sizeof(Record) + size) <= capacity() / 2; }
+
+  /// Room for a message of `size` bytes, or null if there is none now.
   std::uint8_t* reserve(std::uint32_t size) noexcept {
+    if (!canEverHold(size)) return nullptr;
     const std::uint64_t step = roundUp(sizeof(Record) + size);
-    if (step > capacity() / 2) return nullptr;
     const std::uint64_t end = end_.load(std::memory_order_relaxed);
     const std::uint64_t to_edge = capacity() - end % capacity();
     const std::uint64_t skip = step > to_edge ? to_edge : 0;

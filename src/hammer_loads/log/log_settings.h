@@ -1,6 +1,7 @@
 /// Where and how a node logs: what config/log.yaml sets.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -10,11 +11,29 @@ namespace hammer_loads {
 struct LogSettings {
   bool enabled{};
   std::string directory;           ///< as given; a leading ~/ means the home directory of the node's user
-  std::string prefix;              ///< file names begin with it; without /
+  std::string prefix;              ///< file names begin with it; without /; empty: name of the node
+  std::string node;                ///< name of the node that logs, not from a file: see forNode()
   std::uint64_t split_size{};      ///< a bag larger than this is closed and a new one begun [byte], > 0
-  std::uint64_t total_size{};      ///< of this run's bags together; beyond it the oldest is deleted [byte], 0: no limit
+  std::uint64_t total_size{};      ///< of all bags together; beyond it the oldest is deleted [byte], 0: no limit
+  bool prune_earlier_runs{};       ///< bags of earlier runs with this prefix count for total_size and are deleted first
   std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
-  std::uint64_t queue_size{};  ///< messages waiting for the disk; beyond it they are dropped and counted [byte], > 0
+  /// Messages waiting for the disk, and again as much for latched ones; beyond it they are dropped and counted [byte],
+  /// > 0.
+  std::uint64_t queue_size{};
 };
+
+/// The settings of this node. node: resolved name, for instance /left/hammer_loads.
+inline LogSettings forNode(LogSettings settings, const std::string& node) {
+  settings.node = node;
+  return settings;
+}
+
+/// What file names begin with: the prefix, or the node's name with _ for /, so that two nodes have names of their own.
+inline std::string filePrefix(const LogSettings& settings) {
+  if (!settings.prefix.empty()) return settings.prefix;
+  std::string name = settings.node.substr(std::min(settings.node.find_first_not_of('/'), settings.node.size()));
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// How the log fares.
+/// State and counters of the log.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@ namespace hammer_loads {
 enum class LogState {
   kOff,        ///< not started, or stopped on request
   kRecording,  ///< messages are written
-  kDiskFull,   ///< stopped by itself: too little space left
+  kDiskFull,   ///< stopped by itself, or not started: too little space left
   kFailed,     ///< stopped by itself: the disk or rosbag reported an error
 };
 
 /// What has reached the disk. Brought up to date once a second and at every change of state or file.
 struct LogStatus {
   LogState state{LogState::kOff};
-  std::string reason;             ///< why the log stopped by itself; empty otherwise
+  std::string reason;             ///< why the log stopped by itself or could not start; empty otherwise
   std::string file;               ///< current or last bag
   std::uint64_t file_size{};      ///< of it, without the open chunk [byte]
   std::uint64_t bytes_written{};  ///< all bags of this process together, deleted ones too [byte]
   std::uint64_t files_closed{};   ///< complete bags under their final names
-  std::uint64_t files_deleted{};  ///< oldest bags deleted for log_total_mb
+  std::uint64_t files_deleted{};  ///< oldest bags deleted for log_total_mb, also of earlier runs
 };
 
 /// Messages of one topic; every message offered while the log is recording is counted once.
 struct LogTopicCounts {
   std::string topic;
-  std::uint64_t written{};  ///< in a bag
-  std::uint64_t dropped{};  ///< not in a bag: queue full, or still queued when the log stopped by itself
+  std::uint64_t written{};    ///< in a bag
+  std::uint64_t dropped{};    ///< not in a bag: queue full, or still queued when the log stopped by itself
+  std::uint64_t too_large{};  ///< of the dropped: those that never fit into the queue, log_queue_mb is too small
 };
 
 /// All of it at once.

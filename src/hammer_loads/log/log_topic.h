@@ -23,11 +23,14 @@ struct LogTopic {
   const std::size_t index;  ///< order of first appearance
   const std::string name;
   const LogType type;
-  const bool latched;                    ///< last message repeated at the start of every file
-  const std::string caller;              ///< node that published it; empty: of no interest
-  std::atomic<std::uint64_t> written{};  ///< messages handed to a bag; repeats are not counted
-  std::atomic<std::uint64_t> refused{};  ///< messages lost because the queue was full or the type was another
-  std::atomic<std::uint64_t> unsaved{};  ///< messages lost in the queue because the log stopped for a fault
+  const bool latched;                      ///< last message repeated at the start of every file
+  const std::string caller;                ///< node that published it; empty: of no interest
+  std::atomic<std::uint64_t> written{};    ///< messages handed to a bag; repeats are not counted
+  std::atomic<std::uint64_t> refused{};    ///< messages lost because the queue was full or the type was another
+  std::atomic<std::uint64_t> too_large{};  ///< those of them that never fit into the queue
+  std::atomic<std::uint64_t> unsaved{};    ///< messages lost in the queue because the log stopped for a fault
+  std::uint64_t noted{};                   ///< of `refused`, those that a bag already reports; producing thread only
+  bool is_remembered{};                    ///< the writer has a latched message of it, or will; producing thread only
 };
 
 }  // namespace hammer_loads

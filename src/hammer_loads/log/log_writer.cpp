@@ -35,7 +35,14 @@ LogWriter::~LogWriter() {
 bool LogWriter::post(LogOrder order) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (orders_.size() >= kMostOrders) return false;
+    // At most one order to stop follows each one to start; one to forget holds no message.
+    const bool is_free = order.kind == LogOrder::Kind::kStop || order.kind == LogOrder::Kind::kForget;
+    if (orders_.size() >= kMostOrders && !is_free) return false;
+    if (order.kind == LogOrder::Kind::kLatched) {
+      const std::uint64_t size = latchedSize(order.bytes.size());
+      if (latched_size_ + size > settings_.queue_size) return false;
+      latched_size_ += size;
+    }
     if (order.kind == LogOrder::Kind::kStart) {  // known at once, not only when the thread gets there
       status_session_ = order.session;
       status_.state = LogState::kRecording;
@@ -47,6 +54,13 @@ bool LogWriter::post(LogOrder order) {
   }
   woken_.notify_one();
   return true;
+}
+
+void LogWriter::refuse(std::uint64_t session, LogState state, const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_session_ = session;
+  status_.state = state;
+  status_.reason = reason;
 }
 
 LogStatus LogWriter::status() const {
@@ -100,10 +114,13 @@ void LogWriter::carryOut(LogOrder& order) {
       session_ = order.session;
       directory_ = order.directory;
       next_number_ = order.next_number;
+      if (settings_.prune_earlier_runs) findEarlierRuns();
       return begin(std::move(*order.name));
     case LogOrder::Kind::kStop:
+      writeLast(order);
       return end();
     case LogOrder::Kind::kSplit:
+      writeLast(order);
       return split();
     case LogOrder::Kind::kLatched:
       return latch(order);
@@ -150,7 +167,10 @@ void LogWriter::keepHouse(Clock::time_point now) {
 }
 
 std::optional<LogFault> LogWriter::checkDisk() {
-  if (file_->isDeleted()) return LogFault{LogState::kFailed, "log file " + file_->path() + " was deleted or replaced"};
+  if (!file_->isInPlace()) {
+    return LogFault{LogState::kFailed,
+                    "log file " + file_->path() + " was deleted, moved or replaced, or a directory above it"};
+  }
   const std::uint64_t free = disk_.free_space(directory_);
   if (free >= settings_.min_free_space) return {};
   constexpr double kMb = 1e6;
@@ -188,9 +208,18 @@ void LogWriter::split() {
   if (!file_) return;
   if (auto fault = file_->close()) return stopFor(std::move(*fault));
   settle();
-  Checked<LogName> name = LogName::take(directory_, settings_.prefix, next_number_);
+  Checked<LogName> name = LogName::take(directory_, filePrefix(settings_), next_number_);
   if (!name.value) return stopFor({LogState::kFailed, name.problems.front()});
   begin(std::move(*name.value));
+}
+
+void LogWriter::writeLast(LogOrder& order) {
+  if (order.topic == nullptr || !file_) return;
+  if (repeat_) repeatLatched(&order.time);
+  if (!file_) return;
+  auto fault = file_->write(*order.topic, order.time, order.bytes.data(),
+                            static_cast<std::uint32_t>(order.bytes.size()), Clock::now());
+  if (fault) stopFor(std::move(*fault));
 }
 
 /// By itself: the file is closed in good order if that is possible; the node goes on without a log.
@@ -214,8 +243,18 @@ void LogWriter::settle() {
   ++totals_.files_closed;
 }
 
-/// Makes room for one more file within log_total_mb. Only files of this process: of others nobody here knows whether
-/// they are still wanted, or still written.
+/// With log_prune_earlier_runs: every bag of this prefix that is not being written counts, the oldest first.
+void LogWriter::findEarlierRuns() {
+  closed_.clear();
+  closed_size_ = 0;
+  for (FoundLog& log : findLogs(directory_, filePrefix(settings_))) {
+    closed_size_ += log.size;
+    closed_.push_back({std::move(log.path), log.size});
+  }
+}
+
+/// Makes room for one more file within log_total_mb. Without log_prune_earlier_runs only files of this process go:
+/// others may still be wanted.
 void LogWriter::deleteOldest() {
   if (settings_.total_size == 0) return;
   while (!closed_.empty() && closed_size_ + settings_.split_size > settings_.total_size) {
@@ -228,7 +267,11 @@ void LogWriter::deleteOldest() {
 void LogWriter::latch(LogOrder& order) {
   const auto same = [&order](const Latched& latched) { return latched.topic == order.topic; };
   auto place = std::find_if(latched_.begin(), latched_.end(), same);
-  if (place == latched_.end()) place = latched_.insert(place, Latched{order.topic, {}, {}});
+  if (place == latched_.end()) {
+    place = latched_.insert(place, Latched{order.topic, {}, {}});
+  } else {
+    latched_size_ -= latchedSize(place->bytes.size());
+  }
   place->time = order.time;
   place->bytes = std::move(order.bytes);
   if (!file_) return;
@@ -242,7 +285,10 @@ void LogWriter::latch(LogOrder& order) {
 
 void LogWriter::forget(const LogTopic* topic) {
   const auto same = [topic](const Latched& latched) { return latched.topic == topic; };
-  latched_.erase(std::remove_if(latched_.begin(), latched_.end(), same), latched_.end());
+  const auto place = std::find_if(latched_.begin(), latched_.end(), same);
+  if (place == latched_.end()) return;
+  latched_size_ -= latchedSize(place->bytes.size());
+  latched_.erase(place);
 }
 
 /// time: of the file's first message, so that the file does not begin with a gap; null: there is none yet.

@@ -19,7 +19,7 @@
 
 namespace hammer_loads {
 
-/// What the writing thread is told, at its place among the messages. Never lost, unlike a message.
+/// A task of the writing thread, at its place among the messages.
 struct LogOrder {
   enum class Kind { kStart, kStop, kSplit, kLatched, kForget, kQuit };
   Kind kind{};
@@ -28,9 +28,9 @@ struct LogOrder {
   std::string directory;            ///< kStart
   std::optional<LogName> name;      ///< kStart: first file
   unsigned next_number{};           ///< kStart: in the name of the second file
-  LogTopic* topic{};                ///< kLatched, kForget
-  ros::Time time;                   ///< kLatched: record time
-  std::vector<std::uint8_t> bytes;  ///< kLatched: serialised message
+  LogTopic* topic{};                ///< kLatched, kForget; kStop, kSplit: of a last message for the bag, if not null
+  ros::Time time;                   ///< record time of the message
+  std::vector<std::uint8_t> bytes;  ///< serialised message
 };
 
 /// Only the constructor, the destructor, post(), status() and faultySession() are for other threads.
@@ -42,8 +42,11 @@ class LogWriter {
   /// Carries out all orders, writes all messages, closes the file.
   ~LogWriter();
 
-  /// False if far too many orders wait already.
+  /// False if far too many orders wait already, or no memory is left for what is latched. To stop and to forget always
+  /// succeeds.
   bool post(LogOrder order);
+  /// A recording that cannot begin. session: a number of its own.
+  void refuse(std::uint64_t session, LogState state, const std::string& reason);
   LogStatus status() const;
   /// The recording that stopped by itself last; 0: none.
   std::uint64_t faultySession() const noexcept { return faulty_session_.load(std::memory_order_acquire); }
@@ -60,6 +63,8 @@ class LogWriter {
     std::uint64_t size;
   };
 
+  static std::uint64_t latchedSize(std::size_t bytes) noexcept { return bytes + 1000; }  // with what it hangs on
+
   void run();
   std::optional<LogOrder> nextOrder();
   void carryOut(LogOrder& order);
@@ -71,6 +76,8 @@ class LogWriter {
   void begin(LogName name);
   void end();
   void split();
+  void writeLast(LogOrder& order);
+  void findEarlierRuns();
   void stopFor(LogFault fault);
   void settle();
   void deleteOldest();
@@ -98,6 +105,7 @@ class LogWriter {
   LogStatus totals_;               // only its sums
 
   std::atomic<std::uint64_t> faulty_session_{};
+  std::atomic<std::uint64_t> latched_size_{};  // of what is latched or waits to be [byte]
   mutable std::mutex mutex_;
   std::condition_variable woken_;
   std::deque<LogOrder> orders_;     // guarded by mutex_

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hammer_loads/ros/attach.h"
+#include "hammer_loads/ros/node_log.h"
 #include "hammer_loads/ros/ros_parameters.h"
 #include "hammer_loads/settings/load.h"
 
@@ -49,11 +50,8 @@ std::unique_ptr<GrappleNode> makeGrappleNode(const ros::NodeHandle& node, const 
   const Checked<GrappleSettings> settings = loadGrappleSettings(configDirectory(), given);
   problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
   if (!problems.empty()) return nullptr;
-  auto log = std::make_unique<BagLog>(settings.value->log);
-  if (settings.value->log.enabled) {
-    problems = log->start();
-    if (!problems.empty()) return nullptr;
-  }
+  auto log = makeNodeLog(settings.value->log, private_node.getNamespace(), problems);
+  if (!log) return nullptr;
   return std::make_unique<GrappleNode>(node, private_node, *settings.value, std::move(log));
 }
 

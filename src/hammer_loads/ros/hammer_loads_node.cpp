@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hammer_loads/ros/attach.h"
+#include "hammer_loads/ros/node_log.h"
 #include "hammer_loads/ros/ros_parameters.h"
 
 namespace hammer_loads {
@@ -57,7 +58,7 @@ void HammerLoadsNode::sayWhatRuns() const {
   for (const std::string& note : settings.notes) notes += "; " + note;
   ROS_INFO("hammer: %s; level %s%s", settings.hammer_given ? "its own file" : "the shipped MO-100", level.c_str(),
            notes.c_str());
-  ROS_INFO("log: %s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "off");
+  ROS_INFO("log: %s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "not recording");
   ROS_INFO("waits for %s with joint %s, %s%s", crank_topic_.c_str(), settings.pipeline.crank_joint.c_str(),
            joint_states_topic_.c_str(), bridge_.needsImu() ? (", " + hull_imu_topic_).c_str() : "");
 }
@@ -165,11 +166,8 @@ std::unique_ptr<HammerLoadsNode> makeHammerNode(const ros::NodeHandle& node, con
   const Checked<Settings> settings = loadPrivateParameters(private_node);
   problems = settings.problems;
   if (!settings.value) return nullptr;
-  auto log = std::make_unique<BagLog>(settings.value->log);
-  if (settings.value->log.enabled) {
-    problems = log->start();
-    if (!problems.empty()) return nullptr;
-  }
+  auto log = makeNodeLog(settings.value->log, private_node.getNamespace(), problems);
+  if (!log) return nullptr;
   return std::make_unique<HammerLoadsNode>(node, private_node, *settings.value, std::move(log));
 }
 

@@ -30,6 +30,7 @@ void describeLog(const BagLog& log, diagnostic_updater::DiagnosticStatusWrapper&
   status.add("messages dropped", health.messages_dropped);
   for (const LogTopicCounts& topic : health.topics) {
     if (topic.dropped > 0) status.add("dropped: " + topic.topic, topic.dropped);
+    if (topic.too_large > 0) status.add("too large for log_queue_mb: " + topic.topic, topic.too_large);
   }
   status.add("queue fill", health.queue_fill);
 }

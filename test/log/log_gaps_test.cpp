@@ -1,0 +1,130 @@
+/// What the log could not keep is in its bag and in its health.
+#include "hammer_loads/log/log_gaps.h"
+
+#include <std_msgs/String.h>
+
+#include <map>
+
+#include "hammer_loads/log/bag_log.h"
+#include "log/log_test_support.h"
+
+namespace hammer_loads::test {
+namespace {
+
+std_msgs::String text(std::size_t size) {
+  std_msgs::String message;
+  message.data.assign(size, 'x');
+  return message;
+}
+
+std::vector<diagnostic_msgs::DiagnosticStatus> gapsIn(const std::vector<Entry>& entries) {
+  std::vector<diagnostic_msgs::DiagnosticStatus> gaps;
+  for (const Entry& entry : entries)
+    if (isGapTopic(entry.topic)) gaps.push_back(entry.as<diagnostic_msgs::DiagnosticStatus>());
+  return gaps;
+}
+
+TEST_F(LogTest, BagWithoutLossHasNoGap) {
+  settings_.node = "/left/hammer_loads";
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    log.write("/input", at(0), text(10));
+  }
+  EXPECT_EQ(readAll().size(), 1u);
+}
+
+TEST_F(LogTest, BagReportsAnInputThatIsTooLargeForTheQueue) {
+  settings_.node = "/left/hammer_loads";
+  settings_.queue_size = 1'000'000;
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    log.write("/input", at(0), text(10));
+    log.write("/input", at(1), text(600'000));
+    log.write("/other", at(1), text(600'000));
+    log.write("/input", at(2), text(600'000));
+    log.write("/input", at(3), text(10));
+    log.write("/input", at(4), text(10));
+    const LogHealth health = log.health();
+    EXPECT_EQ(health.messages_dropped, 3u);
+    ASSERT_EQ(health.topics.size(), 2u);
+    EXPECT_EQ(health.topics[0].too_large, 2u);
+    EXPECT_EQ(health.topics[1].too_large, 1u);
+  }
+  const auto entries = readAll();
+  EXPECT_EQ(onTopic(entries, "/input").size(), 3u);
+  const auto reports = onTopic(entries, "/left/hammer_loads/log/gaps");
+  ASSERT_FALSE(reports.empty());
+  EXPECT_EQ(entries[1].topic, reports[0].topic) << "where the first is missing";
+  EXPECT_EQ(entries[entries.size() - 3].time, at(3)) << "ahead of the first message after the last one";
+  std::map<std::string, std::uint64_t> lost;
+  for (const auto& gap : gapsIn(entries))
+    for (const auto& topic : gap.values) lost[topic.key] += std::stoul(topic.value);
+  EXPECT_EQ(lost, (std::map<std::string, std::uint64_t>{{"/input", 2}, {"/other", 1}}));
+}
+
+TEST_F(LogTest, EachBagReportsItsOwnGapAlsoAtItsEnd) {
+  settings_.queue_size = 1'000'000;
+  {
+    BagLog log(settings_);
+    ASSERT_TRUE(log.start().empty());
+    log.write("/input", at(1), text(600'000));
+    EXPECT_TRUE(log.split());
+    log.write("/input", at(2), text(10));
+    EXPECT_TRUE(log.split());
+    log.write("/input", at(3), text(600'000));
+    log.stop();
+    ASSERT_TRUE(log.start().empty());
+    log.write("/input", at(4), text(600'000));
+  }
+  ASSERT_EQ(files().size(), 4u);
+  std::size_t gaps = 0;
+  for (const std::string& file : files()) gaps += gapsIn(readBag(file)).size();
+  EXPECT_EQ(gaps, 3u);
+  EXPECT_EQ(gapsIn(readBag(files()[1])).size() + gapsIn(readBag(files()[2])).size(), 1u);
+}
+
+/// A publisher of /tf_static must not be able to fill the memory.
+TEST_F(LogTest, LatchedMessagesAreBoundedByTheQueuesSize) {
+  settings_.queue_size = 1'000'000;
+  {
+    BagLog log(settings_);
+    for (int i = 0; i < 100; ++i)
+      log.writeLatched("/tf_static", at(0), text(100'000), "/publisher_" + std::to_string(i));
+    EXPECT_EQ(log.health().messages_dropped, 91u) << "nine fit, each with what it hangs on";
+    log.writeLatched("/tf_static", at(0), text(950'000), "/publisher_0");  // one that was kept: holds no longer
+    log.forgetLatched("/tf_static", "/publisher_1");
+    log.forgetLatched("/tf_static", "/publisher_1");
+    ASSERT_TRUE(log.start().empty());
+    log.write("/input", at(0), text(10));
+  }
+  const auto entries = readAll();
+  EXPECT_EQ(onTopic(entries, "/tf_static").size(), 7u);
+  const auto gaps = gapsIn(entries);
+  ASSERT_EQ(gaps.size(), 1u) << "what the bag does not repeat is named in it";
+  EXPECT_EQ(gaps[0].values.size(), 92u);
+}
+
+TEST_F(LogTest, LatchedMessagesOfMoreCallersThanEverAreNotAllKept) {
+  BagLog log(settings_);
+  for (int i = 0; i < 3000; ++i) log.writeLatched("/tf_static", at(0), text(1), "/anonymous_" + std::to_string(i));
+  EXPECT_LE(log.health().topics.size(), 1001u);
+  EXPECT_EQ(log.health().messages_dropped, 2000u);
+}
+
+/// Freed room is used again: nothing leaks out of the account.
+TEST_F(LogTest, LatchedMessagesMayChangeForEver) {
+  settings_.queue_size = 1'000'000;
+  BagLog log(settings_);
+  ASSERT_TRUE(log.start().empty());
+  for (std::size_t i = 0; i < 100; ++i) {
+    log.writeLatched("/tf_static", at(i), text(300'000 + i), "/publisher");
+    if (i % 3 == 0) log.forgetLatched("/tf_static", "/publisher");
+    ASSERT_TRUE(waitFor([&] { return log.health().messages_written == i + 1; }));
+  }
+  EXPECT_EQ(log.health().messages_dropped, 0u);
+}
+
+}  // namespace
+}  // namespace hammer_loads::test
