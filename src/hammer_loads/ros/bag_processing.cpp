@@ -6,61 +6,12 @@
 #include <cerrno>
 #include <cstring>
 
-#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/bag_sink.h"
 #include "hammer_loads/ros/grapple_bag_processing.h"
 #include "hammer_loads/ros/loads_flow.h"
 
 namespace hammer_loads {
 namespace {
-
-class BagSink final : public LoadsSink {
- public:
-  BagSink(rosbag::Bag& bag, const BagJob& job) : bag_(bag), prefix_(job.output_prefix + "/"), pins_(job.pins) {}
-
-  void runInfo(const RunInfo& message, const ros::Time& record_time) override {
-    writeLatched(bag_, prefix_ + "run_info", record_time, message);
-  }
-  void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "hull_wrench", record_time, message);
-  }
-  void boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& message,
-                  const ros::Time& record_time) override {
-    bag_.write(prefix_ + "boom_wrench/" + link, record_time, message);
-  }
-  void jointLoads(const JointLoads& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "joint_loads", record_time, message);
-  }
-  void boomVibration(const BoomVibration& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "boom_vibration", record_time, message);
-  }
-  void hullLoads(const HullLoads& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "hull_loads", record_time, message);
-  }
-  void mechanism(const sensor_msgs::JointState& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "mechanism", record_time, message);
-  }
-  void pinForces(const PinForces& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "pin_forces", record_time, message);
-  }
-  void blow(const Blow& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "blow", record_time, message);
-  }
-  void pulse(const Pulse& message, const ros::Time& record_time) override {
-    bag_.write(prefix_ + "pulse", record_time, message);
-  }
-  bool wantsBoomWrench(const std::string&) const override { return true; }
-  bool wantsJointLoads() const override { return true; }
-  bool wantsBoomVibration() const override { return true; }
-  bool wantsHullLoads() const override { return true; }
-  bool wantsMechanism() const override { return true; }
-  bool wantsPinForces() const override { return pins_; }
-  bool wantsTurns() const override { return true; }
-
- private:
-  rosbag::Bag& bag_;
-  std::string prefix_;
-  bool pins_;
-};
 
 /// What of the job the bag has input for.
 struct BagInputs {
@@ -115,7 +66,7 @@ void process(rosbag::Bag& input, const BagJob& job, LoadsFlow* hammer, GrappleFl
 
 BagReport write(rosbag::Bag& input, const BagInputs& inputs, rosbag::Bag& output, const BagJob& job,
                 const Settings& settings, const std::function<void(double)>& progress) {
-  BagSink sink(output, job);
+  BagSink sink(output, job.output_prefix, job.pins);
   GrappleBagSink grapple_sink(output, job.grapple_prefix);
   std::optional<LoadsFlow> hammer;
   std::optional<GrappleFlow> grapple;
