@@ -3,6 +3,7 @@
 
 #include <rosbag/bag.h>
 
+#include <cstdint>
 #include <string>
 
 #include "hammer_loads/ros/bag_output.h"
@@ -20,6 +21,7 @@ class BagSink final : public LoadsSink {
   }
   void hullWrench(const geometry_msgs::WrenchStamped& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "hull_wrench", record_time, message);
+    ++wrenches_;
   }
   void boomWrench(const std::string& link, const geometry_msgs::WrenchStamped& message,
                   const ros::Time& record_time) override {
@@ -42,6 +44,7 @@ class BagSink final : public LoadsSink {
   }
   void blow(const Blow& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "blow", record_time, message);
+    ++turns_;
   }
   void pulse(const Pulse& message, const ros::Time& record_time) override {
     bag_.write(prefix_ + "pulse", record_time, message);
@@ -54,10 +57,14 @@ class BagSink final : public LoadsSink {
   bool wantsPinForces() const override { return pins_; }
   bool wantsTurns() const override { return true; }
 
+  std::uint64_t wrenches() const { return wrenches_; }  ///< hull wrenches written
+  std::uint64_t turns() const { return turns_; }        ///< blows written
+
  private:
   rosbag::Bag& bag_;
   std::string prefix_;
   bool pins_;
+  std::uint64_t wrenches_{}, turns_{};
 };
 
 }  // namespace hammer_loads

@@ -47,6 +47,7 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
 
 Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description) {
   Checked<Settings> result;
+  const InputTopics topics = takeInputTopics(parameters, result.problems);
   const bool boom_file = hasBoomKey(parameters);
   ParameterReader reader(std::move(parameters));
   const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes);
@@ -56,14 +57,15 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   if (pipeline.hull_motion == HullMotionSource::kModel && !boom_file)
     reader.addProblem("hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring");
   reader.reportUnknownKeys();
-  result.problems = reader.problems();
+  result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());
   if (!mechanism || !result.problems.empty()) return result;
   if (pipeline.choose_level) {
     const LevelChoice choice = chooseLevel(*mechanism, pipeline.tolerance, pipeline.turn_rate, pipeline.gravity);
     pipeline.level = choice.level;
     result.notes.push_back(describe(choice));
   }
-  result.value = Settings{*mechanism, pipeline, log, std::move(boom), robot_description, reader.yaml(), {}};
+  result.value = Settings{*mechanism, pipeline, log, std::move(boom), robot_description, reader.yaml() + yamlOf(topics),
+                          {},         topics};
   return result;
 }
 
@@ -106,6 +108,13 @@ Settings withChanges(const Settings& settings, const std::vector<std::pair<std::
   Checked<Settings> changed = settingsFrom(std::move(parameters), settings.robot_description);
   changed.value.value().notes = std::move(changed.notes);
   return *std::move(changed.value);
+}
+
+Settings withInputTopics(Settings settings, const InputTopics& topics) {
+  settings.yaml.erase(settings.yaml.size() - yamlOf(settings.input_topics).size());
+  settings.yaml += yamlOf(topics);
+  settings.input_topics = topics;
+  return settings;
 }
 
 std::string configDirectory() {
