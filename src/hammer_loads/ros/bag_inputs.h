@@ -21,6 +21,20 @@ struct BagTopic {
   std::set<std::string> publishers;   ///< names of the nodes; empty where the bag does not say
 };
 
+/// Name of a message's type.
+template <typename Message>
+std::string typeOf() {
+  return ros::message_traits::datatype<Message>();
+}
+
+/// Throws rosbag::BagFormatException where it is of another definition.
+template <typename Message>
+boost::shared_ptr<Message> messageOf(const rosbag::MessageInstance& item) {
+  const auto message = item.instantiate<Message>();
+  if (!message) throw rosbag::BagFormatException("a message on " + item.getTopic() + " cannot be read");
+  return message;
+}
+
 class BagInputs {
  public:
   /// Opens every bag; why that could not be, one line each.

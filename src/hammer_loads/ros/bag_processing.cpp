@@ -7,12 +7,16 @@
 #include "hammer_loads/ros/bag_output.h"
 #include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/bag_sink.h"
+#include "hammer_loads/ros/bag_warnings.h"
 #include "hammer_loads/ros/grapple_bag_processing.h"
 #include "hammer_loads/ros/loads_flow.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
 namespace {
+
+/// What is read, and as which type.
+using Wanted = std::map<std::string, std::string>;
 
 /// The hammer's flow through the runs of a recording.
 class HammerRuns {
@@ -30,7 +34,10 @@ class HammerRuns {
     const InputTopics& topics = flow_->settings().input_topics;
     const std::string& topic = item.getTopic();
     if (topic == "/tf" || topic == "/tf_static") return transforms(item, topic == "/tf_static");
-    if (topic == topics.joint_states) flow_->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
+    if (topic == topics.joint_states) {
+      joints_came_ = true;
+      flow_->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
+    }
     if (topic == topics.crank) {
       ++report_.samples;
       flow_->crank(*messageOf<sensor_msgs::JointState>(item), item.getTime());
@@ -41,20 +48,14 @@ class HammerRuns {
 
   void end() {
     add(flow_->pipeline().counts(), report_.crank);
-    addWarnings(*flow_, report_.warnings);
+    warnOfRun(*flow_, joints_came_, report_.warnings);
     ++report_.runs;
-  }
-
-  template <typename Message>
-  static boost::shared_ptr<Message> messageOf(const rosbag::MessageInstance& item) {
-    const auto message = item.instantiate<Message>();
-    if (!message) throw rosbag::BagFormatException("a message on " + item.getTopic() + " cannot be read");
-    return message;
   }
 
  private:
   /// Static transforms are the same in every run.
   void begin() {
+    joints_came_ = false;
     flow_.emplace(runs_[next_++].settings, sink_);
     for (const auto& [time, message] : statics_) flow_->transforms(*message, true, time);
   }
@@ -70,17 +71,10 @@ class HammerRuns {
   LoadsSink& sink_;
   BagReport& report_;
   std::size_t next_{};
+  bool joints_came_{};  ///< in this run
   std::optional<LoadsFlow> flow_;
   std::vector<std::pair<ros::Time, tf2_msgs::TFMessage::ConstPtr>> statics_;
 };
-
-/// What is read, and as which type.
-using Wanted = std::map<std::string, std::string>;
-
-template <typename Message>
-std::string typeOf() {
-  return ros::message_traits::datatype<Message>();
-}
 
 Wanted wantedTopics(const std::vector<BagRun>& runs, bool hammer, const std::string& slider_topic) {
   Wanted wanted;
@@ -107,67 +101,6 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
     }
   }
   return {};
-}
-
-void warnOfPublishers(const BagInputs& inputs, const Wanted& wanted, std::vector<std::string>& warnings) {
-  for (const auto& [name, type] : wanted) {
-    const auto found = inputs.topics().find(name);
-    if (found == inputs.topics().end() || found->second.publishers.size() < 2 || type == typeOf<tf2_msgs::TFMessage>())
-      continue;
-    std::string publishers;
-    for (const std::string& node : found->second.publishers) publishers += (publishers.empty() ? "" : ", ") + node;
-    addOnce(warnings, name + ": several publishers: " + publishers);
-  }
-}
-
-/// Topics that are wanted and did not come.
-void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
-                   std::vector<std::string>& warnings) {
-  for (const BagRun& run : runs) {
-    const InputTopics& topics = run.settings.input_topics;
-    const PipelineSettings& pipeline = run.settings.pipeline;
-    const bool joints = !pipeline.pitch_joints.empty() || run.settings.boom;
-    if (joints && heard.count(topics.joint_states) == 0)
-      addOnce(warnings, "no message on " + topics.joint_states + " (--joint-states-topic); topics of its type there: " +
-                            inputs.topicsOfType(typeOf<sensor_msgs::JointState>()));
-    if (pipeline.hull_motion == HullMotionSource::kImu && heard.count(topics.hull_imu) == 0)
-      addOnce(warnings, "hull_motion: imu, but no message on " + topics.hull_imu +
-                            " (--imu-topic): weight by pitch; topics of its type there: " +
-                            inputs.topicsOfType(typeOf<sensor_msgs::Imu>()));
-  }
-}
-
-/// Names in the crank's messages, in one line.
-std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
-  constexpr std::size_t kMost = 20;
-  std::set<std::string> names;
-  rosbag::View view;
-  inputs.addTo(view, rosbag::TopicQuery(topic));
-  for (const rosbag::MessageInstance& item : view) {
-    const auto message = HammerRuns::messageOf<sensor_msgs::JointState>(item);
-    for (const std::string& name : message->name) names.insert(onOneLine(name));
-    if (names.size() > kMost) break;
-  }
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list.empty() ? "none" : list;
-}
-
-/// Why there is no wrench at all.
-std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report) {
-  const std::string& topic = run.settings.input_topics.crank;
-  if (report.samples == 0) return "no message on " + topic;
-  std::string text = "no wrench from " + std::to_string(report.samples) + " messages on " + topic + ": ";
-  if (report.crank.refused[static_cast<std::size_t>(Refusal::kMissingJoint)] > 0)
-    text += "joint " + run.settings.pipeline.crank_joint +
-            " (crank_joint) is required, joints there: " + jointsOn(inputs, topic) + "; ";
-  std::string counts;
-  for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
-    if (report.crank.refused[i] == 0) continue;
-    counts +=
-        (counts.empty() ? "" : ", ") + std::string(kRefusalNames[i]) + " " + std::to_string(report.crank.refused[i]);
-  }
-  return text + (counts.empty() ? "none was refused" : counts);
 }
 
 /// Everything that one job works with once its inputs are known to be good.
@@ -200,9 +133,10 @@ void process(const Work& work, rosbag::Bag& output, const std::function<void(dou
     heard.insert(item.getTopic());
     if (hammer) hammer->take(item);
     if (grapple && item.getTopic() == work.slider_topic)
-      grapple->jointStates(*HammerRuns::messageOf<sensor_msgs::JointState>(item), item.getTime());
+      grapple->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
   }
-  warnOfPublishers(work.inputs, wanted, report.warnings);
+  warnOfPublishers(work.inputs, topics, report.warnings);
+  warnOfDefinitions(work.inputs, report.warnings);
   if (hammer) {
     hammer->end();
     warnOfMissing(work.inputs, work.runs, heard, report.warnings);
@@ -243,6 +177,8 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     const Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
     if (!runs.value) return runs.problems;
     report.notes = runs.notes;
+    report.hammer_prefix = job.output_prefix;
+    report.grapple_prefix = job.grapple_prefix;
     Work work{*inputs.value, job, *runs.value, false, ""};
     const InputTopics& first = runs.value->front().settings.input_topics;
     for (const BagRun& run : *runs.value)

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "hammer_loads/ros/loads_flow.h"
-
 namespace hammer_loads {
 
 void addOnce(std::vector<std::string>& lines, const std::string& line) {
@@ -14,23 +12,6 @@ void add(const IntakeCounts& counts, IntakeCounts& sum) {
   sum.accepted += counts.accepted;
   sum.restarts += counts.restarts;
   for (std::size_t i = 0; i < counts.refused.size(); ++i) sum.refused[i] += counts.refused[i];
-}
-
-void addWarnings(const LoadsFlow& flow, std::vector<std::string>& warnings) {
-  const Pipeline& pipeline = flow.pipeline();
-  const InputTopics& topics = flow.settings().input_topics;
-  if (pipeline.unitCheck().looksLikeDegrees())
-    addOnce(warnings, topics.crank + ": angle or speed seems to be in degrees, must be in radians");
-  if (pipeline.hullPitch().looksLikeDegrees())
-    addOnce(warnings, topics.joint_states + ": joint angles seem to be in degrees, must be in radians");
-  const bool imu_suffices = flow.needsImu() && pipeline.imuCounts().missed == 0;
-  std::string unheard;
-  for (const std::string& joint : pipeline.hullPitch().unheard()) unheard += (unheard.empty() ? "" : ", ") + joint;
-  if (!unheard.empty() && !imu_suffices)
-    addOnce(warnings, topics.joint_states + ": no angle of " + unheard + ": weight by hull_pitch_rad");
-  if (flow.needsImu() && pipeline.imuCounts().missed > 0 && pipeline.imuCounts().accepted > 0)
-    addOnce(warnings, topics.hull_imu + ": no reading at " + std::to_string(pipeline.imuCounts().missed) +
-                          " crank samples: weight by pitch there");
 }
 
 std::string textOf(const BagReport& report) {
@@ -45,12 +26,15 @@ std::string textOf(const BagReport& report) {
 
 std::string summaryOf(const BagReport& report) {
   std::string text;
-  if (report.samples > 0)
+  if (report.samples > 0) {
     text = std::to_string(report.samples) + " crank samples, " + std::to_string(report.wrenches) + " wrenches, " +
            std::to_string(report.turns) + " turns";
-  if (report.runs > 1) text += " in " + std::to_string(report.runs) + " runs";
+    if (report.runs > 1) text += " in " + std::to_string(report.runs) + " runs";
+    text += ", written under " + report.hammer_prefix;
+  }
   if (report.jaw_edges > 0)
-    text += (text.empty() ? "" : "; ") + std::to_string(report.jaw_edges) + " slider samples with jaw edges";
+    text += (text.empty() ? "" : "; ") + std::to_string(report.jaw_edges) +
+            " slider samples with jaw edges, written under " + report.grapple_prefix;
   return text;
 }
 

@@ -9,8 +9,6 @@
 
 namespace hammer_loads {
 
-class LoadsFlow;
-
 struct BagReport {
   IntakeCounts crank;         ///< of all runs
   std::uint64_t samples{};    ///< messages with crank samples
@@ -18,18 +16,16 @@ struct BagReport {
   std::uint64_t turns{};      ///< blows written
   std::uint64_t jaw_edges{};  ///< slider samples with a jaw edge
   std::uint64_t runs{};
-  std::string grapple;                ///< refusalReport of the grapple, if there was one
-  std::vector<std::string> notes;     ///< what was used, one line each
-  std::vector<std::string> warnings;  ///< what is missing or suspicious, one line each
+  std::string hammer_prefix, grapple_prefix;  ///< of the topics written
+  std::string grapple;                        ///< refusalReport of the grapple, if there was one
+  std::vector<std::string> notes;             ///< what was used, one line each
+  std::vector<std::string> warnings;          ///< what is missing or suspicious, one line each
 };
 
 /// Adds a line unless it is there already.
 void addOnce(std::vector<std::string>& lines, const std::string& line);
 
 void add(const IntakeCounts& counts, IntakeCounts& sum);
-
-/// What the pipeline's state says at the end of a run: wrong units, joints that never came.
-void addWarnings(const LoadsFlow& flow, std::vector<std::string>& warnings);
 
 /// What a user should know of the samples that gave nothing, one line each.
 std::string textOf(const BagReport& report);
