@@ -111,7 +111,8 @@ class BoomBag : public testing::Test {
   test::Recorded live(const std::string& parameters, const std::string& imu_topic = {}) const {
     const test::TemporaryFile given(parameters);
     const Settings settings = *loadFiles(configDirectory(), {kBoomFile, given.path()}, test::textOf(kUrdf)).value;
-    return test::recordedLive(path("in.bag"), settings, imu_topic);
+    const InputTopics topics{"/hammer/crank", "/joint_states", imu_topic.empty() ? "/hammer/hull_imu" : imu_topic};
+    return test::recordedLive(path("in.bag"), withInputTopics(settings, topics), imu_topic);
   }
 
   fs::path directory_;

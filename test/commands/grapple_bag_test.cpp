@@ -93,7 +93,8 @@ TEST_F(GrappleBag, TopicAndPrefixCanBeGiven) {
   const std::string in = writeBag("in.bag", "/machine/joints");
   const test::Outcome missing = run(in + " " + path("out.bag") + " " + grapple_);
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_EQ(missing.err, in + ": no topic /joint_states in it, must be there; topics: /machine/joints\n");
+  EXPECT_EQ(missing.err,
+            in + ": no topic /joint_states, is required; topics there: /machine/joints (sensor_msgs/JointState)\n");
   EXPECT_FALSE(fs::exists(path("out.bag")));
   ASSERT_EQ(
       run(in + " " + path("out.bag") + " " + grapple_ + " --joint-states-topic /machine/joints --grapple-prefix /claw")

@@ -11,7 +11,7 @@
 #include <map>
 
 #include "hammer_loads/ros/bag_processing.h"
-#include "hammer_loads/ros/loads_flow.h"
+#include "hammer_loads/ros/hammer_bridge.h"
 #include "support/csv.h"
 #include "support/session_bounds.h"
 
@@ -31,11 +31,11 @@ std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-Settings settingsWithInertia(double factor) {
+ParameterMap parametersWithInertia(double factor) {
   ParameterMap given =
       *readParameterFile(configDirectory() + "/hammer_mo100.yaml", *std::make_unique<std::vector<std::string>>());
   given["drive_inertia_kg_m2"].value = YAML::Load(std::to_string(0.6 * factor));
-  return *load(configDirectory(), given).value;
+  return given;
 }
 
 double sinceStart(const ros::Time& time) { return (time - ros::Time(kStart)).toSec(); }
@@ -101,12 +101,17 @@ class ProcessBag : public testing::Test {
   ~ProcessBag() override { fs::remove_all(directory_); }
   std::string path(const std::string& name) const { return (directory_ / name).string(); }
 
+  /// What went wrong, one line each.
   std::string process(const std::string& input, const std::string& output, double inertia_factor = 1.0) {
     BagJob job;
-    job.input = input;
+    job.inputs = {input};
     job.output = output;
-    return processBag(
-        job, settingsWithInertia(inertia_factor), [](double) {}, report_);
+    job.parameters = parametersWithInertia(inertia_factor);
+    std::string text;
+    for (const std::string& problem : processBag(
+             job, [](double) {}, report_))
+      text += (text.empty() ? "" : "\n") + problem;
+    return text;
   }
 
   fs::path directory_;

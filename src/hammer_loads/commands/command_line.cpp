@@ -19,18 +19,6 @@ std::string ruleText(double least, double most) {
   return rule;
 }
 
-/// Nothing when it cannot be read or holds nothing; one line on stderr says so.
-std::optional<std::string> textOf(const std::string& file) {
-  std::ostringstream text;
-  errno = 0;
-  std::ifstream stream(file);
-  text << stream.rdbuf();  // fails for nothing at all to read as well
-  if (stream && text) return text.str();
-  const int error = errno;
-  std::cerr << file << ": cannot be read: " << (error != 0 ? std::strerror(error) : "is empty") << '\n';
-  return std::nullopt;
-}
-
 }  // namespace
 
 void addParamsOption(CLI::App& app, std::vector<std::string>& files) {
@@ -87,10 +75,22 @@ void addUrdfOption(CLI::App& app, std::string& file) {
   app.add_option("--urdf", file, "robot description; with it the boom's loads as well")->type_name("FILE.urdf");
 }
 
-std::optional<Settings> loadOrReport(const std::vector<std::string>& files, const std::string& urdf_file) {
-  const std::optional<std::string> description = urdf_file.empty() ? std::string{} : textOf(urdf_file);
-  if (!description) return std::nullopt;
-  Checked<Settings> settings = loadFiles(configDirectory(), files, *description);
+Checked<std::string> fileText(const std::string& file) {
+  Checked<std::string> result;
+  std::ostringstream text;
+  errno = 0;
+  std::ifstream stream(file);
+  text << stream.rdbuf();  // fails for nothing at all to read as well
+  const int error = errno;
+  if (stream && text)
+    result.value = text.str();
+  else
+    result.problems.push_back(file + ": cannot be read: " + (error != 0 ? std::strerror(error) : "is empty"));
+  return result;
+}
+
+std::optional<Settings> loadOrReport(const std::vector<std::string>& files) {
+  Checked<Settings> settings = loadFiles(configDirectory(), files);
   for (const std::string& problem : settings.problems) std::cerr << problem << '\n';
   if (!settings.value) return std::nullopt;
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';

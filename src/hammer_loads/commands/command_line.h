@@ -31,8 +31,10 @@ int finishOutput();
 /// Adds `--urdf FILE`, the robot description that the boom is made from.
 void addUrdfOption(CLI::App& app, std::string& file);
 
-/// Settings from files over the shipped ones and the robot description in `urdf_file` (empty: none); every problem and
-/// note on stderr, one line each.
-std::optional<Settings> loadOrReport(const std::vector<std::string>& files, const std::string& urdf_file = {});
+/// All of a file that holds something; why not, in one line.
+Checked<std::string> fileText(const std::string& file);
+
+/// Settings from files over the shipped ones; every problem and note on stderr, one line each.
+std::optional<Settings> loadOrReport(const std::vector<std::string>& files);
 
 }  // namespace hammer_loads

@@ -1,32 +1,37 @@
-/// Writing a bag that is complete or not there at all.
+/// Writing a bag whose last byte is known to have arrived.
 #pragma once
 
 #include <ros/message_traits.h>
 #include <rosbag/bag.h>
-#include <unistd.h>
 
-#include <cstdio>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace hammer_loads {
 
-/// Removes the unfinished output unless it was given its final name.
-class PartialFile {
+/// A bag that is being written. rosbag's destructor closes the file and ends the process where that fails (full disk):
+/// a bag that was not closed well is therefore kept until the process ends.
+class BagOutput {
  public:
-  explicit PartialFile(const std::string& final_name)
-      : final_name_(final_name), name_(final_name + ".part." + std::to_string(getpid())) {}
-  PartialFile(const PartialFile&) = delete;
-  PartialFile& operator=(const PartialFile&) = delete;
-  ~PartialFile() {
-    if (!kept_) std::remove(name_.c_str());
-  }
-  const std::string& name() const { return name_; }
-  bool keep() { return kept_ = std::rename(name_.c_str(), final_name_.c_str()) == 0; }
+  BagOutput();
+  BagOutput(const BagOutput&) = delete;
+  BagOutput& operator=(const BagOutput&) = delete;
+  ~BagOutput();
+
+  /// Throws std::exception where the file cannot be written.
+  void open(const std::string& file);
+  rosbag::Bag& bag() { return *bag_; }
+  /// Throws std::exception if anything has not been written.
+  void close();
 
  private:
-  std::string final_name_, name_;
-  bool kept_{};
+  std::unique_ptr<rosbag::Bag> bag_;
 };
+
+/// Why an existing file must stay; empty: it is a bag of this package's outputs and of nothing else, as process_bag
+/// writes it. A recording of inputs is none, a node's log neither.
+std::string whyBagMustStay(const std::string& file, const std::vector<std::string>& input_topics);
 
 /// As a latched publisher's message: rosbag play keeps it for late subscribers.
 template <typename Message>

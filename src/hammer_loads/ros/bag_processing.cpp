@@ -1,125 +1,208 @@
 #include "hammer_loads/ros/bag_processing.h"
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
 #include <cerrno>
 #include <cstring>
 
 #include "hammer_loads/ros/attach.h"
+#include "hammer_loads/ros/bag_inputs.h"
+#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/bag_runs.h"
+#include "hammer_loads/ros/bag_warnings.h"
 #include "hammer_loads/ros/grapple_bag_processing.h"
 #include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
 namespace {
 
-/// What of the job the bag has input for.
-struct BagInputs {
-  bool crank{}, joints{};
+/// What is read, and as which type.
+using Wanted = std::map<std::string, std::string>;
+
+/// The hammer's bridge through the runs of a recording.
+class HammerRuns {
+ public:
+  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, rosbag::Bag& output, BagReport& report)
+      : runs_(runs), job_(job), output_(output), report_(report) {
+    begin();
+  }
+
+  void take(const rosbag::MessageInstance& item) {
+    while (next_ < runs_.size() && item.getTime() >= runs_[next_].from) {
+      end();
+      begin();
+    }
+    const InputTopics& topics = flow_->settings().input_topics;
+    const std::string& topic = item.getTopic();
+    if (topic == "/tf" || topic == "/tf_static") return transforms(item, topic == "/tf_static");
+    if (topic == topics.joint_states) {
+      joints_came_ = true;
+      flow_->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
+    }
+    if (topic == topics.crank) {
+      ++report_.samples;
+      flow_->crank(*messageOf<sensor_msgs::JointState>(item), item.getTime());
+    }
+    if (topic == topics.hull_imu && flow_->needsImu())
+      flow_->hullImu(*messageOf<sensor_msgs::Imu>(item), item.getTime());
+  }
+
+  void end() {
+    add(flow_->pipeline().counts(), report_.crank);
+    report_.wrenches += flow_->outputs().hull_wrench.sent();
+    report_.turns += flow_->outputs().blow.sent();
+    warnOfRun(*flow_, joints_came_, report_.warnings);
+    ++report_.runs;
+  }
+
+ private:
+  /// Static transforms are the same in every run.
+  void begin() {
+    joints_came_ = false;
+    flow_.emplace(runs_[next_++].settings);
+    attachToBag(flow_->outputs(), output_, job_.output_prefix, job_.pins);
+    for (const auto& [time, message] : statics_) flow_->transforms(*message, true, time);
+  }
+
+  void transforms(const rosbag::MessageInstance& item, bool is_static) {
+    if (!is_static && !flow_->needsTransforms()) return;
+    const auto message = messageOf<tf2_msgs::TFMessage>(item);
+    if (is_static) statics_.emplace_back(item.getTime(), message);
+    flow_->transforms(*message, is_static, item.getTime());
+  }
+
+  const std::vector<BagRun>& runs_;
+  const BagJob& job_;
+  rosbag::Bag& output_;
+  BagReport& report_;
+  std::size_t next_{};
+  bool joints_came_{};  ///< in this run
+  std::optional<HammerBridge> flow_;
+  std::vector<std::pair<ros::Time, tf2_msgs::TFMessage::ConstPtr>> statics_;
 };
 
-std::string checkTopics(rosbag::Bag& bag, const BagJob& job, BagInputs& inputs) {
-  rosbag::View all(bag);
-  std::string topics;
-  for (const rosbag::ConnectionInfo* connection : all.getConnections()) {
-    const bool wanted = connection->topic == job.crank_topic || connection->topic == job.joint_topic;
-    const char* type = ros::message_traits::datatype<sensor_msgs::JointState>();
-    if (wanted && connection->datatype != type)
-      return connection->topic + " is of type " + connection->datatype + ", must be " + type;
-    inputs.crank = inputs.crank || connection->topic == job.crank_topic;
-    inputs.joints = inputs.joints || connection->topic == job.joint_topic;
-    topics += " " + connection->topic;
+Wanted wantedTopics(const std::vector<BagRun>& runs, bool hammer, const std::string& slider_topic) {
+  Wanted wanted;
+  if (!slider_topic.empty()) wanted[slider_topic] = typeOf<sensor_msgs::JointState>();
+  if (!hammer) return wanted;
+  for (const BagRun& run : runs) {
+    const InputTopics& topics = run.settings.input_topics;
+    if (run.settings.pipeline.hull_motion == HullMotionSource::kImu)
+      wanted[topics.hull_imu] = typeOf<sensor_msgs::Imu>();
+    wanted[topics.crank] = wanted[topics.joint_states] = typeOf<sensor_msgs::JointState>();
+    if (!run.settings.pipeline.boom_wrench_links.empty())
+      wanted["/tf"] = wanted["/tf_static"] = typeOf<tf2_msgs::TFMessage>();
   }
-  if (job.grapple ? inputs.joints : inputs.crank) return {};
-  return "no topic " + (job.grapple ? job.joint_topic : job.crank_topic) +
-         " in it, must be there; topics:" + (topics.empty() ? " none" : topics);
+  return wanted;
 }
 
-/// Null flows have no part in it.
-void process(rosbag::Bag& input, const BagJob& job, HammerBridge* hammer, GrappleFlow* grapple,
-             const std::function<void(double)>& progress) {
-  std::vector<std::string> topics{job.crank_topic, job.joint_topic};
-  if (hammer && hammer->needsTransforms()) topics.insert(topics.end(), {"/tf", "/tf_static"});
-  if (hammer && hammer->needsImu()) topics.push_back(job.imu_topic);
-  rosbag::View view(input, rosbag::TopicQuery(topics));
+/// Why a wanted topic cannot be read, or cannot be what is meant; empty: none of that.
+std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
+  for (const auto& [name, type] : wanted) {
+    const auto found = inputs.topics().find(name);
+    if (found == inputs.topics().end()) continue;
+    for (const std::string& actual : found->second.types) {
+      if (actual != type) return name + " is of type " + onOneLine(actual) + ", must be " + type;
+    }
+  }
+  return {};
+}
+
+/// Everything that one job works with once its inputs are known to be good.
+struct Work {
+  const BagInputs& inputs;
+  const BagJob& job;
+  const std::vector<BagRun>& runs;
+  bool hammer{};             ///< the crank's topic is there
+  std::string slider_topic;  ///< empty: no grapple
+};
+
+void process(const Work& work, rosbag::Bag& output, const std::function<void(double)>& progress, BagReport& report) {
+  std::optional<HammerRuns> hammer;
+  std::optional<GrappleFlow> grapple;
+  if (work.hammer) hammer.emplace(work.runs, work.job, output, report);
+  if (work.job.grapple)
+    attachToBag(grapple.emplace(*work.job.grapple).outputs(), output, work.job.grapple_prefix, false);
+
+  const Wanted wanted = wantedTopics(work.runs, work.hammer, work.slider_topic);
+  std::vector<std::string> topics;
+  for (const auto& [name, type] : wanted) topics.push_back(name);
+  std::set<std::string> heard;
+  rosbag::View view;
+  work.inputs.addTo(view, rosbag::TopicQuery(topics));
   const double count = view.size();
   double done = 0.0;
   for (const rosbag::MessageInstance& item : view) {
     progress(++done / count);
-    if (const auto transforms = item.instantiate<tf2_msgs::TFMessage>()) {
-      hammer->transforms(*transforms, item.getTopic() == "/tf_static", item.getTime());
-      continue;
-    }
-    if (const auto imu = item.instantiate<sensor_msgs::Imu>()) {
-      hammer->hullImu(*imu, item.getTime());
-      continue;
-    }
-    const auto message = item.instantiate<sensor_msgs::JointState>();
-    if (!message) throw rosbag::BagFormatException("a message on " + item.getTopic() + " cannot be read");
-    // One topic may carry both.
-    const bool joints = item.getTopic() == job.joint_topic;
-    if (hammer && joints) hammer->jointStates(*message, item.getTime());
-    if (hammer && item.getTopic() == job.crank_topic) hammer->crank(*message, item.getTime());
-    if (grapple && joints) grapple->jointStates(*message, item.getTime());
+    heard.insert(item.getTopic());
+    if (hammer) hammer->take(item);
+    if (grapple && item.getTopic() == work.slider_topic)
+      grapple->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
   }
+  warnOfPublishers(work.inputs, topics, report.warnings);
+  warnOfDefinitions(work.inputs, report.warnings);
+  if (hammer) {
+    hammer->end();
+    warnOfMissing(work.inputs, work.runs, heard, report.warnings);
+  }
+  if (!grapple) return;
+  report.grapple = refusalReport(*grapple);
+  report.jaw_edges = grapple->accepted();
 }
 
-BagReport write(rosbag::Bag& input, const BagInputs& inputs, rosbag::Bag& output, const BagJob& job,
-                const Settings& settings, const std::function<void(double)>& progress) {
-  std::optional<HammerBridge> hammer;
-  std::optional<GrappleFlow> grapple;
-  if (inputs.crank) attachToBag(hammer.emplace(settings).outputs(), output, job.output_prefix, job.pins);
-  if (job.grapple) attachToBag(grapple.emplace(*job.grapple).outputs(), output, job.grapple_prefix, false);
-  process(input, job, hammer ? &*hammer : nullptr, grapple ? &*grapple : nullptr, progress);
-  BagReport report;
-  if (hammer) report.crank = hammer->pipeline().counts();
-  if (grapple) report.grapple = refusalReport(*grapple);
-  return report;
+/// Into the output's file; what went wrong in one line, empty if nothing did.
+std::string write(const Work& work, const std::function<void(double)>& progress, BagReport& report) {
+  BagOutput output;
+  errno = 0;
+  try {
+    output.open(work.job.output);
+    process(work, output.bag(), progress, report);
+    output.close();
+    return {};
+  } catch (const rosbag::BagFormatException&) {
+    throw;  // of the input
+  } catch (const rosbag::BagException& error) {
+    if (std::strstr(error.what(), "reading") != nullptr) throw;
+    return "cannot be written: " + onOneLine(errno != 0 ? std::strerror(errno) : error.what());
+  }
 }
 
 }  // namespace
 
-std::string processBag(const BagJob& job, const Settings& settings, const std::function<void(double)>& progress,
-                       BagReport& report) {
+std::vector<std::string> processBag(const BagJob& job, const std::function<void(double)>& progress, BagReport& report) {
   if (job.grapple && job.grapple_prefix == job.output_prefix)
-    return "--grapple-prefix: " + job.grapple_prefix + ", must differ from --output-prefix";
-  rosbag::Bag input;
-  BagInputs inputs;
+    return {"--grapple-prefix: " + job.grapple_prefix + ", must differ from --output-prefix"};
+  const Checked<BagInputs> inputs = BagInputs::open(job.inputs);
+  if (!inputs.value) return inputs.problems;
+  const std::string& names = inputs.value->names();
   try {
-    input.open(job.input, rosbag::bagmode::Read);
-    const std::string problem = checkTopics(input, job, inputs);
-    if (!problem.empty()) return job.input + ": " + problem;
+    const Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
+    if (!runs.value) return runs.problems;
+    report.notes = runs.notes;
+    report.hammer_prefix = job.output_prefix;
+    report.grapple_prefix = job.grapple_prefix;
+    Work work{*inputs.value, job, *runs.value, false, ""};
+    const InputTopics& first = runs.value->front().settings.input_topics;
+    for (const BagRun& run : *runs.value)
+      work.hammer = work.hammer || inputs.value->has(run.settings.input_topics.crank);
+    if (!work.hammer) report.notes = report.warnings = {};
+    if (job.grapple) work.slider_topic = first.joint_states;
+    const std::string& required = job.grapple ? first.joint_states : first.crank;
+    if (job.grapple ? !inputs.value->has(required) : !work.hammer)
+      return {names + ": no topic " + required + ", is required; topics there: " + inputs.value->topicList()};
+    const std::string problem = typeProblem(*inputs.value, wantedTopics(work.runs, work.hammer, work.slider_topic));
+    if (!problem.empty()) return {names + ": " + problem};
+    const std::string failure = write(work, progress, report);
+    if (!failure.empty()) return {job.output + ": " + failure};
+    if (report.wrenches == 0 && report.jaw_edges == 0)
+      return {names + ": " +
+              (work.hammer ? noWrench(*inputs.value, runs.value->back(), report)
+                           : "no jaw edge; " + onOneLine(report.grapple))};
+    if (work.hammer && report.wrenches == 0)
+      addOnce(report.warnings, noWrench(*inputs.value, runs.value->back(), report));
+    return {};
   } catch (const std::exception& error) {
-    return job.input + ": cannot be read as a bag: " + error.what();
+    return {names + ": cannot be read: " + onOneLine(error.what())};
   }
-
-  PartialFile partial(job.output);
-  rosbag::Bag output;
-  try {
-    output.open(partial.name(), rosbag::bagmode::Write);
-    output.setCompression(rosbag::compression::LZ4);
-  } catch (const std::exception& error) {
-    return job.output + ": cannot be written: " + error.what();
-  }
-
-  try {
-    report = write(input, inputs, output, job, settings, progress);
-    output.close();
-  } catch (const std::exception& error) {
-    return job.input + " to " + job.output + ": " + error.what();
-  }
-  if (!partial.keep()) return job.output + ": cannot be given its name: " + std::strerror(errno);
-  return {};
-}
-
-std::string textOf(const BagReport& report) {
-  std::string text;
-  for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
-    if (report.crank.refused[i] == 0) continue;
-    text += std::string("crank samples without a wrench, ") + kRefusalNames[i] + ": " +
-            std::to_string(report.crank.refused[i]) + "\n";
-  }
-  return text + report.grapple;
 }
 
 }  // namespace hammer_loads

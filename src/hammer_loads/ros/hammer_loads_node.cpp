@@ -168,7 +168,9 @@ std::unique_ptr<HammerLoadsNode> makeHammerNode(const ros::NodeHandle& node, con
   if (!settings.value) return nullptr;
   auto log = makeNodeLog(settings.value->log, private_node.getNamespace(), problems);
   if (!log) return nullptr;
-  return std::make_unique<HammerLoadsNode>(node, private_node, *settings.value, std::move(log));
+  const InputTopics topics{node.resolveName("crank"), node.resolveName("joint_states"), node.resolveName("hull_imu")};
+  return std::make_unique<HammerLoadsNode>(node, private_node, withInputTopics(*settings.value, topics),
+                                           std::move(log));
 }
 
 }  // namespace hammer_loads

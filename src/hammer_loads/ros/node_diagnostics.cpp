@@ -50,6 +50,8 @@ void NodeDiagnostics::report() {
 
 std::vector<Warning> NodeDiagnostics::warnings() const {
   std::vector<Warning> warnings = warningsOf(bridge_.pipeline());
+  if (!bridge_.settings().hammer_given)
+    warnings.push_back({"hammer", "no hammer file was given: the masses and lengths of the MO-100 are used", true});
   for (const ros::Subscriber* input : inputs_) {
     if (input->getNumPublishers() > 1)
       warnings.push_back(

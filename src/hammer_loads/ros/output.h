@@ -3,6 +3,7 @@
 
 #include <ros/time.h>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -31,14 +32,17 @@ class Output {
   const std::string& name() const { return name_; }
   Delivery delivery() const { return delivery_; }
   void attach(Deliver deliver) { deliver_ = std::move(deliver); }
-  void send(const ros::Time& record_time) const {
+  void send(const ros::Time& record_time) {
+    ++sent_;
     if (deliver_) deliver_(message, record_time);
   }
+  std::uint64_t sent() const { return sent_; }  ///< messages since the start
 
  private:
   std::string name_;
   Delivery delivery_;
   Deliver deliver_;
+  std::uint64_t sent_{};
 };
 
 }  // namespace hammer_loads

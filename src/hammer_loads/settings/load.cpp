@@ -47,7 +47,7 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
 
 Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description, bool hammer_given) {
   Checked<Settings> result;
-  if (!hammer_given) result.notes.push_back("hammer: no file was given, the masses of the shipped MO-100 are used");
+  const InputTopics topics = takeInputTopics(parameters, result.problems);
   const bool boom_file = hasBoomKey(parameters);
   ParameterReader reader(std::move(parameters));
   const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes);
@@ -57,15 +57,16 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   if (pipeline.hull_motion == HullMotionSource::kModel && !boom_file)
     reader.addProblem("hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring");
   reader.reportUnknownKeys();
-  result.problems = reader.problems();
+  result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());
   if (!mechanism || !result.problems.empty()) return result;
   if (pipeline.choose_level) {
     const LevelChoice choice = chooseLevel(*mechanism, pipeline.tolerance, pipeline.turn_rate, pipeline.gravity);
     pipeline.level = choice.level;
     result.notes.push_back(describe(choice));
   }
-  result.value =
-      Settings{*mechanism, pipeline, log, std::move(boom), hammer_given, robot_description, reader.yaml(), {}};
+  result.value = Settings{*mechanism, pipeline,          log,
+                          std::move(boom), hammer_given, robot_description,
+                          reader.yaml() + yamlOf(topics), {}, topics};
   return result;
 }
 
@@ -108,6 +109,13 @@ Settings withChanges(const Settings& settings, const std::vector<std::pair<std::
   Checked<Settings> changed = settingsFrom(std::move(parameters), settings.robot_description, settings.hammer_given);
   changed.value.value().notes = std::move(changed.notes);
   return *std::move(changed.value);
+}
+
+Settings withInputTopics(Settings settings, const InputTopics& topics) {
+  settings.yaml.erase(settings.yaml.size() - yamlOf(settings.input_topics).size());
+  settings.yaml += yamlOf(topics);
+  settings.input_topics = topics;
+  return settings;
 }
 
 std::string configDirectory() {

@@ -9,6 +9,7 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/log/log_settings.h"
+#include "hammer_loads/settings/input_topics.h"
 #include "hammer_loads/settings/parameter_map.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 #include "hammer_loads/util/checked.h"
@@ -25,6 +26,7 @@ struct Settings {
   std::string yaml;                ///< every parameter in force; loading it alone with the same robot description
                                    ///< gives the same settings
   std::vector<std::string> notes;  ///< accepted peculiarities, one line each
+  InputTopics input_topics;        ///< at the end of `yaml` as well
 };
 
 /// Settings from what was given over what is shipped in `config_directory`, or every problem at once, one line each.
@@ -43,6 +45,9 @@ Checked<Settings> loadFiles(const std::string& config_directory, const std::vect
 
 /// Settings in force with some numbers changed. The keys must be among those in force and the values allowed.
 Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
+
+/// The same settings, which say from which topics the input comes.
+Settings withInputTopics(Settings settings, const InputTopics& topics);
 
 /// Where the shipped files are: beside the installed program or library, else in the source tree it was built from.
 std::string configDirectory();

@@ -1,0 +1,100 @@
+#include "hammer_loads/ros/bag_inputs.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+bool beginsAsBag(const std::string& file) {
+  constexpr char kMagic[] = "#ROSBAG V";
+  char read[sizeof kMagic - 1]{};
+  std::ifstream(file, std::ios::binary).read(read, sizeof read);
+  return std::memcmp(read, kMagic, sizeof read) == 0;
+}
+
+/// Why it cannot be opened; empty if it was.
+std::string openProblem(rosbag::Bag& bag, const std::string& file) {
+  struct stat found {};
+  if (stat(file.c_str(), &found) != 0) return file + ": cannot be read: " + std::strerror(errno);
+  if (!S_ISREG(found.st_mode)) return file + ": is no regular file, must be a bag";
+  try {
+    bag.open(file, rosbag::bagmode::Read);
+    return {};
+  } catch (const rosbag::BagUnindexedException&) {
+    return file + ": the bag has no index, its recording did not end properly; `rosbag reindex " + file + "` makes one";
+  } catch (const std::exception& error) {
+    const std::string help = beginsAsBag(file) ? "; it is cut or damaged, `rosbag reindex " + file + "` may help" : "";
+    return file + ": cannot be read as a bag: " + onOneLine(error.what()) + help;
+  }
+}
+
+/// Whether a file was opened before, by whatever name.
+bool isAmong(const std::vector<std::string>& files, std::size_t count, const std::string& file) {
+  struct stat one {
+  }, other{};
+  if (stat(file.c_str(), &one) != 0) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (stat(files[i].c_str(), &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Checked<BagInputs> BagInputs::open(const std::vector<std::string>& files) {
+  Checked<BagInputs> result;
+  BagInputs inputs;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    auto bag = std::make_unique<rosbag::Bag>();
+    const std::string problem =
+        isAmong(files, i, files[i]) ? files[i] + ": given twice, must be given once" : openProblem(*bag, files[i]);
+    if (!problem.empty()) {
+      result.problems.push_back(problem);
+      continue;
+    }
+    inputs.addTopics(*bag);
+    inputs.bags_.push_back(std::move(bag));
+    inputs.names_ += (i == 0 ? "" : ", ") + files[i];
+  }
+  if (result.problems.empty()) result.value.emplace(std::move(inputs));
+  return result;
+}
+
+void BagInputs::addTopics(const rosbag::Bag& bag) {
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+    BagTopic& topic = topics_[connection->topic];
+    topic.types.insert(connection->datatype);
+    topic.definitions.insert(connection->md5sum);
+    if (!connection->header) continue;
+    const auto caller = connection->header->find("callerid");
+    if (caller != connection->header->end() && !caller->second.empty()) topic.publishers.insert(caller->second);
+  }
+}
+
+std::string BagInputs::topicList() const {
+  std::string list;
+  for (const auto& [name, topic] : topics_)
+    list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + onOneLine(*topic.types.begin()) + ")";
+  return list.empty() ? "none" : list;
+}
+
+std::string BagInputs::topicsOfType(const std::string& type) const {
+  std::string list;
+  for (const auto& [name, topic] : topics_) {
+    if (topic.types.count(type) != 0) list += (list.empty() ? "" : ", ") + onOneLine(name);
+  }
+  return list.empty() ? "none" : list;
+}
+
+void BagInputs::addTo(rosbag::View& view, const boost::function<bool(const rosbag::ConnectionInfo*)>& query) const {
+  for (const auto& bag : bags_) view.addQuery(*bag, query);
+}
+
+}  // namespace hammer_loads

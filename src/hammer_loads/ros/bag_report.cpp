@@ -1,0 +1,43 @@
+#include "hammer_loads/ros/bag_report.h"
+
+#include <algorithm>
+
+namespace hammer_loads {
+
+void addOnce(std::vector<std::string>& lines, const std::string& line) {
+  if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+}
+
+void add(const SampleCounts& counts, SampleCounts& sum) {
+  sum.accepted += counts.accepted;
+  sum.restarts += counts.restarts;
+  sum.blows += counts.blows;
+  sum.backward_passes += counts.backward_passes;
+  for (std::size_t i = 0; i < counts.refused.size(); ++i) sum.refused[i] += counts.refused[i];
+}
+
+std::string textOf(const BagReport& report) {
+  std::string text;
+  for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
+    if (report.crank.refused[i] == 0) continue;
+    text += std::string("crank samples without a wrench, ") + kRefusalNames[i] + ": " +
+            std::to_string(report.crank.refused[i]) + "\n";
+  }
+  return text + report.grapple;
+}
+
+std::string summaryOf(const BagReport& report) {
+  std::string text;
+  if (report.samples > 0) {
+    text = std::to_string(report.samples) + " crank samples, " + std::to_string(report.wrenches) + " wrenches, " +
+           std::to_string(report.turns) + " turns";
+    if (report.runs > 1) text += " in " + std::to_string(report.runs) + " runs";
+    text += ", written under " + report.hammer_prefix;
+  }
+  if (report.jaw_edges > 0)
+    text += (text.empty() ? "" : "; ") + std::to_string(report.jaw_edges) +
+            " slider samples with jaw edges, written under " + report.grapple_prefix;
+  return text;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,36 @@
+/// What process_bag says at its end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/pipeline/pipeline.h"
+
+namespace hammer_loads {
+
+struct BagReport {
+  SampleCounts crank;         ///< of all runs
+  std::uint64_t samples{};    ///< messages with crank samples
+  std::uint64_t wrenches{};   ///< written
+  std::uint64_t turns{};      ///< blows written
+  std::uint64_t jaw_edges{};  ///< slider samples with a jaw edge
+  std::uint64_t runs{};
+  std::string hammer_prefix, grapple_prefix;  ///< of the topics written
+  std::string grapple;                        ///< refusalReport of the grapple, if there was one
+  std::vector<std::string> notes;             ///< what was used, one line each
+  std::vector<std::string> warnings;          ///< what is missing or suspicious, one line each
+};
+
+/// Adds a line unless it is there already.
+void addOnce(std::vector<std::string>& lines, const std::string& line);
+
+void add(const SampleCounts& counts, SampleCounts& sum);
+
+/// What a user should know of the samples that gave nothing, one line each.
+std::string textOf(const BagReport& report);
+
+/// One line: samples, turns, what was written.
+std::string summaryOf(const BagReport& report);
+
+}  // namespace hammer_loads

@@ -1,0 +1,136 @@
+#include "hammer_loads/ros/bag_runs.h"
+
+#include <hammer_loads/RunInfo.h>
+
+#include <algorithm>
+
+#include "hammer_loads/settings/hammer_parameters.h"
+#include "hammer_loads/settings/recorded_settings.h"
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+struct RecordedRun {
+  ros::Time time;  ///< of its record
+  RunInfo info;
+};
+
+struct RunInfos {
+  std::set<std::string> topics;  ///< of hammers; more than one: several nodes
+  std::vector<RecordedRun> runs;
+};
+
+bool isOfHammer(const RunInfo& info) {
+  std::vector<std::string> ignored;
+  const std::optional<ParameterMap> parameters = recordedParameters(info.parameters_yaml, ignored);
+  return parameters && hasHammerKey(*parameters);
+}
+
+/// Each bag of a recording repeats the one in force.
+bool isRepeated(const std::vector<RecordedRun>& runs, const RunInfo& info) {
+  return !runs.empty() && runs.back().info.header.stamp == info.header.stamp &&
+         runs.back().info.parameters_yaml == info.parameters_yaml &&
+         runs.back().info.robot_description == info.robot_description;
+}
+
+RunInfos readRunInfos(const BagInputs& inputs, std::vector<std::string>& warnings) {
+  RunInfos found;
+  rosbag::View view;
+  inputs.addTo(view, rosbag::TypeQuery(ros::message_traits::datatype<RunInfo>()));
+  for (const rosbag::MessageInstance& item : view) {
+    const auto info = item.instantiate<RunInfo>();
+    if (!info) {
+      addOnce(warnings, item.getTopic() + ": hammer_loads/RunInfo of another definition (MD5 " + item.getMD5Sum() +
+                            ", here " + ros::message_traits::md5sum<RunInfo>() + "), is not used");
+      continue;
+    }
+    if (!isOfHammer(*info)) continue;
+    found.topics.insert(item.getTopic());
+    if (!isRepeated(found.runs, *info)) found.runs.push_back({item.getTime(), *info});
+  }
+  return found;
+}
+
+std::string either(const std::string& first, const std::string& second, const std::string& third) {
+  return !first.empty() ? first : !second.empty() ? second : third;
+}
+
+/// The job's names go over those that the parameters give.
+Settings withTopics(Settings settings, const InputTopics& given) {
+  const InputTopics& known = settings.input_topics;
+  const InputTopics topics{either(given.crank, known.crank, kDefaultTopics.crank),
+                           either(given.joint_states, known.joint_states, kDefaultTopics.joint_states),
+                           either(given.hull_imu, known.hull_imu, kDefaultTopics.hull_imu)};
+  return withInputTopics(std::move(settings), topics);
+}
+
+Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, std::vector<std::string>& warnings) {
+  Checked<std::vector<BagRun>> result;
+  const ParameterMap parameters = job.parameters.value_or(ParameterMap{});
+  std::string description = job.robot_description.value_or("");
+  if (!job.robot_description && infos.topics.size() == 1) {
+    description = infos.runs.front().info.robot_description;
+    if (!description.empty())
+      result.notes.push_back("robot_description of " + *infos.topics.begin() + " is used; --urdf replaces it");
+  }
+  Checked<Settings> settings = load(configDirectory(), parameters, description);
+  result.problems = std::move(settings.problems);
+  if (!settings.value) return result;
+  if (!hasHammerKey(parameters))
+    addOnce(warnings, "no hammer file was given (--params): the masses and lengths of the MO-100 are used");
+  result.notes.insert(result.notes.end(), settings.value->notes.begin(), settings.value->notes.end());
+  result.value.emplace().push_back({ros::Time(), withTopics(*std::move(settings.value), job.topics)});
+  return result;
+}
+
+/// First record time of an input of the run; nothing if there is none.
+std::optional<ros::Time> firstInput(const BagInputs& inputs, const InputTopics& topics) {
+  rosbag::View view;
+  inputs.addTo(view, rosbag::TopicQuery({topics.crank, topics.joint_states, topics.hull_imu}));
+  if (view.size() == 0) return std::nullopt;
+  return view.getBeginTime();
+}
+
+Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob& job, const RunInfos& infos) {
+  Checked<std::vector<BagRun>> result;
+  std::vector<BagRun> runs;
+  const std::string& topic = *infos.topics.begin();
+  for (const auto& [time, info] : infos.runs) {
+    Checked<Settings> settings =
+        loadRecorded(configDirectory(), info.parameters_yaml, job.robot_description.value_or(info.robot_description));
+    for (const std::string& problem : settings.problems) addOnce(result.problems, topic + ": " + problem);
+    if (!settings.value) continue;
+    addOnce(result.notes, "parameters of " + topic + " are used (version " + onOneLine(info.version) + ", revision " +
+                              onOneLine(info.revision) + "); --params FILE.yaml replaces them");
+    for (const std::string& note : settings.notes) addOnce(result.notes, topic + ": " + note);
+    for (const std::string& note : settings.value->notes) addOnce(result.notes, note);
+    runs.push_back({time, withTopics(*std::move(settings.value), job.topics)});
+  }
+  if (!result.problems.empty()) {
+    result.problems.push_back(topic + ": its parameters cannot be used, --params FILE.yaml must give others");
+    return result;
+  }
+  // A node that ran already when the recording began: its run goes on. Otherwise what came before it is a run as well.
+  const std::optional<ros::Time> first = firstInput(inputs, runs.front().settings.input_topics);
+  if (first && infos.runs.front().info.header.stamp > *first) runs.insert(runs.begin(), runs.front());
+  runs.front().from = ros::Time();
+  result.value = std::move(runs);
+  return result;
+}
+
+}  // namespace
+
+Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<std::string>& warnings) {
+  const RunInfos infos = readRunInfos(inputs, warnings);
+  if (job.parameters || infos.runs.empty()) return runOfJob(job, infos, warnings);
+  if (infos.topics.size() == 1) return recordedRuns(inputs, job, infos);
+  Checked<std::vector<BagRun>> result;
+  std::string topics;
+  for (const std::string& topic : infos.topics) topics += (topics.empty() ? "" : ", ") + topic;
+  result.problems.push_back(inputs.names() + ": run_info of several hammers (" + topics +
+                            "), --params FILE.yaml must say which parameters apply");
+  return result;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,25 @@
+/// The runs of a recording: from when on which parameters apply.
+#pragma once
+
+#include <ros/time.h>
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/ros/bag_inputs.h"
+#include "hammer_loads/ros/bag_processing.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+
+/// What comes at this record time or later, until the next run begins, is computed from a state that knows nothing.
+struct BagRun {
+  ros::Time from;
+  Settings settings;  ///< with the names of the topics read
+};
+
+/// One run with the job's parameters, or one for each run_info of a hammer_loads node: from its record time on, the
+/// first one also for what comes before it. Notes say what is used; what makes it doubtful is added to `warnings`.
+Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<std::string>& warnings);
+
+}  // namespace hammer_loads

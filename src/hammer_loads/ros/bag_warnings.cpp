@@ -1,0 +1,111 @@
+#include "hammer_loads/ros/bag_warnings.h"
+
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <cstring>
+
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+template <typename Message>
+std::pair<const std::string, std::string> definition() {
+  return {typeOf<Message>(), ros::message_traits::md5sum<Message>()};
+}
+
+/// MD5 sum of each type in this version.
+const std::map<std::string, std::string>& definitions() {
+  static const std::map<std::string, std::string> known{definition<Blow>(),      definition<BoomVibration>(),
+                                                        definition<HullLoads>(), definition<JointLoads>(),
+                                                        definition<PinForces>(), definition<Pulse>()};
+  return known;
+}
+
+/// Names in the crank's messages, in one line.
+std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
+  constexpr std::size_t kMost = 20;
+  std::set<std::string> names;
+  rosbag::View view;
+  inputs.addTo(view, rosbag::TopicQuery(topic));
+  for (const rosbag::MessageInstance& item : view) {
+    const auto message = messageOf<sensor_msgs::JointState>(item);
+    for (const std::string& name : message->name) names.insert(onOneLine(name));
+    if (names.size() > kMost) break;
+  }
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list.empty() ? "none" : list;
+}
+
+}  // namespace
+
+void warnOfRun(const HammerBridge& bridge, bool joints_came, std::vector<std::string>& warnings) {
+  for (const Warning& warning : warningsOf(bridge.pipeline())) {
+    const bool of_joints = std::strcmp(warning.key, "pitch joints") == 0;
+    if (!of_joints || joints_came) addOnce(warnings, warning.text);  // else the whole topic is missing: warnOfMissing
+  }
+}
+
+void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
+                      std::vector<std::string>& warnings) {
+  for (const std::string& name : topics) {
+    const auto found = inputs.topics().find(name);
+    if (found == inputs.topics().end() || found->second.publishers.size() < 2) continue;
+    if (found->second.types.count(typeOf<tf2_msgs::TFMessage>()) != 0) continue;  // as usual there
+    std::string publishers;
+    for (const std::string& node : found->second.publishers) publishers += (publishers.empty() ? "" : ", ") + node;
+    addOnce(warnings, name + ": several publishers: " + publishers);
+  }
+}
+
+void warnOfDefinitions(const BagInputs& inputs, std::vector<std::string>& warnings) {
+  std::string list;
+  for (const auto& [name, topic] : inputs.topics()) {
+    const auto known = definitions().find(*topic.types.begin());
+    if (known == definitions().end() || topic.definitions == std::set<std::string>{known->second}) continue;
+    list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + known->first + ")";
+  }
+  if (!list.empty())
+    addOnce(warnings, "messages of another version of this package: " + list + "; `rosbag fix` makes them readable");
+}
+
+/// Topics that are wanted and did not come.
+void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
+                   std::vector<std::string>& warnings) {
+  for (const BagRun& run : runs) {
+    const InputTopics& topics = run.settings.input_topics;
+    const PipelineSettings& pipeline = run.settings.pipeline;
+    const bool joints = !pipeline.pitch_joints.empty() || run.settings.boom;
+    if (joints && heard.count(topics.joint_states) == 0)
+      addOnce(warnings, "no message on " + topics.joint_states + " (--joint-states-topic); topics of its type there: " +
+                            inputs.topicsOfType(typeOf<sensor_msgs::JointState>()));
+    if (pipeline.hull_motion == HullMotionSource::kImu && heard.count(topics.hull_imu) == 0)
+      addOnce(warnings, "hull_motion: imu, but no message on " + topics.hull_imu +
+                            " (--imu-topic): weight by pitch; topics of its type there: " +
+                            inputs.topicsOfType(typeOf<sensor_msgs::Imu>()));
+  }
+}
+
+/// Why there is no wrench at all.
+std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report) {
+  const std::string& topic = run.settings.input_topics.crank;
+  if (report.samples == 0) return "no message on " + topic;
+  std::string text = "no wrench from " + std::to_string(report.samples) + " messages on " + topic + ": ";
+  if (report.crank.refused[static_cast<std::size_t>(Refusal::kMissingJoint)] > 0)
+    text += "joint " + run.settings.pipeline.crank_joint +
+            " (crank_joint) is required, joints there: " + jointsOn(inputs, topic) + "; ";
+  std::string counts;
+  for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
+    if (report.crank.refused[i] == 0) continue;
+    counts +=
+        (counts.empty() ? "" : ", ") + std::string(kRefusalNames[i]) + " " + std::to_string(report.crank.refused[i]);
+  }
+  return text + (counts.empty() ? "none was refused" : counts);
+}
+
+}  // namespace hammer_loads

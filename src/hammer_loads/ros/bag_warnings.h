@@ -1,0 +1,34 @@
+/// What of a recording is missing or suspicious. Each function adds its lines to `warnings`, none twice.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/ros/bag_inputs.h"
+#include "hammer_loads/ros/bag_report.h"
+#include "hammer_loads/ros/bag_runs.h"
+
+namespace hammer_loads {
+
+class HammerBridge;
+
+/// What the pipeline's state says at the end of a run: wrong units, joints that never came.
+/// joints_came: there were messages on their topic.
+void warnOfRun(const HammerBridge& bridge, bool joints_came, std::vector<std::string>& warnings);
+
+/// Several nodes on one of these topics. Transforms come from several as a rule.
+void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
+                      std::vector<std::string>& warnings);
+
+/// Messages of another version of this package: their definition differs.
+void warnOfDefinitions(const BagInputs& inputs, std::vector<std::string>& warnings);
+
+/// Topics that the runs want and that are not among those heard.
+void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
+                   std::vector<std::string>& warnings);
+
+/// Why a run gave no wrench at all, in one line.
+std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report);
+
+}  // namespace hammer_loads

@@ -1,0 +1,54 @@
+#include "hammer_loads/settings/recorded_settings.h"
+
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr char kUnknownKey[] = ": unknown key";
+
+/// Removes the keys that the problems call unknown; whether there were any.
+bool dropUnknown(const std::vector<std::string>& problems, ParameterMap& parameters, std::vector<std::string>& notes) {
+  bool dropped = false;
+  for (const std::string& problem : problems) {
+    const std::size_t end = problem.find(kUnknownKey);
+    const auto found = end == std::string::npos ? parameters.end() : parameters.find(problem.substr(0, end));
+    if (found == parameters.end()) continue;
+    notes.push_back(found->first + ": " + describe(found->second.value) + ", not known to this version, is ignored");
+    parameters.erase(found);
+    dropped = true;
+  }
+  return dropped;
+}
+
+}  // namespace
+
+std::optional<ParameterMap> recordedParameters(const std::string& parameters_yaml, std::vector<std::string>& problems) {
+  try {
+    return parameterMap(YAML::Load(parameters_yaml), "run_info", problems);
+  } catch (const YAML::Exception& error) {
+    problems.push_back("run_info: not valid YAML: " + onOneLine(error.msg));
+    return std::nullopt;
+  }
+}
+
+Checked<Settings> loadRecorded(const std::string& config_directory, const std::string& parameters_yaml,
+                               const std::string& robot_description) {
+  Checked<Settings> result;
+  std::optional<ParameterMap> given = recordedParameters(parameters_yaml, result.problems);
+  if (!given || !result.problems.empty()) return result;
+  result = load(config_directory, *given, robot_description);
+  std::vector<std::string> notes;
+  if (dropUnknown(result.problems, *given, notes)) result = load(config_directory, *given, robot_description);
+  if (!result.value) return result;
+  std::vector<std::string> ignored;
+  const std::optional<ParameterMap> in_force = recordedParameters(result.value->yaml, ignored);
+  for (const auto& [key, parameter] : in_force.value_or(ParameterMap{})) {
+    if (given->count(key) == 0)
+      notes.push_back(key + ": not recorded, the shipped value is used: " + describe(parameter.value));
+  }
+  result.notes = std::move(notes);
+  return result;
+}
+
+}  // namespace hammer_loads

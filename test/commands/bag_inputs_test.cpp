@@ -1,0 +1,134 @@
+/// What process_bag reads: splits as one run, and what it says of bags that it cannot use.
+#include "commands/bag_files.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::contentOfBag;
+using test::kSession;
+
+class BagInputFiles : public test::BagFiles {
+ protected:
+  /// The session in so many bags, cut between messages.
+  std::vector<std::string> split(int count) const {
+    constexpr int kMessages = 4479;
+    std::vector<std::string> files;
+    std::vector<std::unique_ptr<rosbag::Bag>> bags;
+    for (int i = 0; i < count; ++i) {
+      files.push_back(path("split_" + std::to_string(i) + ".bag"));
+      bags.push_back(std::make_unique<rosbag::Bag>(files.back(), rosbag::bagmode::Write));
+    }
+    int i = 0;
+    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
+      bags[static_cast<std::size_t>(i++ * count / kMessages)]->write(item.getTopic(), item.getTime(), item);
+    });
+    return files;
+  }
+  /// A bag of one message.
+  template <typename Message>
+  std::string write(const std::string& name, const std::string& topic, const Message& message) const {
+    rosbag::Bag bag(path(name), rosbag::bagmode::Write);
+    bag.write(topic, ros::Time(1.0), message);
+    return path(name);
+  }
+};
+
+TEST_F(BagInputFiles, TheSplitsOfARecordingAreOneRun) {
+  ASSERT_EQ(run(kSession + " " + path("whole.bag")).exit_code, 0);
+  const std::vector<std::string> whole = contentOfBag(path("whole.bag"));
+  ASSERT_GT(whole.size(), 9000U);
+  const std::vector<std::string> f = split(3);
+  const std::string in_order = f[0] + " " + f[1] + " " + f[2], another = f[2] + " " + f[0] + " " + f[1];
+  int number = 0;
+  for (const std::string& files : {in_order, another}) {
+    const std::string out = path("out_" + std::to_string(number++) + ".bag");
+    const test::Outcome outcome = run(files + " " + out);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(contentOfBag(out) == whole) << files;
+    EXPECT_EQ(test::linesOf(outcome.out).size(), 1U);
+    for (const char* word : {"2979 crank samples", "2979 wrenches", "122 turns", out.c_str()})
+      EXPECT_NE(outcome.out.find(word), std::string::npos) << outcome.out;
+  }
+  // One of them alone starts without knowledge.
+  ASSERT_EQ(run(f[1] + " " + path("part.bag")).exit_code, 0);
+  EXPECT_LT(contentOfBag(path("part.bag")).size(), whole.size() / 2);
+}
+
+TEST_F(BagInputFiles, ABagGivenTwiceIsRefused) {
+  std::filesystem::create_symlink(kSession, path("again.bag"));
+  expectRefused(run(kSession + " " + path("again.bag") + " " + path("out.bag")), {path("again.bag"), "twice"});
+  EXPECT_EQ(names().size(), 1U);
+}
+
+TEST_F(BagInputFiles, AnUnindexedBagNamesReindex) {
+  // As kill -9 leaves it: the file header says that there is no index.
+  std::string bytes = test::contentOf(kSession);
+  const std::size_t index = bytes.find("index_pos=");
+  ASSERT_LT(index, 200U);
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(index + 10), 8, '\0');
+  std::ofstream(path("killed.bag"), std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  expectRefused(run(path("killed.bag") + " " + path("out.bag")), {"rosbag reindex " + path("killed.bag")});
+  std::ofstream(path("cut.bag"), std::ios::binary) << test::contentOf(kSession).substr(0, 100000);
+  expectRefused(run(path("cut.bag") + " " + path("out.bag")), {"rosbag reindex " + path("cut.bag")});
+  EXPECT_EQ(names().size(), 2U);
+}
+
+TEST_F(BagInputFiles, WhatIsNoBagIsNamed) {
+  std::ofstream(path("text.bag")) << "no bag at all\n";
+  expectRefused(run(path("text.bag") + " " + path("out.bag")), {path("text.bag") + ": cannot be read as a bag"});
+  expectRefused(run(path("none.bag") + " " + path("out.bag")), {path("none.bag"), "No such file or directory"});
+  expectRefused(run(directory_.string() + " " + path("out.bag")), {"no regular file"});
+  const test::Outcome both = run(path("none.bag") + " " + path("text.bag") + " " + path("out.bag"));
+  EXPECT_EQ(both.exit_code, 1);
+  EXPECT_EQ(test::linesOf(both.err).size(), 2U) << both.err;
+  EXPECT_EQ(run(path("none.bag")).exit_code, 2) << "no output given";
+  EXPECT_EQ(names().size(), 1U);
+}
+
+TEST_F(BagInputFiles, AMissingTopicListsWhatIsThere) {
+  const std::string in = write("in.bag", "/machine/speed", sensor_msgs::JointState());
+  expectRefused(run(in + " " + path("out.bag")),
+                {in, "/hammer/crank, is required", "/machine/speed (sensor_msgs/JointState)"});
+  expectRefused(run(in + " " + path("out.bag") + " --crank-topic /x"), {"no topic /x"});
+  { rosbag::Bag(path("nothing.bag"), rosbag::bagmode::Write); }
+  expectRefused(run(path("nothing.bag") + " " + path("out.bag")), {"topics there: none"});
+}
+
+TEST_F(BagInputFiles, ATopicOfAnotherTypeIsNamed) {
+  const std::string in = write("in.bag", "/hammer/crank", sensor_msgs::Imu());
+  expectRefused(run(in + " " + path("out.bag")),
+                {"/hammer/crank is of type sensor_msgs/Imu, must be sensor_msgs/JointState"});
+}
+
+TEST_F(BagInputFiles, SamplesThatAreAllRefusedNameTheJointSoughtAndThoseThere) {
+  {
+    rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);
+    sensor_msgs::JointState m;
+    m.name = {"crank", "flywheel"};
+    m.position = {0.0, 0.0};
+    for (int i = 1; i < 50; ++i) {
+      m.header.stamp = ros::Time(1.0 + 0.01 * i);
+      bag.write("/hammer/crank", m.header.stamp, m);
+    }
+  }
+  expectRefused(run(path("in.bag") + " " + path("out.bag")),
+                {"no wrench from 49 messages on /hammer/crank", "hammer_crank_joint", "crank, flywheel"});
+  const test::TemporaryFile right("crank_joint: crank\n");
+  EXPECT_EQ(run(path("in.bag") + " " + path("out.bag") + " --params " + right.path()).exit_code, 0);
+  EXPECT_EQ(names().size(), 2U);
+}
+
+TEST_F(BagInputFiles, SamplesThatAreAllBadSayWhy) {
+  {
+    rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);
+    sensor_msgs::JointState m;
+    m.name = {"hammer_crank_joint"};
+    m.position = {std::nan("")};
+    for (int i = 1; i < 50; ++i) bag.write("/hammer/crank", m.header.stamp = ros::Time(1.0 + 0.01 * i), m);
+  }
+  expectRefused(run(path("in.bag") + " " + path("out.bag")), {"no wrench", "not finite 49"});
+  EXPECT_EQ(names().size(), 1U);
+}
+
+}  // namespace
+}  // namespace hammer_loads

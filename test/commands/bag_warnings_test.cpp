@@ -1,0 +1,125 @@
+/// What process_bag says at its end: missing, suspicious, how much was written.
+#include <hammer_loads/HullLoads.h>
+#include <topic_tools/shape_shifter.h>
+
+#include "boom/booms.h"
+#include "commands/bag_files.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::kSession;
+
+constexpr char kMissingHammer[] = "warning: no hammer file was given";
+
+class BagWarnings : public test::BagFiles {
+ protected:
+  using Change = std::function<void(rosbag::Bag&, const rosbag::MessageInstance&)>;
+  /// The session, each message as `write` writes it.
+  std::string session(const std::string& name, const Change& write) const {
+    rosbag::Bag bag(path(name), rosbag::bagmode::Write);
+    test::forEachOfSession([&](const rosbag::MessageInstance& item) { write(bag, item); });
+    return path(name);
+  }
+  /// Its stderr, with a hammer file given.
+  std::string warnings(const std::string& in, const std::string& more = {}) const {
+    const test::Outcome outcome = run(in + " " + path("out_" + std::to_string(names().size()) + ".bag") + " --params " +
+                                      configDirectory() + "/hammer_mo100.yaml" + more);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(test::linesOf(outcome.out).size(), 1U) << outcome.out;
+    return outcome.err;
+  }
+  static void expectWarned(const std::string& warnings, const std::vector<std::string>& words) {
+    EXPECT_EQ(test::linesOf(warnings).size(), 1U) << warnings;
+    for (const std::string& word : words) EXPECT_NE(warnings.find(word), std::string::npos) << warnings;
+  }
+};
+
+TEST_F(BagWarnings, AGoodRecordingGivesNoneAndOneLineSaysWhatWasWritten) {
+  const test::Outcome outcome =
+      run(kSession + " " + path("out.bag") + " --params " + configDirectory() + "/hammer_mo100.yaml");
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out,
+            path("out.bag") + ": 2979 crank samples, 2979 wrenches, 122 turns, written under /hammer_loads\n");
+}
+
+TEST_F(BagWarnings, AHammerFileThatWasNotGivenIsNamed) {
+  const test::TemporaryFile no_hammer("level: linkage\n");
+  for (const std::string& params : {std::string(), " --params " + no_hammer.path()}) {
+    const test::Outcome outcome = run(kSession + " " + path("out.bag") + " --force" + params);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_NE(outcome.err.find(kMissingHammer), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("MO-100"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(BagWarnings, JointStatesThatNeverCameAreNamedWithTheTopicsThere) {
+  const std::string in = session("in.bag", [](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
+    bag.write(item.getTopic() == "/hammer/crank" ? item.getTopic() : "/machine/joints", item.getTime(), item);
+  });
+  expectWarned(warnings(in), {"warning: no message on /joint_states", "/machine/joints"});
+  EXPECT_EQ(warnings(in, " --joint-states-topic /machine/joints"), "");
+  const test::TemporaryFile vertical("pitch_joints: []\n");
+  EXPECT_EQ(warnings(in, " --params " + vertical.path()), "") << "none is wanted";
+}
+
+TEST_F(BagWarnings, AJointThatNeverCameIsNamed) {
+  const std::string in = session("in.bag", [](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
+    sensor_msgs::JointState m = *item.instantiate<sensor_msgs::JointState>();
+    for (std::string& name : m.name) name = name == "arm_joint" ? "stick_joint" : name;
+    bag.write(item.getTopic(), item.getTime(), m);
+  });
+  expectWarned(warnings(in), {"warning: /joint_states: no angle of arm_joint"});
+}
+
+TEST_F(BagWarnings, TwoPublishersOnOneTopicAreNamed) {
+  int count = 0;
+  const std::string in = session("in.bag", [&](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
+    const bool crank = item.getTopic() == "/hammer/crank";
+    const char* node = !crank ? "/boom" : ++count % 50 == 0 ? "/old_driver" : "/driver";
+    test::writeFrom(bag, node, item.getTopic(), item.getTime(), *item.instantiate<sensor_msgs::JointState>());
+  });
+  expectWarned(warnings(in), {"warning: /hammer/crank: several publishers: /driver, /old_driver"});
+}
+
+TEST_F(BagWarnings, DegreesAreNamed) {
+  const auto scaled = [&](const std::string& name, const std::string& topic) {
+    return session(name, [&](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
+      sensor_msgs::JointState m = *item.instantiate<sensor_msgs::JointState>();
+      for (double& angle : m.position) angle *= item.getTopic() == topic ? 57.29577951308232 : 1.0;
+      bag.write(item.getTopic(), item.getTime(), m);
+    });
+  };
+  EXPECT_NE(warnings(scaled("boom.bag", "/joint_states"))
+                .find("warning: /joint_states: joint angles seem to be in degrees, must be in radians"),
+            std::string::npos);
+  const test::Outcome crank = run(scaled("crank.bag", "/hammer/crank") + " " + path("crank_out.bag"));
+  EXPECT_NE(crank.err.find(crank.exit_code == 0 ? "in degrees, must be in radians" : "no wrench"), std::string::npos)
+      << crank.err;
+}
+
+TEST_F(BagWarnings, OutputsOfAnotherVersionAreNamed) {
+  const std::string in = session("in.bag", [](rosbag::Bag& bag, const rosbag::MessageInstance& item) {
+    bag.write(item.getTopic(), item.getTime(), item);
+  });
+  {
+    rosbag::Bag bag(in, rosbag::bagmode::Append);
+    topic_tools::ShapeShifter old;
+    old.morph("0123456789abcdef0123456789abcdef", "hammer_loads/HullLoads", "float64 force_x_N\n", "0");
+    std::vector<std::uint8_t> bytes(8, 0);
+    ros::serialization::IStream stream(bytes.data(), 8);
+    old.read(stream);
+    bag.write("/hammer_loads/hull_loads", ros::Time(1700000001.0), old);
+  }
+  expectWarned(warnings(in), {"warning: messages of another version of this package",
+                              "/hammer_loads/hull_loads (hammer_loads/HullLoads)", "rosbag fix"});
+  {
+    rosbag::Bag bag(in, rosbag::bagmode::Append);
+    bag.write("/hammer_loads/again", ros::Time(1700000001.0), HullLoads());
+  }
+  EXPECT_EQ(warnings(in).find("/hammer_loads/again"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hammer_loads
