@@ -214,5 +214,27 @@ TEST(PulseOfTurn, HandlesFlatNegativeAndTooShortTracks) {
   EXPECT_EQ(pulseOfTurn(flat, 2).period, 0.0);
 }
 
+/// Two samples of a sensor may lie together; the force at them differs by what the second one corrects.
+TEST(PulseOfTurn, TwoPointsTogetherGiveNoFalsePeak) {
+  constexpr double kPeak = 8000.0, kTurn = 0.2, kStep = 1e-3;
+  std::vector<TurnPoint> points;
+  for (int i = 0; i <= 200; ++i) {
+    const double time = i * kStep, arc = kPi * time / kTurn;
+    points.push_back({time, kPeak * std::sin(arc), 0.0, kPeak * kTurn / kPi * (1.0 - std::cos(arc))});
+  }
+  const double clean = pulseOfTurn(points.data(), points.size()).amplitude;
+  EXPECT_NEAR(clean, kPeak, 1.0);
+  for (const double apart : {2e-9, 1e-7, 1e-5}) {
+    for (const double higher : {-20.0, 20.0}) {
+      std::vector<TurnPoint> pair = points;
+      TurnPoint second = pair[100];
+      second.time += apart;
+      second.force_z += higher;
+      pair.insert(pair.begin() + 101, second);
+      EXPECT_NEAR(pulseOfTurn(pair.data(), pair.size()).amplitude, kPeak, 25.0) << apart << ' ' << higher;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <random>
 
 namespace hammer_loads {
 namespace {
@@ -161,6 +163,60 @@ TEST_F(Frames, ABadTransformIsNotTaken) {
   EXPECT_TRUE(told_.empty());
   tf({transform("gauge", kHull, 1.0, 1.0, 0.0)}, 1.1, true);
   EXPECT_EQ(told_.size(), 1U);
+}
+
+/// tf2 throws in the callback for a stamp near the end of time; what it takes may still be no place.
+TEST_F(Frames, WhatTf2CannotHoldIsRefusedAndTheNextGoodOneWorks) {
+  const double nan = std::nan("");
+  std::vector<geometry_msgs::TransformStamped> bad(8, transform("gauge", kHull, 1.0, 2.5, 0.0));
+  bad[0].header.stamp = ros::Time(4294967295U, 999999999U);
+  bad[1].header.stamp = ros::Time(4294967290U, 0);
+  bad[2].transform.translation.x = 1e308;
+  bad[3].transform.translation.y = nan;
+  bad[4].transform.rotation.w = nan;
+  bad[5].transform.rotation.w = 0.0;
+  bad[6].child_frame_id.clear();
+  bad[7].transform.rotation.w = 1e200;
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    for (const bool is_static : {false, true}) ASSERT_NO_THROW(tf({bad[i]}, 1.0, is_static)) << i;
+    load(1.0, 1.1);
+    EXPECT_TRUE(told_.empty()) << i;
+  }
+  EXPECT_EQ(frames_.refusedTransforms(), 2 * bad.size());
+  tf({transform("gauge", kHull, 0.0, 2.5, 0.0)}, 1.2, true);
+  load(1.2, 1.2);
+  ASSERT_FALSE(told_.empty());
+  EXPECT_NEAR(told_.back().wrench.wrench.torque.y, 7.0 - 2.5 * 20e3, 1e-6);
+}
+
+TEST_F(Frames, AnyTransformAtAnyTimeGivesFiniteWrenchesOrNone) {
+  std::mt19937_64 random(3);
+  const auto number = [&] {
+    constexpr double kOdd[] = {0.0, -0.0, 1.0, -1.0, 1e-300, 1e300, 1e9, std::numeric_limits<double>::infinity()};
+    const auto pick = random() % 12;
+    return pick < 8 ? kOdd[pick] : std::uniform_real_distribution<>(-2.0, 2.0)(random);
+  };
+  const auto time = [&] {
+    constexpr std::uint32_t kOdd[] = {0, 1, 10, 1700000000U, 2147483647U, 4294963000U, 4294967294U, 4294967295U};
+    return ros::Time(kOdd[random() % 8], static_cast<std::uint32_t>(random() % 1000000000));
+  };
+  const char* names[] = {"gauge", kHull, "other", "", "/gauge", "a b"};
+  for (int i = 0; i < 20000; ++i) {
+    auto t = transform(names[random() % 6], names[random() % 6], 0.0, number(), number(), number());
+    t.header.stamp = time();
+    tf2_msgs::TFMessage message;
+    message.transforms = {t};
+    geometry_msgs::WrenchStamped w;
+    w.header.stamp = time();
+    w.wrench.force.z = 20e3;
+    ASSERT_NO_THROW(frames_.transforms(message, random() % 8 == 0, time())) << i;
+    ASSERT_NO_THROW(frames_.wrench(w, time())) << i;
+    if (i % 100 == 99) frames_.reset();
+  }
+  EXPECT_GT(frames_.refusedTransforms(), 1000U);
+  EXPECT_FALSE(told_.empty()) << "some chains are good";
+  for (const Told& told : told_)
+    ASSERT_TRUE(std::isfinite(told.wrench.wrench.force.z + told.wrench.wrench.torque.x + told.wrench.wrench.torque.y));
 }
 
 }  // namespace

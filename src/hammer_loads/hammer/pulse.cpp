@@ -55,6 +55,18 @@ void parabolaPeak(const TurnPoint& a, const TurnPoint& b, const TurnPoint& c, Ha
   pulse.amplitude = b.force_z + 0.5 * slope * shift;
 }
 
+/// Peak by the points around the highest one. Points much closer to it on one side than on the other are passed over:
+/// of two samples 2 ns apart the force differs by more than the parabola's curvature allows.
+void peakBetweenPoints(const TurnPoint* first, const TurnPoint* top, const TurnPoint* last,
+                       HalfSinePulse& pulse) noexcept {
+  constexpr double kLeastRatio = 0.1;
+  const TurnPoint *before = top - 1, *after = top + 1;
+  const double spacing = kLeastRatio * std::max(top->time - before->time, after->time - top->time);
+  while (before != first && top->time - before->time < spacing) --before;
+  while (after != last && after->time - top->time < spacing) ++after;
+  parabolaPeak(*before, *top, *after, pulse);
+}
+
 /// Impulse at a part x in [0, 1] of the way from a to b: cubic with the forces as slopes.
 double hermite(const TurnPoint& a, const TurnPoint& b, double x) noexcept {
   const double dt = b.time - a.time;
@@ -77,7 +89,7 @@ HalfSinePulse pulseOfTurn(const TurnPoint* points, std::size_t count) noexcept {
                                     [](const TurnPoint& a, const TurnPoint& b) { return a.force_z < b.force_z; });
   pulse.amplitude = top->force_z;
   pulse.peak_time = top->time;
-  if (top != points && top != &last) parabolaPeak(top[-1], top[0], top[1], pulse);
+  if (top != points && top != &last) peakBetweenPoints(points, top, &last, pulse);
 
   const std::ptrdiff_t rise = lastRise([&](std::size_t i) { return points[i].force_z; }, count, pulse.amplitude);
   double before_lobe = 0.0;

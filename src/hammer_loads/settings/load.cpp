@@ -64,9 +64,9 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
     pipeline.level = choice.level;
     result.notes.push_back(describe(choice));
   }
-  result.value = Settings{*mechanism, pipeline,          log,
-                          std::move(boom), hammer_given, robot_description,
-                          reader.yaml() + yamlOf(topics), {}, topics};
+  result.value = Settings{
+      *mechanism, pipeline, log, std::move(boom), hammer_given, robot_description, reader.yaml() + yamlOf(topics),
+      {},         topics};
   return result;
 }
 

@@ -1,0 +1,154 @@
+/// What must not change a value: samples that are refused, stamps beyond every clock, sensors in degrees.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/pipeline/warnings.h"
+#include "support/session_player.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::session;
+using test::settingsWith;
+
+constexpr double kDegrees = 57.29577951308232;
+const std::vector<std::string> kCrank{"hammer_crank_joint"};
+const std::vector<std::string> kJoints{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+
+Pipeline pipelineOf(const Settings& settings) { return Pipeline(settings.mechanism, settings.pipeline, settings.boom); }
+
+/// Plays the session; what each crank reading becomes: each(pipeline, reading) gives the result that counts.
+template <typename Each>
+std::vector<HullWrench> wrenchesOf(const Settings& settings, const Each& each, double boom_unit = 1.0) {
+  Pipeline pipeline(settings.mechanism, settings.pipeline, settings.boom);
+  std::vector<HullWrench> wrenches;
+  std::size_t joint = 0;
+  for (const simulation::CrankReading& reading : session().crank) {
+    for (; joint < session().joints.size() && session().joints[joint].stamp <= reading.stamp; ++joint) {
+      std::vector<double> angles(session().joints[joint].position.begin(), session().joints[joint].position.end());
+      for (double& angle : angles) angle *= boom_unit;
+      pipeline.boomJoints(session().joints[joint].stamp, kJoints, angles, {});
+    }
+    each(pipeline, reading, wrenches);
+  }
+  return wrenches;
+}
+
+void keep(const SampleResult& result, std::vector<HullWrench>& wrenches) {
+  if (!result.refusal) wrenches.push_back(result.wrench);
+}
+
+class RefusedSamples : public testing::TestWithParam<const char*> {};
+
+TEST_P(RefusedSamples, ChangeNothingElse) {
+  const Settings settings = settingsWith(std::string("boom: compliant\nhull_motion: ") + GetParam() + "\n");
+  const auto once = [](Pipeline& pipeline, const auto& r, auto& wrenches) {
+    keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}), wrenches);
+  };
+  const auto with_bad_ones = [](Pipeline& pipeline, const auto& r, auto& wrenches) {
+    keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}), wrenches);
+    EXPECT_EQ(pipeline.crankSample(r.stamp, {r.angle, r.speed}).refusal, Refusal::kDuplicate);
+    EXPECT_EQ(pipeline.crankSample(r.stamp + 1, {std::nan(""), r.speed}).refusal, Refusal::kNotFinite);
+    EXPECT_EQ(pipeline.crankSample(kLastStamp + 1, {r.angle, r.speed}).refusal, Refusal::kBadStamp);
+    EXPECT_EQ(pipeline.crankJoint(r.stamp + 1, {"wheel"}, {1.0}, {}).refusal, Refusal::kMissingJoint);
+  };
+  const auto right = wrenchesOf(settings, once), given = wrenchesOf(settings, with_bad_ones);
+  ASSERT_GT(right.size(), 4000U);
+  ASSERT_EQ(given.size(), right.size());
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    ASSERT_EQ(given[i].force_x, right[i].force_x) << i;
+    ASSERT_EQ(given[i].force_z, right[i].force_z) << i;
+    ASSERT_EQ(given[i].torque_y, right[i].torque_y) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(UnderEveryHullMotion, RefusedSamples, testing::Values("fixed", "imu", "model"));
+
+TEST(Stamps, BeyondEveryClockAreRefusedAndTheLastGoodOneIsNot) {
+  const Settings settings = settingsWith("boom: none\n", false);
+  Pipeline pipeline = pipelineOf(settings);
+  EXPECT_FALSE(pipeline.crankSample(kLastStamp - 1000000, {1.0, 0.0}).refusal);
+  EXPECT_FALSE(pipeline.crankSample(kLastStamp, {1.0, 0.0}).refusal);
+  for (const StampNs stamp : {kLastStamp + 1, std::numeric_limits<StampNs>::max(), StampNs{-1}})
+    EXPECT_EQ(pipeline.crankSample(stamp, {1.0, 0.0}).refusal, Refusal::kBadStamp) << stamp;
+  EXPECT_EQ(pipeline.counts().refusedFor(Refusal::kBadStamp), 3U);
+}
+
+struct Units {
+  double angle, speed;
+  bool has_speed;
+};
+
+class CrankInDegrees : public testing::TestWithParam<Units> {};
+
+TEST_P(CrankInDegrees, IsWithheldNamedAndGivesNothingAbsurdBefore) {
+  const Units units = GetParam();
+  const Settings settings = settingsWith("boom: none\n", false);
+  Pipeline pipeline = pipelineOf(settings);
+  double largest = 0.0;
+  std::uint64_t after = 0;
+  for (const auto& r : session().crank) {
+    const std::optional<double> speed = units.has_speed ? std::make_optional(*r.speed * units.speed) : std::nullopt;
+    const SampleResult& result = pipeline.crankSample(r.stamp, {r.angle * units.angle, speed});
+    if (result.refusal) continue;
+    largest = std::max(largest, std::hypot(result.wrench.force_x, result.wrench.force_z));
+    after += pipeline.crank().looksLikeDegrees();
+  }
+  EXPECT_EQ(after, 0U);
+  EXPECT_LT(largest, 60e3) << "the nameplate's turn at constant speed reaches 57 kN";
+  const auto warnings = warningsOf(pipeline);
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_STREQ(warnings.front().key, "degrees");
+  EXPECT_NE(warnings.front().text.find("must be in radians"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(AngleSpeedOrBoth, CrankInDegrees,
+                         testing::Values(Units{kDegrees, 1.0, true}, Units{1.0, kDegrees, true},
+                                         Units{kDegrees, kDegrees, true}, Units{kDegrees, 1.0, false}));
+
+TEST(BoomInDegrees, IsWithheldUntilItIsOver) {
+  const Settings settings = settingsWith("");
+  const auto each = [](Pipeline& pipeline, const auto& r, auto& wrenches) {
+    keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}), wrenches);
+  };
+  EXPECT_GT(wrenchesOf(settings, each).size(), 4000U);
+  EXPECT_LT(wrenchesOf(settings, each, kDegrees).size(), 50U) << "before the first joint states came";
+
+  Pipeline pipeline = pipelineOf(settings);
+  StampNs stamp = 1700000000000000000;
+  const auto sample = [&] { return pipeline.crankSample(stamp += 1000000, {1.0, 0.0}).refusal; };
+  pipeline.boomJoints(stamp, kJoints, {0.2, -20.0, 68.0, -48.0}, {});
+  EXPECT_EQ(sample(), Refusal::kDegrees);
+  EXPECT_STREQ(warningsOf(pipeline).front().key, "degrees");
+  pipeline.boomJoints(stamp + 1, kJoints, {0.2, -0.35, 1.2, -0.85}, {});
+  EXPECT_EQ(sample(), std::nullopt);
+}
+
+TEST(Backward, IsNamed) {
+  const Settings settings = settingsWith("boom: none\n", false);
+  for (const double sign : {1.0, -1.0}) {
+    Pipeline pipeline = pipelineOf(settings);
+    for (const auto& r : session().crank) pipeline.crankSample(r.stamp, {sign * r.angle, sign * *r.speed});
+    const auto warnings = warningsOf(pipeline);
+    const bool named = std::any_of(warnings.begin(), warnings.end(),
+                                   [](const Warning& w) { return std::string(w.key) == "backward"; });
+    EXPECT_EQ(named, sign < 0.0);
+  }
+}
+
+TEST(Missing, CrankJointPitchJointsAndImuAreNamed) {
+  const Settings settings = settingsWith("boom: none\nhull_motion: imu\n", false);
+  Pipeline pipeline = pipelineOf(settings);
+  pipeline.crankJoint(1000, {"wheel"}, {1.0}, {});
+  ASSERT_EQ(warningsOf(pipeline).size(), 1U);
+  EXPECT_NE(warningsOf(pipeline)[0].text.find("hammer_crank_joint"), std::string::npos);
+  pipeline.crankSample(2000000, {1.0, 0.0});
+  pipeline.crankSample(3000000, {1.0, 0.0});
+  std::string keys;
+  for (const Warning& warning : warningsOf(pipeline)) keys += std::string(warning.key) + ";";
+  EXPECT_EQ(keys, "pitch joints;imu;");
+}
+
+}  // namespace
+}  // namespace hammer_loads

@@ -1,0 +1,160 @@
+/// The bridge from messages to messages: who listens changes no value, nothing throws, nothing is allocated.
+#include "hammer_loads/ros/hammer_bridge.h"
+
+#include <gtest/gtest.h>
+#include <ros/serialization.h>
+
+#include <map>
+
+#include "support/counting_new.h"
+#include "support/session_player.h"
+
+namespace hammer_loads {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Kept = std::map<std::string, std::vector<Bytes>>;
+
+template <typename Message>
+Bytes bytesOf(const Message& message) {
+  Bytes bytes(ros::serialization::serializationLength(message));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
+/// Everything of the topics that `wants` names.
+template <typename Wants>
+void attach(HammerBridge& bridge, const Wants& wants, Kept& kept) {
+  bridge.outputs().forEach([&](auto& output) {
+    if (!wants(output.name())) return output.attach({});
+    output.attach(
+        [&all = kept[output.name()]](const auto& message, const ros::Time&) { all.push_back(bytesOf(message)); });
+  });
+}
+
+ros::Time timeOfNs(std::int64_t ns) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(ns));
+  return time;
+}
+
+struct Messages {
+  sensor_msgs::JointState crank, joints;
+  Messages() {
+    crank.name = {"hammer_crank_joint"}, crank.position = {0.0};
+    joints.name.assign(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+    joints.position.resize(4), joints.velocity.resize(4);
+  }
+};
+
+/// A session without speeds and with a drop-out, at this rate; after(time) is called after each sample.
+template <typename After>
+void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 8.0;
+  machine.crank.rate = rate;
+  machine.crank.drop_outs = {{4.0, 4.4}, {6.0, 6.1}};
+  const simulation::Session session = simulation::recordSession(machine);
+  Messages m;
+  std::size_t joint = 0;
+  for (const auto& r : session.crank) {
+    for (; joint < session.joints.size() && session.joints[joint].stamp <= r.stamp; ++joint) {
+      m.joints.header.stamp = timeOfNs(session.joints[joint].stamp);
+      std::copy(session.joints[joint].position.begin(), session.joints[joint].position.end(),
+                m.joints.position.begin());
+      std::copy(session.joints[joint].velocity.begin(), session.joints[joint].velocity.end(),
+                m.joints.velocity.begin());
+      bridge.jointStates(m.joints, m.joints.header.stamp);
+    }
+    m.crank.header.stamp = timeOfNs(r.stamp);
+    m.crank.position[0] = r.angle;
+    if (speeds) m.crank.velocity = {*r.speed};
+    bridge.crank(m.crank, m.crank.header.stamp);
+    after(1e-9 * static_cast<double>(r.stamp - machine.start_stamp));
+  }
+}
+
+const auto kNothing = [](double) {};
+const auto kAll = [](const std::string&) { return true; };
+
+TEST(WhoListens, ChangesNoValue) {
+  for (const char* output : {"instantaneous", "mean"}) {
+    const Settings settings = test::settingsWith(std::string("output: ") + output + "\nboom: compliant\n");
+    Kept all, one;
+    HammerBridge with_all(settings), with_one(settings);
+    attach(with_all, kAll, all);
+    attach(
+        with_one, [](const std::string& name) { return name == "hull_wrench"; }, one);
+    play(with_all, 50.0, false, kNothing);
+    play(with_one, 50.0, false, kNothing);
+    ASSERT_GT(all["hull_wrench"].size(), 200U);
+    EXPECT_EQ(one["hull_wrench"], all["hull_wrench"]) << output;
+  }
+}
+
+TEST(WhoListens, AndComesBackGetsWhatTheOthersGot) {
+  const Settings settings = test::settingsWith("boom: compliant\n");
+  Kept all, some;
+  HammerBridge with_all(settings), with_some(settings);
+  attach(with_all, kAll, all);
+  play(with_all, 1000.0, true, kNothing);
+  int listens = -1;
+  play(with_some, 1000.0, true, [&](double time) {
+    const int wanted = time < 3.0 || time > 5.0 ? 1 : 0;  // absent for ten turns
+    if (wanted == listens) return;
+    listens = wanted;
+    attach(
+        with_some, [&](const std::string&) { return wanted == 1; }, some);
+  });
+  for (const char* topic : {"pulse", "blow", "joint_loads", "hull_loads"}) {
+    ASSERT_GT(some[topic].size(), 5U) << topic;
+    ASSERT_LT(some[topic].size(), all[topic].size()) << topic;
+    const std::size_t kept = 3;  // of the end: after it came back
+    EXPECT_TRUE(std::equal(some[topic].end() - kept, some[topic].end(), all[topic].end() - kept)) << topic;
+  }
+}
+
+TEST(Stamps, BeyondEveryClockAreCountedAndTheNextGoodOneWorks) {
+  HammerBridge bridge(test::settingsWith(""));
+  Messages m;
+  m.crank.velocity = {0.0};
+  const auto send = [&](std::uint32_t sec, std::uint32_t nsec) {
+    m.crank.header.stamp.sec = sec, m.crank.header.stamp.nsec = nsec;
+    m.joints.header.stamp = m.crank.header.stamp;
+    bridge.jointStates(m.joints, ros::Time(1.0));
+    bridge.crank(m.crank, ros::Time(1.0));
+  };
+  EXPECT_NO_THROW(send(4294967295U, 4294967295U));
+  EXPECT_EQ(bridge.pipeline().counts().refusedFor(Refusal::kBadStamp), 1U);
+  EXPECT_NO_THROW(send(4294967295U, 999999999U));
+  EXPECT_NO_THROW(send(1, 0));
+  EXPECT_NO_THROW(send(1, 1000000));
+  EXPECT_NO_THROW(send(1, 2000000));
+  EXPECT_GT(bridge.pipeline().counts().accepted, 0U);
+}
+
+TEST(HotPath, AllocatesNothingPerMessage) {
+  HammerBridge bridge(test::settingsWith("boom: compliant\nboom_wrench_links: [arm_link]\n"));
+  std::size_t sent = 0;
+  bridge.outputs().forEach([&](auto& output) { output.attach([&](const auto&, const ros::Time&) { ++sent; }); });
+  Messages m;
+  m.crank.velocity = {0.0};
+  double angle = 0.5;
+  const auto send = [&](int i) {
+    m.joints.header.stamp = m.crank.header.stamp =
+        ros::Time(1000 + i / 1000, static_cast<std::uint32_t>(i % 1000) * 1000000U);
+    m.crank.position[0] = angle += 0.02, m.crank.velocity[0] = 20.0;
+    if (i % 10 == 0) bridge.jointStates(m.joints, m.joints.header.stamp);
+    bridge.crank(m.crank, m.crank.header.stamp);
+  };
+  for (int i = 0; i < 1000; ++i) send(i);
+  const std::size_t before = test::allocations, sent_before = sent;
+  ASSERT_GT(before, 0U) << "the counter works";
+  for (int i = 1000; i < 3000; ++i) send(i);
+  EXPECT_EQ(test::allocations, before);
+  EXPECT_GT(sent, sent_before + 2000U * 5U);
+}
+
+}  // namespace
+}  // namespace hammer_loads
