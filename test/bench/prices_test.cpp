@@ -131,8 +131,9 @@ TEST(Timing, GivesTheProcessorTimeOfAnEvaluation) {
 }
 
 TEST(Command, PricesEveryWay) {
-  const test::TemporaryFile file({}, ".json");
-  const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--only prices --json " + file.path());
+  // What it wrote before may go.
+  const test::TemporaryFile file("{\"prices\": []}\n", ".json");
+  const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--only prices --force --json " + file.path());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const YAML::Node rows = YAML::LoadFile(file.path())["prices"];  // JSON is YAML
   std::set<std::string> groups;
@@ -153,8 +154,24 @@ TEST(Command, PricesEveryWay) {
 TEST(Command, RefusesAFileThatCannotBeWritten) {
   const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--json /nowhere/prices.json");
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "/nowhere/prices.json: cannot be written\n");
+  EXPECT_EQ(run.err, "/nowhere/prices.json: cannot be written: No such file or directory\n");
   EXPECT_EQ(run.out, "");
+}
+
+TEST(Command, ReplacesNoFileThatItDidNotWrite) {
+  const test::TemporaryFile written("{\"prices\": []}\n", ".json"), notes("notes\n", ".json");
+  const auto expectRefused = [](const std::string& arguments, const std::string& reason) {
+    const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--json " + arguments);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.err.find(reason), std::string::npos) << run.err;
+    EXPECT_EQ(test::linesOf(run.err).size(), 1U) << run.err;
+    EXPECT_EQ(run.out, "") << "before it computes";
+  };
+  expectRefused(written.path(), "exists already");
+  expectRefused(notes.path() + " --force", "it holds no figures of this command");
+  expectRefused(testing::TempDir() + " --force", "is a directory");
+  EXPECT_EQ(test::contentOf(written.path()), "{\"prices\": []}\n");
+  EXPECT_EQ(test::contentOf(notes.path()), "notes\n");
 }
 
 }  // namespace

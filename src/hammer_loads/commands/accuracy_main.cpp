@@ -5,44 +5,84 @@
 #include "hammer_loads/bench/price_table.h"
 #include "hammer_loads/bench/session_table.h"
 #include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/commands/output_file.h"
 
 namespace hammer_loads {
 namespace {
+
+constexpr char kPrices[] = "\"prices\": ", kSessions[] = "\"sessions\": ";
+
+/// Why an existing file must stay; empty: this command wrote it.
+std::string whyFileMustStay(const std::string& name) {
+  std::string line;
+  std::getline(std::ifstream(name), line);
+  const bool ours = line.rfind(std::string("{") + kPrices, 0) == 0 || line.rfind(std::string("{") + kSessions, 0) == 0;
+  return ours ? "" : "it holds no figures of this command";
+}
+
+/// The file for the figures, taken before the computing, which takes a minute.
+class JsonFile {
+ public:
+  JsonFile(const std::string& name, bool force) : name_(name) {
+    if (name.empty()) return;
+    Checked<OutputFile> file = OutputFile::make({name, {}, force, whyFileMustStay});
+    for (const std::string& problem : file.problems) problem_ = problem;
+    if (file.value) file_.emplace(*std::move(file.value));
+  }
+  const std::string& problem() const { return problem_; }
+  /// False, with the reason in problem(), where that could not be.
+  bool write(const std::string& json) {
+    if (!file_) return true;
+    std::ofstream stream(file_->path());
+    const bool written = (stream << '{' << json << "}\n") && stream.flush();
+    problem_ = written ? file_->publish() : name_ + ": cannot be written";
+    return problem_.empty();
+  }
+
+ private:
+  std::string name_, problem_;
+  std::optional<OutputFile> file_;
+};
+
+/// Prints the tables; the same as the members of a JSON object.
+std::string printTables(const Settings& settings, const std::string& only) {
+  std::string json;
+  if (only != "sessions") {
+    const std::vector<accuracy::PriceRow> prices = accuracy::priceTable(settings);
+    std::cout << accuracy::markdown(prices) << std::flush;
+    json = kPrices + accuracy::json(prices);
+  }
+  if (only != "prices") {
+    const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
+    std::cout << "\n### Simulated sessions\n\n" << accuracy::markdown(sessions);
+    json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions));
+  }
+  return json;
+}
 
 int run(int argc, const char* const* argv) {
   CLI::App app("Price list: cost and error of every way to the loads, errors over simulated working sessions",
                "accuracy");
   std::vector<std::string> files;
   std::string json_file, only;
+  bool force = false;
   addParamsOption(app, files);
-  app.add_option("--json", json_file, "also write the figures to this file");
+  app.add_option("--json", json_file, "also write the figures to this file, which must not exist");
+  app.add_flag("--force", force, "replace that file if this command wrote it");
   app.add_option("--only", only, "one of the two parts")->check(CLI::IsMember({"prices", "sessions"}));
   if (const auto code = parse(app, argc, argv)) return *code;
+  endCleanlyOnSignals();
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;
-
-  std::ofstream file;
-  if (!json_file.empty()) file.open(json_file);  // before the computing, which takes a minute
+  JsonFile file(json_file, force);
   const auto complain = [&] {
-    std::cerr << json_file << ": cannot be written\n";
+    std::cerr << file.problem() << '\n';
     return kExitFailure;
   };
-  if (!file) return complain();
-
-  std::string json;
-  if (only != "sessions") {
-    const std::vector<accuracy::PriceRow> prices = accuracy::priceTable(*settings);
-    std::cout << accuracy::markdown(prices) << std::flush;
-    json = "\"prices\": " + accuracy::json(prices);
-  }
-  if (only != "prices") {
-    const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(*settings);
-    std::cout << "\n### Simulated sessions\n\n" << accuracy::markdown(sessions);
-    json += (json.empty() ? "" : ",\n") + ("\"sessions\": " + accuracy::json(sessions));
-  }
+  if (!file.problem().empty()) return complain();
+  const std::string json = printTables(*settings, only);
   if (const int code = finishOutput()) return code;
-  if (!json_file.empty() && !(file << '{' << json << "}\n").flush()) return complain();
-  return 0;
+  return file.write(json) ? 0 : complain();
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include "hammer_loads/commands/command_line.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include <string_view>
 
 #include "hammer_loads/settings/yaml_value.h"
 
@@ -54,6 +56,12 @@ CLI::Validator numberWithin(double least, double most, const std::string& unit) 
 }
 
 std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
+  app.add_flag("--version", "print the version and end");
+  // Before parsing: it needs no other argument.
+  if (std::find(argv, argv + argc, std::string_view("--version")) != argv + argc) {
+    std::cout << "hammer_loads " HAMMER_LOADS_VERSION << '\n';
+    return finishOutput();
+  }
   try {
     app.parse(argc, argv);
     return std::nullopt;

@@ -7,12 +7,30 @@
 #include <cmath>
 #include <iostream>
 
+#include "hammer_loads/commands/node_usage.h"
 #include "hammer_loads/ros/ros_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/read_grapple.h"
 
 namespace hammer_loads {
 namespace {
+
+constexpr char kUsage[] =
+    R"(The slider of a grapple that opens and closes for ever, to try grapple_node with. Needs a ROS master.
+Usage: rosrun hammer_loads simulate_grapple [joint_states:=TOPIC] _KEY:=VALUE...
+       roslaunch hammer_loads grapple.launch demo:=true
+
+Topic out
+  joint_states  sensor_msgs/JointState  position [m] and velocity [m/s] of the slider
+
+Parameters (private)
+  config/grapple_claims.yaml  the grapple, every key
+  slider_joint                name of the joint
+  period_s                    of opening and closing together [s], > 0
+  rate_Hz                     samples a second [Hz], > 0
+
+  -h, --help  print this    --version  print the version
+)";
 
 /// period: of opening and closing together [s]; samples_per_second [Hz].
 void play(const GrappleParameters& grapple, const std::string& joint, double period, double samples_per_second) {
@@ -50,6 +68,7 @@ int run() {
 }  // namespace hammer_loads
 
 int main(int argc, char** argv) {
+  if (const auto code = hammer_loads::answerUsage(argc, argv, hammer_loads::kUsage)) return *code;
   ros::init(argc, argv, "simulate_grapple");
   return hammer_loads::run();
 }

@@ -3,12 +3,30 @@
 
 #include <iostream>
 
+#include "hammer_loads/commands/node_usage.h"
 #include "hammer_loads/ros/machine_player.h"
 #include "hammer_loads/ros/ros_parameters.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 namespace {
+
+constexpr char kUsage[] =
+    R"(A working excavator with hammer, to try hammer_loads_node with. Needs a ROS master.
+Usage: rosrun hammer_loads simulate_hammer [NAME:=TOPIC]... [_KEY:=VALUE]...
+       roslaunch hammer_loads demo.launch [ARG:=VALUE]...    (--ros-args lists them)
+
+Topics out
+  crank         sensor_msgs/JointState  crank angle [rad] and speed [rad/s]
+  joint_states  sensor_msgs/JointState  angles [rad] and speeds [rad/s] of the boom's joints
+  /clock        rosgraph_msgs/Clock     with publish_clock
+
+Parameters (private; SI units, each explained in its file in the package's directory config)
+  simulated_machine.yaml  the machine, its sensors, how it is played
+  hammer_mo100.yaml       the hammer
+
+  -h, --help  print this    --version  print the version
+)";
 
 int run() {
   const ros::NodeHandle private_node("~");
@@ -30,6 +48,7 @@ int run() {
 }  // namespace hammer_loads
 
 int main(int argc, char** argv) {
+  if (const auto code = hammer_loads::answerUsage(argc, argv, hammer_loads::kUsage)) return *code;
   ros::init(argc, argv, "simulate_hammer");
   return hammer_loads::run();
 }

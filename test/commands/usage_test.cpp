@@ -1,0 +1,63 @@
+/// --help and --version of every program, without a ROS master.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "support/command.h"
+
+namespace hammer_loads {
+namespace {
+
+const std::vector<std::string> kCommands{HAMMER_LOADS_ACCURACY, HAMMER_LOADS_EVALUATE, HAMMER_LOADS_GRAPPLE_TABLE,
+                                         HAMMER_LOADS_PROCESS_BAG, HAMMER_LOADS_TURN_TABLE};
+const std::vector<std::string> kNodes{HAMMER_LOADS_HAMMER_LOADS_NODE, HAMMER_LOADS_GRAPPLE_NODE,
+                                      HAMMER_LOADS_SIMULATE_HAMMER, HAMMER_LOADS_SIMULATE_GRAPPLE};
+
+std::vector<std::string> programs() {
+  std::vector<std::string> all = kCommands;
+  all.insert(all.end(), kNodes.begin(), kNodes.end());
+  return all;
+}
+
+TEST(Usage, IsPrintedOnRequestAndNothingElseIsDone) {
+  for (const std::string& program : programs()) {
+    for (const char* option : {" --help", " -h"}) {
+      const test::Outcome outcome = test::runCommand("ROS_MASTER_URI=http://localhost:1 " + program, option);
+      EXPECT_EQ(outcome.exit_code, 0) << program;
+      EXPECT_EQ(outcome.err, "") << program;
+      const std::string name = std::filesystem::path(program).filename();
+      for (const std::string& word : {name, std::string("Usage: "), std::string("--help"), std::string("--version")})
+        EXPECT_NE(outcome.out.find(word), std::string::npos) << program << option << ": " << word << outcome.out;
+      for (const std::string& line : test::linesOf(outcome.out)) EXPECT_LE(line.size(), 140U) << line;
+    }
+  }
+}
+
+TEST(Usage, VersionIsThatOfThePackage) {
+  const std::string package = test::contentOf(std::string(HAMMER_LOADS_TEST_DATA) + "/../../package.xml");
+  const std::size_t begin = package.find("<version>") + 9;
+  const std::string version = package.substr(begin, package.find('<', begin) - begin);
+  for (const std::string& program : programs()) {
+    const test::Outcome outcome = test::runCommand("ROS_MASTER_URI=http://localhost:1 " + program, "--version");
+    EXPECT_EQ(outcome.exit_code, 0) << program;
+    EXPECT_EQ(outcome.out, "hammer_loads " + version + "\n") << program;
+    EXPECT_EQ(outcome.err, "") << program;
+  }
+}
+
+/// The parameter files that a node's usage names are shipped.
+TEST(Usage, NamesParameterFilesThatExist) {
+  const std::string config = std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/";
+  for (const std::string& program : kNodes) {
+    const std::string usage = test::runCommand(program, "--help").out;
+    std::size_t files = 0;
+    for (std::size_t end = usage.find(".yaml"); end != std::string::npos; end = usage.find(".yaml", end + 1), ++files) {
+      const std::size_t begin = usage.find_last_of(" /", end) + 1;
+      EXPECT_TRUE(std::filesystem::exists(config + usage.substr(begin, end + 5 - begin))) << usage.substr(begin, 30);
+    }
+    EXPECT_GE(files, 1U) << program;
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
