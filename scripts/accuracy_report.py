@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """doc/accuracy.md, its picture and the README's excerpt from what `accuracy` and the recorded sessions' test said."""
+import argparse
 import json
 import math
 import pathlib
 import platform
-import sys
 
 import matplotlib
 
@@ -144,7 +144,11 @@ def replace(path, marker, text):
 
 
 def main():
-    work, root = (pathlib.Path(argument) for argument in sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("work", type=pathlib.Path, help="directory with accuracy.json, tables and recorded")
+    parser.add_argument("root", type=pathlib.Path, help="of the source")
+    arguments = parser.parse_args()
+    work, root = arguments.work, arguments.root
     figures = json.loads((work / "accuracy.json").read_text())
     draw(figures, root / "doc" / "accuracy.png")
     tables = f"Measured on: {processor()}, one thread.\n\n" + (work / "tables").read_text()

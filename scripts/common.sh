@@ -8,6 +8,14 @@ export PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH  # the system's python3, for whi
 export ROS_HOSTNAME=localhost                    # a name that resolves on every machine
 unset ROS_IP
 
+# Every script explains itself: --help prints the comment at its top.
+case "${1:-}" in
+  -h | --help)
+    sed -n -e '2,/^[^#]/s/^# \{0,1\}//p' "$0"
+    exit 0
+    ;;
+esac
+
 fail() {
   echo "error: $*" >&2
   exit 1
@@ -67,18 +75,24 @@ checkLocalhost() {
   asRoot sh -c 'echo "127.0.0.1 localhost" >> /etc/hosts'
 }
 
-# Targets of make as arguments. cmake_options: more of them.
+# cmake_options: more of them. A build directory keeps its generator.
 cmake_options=()
-build() {
-  local log
+configure() {
+  local log generator=()
+  [ -e "$build_dir/CMakeCache.txt" ] || generator=(-G Ninja)
   log=$(mktemp)
-  cmake -S "$root_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release "${cmake_options[@]}" > "$log" 2>&1 || {
+  cmake -S "$root_dir" -B "$build_dir" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "${cmake_options[@]}" > "$log" 2>&1 || {
     cat "$log" >&2
     rm -f "$log"
     fail "cmake cannot configure $root_dir"
   }
   rm -f "$log"
-  make -C "$build_dir" --no-print-directory -j"$(nproc)" "$@" || fail "build"
+}
+
+# Targets as arguments.
+build() {
+  configure
+  cmake --build "$build_dir" -j "$(nproc)" --target "$@" || fail "build"
 }
 
 # This build's commands and messages.

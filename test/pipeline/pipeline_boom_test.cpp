@@ -7,6 +7,7 @@
 
 #include "support/counting_new.h"
 #include "support/session_player.h"
+#include "support/wall_clock.h"
 
 namespace hammer_loads {
 namespace {
@@ -91,10 +92,8 @@ TEST(PipelineWithBoom, CostsAFewMicrosecondsASample) {
               without.mean, with.least, with.mean);
   RecordProperty("with_boom_least_us", format("%.2f", with.least));
   RecordProperty("without_boom_least_us", format("%.2f", without.least));
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   // Some 3 us on an idle core: the bound leaves room for one that is shared.
-  EXPECT_LE(with.least, 15.0);
-#endif
+  test::expectTimeWithin(with.least, 15.0, "[us] a sample with everything");
 }
 
 /// The description's hull mass includes the moving links: what they weigh must not load the joints twice.

@@ -1,0 +1,151 @@
+/// Packages of others, built from the install space.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace hammer_loads::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kPrefix = HAMMER_LOADS_PREFIX;
+const fs::path kPackages = HAMMER_LOADS_SOURCE "/test/install";
+
+struct Answer {
+  int status{};
+  std::string text;
+};
+
+Answer run(const std::string& command, const fs::path& out) {
+  Answer answer;
+  answer.status = std::system(("bash -c '" + command + "' > " + out.string() + " 2>&1").c_str());
+  std::ostringstream text;
+  text << std::ifstream(out).rdbuf();
+  answer.text = text.str();
+  return answer;
+}
+
+class DownstreamTest : public ::testing::Test {
+ protected:
+  /// Only into a directory of the build: what a user installed is not touched.
+  static void SetUpTestSuite() {
+    if (kPrefix.string().rfind(HAMMER_LOADS_BUILD, 0) != 0) return;
+    fs::remove_all(kPrefix);
+    const Answer installed = run("cmake --install " HAMMER_LOADS_BUILD, fs::path(HAMMER_LOADS_BUILD) / "install.log");
+    ASSERT_EQ(installed.status, 0) << installed.text;
+  }
+
+  void SetUp() override {
+    if (kPrefix.string().rfind(HAMMER_LOADS_BUILD, 0) != 0) GTEST_SKIP() << kPrefix << " is not of this build";
+    std::string pattern = (fs::temp_directory_path() / "hammer_loads_install_XXXXXX").string();
+    build_ = mkdtemp(pattern.data());
+  }
+  ~DownstreamTest() override {
+    if (!build_.empty()) fs::remove_all(build_);
+  }
+
+  /// In an environment that knows the install space alone.
+  Answer inInstallSpace(const std::string& command) {
+    return run(
+        "unset ROS_PACKAGE_PATH CMAKE_PREFIX_PATH PYTHONPATH LD_LIBRARY_PATH; [ ! -e /opt/ros/noetic/setup.bash ] || "
+        ". /opt/ros/noetic/setup.bash; . " +
+            (kPrefix / "setup.bash").string() + "; export ROS_LOG_DIR=" + build_.string() + "; " + command,
+        build_ / "log.txt");
+  }
+  void build(const std::string& package, const std::string& after = "true") {
+    const Answer built =
+        inInstallSpace("cmake -G \"" HAMMER_LOADS_GENERATOR "\" -S " + (kPackages / package).string() + " -B " +
+                       build_.string() + " && cmake --build " + build_.string() + " && " + after);
+    ASSERT_EQ(built.status, 0) << built.text;
+  }
+
+  fs::path build_;
+};
+
+TEST_F(DownstreamTest, LinksTheLibrariesWithoutRosByTheirOwnNames) {
+  build("use_library");
+  const Answer own = run((build_ / "use_pipeline").string(), build_ / "own.txt");  // no setup.bash: they are found
+  EXPECT_EQ(own.status, 0) << own.text;
+  const Answer ours =
+      run((kPrefix / "lib/hammer_loads/turn_table --summary --level rocker").string(), build_ / "a.txt");
+  EXPECT_EQ(ours.status, 0);
+  EXPECT_EQ(own.text, ours.text);
+  EXPECT_EQ(run((build_ / "use_core").string(), build_ / "core.txt").status, 0);
+  const Answer libraries = run("ldd " + (build_ / "use_core").string(), build_ / "ldd.txt");
+  EXPECT_NE(libraries.text.find((kPrefix / "lib/libhammer_loads_core.so").string()), std::string::npos);
+  for (const char* other : {"libros", "libboost", "librosbag", "hammer_loads_ros", "libkdl"})
+    EXPECT_EQ(libraries.text.find(other), std::string::npos) << libraries.text;
+}
+
+TEST_F(DownstreamTest, UsesMessagesAndTheLibrariesWithRos) {
+  build("use_messages");
+  const Answer own = run((build_ / "use_messages").string(), build_ / "own.txt");
+  EXPECT_EQ(own.status, 0) << own.text;
+  EXPECT_EQ(own.text, "hammer_loads/HullLoads\nhammer_loads/RunInfo\n");
+  const Answer python = inInstallSpace("python3 -c \"import hammer_loads.msg as m; print(m.HullLoads._type)\"");
+  EXPECT_EQ(python.text, "hammer_loads/HullLoads\n");
+}
+
+TEST_F(DownstreamTest, TestsWithTheInstalledNode) {
+  build("use_rostest", "cd " + build_.string() + " && ctest --output-on-failure");
+}
+
+TEST_F(DownstreamTest, InstalledLaunchFilesFindTheirNodelets) {
+  const Answer plugins = inInstallSpace("rospack plugins --attrib=plugin nodelet");
+  EXPECT_NE(plugins.text.find((kPrefix / "share/hammer_loads/nodelet_plugins.xml").string()), std::string::npos)
+      << plugins.text;
+  EXPECT_TRUE(fs::exists(kPrefix / "lib/libhammer_loads_nodelets.so"));
+}
+
+TEST_F(DownstreamTest, LaunchFilesListAsRequiredOnlyWhatIs) {
+  for (const char* name : {"hammer_loads", "hammer_loads_nodelet", "demo", "grapple"}) {
+    const Answer arguments = inInstallSpace(std::string("roslaunch hammer_loads ") + name + ".launch --ros-args");
+    EXPECT_NE(arguments.text.find("Optional Arguments"), std::string::npos) << arguments.text;
+    EXPECT_EQ(arguments.text.find("Required Arguments"), std::string::npos) << arguments.text;
+  }
+  const Answer replay = inInstallSpace("roslaunch hammer_loads replay.launch --ros-args");
+  EXPECT_EQ(replay.text.rfind("Required Arguments:\n  bag: ", 0), 0u) << replay.text;
+  EXPECT_NE(replay.text.find("\nOptional Arguments:"), std::string::npos) << replay.text;
+  for (const char* argument : {"urdf", "boom", "boom_model", "boom_wrench_links", "hull_imu", "tf", "crank_joint"})
+    EXPECT_NE(replay.text.find(std::string("\n  ") + argument + " (default"), std::string::npos) << argument;
+}
+
+TEST_F(DownstreamTest, LaunchArgumentsBecomeParameters) {
+  const Answer given = inInstallSpace(
+      "roslaunch --dump-params hammer_loads hammer_loads.launch crank_joint:=drive_joint boom_model:=rigid "
+      "boom_wrench_links:=\"[arm_link, base_link]\" log_directory:=/somewhere");
+  for (const char* line : {"/crank_joint: drive_joint", "/boom: rigid", "/boom_wrench_links:\n- arm_link\n- base_link",
+                           "/log_directory: /somewhere"})
+    EXPECT_NE(given.text.find(std::string("/hammer_loads") + line), std::string::npos) << line << '\n' << given.text;
+  const Answer shipped = inInstallSpace("roslaunch --dump-params hammer_loads hammer_loads.launch");
+  for (const char* line : {"/crank_joint: hammer_crank_joint", "/boom: auto", "/boom_wrench_links: []"})
+    EXPECT_NE(shipped.text.find(std::string("/hammer_loads") + line), std::string::npos) << line;
+  const Answer command =
+      inInstallSpace("roslaunch --args /hammer_loads hammer_loads hammer_loads.launch hull_imu:=/imu");
+  EXPECT_NE(command.text.find("hull_imu:=/imu"), std::string::npos) << command.text;
+}
+
+TEST_F(DownstreamTest, HeadersAreInstalledOnlyWithTheirLibrary) {
+  const fs::path include = kPrefix / "include/hammer_loads";
+  for (const char* room : {"simulation", "bench", "commands"}) EXPECT_FALSE(fs::exists(include / room)) << room;
+  for (const char* header : {"ros/machine_player.h", "ros/run_node.h"}) EXPECT_FALSE(fs::exists(include / header));
+  EXPECT_TRUE(fs::exists(include / "pipeline/pipeline.h"));
+}
+
+/// catkin's own rules for what a package must declare. Warnings are about scripts that need the source tree.
+TEST(CatkinLint, HasNoErrors) {
+  const fs::path out = fs::temp_directory_path() / ("hammer_loads_lint_" + std::to_string(getpid()));
+  const Answer answer = run("PATH=/usr/bin:$PATH catkin_lint --offline -W0 " HAMMER_LOADS_SOURCE, out);
+  fs::remove(out);
+  EXPECT_EQ(answer.status, 0) << answer.text;
+  EXPECT_EQ(answer.text.find("error:"), std::string::npos) << answer.text;
+  EXPECT_NE(answer.text.find("checked 1 packages"), std::string::npos) << answer.text;
+}
+
+}  // namespace
+}  // namespace hammer_loads::test
