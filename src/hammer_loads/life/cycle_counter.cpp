@@ -1,0 +1,41 @@
+#include "hammer_loads/life/cycle_counter.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace hammer_loads::life {
+
+CycleCounter::CycleCounter(const LoadGrid& grid)
+    : grid_(grid),
+      classes_(grid.classes()),
+      stack_(2 * classes_ + 1),
+      // Not a vector: pages without a cycle cost no memory.
+      cells_(static_cast<std::uint64_t*>(std::calloc(classes_ * (classes_ - 1) / 2, sizeof(std::uint64_t)))),
+      touched_(classes_ * (classes_ - 1) / 2 / kBlock + 1, 0) {
+  if (!cells_) throw std::bad_alloc();
+}
+
+CycleCount CycleCounter::take() {
+  CycleCount count(grid_);
+  const std::size_t cells = row(classes_);
+  std::size_t steps = 1;
+  for (std::size_t block = 0; block < touched_.size(); ++block) {
+    if (touched_[block] == 0) continue;
+    touched_[block] = 0;
+    const std::size_t end = std::min(cells, (block + 1) * kBlock);
+    for (std::size_t cell = block * kBlock; cell < end; ++cell) {
+      if (cells_[cell] == 0) continue;
+      while (row(steps + 1) <= cell) ++steps;
+      count.closed.push_back(
+          {static_cast<std::uint32_t>(steps), static_cast<std::uint32_t>(cell - row(steps)), cells_[cell]});
+      cells_[cell] = 0;
+    }
+  }
+  count.residue = stack_.residue();
+  count.tally = std::exchange(tally_, {});
+  count.extremes = std::exchange(extremes_, {});
+  return count;
+}
+
+}  // namespace hammer_loads::life
