@@ -20,9 +20,11 @@ std::uint64_t checksum(const std::string& text) {
 }
 
 std::string headText(const SampleTally& tally, const Extremes& extremes) {
-  return format("tally %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", tally.counted, tally.skipped,
-                tally.below, tally.above, tally.gaps) +
-         format("extremes %.17g %.17g\n", extremes.least, extremes.greatest);
+  std::string line = "tally";
+  for (const std::uint64_t value :
+       {tally.counted, tally.skipped, tally.below, tally.above, tally.gaps, tally.deviations, tally.deviation_sum})
+    line += format(" %" PRIu64, value);
+  return line + '\n' + format("extremes %.17g %.17g\n", extremes.least, extremes.greatest);
 }
 
 std::string bodyText(const CycleCount& count) {
@@ -96,7 +98,8 @@ class Words {
 
 void readHead(Words& words, SampleTally& tally, Extremes& extremes) {
   words.expect("tally");
-  for (std::uint64_t* value : {&tally.counted, &tally.skipped, &tally.below, &tally.above, &tally.gaps}) {
+  for (std::uint64_t* value : {&tally.counted, &tally.skipped, &tally.below, &tally.above, &tally.gaps,
+                               &tally.deviations, &tally.deviation_sum}) {
     *value = words.integer();
   }
   words.expect("extremes");

@@ -52,6 +52,12 @@ void CycleCount::advance(const CycleCount& since) {
   extremes.add(since.extremes);
 }
 
+double meanDeviation(const CycleCount& count) {
+  if (count.tally.deviations == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(count.tally.deviation_sum) / static_cast<double>(count.tally.deviations) *
+         (count.grid.width() / kDeviationUnits);
+}
+
 std::vector<RangeMean> rangesAndMeans(const CycleCount& count) {
   std::vector<ClosedCycles> halves = count.closed;
   for (ClosedCycles& cycles : halves) cycles.count *= 2;

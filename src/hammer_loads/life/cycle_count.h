@@ -27,6 +27,9 @@ struct SampleTally {
   std::uint64_t below{};    ///< saturated: below the full scale, counted in the lowest class
   std::uint64_t above{};    ///< saturated: above the full scale, counted in the highest class
   std::uint64_t gaps{};     ///< places where samples are missing; the series goes on over them
+  /// Standard deviations given with the samples, and their sum in 1/1024 of a class width: whole numbers, so that
+  /// pieces add exactly.
+  std::uint64_t deviations{}, deviation_sum{};
 
   void add(const SampleTally& o) {
     counted += o.counted;
@@ -34,11 +37,16 @@ struct SampleTally {
     below += o.below;
     above += o.above;
     gaps += o.gaps;
+    deviations += o.deviations;
+    deviation_sum += o.deviation_sum;
   }
   bool operator==(const SampleTally& o) const {
-    return counted == o.counted && skipped == o.skipped && below == o.below && above == o.above && gaps == o.gaps;
+    return counted == o.counted && skipped == o.skipped && below == o.below && above == o.above && gaps == o.gaps &&
+           deviations == o.deviations && deviation_sum == o.deviation_sum;
   }
 };
+
+constexpr double kDeviationUnits = 1024.0;  ///< per class width, in SampleTally::deviation_sum
 
 /// Smallest and largest value that came in, not rounded to the grid; NaN before the first one.
 struct Extremes {
@@ -76,6 +84,9 @@ void joinResidues(std::vector<std::uint32_t>& residue, const std::vector<std::ui
 
 /// Sorts and adds up what has the same range and mean.
 void sortClosed(std::vector<ClosedCycles>& closed);
+
+/// Mean standard deviation of a sample [channel's unit]; NaN where none was given.
+double meanDeviation(const CycleCount& count);
 
 /// Range and mean in the channel's unit; `count` is a multiple of 1/2.
 struct RangeMean {

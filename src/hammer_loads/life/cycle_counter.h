@@ -34,6 +34,13 @@ class CycleCounter {
     extremes_.add(value);
     stack_.push(grid_.classOf(value), [this](std::uint32_t b, std::uint32_t c) { close(b, c); });
   }
+  /// Standard deviation of the sample just added [channel's unit]; NaN: none. Beyond the full scale it counts as that.
+  void addDeviation(double deviation) noexcept {
+    if (!(deviation >= 0.0)) return;
+    const double units = std::fmin(deviation / grid_.width(), static_cast<double>(classes_)) * kDeviationUnits;
+    ++tally_.deviations;
+    tally_.deviation_sum += static_cast<std::uint64_t>(units + 0.5);
+  }
   /// Samples are missing here. The series goes on: the cycle across the gap is the least that the loads have done.
   void gap() noexcept { ++tally_.gaps; }
 
