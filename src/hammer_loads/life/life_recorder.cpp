@@ -76,6 +76,7 @@ void LifeRecorder::sample(std::int64_t stamp, const double* values, const double
 }
 
 void LifeRecorder::gap() noexcept {
+  if (!contiguous_) return;  // before the first sample, or of one gap twice
   contiguous_ = false;
   for (CycleCounter& counter : counters_) counter.gap();
 }

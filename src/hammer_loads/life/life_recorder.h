@@ -36,6 +36,7 @@ class LifeRecorder {
   /// Values and standard deviations of the inputs at an instant [ns], in their order; NaN: none, and `deviations` may
   /// be null. No allocation.
   void sample(std::int64_t stamp, const double* values, const double* deviations) noexcept;
+  /// Samples are missing before the next one, or time runs back there.
   void gap() noexcept;
   void turn() noexcept { ++turns_; }
 
