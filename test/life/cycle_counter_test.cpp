@@ -99,6 +99,28 @@ TEST(CycleCounter, TakesNoMemoryAfterItsStart) {
   EXPECT_EQ(::hammer_loads::test::allocations, before);
 }
 
+// More cycles of one kind than a cell holds, twice that and just as many.
+TEST(CycleCounter, ManyCyclesOfOneKindAreCounted) {
+  for (const std::uint64_t cycles : {65535ULL, 65536ULL, 65537ULL, 200000ULL}) {
+    CycleCounter counter(integerGrid(0, 9));
+    std::uint64_t counted = 0;
+    for (int piece = 0; piece < 2; ++piece) {
+      for (std::uint64_t i = 0; i < cycles; ++i) {
+        counter.add(2.0);
+        counter.add(9.0);
+        counter.add(4.0);
+        counter.add(7.0);
+      }
+      for (const ClosedCycles& c : counter.take().closed) {
+        if (c.steps == 3) {
+          counted += c.count;
+        }
+      }
+    }
+    EXPECT_EQ(counted, 2 * cycles - 1);  // the last one is in the residue
+  }
+}
+
 TEST(CountState, GoesOnWhereItStopped) {
   std::mt19937 random(8);
   std::normal_distribution<double> value(0.0, 1.0);

@@ -15,9 +15,10 @@ namespace hammer_loads::life {
 /// A value that is not finite, or larger than kLargestLoad, is no load: it is skipped and counted, as if the sample
 /// were not there. A value beyond the full scale counts in the outer class, and as saturated.
 ///
-/// Closed cycles lie in a dense range-mean matrix of classes (classes - 1)/2 cells of 8 byte, by range, then by mean:
-/// 67 MB of address space at 4096 classes, of which memory is taken only where cycles fall. Cycles of like range lie
-/// side by side, so that a load that repeats stays in the cache.
+/// Closed cycles lie in a dense range-mean matrix of classes (classes - 1)/2 cells of 2 byte, by range, then by mean:
+/// 17 MB of address space at 4096 classes, of which memory is taken only where cycles fall. Cycles of like range lie
+/// side by side, so that a load that repeats stays in the cache. Small cells keep noise over the whole scale fast,
+/// where each cycle falls on another page; a cell that runs over is noted.
 class CycleCounter {
  public:
   /// Throws std::bad_alloc when there is not enough address space.
@@ -57,7 +58,11 @@ class CycleCounter {
   static bool isLoad(double value) noexcept { return std::abs(value) <= kLargestLoad; }
 
  private:
-  static constexpr std::size_t kBlock = 512;  ///< cells: one page
+  using Cell = std::uint16_t;
+  static constexpr std::uint64_t kCellPeriod = 65536;
+  static constexpr std::size_t kBlock = 4096 / sizeof(Cell);  ///< cells of a page
+  /// Cells run over before memory is taken: 4e9 cycles, 100 days at 1 kHz without a take().
+  static constexpr std::size_t kOverruns = 65536;
 
   struct Free {
     void operator()(void* memory) const { std::free(memory); }
@@ -66,15 +71,16 @@ class CycleCounter {
   void close(std::uint32_t b, std::uint32_t c) noexcept {
     const std::uint32_t low = b < c ? b : c, steps = b < c ? c - b : b - c;
     const std::size_t cell = row(steps) + low;
-    ++cells_[cell];
+    if (++cells_[cell] == 0) overruns_.push_back(static_cast<std::uint32_t>(cell));
     touched_[cell / kBlock] = 1;
   }
 
   LoadGrid grid_;
   std::size_t classes_;
   FourPointStack<std::uint32_t> stack_;
-  std::unique_ptr<std::uint64_t[], Free> cells_;
-  std::vector<std::uint8_t> touched_;  ///< blocks with a cell that is not 0
+  std::unique_ptr<Cell[], Free> cells_;
+  std::vector<std::uint32_t> overruns_;  ///< cells, one entry for each kCellPeriod cycles
+  std::vector<std::uint8_t> touched_;    ///< blocks with a cycle since the last take()
   SampleTally tally_;
   Extremes extremes_;
 };

@@ -12,7 +12,7 @@ namespace hammer_loads::life {
 /// So an extreme is off by at most half a width, a range by less than one width.
 class LoadGrid {
  public:
-  static constexpr std::uint32_t kMostClasses = 16384;  ///< a matrix of 1 GB
+  static constexpr std::uint32_t kMostClasses = 16384;  ///< a matrix of 268 MB
 
   /// `least` < `greatest`, both finite, in the channel's unit; 2 to kMostClasses classes.
   static Checked<LoadGrid> make(double least, double greatest, std::int64_t classes);
