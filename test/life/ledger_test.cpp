@@ -264,6 +264,43 @@ TEST(Ledger, AFileThatIsTakenAwayIsBegunAnew) {
   EXPECT_EQ(contentsOf(file.path()).totals.at(0)[0].tally.counted, 100U);
 }
 
+/// Three runs across midnights, cut as a node with this period cuts them.
+std::vector<std::string> daysWithPeriod(std::int64_t period) {
+  const LedgerFile file;
+  LifeSettings s = settings();
+  s.period = period;
+  for (unsigned run = 0; run < 3; ++run) {
+    std::mt19937 random(run);
+    std::normal_distribution<double> load(0.0, 250.0);
+    LifeRecorder part = recorder(s);
+    LedgerRun ledger(file.path(), machine("mo100", s), std::to_string(run));
+    for (std::int64_t stamp = 20001 * kDay - 200 * kSecond + run * kDay; stamp < (20001 + run) * kDay + 99 * kSecond;
+         stamp += kSecond / 20) {
+      if (part.due(stamp)) {
+        EXPECT_EQ(ledger.add(part.take()), kWritten);
+      }
+      const double values[] = {load(random), load(random)}, deviations[] = {load(random) * load(random), 1.0};
+      part.sample(stamp, values, deviations);
+    }
+    EXPECT_EQ(ledger.end(part.take()), kWritten);
+  }
+  LedgerReader reader = LedgerReader::open(file.path()).value.value();
+  const LedgerEpoch epoch = reader.epochs().at(0);
+  std::vector<std::string> days;
+  for (const LedgerDay& day : epoch.days) {
+    days.push_back(day.date + " " + std::to_string(day.duration));
+    for (std::size_t i = 0; i < 2; ++i) days.push_back(stateText(reader.ofDay(epoch, i, day)));
+  }
+  for (std::size_t i = 0; i < 2; ++i) days.push_back(stateText(reader.total(epoch, i)));
+  return days;
+}
+
+TEST(Ledger, ThePeriodChangesNoNumberOfAnyDay) {
+  const std::vector<std::string> fine = daysWithPeriod(17 * kSecond), coarse = daysWithPeriod(100000 * kSecond);
+  EXPECT_EQ(fine.size(), 4U * 3U + 2U);
+  EXPECT_EQ(fine, coarse);
+}
+
 TEST(Ledger, MidnightAmongWaitingPiecesStays) {
   const LedgerFile file;
   LifeRecorder part = recorder();
