@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what the fuzzer begins with: sessions as test/fuzz/pipeline_fuzz.cpp reads them, parameters from config/."""
+"""Writes what the fuzzer begins with: sessions and series as test/fuzz reads them, parameters from config/."""
 import argparse
 import math
 import pathlib
@@ -41,12 +41,39 @@ def parameter_seeds(config):
     return {**text, "whole": whole, "whole_bare": bare}
 
 
+def with_checksum(text):
+    """A saved count as src/hammer_loads/life/count_state.h writes it."""
+    value = 14695981039346656037
+    for byte in text.encode():
+        value = (value ^ byte) * 1099511628211 % 2**64
+    return f"{text}checksum {value:016x}\n".encode()
+
+
+def cycles_seeds():
+    value = lambda number: struct.pack("<Bd", 0, number)
+    noise = bytes([30]) + b"".join(bytes([4, i * 37 % 256]) for i in range(100))
+    plateaus = bytes([200]) + b"".join(struct.pack("<Bh", 1 + 8 * 5, i * 331 % 1999 - 999) for i in range(40))
+    special = bytes([0]) + b"".join(map(value, (math.nan, 1.0, math.inf, -2.0, -math.inf, 1e308, -1e300, 5e-324, -0.0)))
+    tail = "residue 3\n1\n9\n2\n"
+    return {
+        "noise": noise,
+        "plateaus": plateaus,
+        "special": special,
+        "cuts_and_gaps": noise + bytes([2, 3]) + plateaus[1:] + bytes([2]) + special[1:],
+        "grid_state": with_checksum("hammer_loads cycle count 1\ngrid 0 10 10\ntally 9 0 0 0 0 0 0\nextremes 1 9\n"
+                                    "cycles 2\n1 3 4\n2 3 1\n" + tail),
+        "exact_state": with_checksum("hammer_loads cycle count 1\nexact\ntally 9 0 0 0 0 0 0\nextremes 1 9\n"
+                                     "cycles 1\n2.5 3 4\n" + tail),
+    }
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path)
     arguments = parser.parse_args()
     config = pathlib.Path(__file__).resolve().parent.parent / "config"
-    for kind, seeds in (("pipeline", pipeline_seeds()), ("parameter", parameter_seeds(config))):
+    all_seeds = {"pipeline": pipeline_seeds(), "parameter": parameter_seeds(config), "cycles": cycles_seeds()}
+    for kind, seeds in all_seeds.items():
         (arguments.directory / kind).mkdir(parents=True, exist_ok=True)
         for name, data in seeds.items():
             (arguments.directory / kind / name).write_bytes(data)

@@ -147,7 +147,7 @@ TEST(Command, PricesEveryWay) {
     EXPECT_NE(run.out.find("| " + row["name"].as<std::string>() + " |"), std::string::npos) << name;
     if (row["errors"].size() == hardCases(kHammer).size()) ++loads;
   }
-  EXPECT_EQ(groups, (std::set<std::string>{"printed", "scalar", "batch", "crank", "pipeline", "grapple"}));
+  EXPECT_EQ(groups, (std::set<std::string>{"printed", "scalar", "batch", "crank", "pipeline", "life", "grapple"}));
   EXPECT_EQ(loads, loadWays().size());
 }
 

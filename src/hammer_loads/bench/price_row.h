@@ -16,7 +16,7 @@ struct CaseError {
 };
 
 struct PriceRow {
-  std::string group;  ///< printed, scalar, batch, crank, pipeline or grapple
+  std::string group;  ///< printed, scalar, batch, crank, pipeline, life or grapple
   std::string name;
   Cost cost;
   std::vector<CaseError> errors;   ///< against the reference of the row's own level; none where sessions tell

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "hammer_loads/bench/grapple_prices.h"
+#include "hammer_loads/bench/life_prices.h"
 #include "hammer_loads/bench/load_prices.h"
 #include "hammer_loads/bench/step_prices.h"
 #include "hammer_loads/settings/read_grapple.h"
@@ -76,7 +77,7 @@ std::vector<PriceRow> priceTable(const Settings& settings) {
   const Checked<Grapple> grapple = loadGrapple({configDirectory() + "/grapple_claims.yaml"});
   if (!grapple.value) throw std::runtime_error(grapple.problems.front());
   std::vector<PriceRow> rows = loadPrices(settings.mechanism);
-  for (const std::vector<PriceRow>& more : {stepPrices(settings), grapplePrices(*grapple.value)})
+  for (const std::vector<PriceRow>& more : {stepPrices(settings), lifePrices(), grapplePrices(*grapple.value)})
     rows.insert(rows.end(), more.begin(), more.end());
   return rows;
 }

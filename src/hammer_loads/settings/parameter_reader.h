@@ -35,6 +35,11 @@ class ParameterReader {
  public:
   explicit ParameterReader(ParameterMap parameters) : parameters_(std::move(parameters)) {}
 
+  /// Whether the key is given; for one that may be left out.
+  bool has(const std::string& key) {
+    known_.insert(key);
+    return parameters_.count(key) != 0;
+  }
   /// In the parameter's unit, which is only for the report; "" for none. An integer literal will do.
   double number(const std::string& key, const std::string& unit, NumberRule rule);
   /// In [least, most].

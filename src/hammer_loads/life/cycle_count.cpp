@@ -1,0 +1,77 @@
+#include "hammer_loads/life/cycle_count.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "hammer_loads/life/four_point.h"
+
+namespace hammer_loads::life {
+namespace {
+
+ClosedCycles between(std::uint32_t b, std::uint32_t c, std::uint64_t count) {
+  return {std::max(b, c) - std::min(b, c), std::min(b, c), count};
+}
+
+}  // namespace
+
+void sortClosed(std::vector<ClosedCycles>& closed) {
+  std::sort(closed.begin(), closed.end());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    const bool same = kept > 0 && closed[kept - 1].steps == closed[i].steps && closed[kept - 1].low == closed[i].low;
+    if (same) {
+      closed[kept - 1].count += closed[i].count;
+    } else {
+      closed[kept++] = closed[i];
+    }
+  }
+  closed.resize(kept);
+}
+
+void joinResidues(std::vector<std::uint32_t>& residue, const std::vector<std::uint32_t>& later,
+                  std::vector<ClosedCycles>& closed) {
+  FourPointStack<std::uint32_t> stack(residue.size() + later.size());
+  const auto close = [&](std::uint32_t b, std::uint32_t c) { closed.push_back(between(b, c, 1)); };
+  for (const std::uint32_t point : residue) stack.push(point, close);
+  for (const std::uint32_t point : later) stack.push(point, close);
+  residue = stack.residue();
+}
+
+void CycleCount::append(const CycleCount& later) {
+  std::vector<std::uint32_t> joined = residue;
+  joinResidues(joined, later.residue, closed);
+  advance(later);
+  residue = std::move(joined);
+}
+
+void CycleCount::advance(const CycleCount& since) {
+  closed.insert(closed.end(), since.closed.begin(), since.closed.end());
+  sortClosed(closed);
+  residue = since.residue;
+  tally.add(since.tally);
+  extremes.add(since.extremes);
+}
+
+double meanDeviation(const CycleCount& count) {
+  if (count.tally.deviations == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(count.tally.deviation_sum) / static_cast<double>(count.tally.deviations) *
+         (count.grid.width() / kDeviationUnits);
+}
+
+std::vector<RangeMean> rangesAndMeans(const CycleCount& count) {
+  std::vector<ClosedCycles> halves = count.closed;
+  for (ClosedCycles& cycles : halves) cycles.count *= 2;
+  for (std::size_t i = 1; i < count.residue.size(); ++i) {
+    halves.push_back(between(count.residue[i - 1], count.residue[i], 1));
+  }
+  sortClosed(halves);
+  std::vector<RangeMean> result;
+  result.reserve(halves.size());
+  for (const ClosedCycles& half : halves) {
+    result.push_back(
+        {count.grid.range(half.steps), count.grid.mean(half.low, half.steps), 0.5 * static_cast<double>(half.count)});
+  }
+  return result;
+}
+
+}  // namespace hammer_loads::life

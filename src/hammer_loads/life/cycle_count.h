@@ -1,0 +1,99 @@
+/// A count of load cycles on a grid, as a value: closed cycles, residue and what was left out. Counts add exactly.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "hammer_loads/life/load_grid.h"
+
+namespace hammer_loads::life {
+
+/// Closed cycles between class `low` and class `low + steps`.
+struct ClosedCycles {
+  std::uint32_t steps{};  ///< range in classes, >= 1
+  std::uint32_t low{};    ///< class of the lower extreme
+  std::uint64_t count{};
+
+  bool operator==(const ClosedCycles& o) const { return steps == o.steps && low == o.low && count == o.count; }
+  /// By range, then by mean.
+  bool operator<(const ClosedCycles& o) const { return steps != o.steps ? steps < o.steps : low < o.low; }
+};
+
+/// What came in.
+struct SampleTally {
+  std::uint64_t counted{};  ///< samples with a value; saturated ones are among them
+  std::uint64_t skipped{};  ///< not a number or infinite: the series goes on without them
+  std::uint64_t below{};    ///< saturated: below the full scale, counted in the lowest class
+  std::uint64_t above{};    ///< saturated: above the full scale, counted in the highest class
+  std::uint64_t gaps{};     ///< places where samples are missing; the series goes on over them
+  /// Standard deviations given with the samples, and their sum in 1/1024 of a class width: whole numbers, so that
+  /// pieces add exactly.
+  std::uint64_t deviations{}, deviation_sum{};
+
+  void add(const SampleTally& o) {
+    counted += o.counted;
+    skipped += o.skipped;
+    below += o.below;
+    above += o.above;
+    gaps += o.gaps;
+    deviations += o.deviations;
+    deviation_sum += o.deviation_sum;
+  }
+  bool operator==(const SampleTally& o) const {
+    return counted == o.counted && skipped == o.skipped && below == o.below && above == o.above && gaps == o.gaps &&
+           deviations == o.deviations && deviation_sum == o.deviation_sum;
+  }
+};
+
+constexpr double kDeviationUnits = 1024.0;  ///< per class width, in SampleTally::deviation_sum
+
+/// Smallest and largest value that came in, not rounded to the grid; NaN before the first one.
+struct Extremes {
+  double least{std::numeric_limits<double>::quiet_NaN()};
+  double greatest{std::numeric_limits<double>::quiet_NaN()};
+
+  void add(double value) noexcept {
+    if (!(value >= least)) least = value;
+    if (!(value <= greatest)) greatest = value;
+  }
+  void add(const Extremes& o) noexcept {
+    if (o.least == o.least) add(o.least), add(o.greatest);
+  }
+};
+
+struct CycleCount {
+  LoadGrid grid;
+  std::vector<ClosedCycles> closed;    ///< sorted, each (steps, low) once
+  std::vector<std::uint32_t> residue;  ///< classes of the turning points that closed no cycle, in time order
+  SampleTally tally;
+  Extremes extremes;
+
+  explicit CycleCount(const LoadGrid& on) : grid(on) {}
+
+  /// The count of this series followed by the other one; the grids must be equal.
+  void append(const CycleCount& later);
+  /// The same series some time on: `since` holds what closed since then and the residue of the whole.
+  void advance(const CycleCount& since);
+};
+
+/// Residue of two pieces of a series, the first one's in `residue`; the cycles that close across the seam are added to
+/// `closed`, which need not be sorted before and is not afterwards.
+void joinResidues(std::vector<std::uint32_t>& residue, const std::vector<std::uint32_t>& later,
+                  std::vector<ClosedCycles>& closed);
+
+/// Sorts and adds up what has the same range and mean.
+void sortClosed(std::vector<ClosedCycles>& closed);
+
+/// Mean standard deviation of a sample [channel's unit]; NaN where none was given.
+double meanDeviation(const CycleCount& count);
+
+/// Range and mean in the channel's unit; `count` is a multiple of 1/2.
+struct RangeMean {
+  double range{}, mean{}, count{};
+};
+
+/// Closed cycles and the residue as half cycles, sorted by range, then by mean: the count of ASTM E1049-85 5.4.4.
+std::vector<RangeMean> rangesAndMeans(const CycleCount& count);
+
+}  // namespace hammer_loads::life

@@ -1,0 +1,85 @@
+#include "hammer_loads/life/database.h"
+
+#include <sqlite3.h>
+
+#include <cmath>
+#include <limits>
+
+namespace hammer_loads::life {
+
+void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+void Database::Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+Database::Database(const std::string& path, Use use, int patience_ms) {
+  const int flags = use == Use::kWrite ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READWRITE;
+  sqlite3* handle = nullptr;
+  const int result = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
+  handle_.reset(handle);
+  if (!check(result)) return;
+  check(sqlite3_busy_timeout(handle, patience_ms));
+}
+
+void Database::fail(const std::string& problem) {
+  if (problem_.empty()) problem_ = problem;
+}
+
+bool Database::check(int result) {
+  if (result == SQLITE_OK || result == SQLITE_ROW || result == SQLITE_DONE) return true;
+  fail(handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(result));
+  return false;
+}
+
+void Database::run(const char* sql) {
+  if (good()) check(sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr));
+}
+
+Database::Statement::Statement(Database& database, const char* sql) : database_(database) {
+  if (!database.good()) return;
+  sqlite3_stmt* statement = nullptr;
+  database.check(sqlite3_prepare_v2(database.handle_.get(), sql, -1, &statement, nullptr));
+  statement_.reset(statement);
+}
+
+bool Database::Statement::step() {
+  if (!database_.good()) return false;
+  const int result = sqlite3_step(statement_.get());
+  return database_.check(result) && result == SQLITE_ROW;
+}
+
+void Database::Statement::reset() {
+  if (statement_) sqlite3_reset(statement_.get());
+}
+
+void Database::Statement::bind(int place, std::int64_t value) {
+  if (database_.good()) database_.check(sqlite3_bind_int64(statement_.get(), place, value));
+}
+
+void Database::Statement::bind(int place, double value) {
+  if (!database_.good()) return;
+  database_.check(std::isnan(value) ? sqlite3_bind_null(statement_.get(), place)
+                                    : sqlite3_bind_double(statement_.get(), place, value));
+}
+
+void Database::Statement::bind(int place, const std::string& value) {
+  if (!database_.good()) return;
+  database_.check(
+      sqlite3_bind_text64(statement_.get(), place, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
+}
+
+std::int64_t Database::Statement::integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+
+bool Database::Statement::isNull(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+double Database::Statement::number(int column) const {
+  return isNull(column) ? std::numeric_limits<double>::quiet_NaN() : sqlite3_column_double(statement_.get(), column);
+}
+
+std::string Database::Statement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  return text == nullptr ? std::string{}
+                         : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+}  // namespace hammer_loads::life

@@ -1,0 +1,85 @@
+/// A SQLite file: statements one after another, the first error kept. Nothing throws.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace hammer_loads::life {
+
+/// After an error every further call does nothing, so that a caller asks once, at the end.
+class Database {
+ public:
+  enum class Use { kRead, kWrite };  ///< kWrite makes the file where there is none
+
+  /// Waits up to `patience_ms` for others to release the file.
+  Database(const std::string& path, Use use, int patience_ms);
+
+  /// Runs statements without result.
+  void run(const char* sql);
+
+  /// One statement, to run many times with other values.
+  class Statement {
+   public:
+    Statement(Database& database, const char* sql);
+    /// Values of ?1, ?2 ...
+    template <typename... Values>
+    void run(const Values&... values) {
+      bindAll(values...);
+      while (step()) {
+      }
+    }
+    template <typename... Values>
+    Statement& with(const Values&... values) {
+      bindAll(values...);
+      return *this;
+    }
+    /// Next row of a query; false after the last one, and after an error.
+    bool step();
+    std::int64_t integer(int column) const;
+    double number(int column) const;  ///< NaN for NULL
+    bool isNull(int column) const;
+    std::string text(int column) const;
+
+   private:
+    struct Finalize {
+      void operator()(sqlite3_stmt* statement) const;
+    };
+    template <typename... Values>
+    void bindAll(const Values&... values) {
+      reset();
+      int place = 0;
+      (bind(++place, values), ...);
+    }
+    void reset();
+    void bind(int place, std::int64_t value);
+    void bind(int place, std::uint64_t value) { bind(place, static_cast<std::int64_t>(value)); }
+    void bind(int place, std::uint32_t value) { bind(place, std::int64_t{value}); }
+    void bind(int place, double value);  ///< NULL for NaN
+    void bind(int place, const std::string& value);
+
+    Database& database_;
+    std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  };
+
+  /// One line, without the file's name; empty while all is well.
+  const std::string& problem() const { return problem_; }
+  bool good() const { return problem_.empty(); }
+  /// For what the caller finds wrong; the first one stays.
+  void fail(const std::string& problem);
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const;
+  };
+  /// True for a result of success.
+  bool check(int result);
+
+  std::unique_ptr<sqlite3, Close> handle_;
+  std::string problem_;
+};
+
+}  // namespace hammer_loads::life

@@ -1,0 +1,100 @@
+#include "hammer_loads/life/life_recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace hammer_loads::life {
+
+std::string hotSpotChannel(const HotSpot& spot) { return "stress/" + spot.name + "_MPa"; }
+
+std::int64_t dayOf(std::int64_t stamp) noexcept {
+  constexpr std::int64_t kDay = 86400LL * 1000 * 1000 * 1000;
+  return stamp / kDay - (stamp % kDay < 0 ? 1 : 0);
+}
+
+void LifePiece::advance(const LifePiece& since) {
+  stamp = since.stamp;
+  duration += since.duration;
+  turns += since.turns;
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i].advance(since.counts[i]);
+}
+
+Checked<LifeRecorder> LifeRecorder::make(const LifeSettings& settings, const std::vector<std::string>& inputs) {
+  Checked<LifeRecorder> result;
+  LifeRecorder recorder;
+  recorder.period_ = settings.period;
+  const auto addTerm = [&](const std::string& channel, double factor) {
+    const auto found = std::find(inputs.begin(), inputs.end(), channel);
+    if (found == inputs.end()) {
+      result.problems.push_back(channel + ": is no channel of this machine");
+    } else {
+      recorder.terms_.push_back({static_cast<std::size_t>(found - inputs.begin()), factor});
+    }
+  };
+  const auto addCounter = [&](const std::string& name, const LoadGrid& grid, std::size_t first_term) {
+    recorder.names_.push_back(name);
+    recorder.counters_.emplace_back(grid);
+    recorder.sums_.push_back({first_term, recorder.terms_.size()});
+  };
+  for (const CountedChannel& channel : settings.channels) {
+    const std::size_t first = recorder.terms_.size();
+    addTerm(channel.name, 1.0);
+    addCounter(channel.name, channel.grid, first);
+  }
+  for (const HotSpot& spot : settings.hot_spots) {
+    const std::size_t first = recorder.terms_.size();
+    for (const Influence& influence : spot.influences) addTerm(influence.channel, influence.factor);
+    addCounter(hotSpotChannel(spot), spot.grid, first);
+  }
+  if (result.problems.empty()) result.value.emplace(std::move(recorder));
+  return result;
+}
+
+void LifeRecorder::sample(std::int64_t stamp, const double* values, const double* deviations) noexcept {
+  for (std::size_t i = 0; i < counters_.size(); ++i) {
+    double value = 0.0, variance = 0.0;
+    for (std::size_t t = sums_[i].begin; t < sums_[i].end; ++t) {
+      const Term& term = terms_[t];
+      value += term.factor * values[term.input];
+      if (deviations == nullptr) continue;
+      const double part = term.factor * deviations[term.input];
+      variance += part * part;
+    }
+    counters_[i].add(value);
+    if (deviations != nullptr && CycleCounter::isLoad(value)) counters_[i].addDeviation(std::sqrt(variance));
+  }
+  if (contiguous_ && stamp > last_) duration_ += static_cast<std::uint64_t>(stamp - last_);
+  contiguous_ = true;
+  last_ = stamp;
+  if (!piece_begun_) {
+    piece_begun_ = true;
+    piece_start_ = stamp;
+  }
+}
+
+void LifeRecorder::gap() noexcept {
+  if (!contiguous_) return;  // before the first sample, or of one gap twice
+  contiguous_ = false;
+  for (CycleCounter& counter : counters_) counter.gap();
+}
+
+bool LifeRecorder::due(std::int64_t stamp) const noexcept {
+  if (!piece_begun_) return false;
+  return stamp < piece_start_ || stamp - piece_start_ >= period_ || dayOf(stamp) != dayOf(piece_start_);
+}
+
+LifePiece LifeRecorder::take() {
+  LifePiece piece;
+  piece.stamp = last_;
+  piece.duration = std::exchange(duration_, 0);
+  piece.turns = std::exchange(turns_, 0);
+  piece.counts.reserve(counters_.size());
+  for (CycleCounter& counter : counters_) piece.counts.push_back(counter.take());
+  piece_begun_ = false;
+  return piece;
+}
+
+}  // namespace hammer_loads::life

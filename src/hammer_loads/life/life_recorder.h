@@ -1,0 +1,78 @@
+/// Loads in, counts out: every counted channel and hot spot of a machine, sample by sample.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/life/cycle_counter.h"
+#include "hammer_loads/life/life_settings.h"
+#include "hammer_loads/util/checked.h"
+
+namespace hammer_loads::life {
+
+/// What a period adds: of each channel what closed since the last piece, and the residue since the count began.
+struct LifePiece {
+  std::int64_t stamp{};            ///< of the last sample [ns]; of the first piece without one: 0
+  std::uint64_t duration{};        ///< time between its samples, gaps left out [ns]
+  std::uint64_t turns{};           ///< blows
+  std::vector<CycleCount> counts;  ///< counted channels, then hot spots, in the order of channels()
+
+  /// The same run some time on.
+  void advance(const LifePiece& since);
+};
+
+/// How the caller's loop looks:
+///
+///     if (recorder.due(stamp)) use(recorder.take());   // before the sample: pieces end at whole periods and days
+///     recorder.sample(stamp, values, deviations);      // and each extreme between samples, in time order
+///
+/// recorder.gap() where samples are missing or time ran back, recorder.turn() at each blow, take() at the end.
+class LifeRecorder {
+ public:
+  /// `inputs`: names of the values that sample() will get. A problem for each channel that is not among them.
+  static Checked<LifeRecorder> make(const LifeSettings& settings, const std::vector<std::string>& inputs);
+
+  /// Values and standard deviations of the inputs at an instant [ns], in their order; NaN: none, and `deviations` may
+  /// be null. No allocation.
+  void sample(std::int64_t stamp, const double* values, const double* deviations) noexcept;
+  /// Samples are missing before the next one, or time runs back there.
+  void gap() noexcept;
+  void turn() noexcept { ++turns_; }
+
+  /// Whether a piece ends before a sample of this stamp: a period or a day (UTC) is over, or time ran back. A piece of
+  /// one period at most and of one day makes the trend by day the same live and from bags.
+  bool due(std::int64_t stamp) const noexcept;
+  /// Ends the piece. Allocates, and takes some ms for many cycles: not for the hot path.
+  LifePiece take();
+
+  /// Names of what is counted, hot spots as hotSpotChannel(), and their grids.
+  const std::vector<std::string>& channels() const { return names_; }
+  const LoadGrid& grid(std::size_t channel) const { return counters_[channel].grid(); }
+
+ private:
+  LifeRecorder() = default;
+
+  struct Term {
+    std::size_t input{};
+    double factor{};
+  };
+  /// A counter's value: a sum of terms, one of factor 1 for a channel.
+  struct Sum {
+    std::size_t begin{}, end{};  ///< in terms_
+  };
+
+  std::vector<std::string> names_;
+  std::vector<CycleCounter> counters_;
+  std::vector<Sum> sums_;
+  std::vector<Term> terms_;
+  std::int64_t period_{};
+  std::int64_t piece_start_{}, last_{};  ///< stamps [ns]
+  bool piece_begun_{}, contiguous_{};
+  std::uint64_t duration_{}, turns_{};
+};
+
+/// Days since 1970-01-01 UTC.
+std::int64_t dayOf(std::int64_t stamp) noexcept;
+
+}  // namespace hammer_loads::life

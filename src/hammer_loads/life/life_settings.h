@@ -1,0 +1,49 @@
+/// What is counted, and what its cycles are judged by.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/life/damage.h"
+#include "hammer_loads/life/load_grid.h"
+
+namespace hammer_loads::life {
+
+/// A load as it comes, by its name in the package's contract.
+struct CountedChannel {
+  std::string name;  ///< such as section_loads/NAME/torque_y_Nm; its unit is the name's end
+  LoadGrid grid;
+};
+
+/// One load's part in a stress.
+struct Influence {
+  std::string channel;  ///< any channel in use, counted or not
+  double factor{};      ///< [MPa per unit of the channel]
+};
+
+/// A place whose stress is a sum of loads, formed at each sample and counted as a channel `stress/NAME_MPa`.
+struct HotSpot {
+  std::string name;
+  std::vector<Influence> influences;
+  LoadGrid grid;                             ///< [MPa]
+  std::optional<SnCurve> curve;              ///< without one: damage-equivalent stress ranges alone
+  std::optional<FkmMeanStress> mean_stress;  ///< none: the curve is used as it is
+};
+
+struct LifeSettings {
+  std::vector<CountedChannel> channels;
+  std::vector<HotSpot> hot_spots;
+  std::int64_t period{};                ///< of ~load_cycles and the ledger [ns], > 0
+  double equivalent_cycles_per_hour{};  ///< of damage-equivalent loads, > 0
+  std::string ledger;                   ///< file; empty: none is kept
+};
+
+/// `stress/NAME_MPa`.
+std::string hotSpotChannel(const HotSpot& spot);
+
+/// Slopes at which damage-equivalent loads are given: welded steel, below its knee (DNV-RP-C203), composites.
+constexpr double kSlopes[] = {3.0, 4.0, 5.0, 10.0};
+
+}  // namespace hammer_loads::life

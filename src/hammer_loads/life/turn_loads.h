@@ -1,0 +1,49 @@
+/// Least, largest and mean load of each channel over a turn of the crank.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hammer_loads::life {
+
+/// One value per channel each; NaN where the channel had no value in the turn.
+struct TurnLoads {
+  std::int64_t start{}, end{};                                 ///< instants of the blows [ns]
+  bool whole{};                                                ///< it began with a blow; else with the first sample
+  std::vector<double> minimum, maximum;                        ///< of samples and the extremes between them
+  std::vector<std::int64_t> minimum_instant, maximum_instant;  ///< the first time that it was reached [ns]
+  std::vector<double> mean;                                    ///< over time
+  std::vector<std::uint64_t> skipped;                          ///< values of the turn that were no number
+};
+
+/// Feed every sample and every extreme between samples, in time order. All memory is taken at the start.
+///
+/// The mean is the integral by the trapezoidal rule over the time between the first and the last instant with a value;
+/// from there to the blows the first and the last value hold, as a blow may change a load at once.
+class TurnLoadsRecorder {
+ public:
+  explicit TurnLoadsRecorder(std::size_t channels);
+
+  /// One value per channel at an instant [ns]; NaN or infinity: none. An instant that is not after the one before adds
+  /// to the extremes and nothing to the mean.
+  void add(std::int64_t instant, const double* values) noexcept;
+  /// The blow at `instant` ends the turn. Valid until the next call.
+  const TurnLoads& endTurn(std::int64_t instant) noexcept;
+  /// Samples are missing, or time ran back: forgets the turn begun. The next one begins with its first value.
+  void restart() noexcept;
+
+ private:
+  struct Integral {
+    std::int64_t first{}, last{};  ///< instants [ns]
+    double first_value{}, last_value{}, sum{};
+    bool begun{};
+  };
+  void clear() noexcept;
+
+  TurnLoads turn_, result_;
+  std::vector<Integral> integrals_;
+  bool started_{};  ///< by a sample or a blow
+};
+
+}  // namespace hammer_loads::life

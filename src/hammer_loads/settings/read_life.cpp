@@ -1,0 +1,126 @@
+#include "hammer_loads/settings/read_life.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "hammer_loads/settings/yaml_value.h"
+
+namespace hammer_loads {
+namespace {
+
+using life::LoadGrid;
+
+constexpr double kPaPerMPa = 1e6;
+
+/// A short name in the file and the channel that it stands for.
+struct NamedChannel {
+  std::string name, channel;
+};
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Nothing after a problem.
+std::optional<LoadGrid> readGrid(ParameterReader& reader, const std::string& name, const std::string& unit,
+                                 std::int64_t classes) {
+  const std::string ending = unit.empty() ? "" : "_" + unit, key = name + "_full_scale_least" + ending;
+  const double least = reader.number(key, unit, NumberRule::any());
+  const double greatest = reader.number(name + "_full_scale_greatest" + ending, unit, NumberRule::any());
+  if (!std::isfinite(least) || !std::isfinite(greatest) || classes == 0) return std::nullopt;
+  Checked<LoadGrid> grid = LoadGrid::make(least, greatest, classes);
+  for (const std::string& problem : grid.problems) reader.addProblem(key + ": " + problem);
+  return std::move(grid.value);
+}
+
+/// [MPa per unit of the channel]
+double readInfluence(ParameterReader& reader, const std::string& key, const std::string& channel) {
+  const std::string direct = key + "_MPa_per_unit", modulus = key + "_modulus_m3", area = key + "_area_m2";
+  const int given = int{reader.has(direct)} + int{reader.has(modulus)} + int{reader.has(area)};
+  double factor = 0.0;
+  if (reader.has(modulus)) factor = 1.0 / (kPaPerMPa * reader.number(modulus, "m3", NumberRule::any()));
+  if (reader.has(area)) factor = 1.0 / (kPaPerMPa * reader.number(area, "m2", NumberRule::positive()));
+  if (reader.has(direct) || given == 0) factor = reader.number(direct, "MPa per unit", NumberRule::any());
+  if (given > 1) reader.addProblem(direct + ": must be the only one beside " + modulus + " and " + area);
+  if (reader.has(modulus) && !endsWith(channel, "_Nm"))
+    reader.addProblem(modulus + ": given for " + channel + ", must be for a moment (..._Nm)");
+  if (reader.has(area) && !endsWith(channel, "_N"))
+    reader.addProblem(area + ": given for " + channel + ", must be for a force (..._N)");
+  if (reader.has(modulus) && std::isinf(factor)) reader.addProblem(modulus + ": 0 m3, must not be 0");
+  return factor;
+}
+
+/// Nothing without a curve, or after a problem.
+std::optional<life::SnCurve> readCurve(ParameterReader& reader, const std::string& name) {
+  const std::string keys[] = {name + "_sn_knee_range_MPa", name + "_sn_knee_cycles", name + "_sn_slope",
+                              name + "_sn_slope_below"};
+  if (std::none_of(std::begin(keys), std::end(keys), [&](const std::string& key) { return reader.has(key); }))
+    return {};
+  const std::size_t before = reader.problems().size();
+  const double range = reader.number(keys[0], "MPa", NumberRule::positive());
+  const double cycles = reader.number(keys[1], "", NumberRule::positive());
+  const double slope = reader.number(keys[2], "", NumberRule::positive());
+  const double below = reader.number(keys[3], "", NumberRule::positive());
+  if (reader.problems().size() != before) return std::nullopt;
+  Checked<life::SnCurve> curve = life::SnCurve::make(range, cycles, slope, below);
+  for (const std::string& problem : curve.problems) reader.addProblem(name + "_" + problem);
+  return std::move(curve.value);
+}
+
+std::optional<life::FkmMeanStress> readMeanStress(ParameterReader& reader, const std::string& name) {
+  constexpr std::array<Named<bool>, 2> kWays{{{"none", false}, {"fkm", true}}};
+  if (!reader.choice(name + "_mean_stress", kWays)) return std::nullopt;
+  return life::FkmMeanStress{reader.number(name + "_mean_stress_sensitivity", "", NumberRule::within(0.0, 1.0))};
+}
+
+void readHotSpot(ParameterReader& reader, const std::string& name, const std::vector<NamedChannel>& channels,
+                 std::int64_t classes, std::vector<life::HotSpot>& spots) {
+  std::vector<life::Influence> influences;
+  const std::string loads = name + "_loads";
+  for (const std::string& load : reader.names(loads)) {
+    const auto found =
+        std::find_if(channels.begin(), channels.end(), [&](const NamedChannel& c) { return c.name == load; });
+    if (found == channels.end()) {
+      reader.addProblem(loads + ": " + quotedText(load) + ", must be among life_channels");
+      continue;
+    }
+    influences.push_back({found->channel, readInfluence(reader, name + "_" + load, found->channel)});
+  }
+  if (influences.empty()) reader.addProblem(loads + ": [], must name at least one of life_channels");
+  const std::optional<LoadGrid> grid = readGrid(reader, name, "MPa", classes);
+  std::optional<life::SnCurve> curve = readCurve(reader, name);
+  std::optional<life::FkmMeanStress> mean;
+  if (curve) mean = readMeanStress(reader, name);
+  if (grid) spots.push_back({name, std::move(influences), *grid, curve, mean});
+}
+
+}  // namespace
+
+life::LifeSettings readLifeSettings(ParameterReader& reader) {
+  life::LifeSettings s;
+  const std::int64_t classes = reader.integer("life_classes", "", 2, LoadGrid::kMostClasses);
+  std::vector<NamedChannel> channels;
+  for (const std::string& name : reader.names("life_channels")) {
+    const std::string key = name + "_channel", channel = reader.text(key);
+    const bool twice =
+        std::any_of(channels.begin(), channels.end(), [&](const auto& c) { return c.channel == channel; });
+    if (twice) reader.addProblem(key + ": " + quotedText(channel) + ", must be given once");
+    channels.push_back({name, channel});
+    const std::optional<LoadGrid> grid = readGrid(reader, name, "", classes);
+    if (grid) s.channels.push_back({channel, *grid});
+  }
+  for (const std::string& name : reader.names("hot_spots")) readHotSpot(reader, name, channels, classes, s.hot_spots);
+  constexpr double kNsPerSecond = 1e9;
+  const double period = reader.number("life_period_s", "s", NumberRule::within(0.1, 86400.0));
+  if (std::isfinite(period)) s.period = std::llround(kNsPerSecond * period);
+  s.equivalent_cycles_per_hour = reader.number("life_equivalent_cycles_per_hour", "1/h", NumberRule::positive());
+  const std::string ledger = reader.text("life_ledger");
+  if (ledger != "none") s.ledger = ledger;
+  return s;
+}
+
+}  // namespace hammer_loads

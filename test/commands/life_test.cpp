@@ -1,0 +1,173 @@
+// life as its user runs it, on a ledger of the series of ASTM E1049-85, Fig. 6.
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "hammer_loads/life/ledger_run.h"
+#include "settings/temporary_file.h"
+#include "support/command.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::linesOf;
+using test::Outcome;
+
+constexpr std::int64_t kSecond = 1000000000, kDay = 86400 * kSecond;
+
+Outcome run(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_LIFE, arguments); }
+
+/// One run of the series at 1 Hz, 8 s, so that 450 cycles an hour are one cycle.
+class Ledger {
+ public:
+  Ledger() : path_(testing::TempDir() + "life_" + std::to_string(getpid()) + ".sqlite") {
+    remove();
+    life::LifeSettings settings;
+    settings.channels = {{"hull_wrench/force_z_N", life::LoadGrid::make(-10.5, 10.5, 21).value.value()}};
+    settings.hot_spots = {{"toe",
+                           {{"hull_wrench/force_z_N", 2.0}},
+                           life::LoadGrid::make(-20.5, 20.5, 41).value.value(),
+                           life::SnCurve::make(1000.0, 1e3, 5.0, 5.0).value.value(),
+                           {}}};
+    settings.period = 60 * kSecond;
+    settings.equivalent_cycles_per_hour = 450.0;
+    life::LifeRecorder recorder = life::LifeRecorder::make(settings, {"hull_wrench/force_z_N"}).value.value();
+    std::int64_t stamp = 20000 * kDay;
+    for (const double value : {-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0}) {
+      const double deviation = 0.01;
+      recorder.sample(stamp, &value, &deviation);
+      stamp += kSecond;
+    }
+    recorder.turn();
+    recorder.turn();
+    EXPECT_FALSE(life::LedgerRun(path_, life::ledgerMachine(settings, "MO-100, \"yellow\""), "a").end(recorder.take()));
+  }
+  ~Ledger() { remove(); }
+  const std::string& path() const { return path_; }
+
+ private:
+  void remove() const {
+    std::remove(path_.c_str());
+    std::remove((path_ + ".lock").c_str());
+  }
+  std::string path_;
+};
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<Row> rowsOf(const std::string& csv) {
+  std::vector<Row> rows;
+  std::vector<std::string> titles;
+  for (const std::string& line : linesOf(csv)) {
+    std::vector<std::string> cells;
+    std::istringstream stream(line + ",");
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    if (titles.empty()) {
+      titles = cells;
+      continue;
+    }
+    EXPECT_EQ(cells.size(), titles.size()) << line;
+    Row row;
+    for (std::size_t i = 0; i < cells.size(); ++i) row[titles[i]] = cells[i];
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+// Sum of n r^5 of the series, half cycles as such; its cycles of two ranges each.
+constexpr double kSum = 0.5 * (3 * 3 * 3 * 3 * 3) + 1.5 * (4 * 4 * 4 * 4 * 4) + 0.5 * (6 * 6 * 6 * 6 * 6) +
+                        1.0 * (8 * 8 * 8 * 8 * 8) + 0.5 * (9 * 9 * 9 * 9 * 9);
+
+TEST(Life, CsvHasTheFiguresOfTheStandardsExample) {
+  const Ledger ledger;
+  const Outcome outcome = run(ledger.path() + " --csv");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<Row> rows = rowsOf(outcome.out);
+  ASSERT_EQ(rows.size(), 4U);  // two channels, all and a day each
+  const Row& load = rows[0];
+  EXPECT_EQ(load.at("channel"), "hull_wrench/force_z_N");
+  EXPECT_EQ(load.at("unit"), "N");
+  EXPECT_EQ(load.at("day"), "all");
+  EXPECT_EQ(load.at("blows"), "2");
+  EXPECT_EQ(load.at("cycles"), "4");
+  EXPECT_EQ(load.at("largest_range"), "9");
+  EXPECT_NEAR(std::stod(load.at("hours")), 8.0 / 3600.0, 1e-15);
+  EXPECT_NEAR(std::stod(load.at("equivalent_range_3")), 10.3039982, 5e-8);
+  EXPECT_NEAR(std::stod(load.at("equivalent_range_4")), 9.58741061, 5e-9);
+  EXPECT_NEAR(std::stod(load.at("equivalent_range_5")), 9.25325663, 5e-9);
+  EXPECT_NEAR(std::stod(load.at("equivalent_range_10")), 8.82000396, 5e-9);
+  EXPECT_EQ(load.at("damage"), "");
+  EXPECT_EQ(load.at("remaining_hours"), "");
+  EXPECT_EQ(rows[1].at("day"), "2024-10-04");
+  EXPECT_EQ(rows[1].at("cycles"), "1");  // what closed
+  const Row& stress = rows[2];
+  EXPECT_EQ(stress.at("channel"), "stress/toe_MPa");
+  EXPECT_EQ(stress.at("unit"), "MPa");
+  const double damage = kSum * 32.0 / 1e15 / 1e3;
+  EXPECT_NEAR(std::stod(stress.at("damage")) / damage, 1.0, 1e-14);
+  EXPECT_NEAR(std::stod(stress.at("remaining_hours")) / (8.0 / 3600.0 / damage), 1.0, 1e-9);
+  // all ranges larger by sqrt(2) times 0.02 MPa
+  EXPECT_NEAR(std::stod(stress.at("equivalent_range_5_deviation")) / std::stod(stress.at("equivalent_range_5")),
+              std::stod(stress.at("damage_deviation")) / damage / 5.0, 1e-12);
+  EXPECT_GT(std::stod(stress.at("damage_deviation")), 0.0);
+}
+
+TEST(Life, JsonSaysTheSame) {
+  const Ledger ledger;
+  const std::vector<Row> rows = rowsOf(run(ledger.path() + " --csv").out);
+  const YAML::Node json = YAML::Load(run("--json " + ledger.path()).out);
+  ASSERT_EQ(json["epochs"].size(), 1U);
+  const YAML::Node epoch = json["epochs"][0];
+  EXPECT_EQ(epoch["machine"].as<std::string>(), "MO-100, \"yellow\"");
+  EXPECT_EQ(epoch["runs"].as<int>(), 1);
+  EXPECT_EQ(epoch["equivalent_cycles_per_hour"].as<double>(), 450.0);
+  ASSERT_EQ(epoch["channels"].size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const YAML::Node channel = epoch["channels"][i];
+    EXPECT_EQ(channel["channel"].as<std::string>(), rows[2 * i].at("channel"));
+    EXPECT_EQ(channel["largest_range"].as<double>(), std::stod(rows[2 * i].at("largest_range")));
+    EXPECT_EQ(channel["equivalent_range_3"]["value"].as<double>(), std::stod(rows[2 * i].at("equivalent_range_3")));
+    EXPECT_EQ(channel["days"][0]["day"].as<std::string>(), "2024-10-04");
+    EXPECT_EQ(channel["days"][0]["blows"].as<int>(), 2);
+    EXPECT_EQ(channel["samples"].as<int>(), 9);
+  }
+  EXPECT_TRUE(epoch["channels"][0]["damage"].IsNull());
+  EXPECT_EQ(epoch["channels"][1]["damage"]["value"].as<double>(), std::stod(rows[2].at("damage")));
+}
+
+TEST(Life, TextNamesChannelsDaysAndHowItCounts) {
+  const Ledger ledger;
+  const Outcome outcome = run(ledger.path());
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
+  for (const char* part : {"epoch 1: machine MO-100", "residue as half cycles", "450 cycles an hour", "stress/toe_MPa",
+                           "2024-10-04", "range m=10", "hours left"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << '\n' << outcome.out;
+}
+
+TEST(Life, WhatIsNoLedgerIsOneLineAndExitCode1) {
+  const test::TemporaryFile text(std::string(3000, 'x'), ".sqlite"), empty({}, ".sqlite");
+  for (const std::string& file :
+       {text.path(), empty.path(), testing::TempDir(), std::string("/no/such/file"), std::string("/dev/null")}) {
+    const Outcome outcome = run(file);
+    EXPECT_EQ(outcome.exit_code, 1) << file;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
+    EXPECT_NE(outcome.err.find(file), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Life, WrongUsageIsOneLineAndExitCode2) {
+  for (const char* arguments : {"", "a.sqlite b.sqlite", "a.sqlite --json --csv", "--xml a.sqlite"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
+  }
+  EXPECT_EQ(run("--help").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace hammer_loads

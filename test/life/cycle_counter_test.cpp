@@ -1,0 +1,176 @@
+// The counter on its grid: full scale, what is skipped, memory, saved state.
+#include "hammer_loads/life/cycle_counter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hammer_loads/life/count_state.h"
+#include "life/astm_reference.h"
+#include "support/counting_new.h"
+
+namespace hammer_loads::life {
+namespace {
+
+using namespace test;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(LoadGrid, RefusesWhatIsNoScale) {
+  EXPECT_FALSE(LoadGrid::make(0.0, 0.0, 10).value);
+  EXPECT_FALSE(LoadGrid::make(1.0, 0.0, 10).value);
+  EXPECT_FALSE(LoadGrid::make(kNaN, 1.0, 10).value);
+  EXPECT_FALSE(LoadGrid::make(0.0, kInfinity, 10).value);
+  EXPECT_FALSE(LoadGrid::make(-1.7e308, 1.7e308, 10).value);
+  EXPECT_FALSE(LoadGrid::make(1e16, 1e16 + 4, 4096).value);
+  EXPECT_FALSE(LoadGrid::make(0.0, 1e-310, 4096).value);
+  EXPECT_FALSE(LoadGrid::make(0.0, 1.0, 1).value);
+  EXPECT_FALSE(LoadGrid::make(0.0, 1.0, LoadGrid::kMostClasses + 1).value);
+  EXPECT_EQ(LoadGrid::make(0.0, -1.0, 0).problems.size(), 2U);
+  EXPECT_TRUE(LoadGrid::make(0.0, 1.0, LoadGrid::kMostClasses).value);
+}
+
+TEST(LoadGrid, EveryValueOfTheScaleIsWithinHalfAClassOfItsCentre) {
+  const LoadGrid grid = LoadGrid::make(-173.0, 911.0, 4096).value.value();
+  for (int i = 0; i <= 100000; ++i) {
+    const double value = -173.0 + 1084.0 * i / 100000.0;
+    ASSERT_LE(std::abs(grid.level(grid.classOf(value)) - value), 0.5 * grid.width() * (1.0 + 1e-9)) << value;
+  }
+  EXPECT_EQ(grid.classOf(911.0), 4095U);
+  EXPECT_EQ(grid.classOf(-173.0), 0U);
+}
+
+TEST(CycleCounter, SaturationIsCountedAndCountsInTheOuterClass) {
+  const LoadGrid grid = LoadGrid::make(-10.0, 10.0, 20).value.value();
+  const CycleCount count = gridCount({0.0, 10.0, 10.1, -1e299, 3.0, 1e30, -10.0}, grid);
+  EXPECT_EQ(count.tally.counted, 7U);
+  EXPECT_EQ(count.tally.above, 2U);
+  EXPECT_EQ(count.tally.below, 1U);
+  EXPECT_EQ(count.residue, (std::vector<std::uint32_t>{10, 19, 0}));
+  EXPECT_EQ(count.closed, (std::vector<ClosedCycles>{{19, 0, 1}}));
+  EXPECT_EQ(count.extremes.least, -1e299);
+  EXPECT_EQ(count.extremes.greatest, 1e30);
+}
+
+TEST(CycleCounter, WhatIsNoNumberChangesNothingButItsOwnCount) {
+  const LoadGrid grid = integerGrid(-5, 5);
+  const Series good{1, -3, 5, -1, 3, -4, 4, -2};
+  Series with;
+  for (const double value : good) with.insert(with.end(), {kNaN, value, kInfinity, -kInfinity, 2e300});
+  const CycleCount clean = gridCount(good, grid);
+  CycleCount dirty = gridCount(with, grid);
+  EXPECT_EQ(dirty.tally.skipped, 4 * good.size());
+  dirty.tally.skipped = 0;
+  EXPECT_EQ(stateText(dirty), stateText(clean));
+  EXPECT_EQ(exactCount(with).tally().skipped, 4 * good.size());
+  EXPECT_EQ(exactCount(with).residue(), exactCount(good).residue());
+}
+
+TEST(CycleCounter, NoCycleAtAllGivesNone) {
+  for (const Series& series : {Series{}, Series{3}, Series{3, 3, 3}, Series{kNaN}}) {
+    EXPECT_TRUE(rangesAndMeans(exactCount(series)).empty());
+    EXPECT_TRUE(rangesAndMeans(gridCount(series, integerGrid(0, 5))).empty());
+  }
+}
+
+TEST(CycleCounter, AGapIsCountedAndTheSeriesGoesOn) {
+  CycleCounter counter(integerGrid(0, 9));
+  counter.add(1);
+  counter.gap();
+  counter.add(9);
+  const CycleCount count = counter.take();
+  EXPECT_EQ(count.tally.gaps, 1U);
+  EXPECT_EQ(count.residue.size(), 2U);
+}
+
+TEST(CycleCounter, TakesNoMemoryAfterItsStart) {
+  CycleCounter counter(LoadGrid::make(-1.0, 1.0, 4096).value.value());
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> value(-1.1, 1.1);
+  Series noise(100000);
+  for (double& v : noise) v = value(random);
+  Series spiral;  // the longest residue there is
+  for (int i = 1; i < 4096; ++i) spiral.push_back((i % 2 == 0 ? 1 : -1) * (i / 4096.0));
+  for (int i = 4095; i > 0; --i) spiral.push_back((i % 2 == 0 ? -1 : 1) * (i / 4096.0));
+  const std::size_t before = ::hammer_loads::test::allocations;
+  for (const double v : noise) counter.add(v);
+  for (const double v : spiral) counter.add(v);
+  EXPECT_EQ(::hammer_loads::test::allocations, before);
+}
+
+// More cycles of one kind than a cell holds, twice that and just as many.
+TEST(CycleCounter, ManyCyclesOfOneKindAreCounted) {
+  for (const std::uint64_t cycles : {65535ULL, 65536ULL, 65537ULL, 200000ULL}) {
+    CycleCounter counter(integerGrid(0, 9));
+    std::uint64_t counted = 0;
+    for (int piece = 0; piece < 2; ++piece) {
+      for (std::uint64_t i = 0; i < cycles; ++i) {
+        counter.add(2.0);
+        counter.add(9.0);
+        counter.add(4.0);
+        counter.add(7.0);
+      }
+      for (const ClosedCycles& c : counter.take().closed) {
+        if (c.steps == 3) {
+          counted += c.count;
+        }
+      }
+    }
+    EXPECT_EQ(counted, 2 * cycles - 1);  // the last one is in the residue
+  }
+}
+
+TEST(CountState, GoesOnWhereItStopped) {
+  std::mt19937 random(8);
+  std::normal_distribution<double> value(0.0, 1.0);
+  for (int i = 0; i < 200; ++i) {
+    Series first(random() % 300), second(random() % 300), both;
+    for (double& v : first) v = value(random);
+    for (double& v : second) v = value(random);
+    both = first;
+    both.insert(both.end(), second.begin(), second.end());
+    const LoadGrid grid = LoadGrid::make(-2.0, 2.5, 77).value.value();
+    const std::string saved = stateText(gridCount(first, grid));
+    CycleCount resumed = std::get<CycleCount>(countFromState(saved).value.value());
+    EXPECT_EQ(stateText(resumed), saved);
+    resumed.append(gridCount(second, grid));
+    EXPECT_EQ(stateText(resumed), stateText(gridCount(both, grid)));
+    ExactCycles exact = std::get<ExactCycles>(countFromState(stateText(exactCount(first))).value.value());
+    exact.append(exactCount(second));
+    EXPECT_EQ(stateText(exact), stateText(exactCount(both)));
+  }
+}
+
+TEST(CountState, EveryCutAndEveryChangedByteIsRefused) {
+  for (const Count& count : {Count(gridCount({1, 5, 2, 4, 3, 6, 0}, integerGrid(0, 9))),
+                             Count(exactCount({1, 5, 2, 4, 3, 6, 0})), Count(ExactCycles{})}) {
+    const std::string text = stateText(count);
+    ASSERT_TRUE(countFromState(text).value);
+    for (std::size_t size = 0; size < text.size(); ++size)
+      EXPECT_EQ(countFromState(text.substr(0, size)).problems.size(), 1U) << size;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      std::string changed = text;
+      changed[i] = static_cast<char>(changed[i] ^ 1);
+      EXPECT_EQ(countFromState(changed).problems.size(), 1U) << i;
+    }
+    EXPECT_FALSE(countFromState(text + text).value);
+  }
+}
+
+// Checksums that fit what no series gives.
+TEST(CountState, AnImpossibleCountIsRefused) {
+  const CycleCount good = gridCount({1, 5, 2, 4, 3, 6, 0}, integerGrid(0, 9));
+  std::vector<CycleCount> bad(6, good);
+  bad[0].residue = {1, 5, 2, 6};  // holds a cycle
+  bad[1].residue = {1, 2, 3};     // no turning point
+  bad[2].residue = {1, 10};       // not on the grid
+  bad[3].closed[0].count = 0;
+  bad[4].closed.push_back(bad[4].closed[0]);
+  bad[5].closed[0].low = 9;
+  EXPECT_TRUE(countFromState(stateText(good)).value);
+  for (const CycleCount& count : bad) EXPECT_FALSE(countFromState(stateText(count)).value);
+}
+
+}  // namespace
+}  // namespace hammer_loads::life

@@ -1,0 +1,325 @@
+// The ledger of a machine: runs add to what one count of all of them gives; nothing else gets in.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "hammer_loads/life/database.h"
+#include "life/ledger_support.h"
+
+namespace hammer_loads::life {
+namespace {
+
+using namespace test;
+using Problem = std::optional<std::string>;
+const Problem kWritten;
+
+TEST(Ledger, RunsInAnyPiecesAreTheCountOfAllTheirLoads) {
+  const LedgerFile file;
+  LifeRecorder whole = recorder();
+  std::mt19937 random(1);
+  for (unsigned run = 0; run < 5; ++run) {
+    LifeRecorder part = recorder();
+    Loads loads(run), same(run);
+    LedgerRun ledger(file.path(), machine(), "run " + std::to_string(run));
+    for (int piece = 0; piece < 6; ++piece) {
+      const int samples = static_cast<int>(random() % 200);
+      loads.feed(part, samples);
+      same.feed(whole, samples);
+      EXPECT_EQ(ledger.add(part.take()), kWritten);
+    }
+    if (run % 2 == 0) {
+      EXPECT_EQ(ledger.end(part.take()), kWritten);
+    }  // else it is ended by the next one
+    whole.gap();
+    const Contents contents = contentsOf(file.path());
+    EXPECT_EQ(contents.problem, "");
+    EXPECT_EQ(contents.epochs.at(0).runs, run + 1U);
+  }
+  LifePiece expected = whole.take();
+  for (CycleCount& count : expected.counts) count.tally.gaps = 0;
+  const Contents contents = contentsOf(file.path());
+  ASSERT_EQ(contents.epochs.size(), 1U);
+  EXPECT_EQ(statesOf(contents.totals[0]), statesOf(expected.counts));
+  EXPECT_EQ(contents.epochs[0].days.size(), 1U);
+  EXPECT_EQ(contents.epochs[0].days[0].date, "2024-10-04");
+  EXPECT_EQ(contents.epochs[0].days[0].turns, expected.turns);
+  EXPECT_EQ(contents.epochs[0].machine.channels[1].curve->slopeBelow(), 5.0);
+}
+
+TEST(Ledger, ARunIsCountedOnce) {
+  const LedgerFile file;
+  for (const bool ended : {true, false}) {
+    const std::string name = ended ? "a" : "b";
+    LifeRecorder part = recorder();
+    Loads(1).feed(part, 500);
+    const LifePiece piece = part.take();
+    {
+      LedgerRun first(file.path(), machine(), name);
+      EXPECT_EQ(ended ? first.end(piece) : first.add(piece), kWritten);
+      if (ended) {
+        EXPECT_EQ(first.end({}), kWritten);
+        EXPECT_EQ(first.add(piece), kWritten);  // after the end: nothing is added
+      }
+    }
+    const std::vector<std::string> once = statesOf(contentsOf(file.path()).totals.at(0));
+    LedgerRun again(file.path(), machine(), name);
+    EXPECT_EQ(again.add(piece), file.path() + ": run " + name + ": is in it already, not counted again");
+    EXPECT_TRUE(again.refused());
+    EXPECT_TRUE(again.end(piece));
+    EXPECT_EQ(again.waiting(), 0U);
+    EXPECT_EQ(statesOf(contentsOf(file.path()).totals.at(0)), once);
+  }
+}
+
+TEST(Ledger, TheSameInputGivesTheSameBytes) {
+  std::string bytes[2];
+  for (std::string& one : bytes) {
+    const LedgerFile file;
+    for (unsigned run = 0; run < 3; ++run) {
+      LifeRecorder part = recorder();
+      Loads loads(run);
+      LedgerRun ledger(file.path(), machine(), std::to_string(run));
+      for (int piece = 0; piece < 4; ++piece) {
+        loads.feed(part, 300);
+        EXPECT_EQ(ledger.add(part.take()), kWritten);
+      }
+      EXPECT_EQ(ledger.end({}), kWritten);
+    }
+    one = file.bytes();
+    EXPECT_EQ(one.find(testing::TempDir()), std::string::npos);
+  }
+  EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+TEST(Ledger, AnotherMachineOrGridBeginsAnEpoch) {
+  const LedgerFile file;
+  const auto run = [&](const std::string& name, const LedgerMachine& of, const LifeSettings& with) {
+    LifeRecorder part = recorder(with);
+    Loads(7).feed(part, 300);
+    EXPECT_EQ(LedgerRun(file.path(), of, name).end(part.take()), kWritten);
+  };
+  LifeSettings finer = settings(300), steeper = settings();
+  steeper.hot_spots[0].curve = SnCurve::make(50.0, 1e6, 4.0, 5.0).value.value();
+  steeper.equivalent_cycles_per_hour = 60.0;
+  run("1", machine("a"), settings());
+  run("2", machine("a", steeper), steeper);  // other judgement, same counts
+  run("3", machine("b"), settings());
+  run("4", machine("b", finer), finer);
+  run("5", machine("a"), settings());  // back again: not mixed with the first, between them the boom carried another
+  const Contents contents = contentsOf(file.path());
+  ASSERT_EQ(contents.epochs.size(), 4U);
+  EXPECT_EQ(contents.epochs[0].runs, 2U);
+  EXPECT_EQ(contents.epochs[0].machine.channels[1].curve->slope(), 4.0);
+  EXPECT_EQ(contents.epochs[0].machine.equivalent_cycles_per_hour, 60.0);
+  EXPECT_EQ(contents.epochs[2].machine.channels[0].grid.classes(), 300U);
+  EXPECT_EQ(statesOf(contents.totals[1]), statesOf(contents.totals[3]));
+  EXPECT_NE(statesOf(contents.totals[0]), statesOf(contents.totals[1]));
+}
+
+TEST(Ledger, AClockThatRunsBackReordersNothing) {
+  const LedgerFile file;
+  LifeRecorder whole = recorder();
+  const std::int64_t starts[] = {kStart, kStart + kDay, 0, kStart + kDay, kStart - 40 * kDay};
+  for (std::size_t run = 0; run < 5; ++run) {
+    LifeRecorder part = recorder();
+    Loads(static_cast<unsigned>(run), starts[run]).feed(part, 400);
+    Loads(static_cast<unsigned>(run), starts[run]).feed(whole, 400);
+    EXPECT_EQ(LedgerRun(file.path(), machine(), std::to_string(run)).end(part.take()), kWritten);
+  }
+  const Contents contents = contentsOf(file.path());
+  std::vector<std::string> dates;
+  for (const LedgerDay& day : contents.epochs.at(0).days) dates.push_back(day.date);
+  EXPECT_EQ(dates, (std::vector<std::string>{"2024-10-04", "2024-10-05", "1970-01-01", "2024-10-05", "2024-08-25"}));
+  EXPECT_EQ(statesOf(contents.totals[0]), statesOf(whole.take().counts));
+}
+
+TEST(Ledger, ASecondWriterWaitsAndLosesNothing) {
+  const LedgerFile file;
+  LifeRecorder a = recorder(), b = recorder(), whole = recorder();
+  LedgerRun first(file.path(), machine(), "a"), second(file.path(), machine(), "b");
+  Loads loads_a(1), loads_b(2), whole_a(1), whole_b(2);
+  loads_a.feed(a, 100);
+  EXPECT_EQ(first.add(a.take()), kWritten);
+  for (int i = 0; i < 5; ++i) {
+    loads_b.feed(b, 100);
+    EXPECT_EQ(second.add(b.take()), file.path() + ": another run is writing it; waiting for that to end");
+    EXPECT_EQ(second.waiting(), 1U);  // of one day: memory does not grow
+  }
+  EXPECT_TRUE(second.hold());
+  loads_a.feed(a, 100);
+  EXPECT_EQ(first.end(a.take()), kWritten);
+  loads_b.feed(b, 100);
+  EXPECT_EQ(second.end(b.take()), kWritten);
+  whole_a.feed(whole, 200);
+  whole_b.feed(whole, 600);
+  EXPECT_EQ(statesOf(contentsOf(file.path()).totals.at(0)), statesOf(whole.take().counts));
+}
+
+/// As another program that reads or writes the file and does not let go.
+class Holder {
+ public:
+  Holder(const std::string& path, const char* sql) : database_(path, Database::Use::kWrite, 0) {
+    database_.run(sql);
+    EXPECT_EQ(database_.problem(), "");
+  }
+
+ private:
+  Database database_;
+};
+
+TEST(Ledger, ALockedFileCostsNothingButTime) {
+  for (const char* sql : {"BEGIN EXCLUSIVE", "BEGIN; SELECT * FROM runs"}) {
+    const LedgerFile file;
+    LifeRecorder part = recorder(), whole = recorder();
+    Loads loads(3), same(3);
+    LedgerRun run(file.path(), machine(), "a");
+    loads.feed(part, 500);
+    EXPECT_EQ(run.add(part.take()), kWritten);
+    {
+      const Holder holder(file.path(), sql);
+      loads.feed(part, 500);
+      EXPECT_EQ(run.add(part.take()), file.path() + ": database is locked");
+    }
+    loads.feed(part, 500);
+    EXPECT_EQ(run.end(part.take()), kWritten);
+    same.feed(whole, 1500);
+    EXPECT_EQ(statesOf(contentsOf(file.path()).totals.at(0)), statesOf(whole.take().counts)) << sql;
+  }
+}
+
+/// In a process that may write no file beyond some size, as on a full disk.
+TEST(Ledger, AFullDiskCostsNothingButTime) {
+  const LedgerFile file;
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    LifeRecorder part = recorder();
+    Loads loads(4);
+    LedgerRun run(file.path(), machine(), "a");
+    loads.feed(part, 50);
+    bool right = !run.add(part.take());
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlim_t most = limit.rlim_cur;
+    limit.rlim_cur = std::filesystem::file_size(file.path());
+    right = setrlimit(RLIMIT_FSIZE, &limit) == 0 && right;
+    loads.feed(part, 20000);
+    right = run.add(part.take()).has_value() && right;
+    right = run.add(part.take()).has_value() && right;
+    limit.rlim_cur = most;
+    right = setrlimit(RLIMIT_FSIZE, &limit) == 0 && right;
+    loads.feed(part, 50);
+    right = !run.end(part.take()) && right;
+    _exit(right ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  LifeRecorder whole = recorder();
+  Loads(4).feed(whole, 20100);
+  EXPECT_EQ(statesOf(contentsOf(file.path()).totals.at(0)), statesOf(whole.take().counts));
+}
+
+TEST(Ledger, AnythingElseInItsPlaceIsLeftAsItIs) {
+  const LedgerFile file;
+  LifeRecorder part = recorder();
+  Loads(5).feed(part, 100);
+  const LifePiece piece = part.take();
+  const auto refused = [&](const std::string& path, const std::string& why) {
+    LedgerRun run(path, machine(), "a");
+    const Problem problem = run.add(piece);
+    EXPECT_TRUE(problem && problem->find(why) != std::string::npos) << problem.value_or("(written)");
+    EXPECT_EQ(run.waiting(), 1U);
+  };
+  std::ofstream(file.path("text")) << std::string(2000, 'x');
+  refused(file.path("text"), "not a database");
+  Database(file.path("other"), Database::Use::kWrite, 0).run("CREATE TABLE mine(a)");
+  refused(file.path("other"), "is another database, no ledger");
+  std::filesystem::create_directory(file.path("directory"));
+  refused(file.path("directory"), "is no regular file");
+  refused("/dev/null", "is no regular file");
+  refused(file.path("no/such/place"), "No such file or directory");
+  EXPECT_EQ(LedgerRun(file.path(), machine(), "a").end(piece), kWritten);
+  Database(file.path(), Database::Use::kWrite, 0).run("PRAGMA user_version = 99");
+  refused(file.path(), "a ledger of version 99, must be at most 1");
+  EXPECT_NE(contentsOf(file.path()).problem.find("version 99"), std::string::npos);
+  for (const char* name : {"text", "other", "directory", "none"}) EXPECT_NE(contentsOf(file.path(name)).problem, "");
+  std::ofstream(file.path("empty")).close();  // what a kill at the very start leaves
+  EXPECT_EQ(LedgerRun(file.path("empty"), machine(), "a").end(piece), kWritten);
+}
+
+TEST(Ledger, AFileThatIsTakenAwayIsBegunAnew) {
+  const LedgerFile file;
+  LifeRecorder part = recorder(), after = recorder();
+  Loads loads(6);
+  LedgerRun run(file.path(), machine(), "a");
+  loads.feed(part, 100);
+  EXPECT_EQ(run.add(part.take()), kWritten);
+  std::filesystem::remove(file.path());
+  loads.feed(part, 100);
+  EXPECT_EQ(run.end(part.take()), kWritten);
+  EXPECT_EQ(contentsOf(file.path()).totals.at(0)[0].tally.counted, 100U);
+}
+
+/// Three runs across midnights, cut as a node with this period cuts them.
+std::vector<std::string> daysWithPeriod(std::int64_t period) {
+  const LedgerFile file;
+  LifeSettings s = settings();
+  s.period = period;
+  for (unsigned run = 0; run < 3; ++run) {
+    std::mt19937 random(run);
+    std::normal_distribution<double> load(0.0, 250.0);
+    LifeRecorder part = recorder(s);
+    LedgerRun ledger(file.path(), machine("mo100", s), std::to_string(run));
+    for (std::int64_t stamp = 20001 * kDay - 200 * kSecond + run * kDay; stamp < (20001 + run) * kDay + 99 * kSecond;
+         stamp += kSecond / 20) {
+      if (part.due(stamp)) {
+        EXPECT_EQ(ledger.add(part.take()), kWritten);
+      }
+      const double values[] = {load(random), load(random)}, deviations[] = {load(random) * load(random), 1.0};
+      part.sample(stamp, values, deviations);
+    }
+    EXPECT_EQ(ledger.end(part.take()), kWritten);
+  }
+  LedgerReader reader = LedgerReader::open(file.path()).value.value();
+  const LedgerEpoch epoch = reader.epochs().at(0);
+  std::vector<std::string> days;
+  for (const LedgerDay& day : epoch.days) {
+    days.push_back(day.date + " " + std::to_string(day.duration));
+    for (std::size_t i = 0; i < 2; ++i) days.push_back(stateText(reader.ofDay(epoch, i, day)));
+  }
+  for (std::size_t i = 0; i < 2; ++i) days.push_back(stateText(reader.total(epoch, i)));
+  return days;
+}
+
+TEST(Ledger, ThePeriodChangesNoNumberOfAnyDay) {
+  const std::vector<std::string> fine = daysWithPeriod(17 * kSecond), coarse = daysWithPeriod(100000 * kSecond);
+  EXPECT_EQ(fine.size(), 4U * 3U + 2U);
+  EXPECT_EQ(fine, coarse);
+}
+
+TEST(Ledger, MidnightAmongWaitingPiecesStays) {
+  const LedgerFile file;
+  LifeRecorder part = recorder();
+  LedgerRun first(file.path(), machine(), "a"), second(file.path(), machine(), "b");
+  EXPECT_FALSE(first.hold());
+  for (int day = 0; day < 3; ++day) {
+    for (int half = 0; half < 2; ++half) {
+      Loads(7, kStart + day * kDay + half * 3600 * kSecond).feed(part, 100);
+      EXPECT_TRUE(second.add(part.take()));
+    }
+  }
+  EXPECT_EQ(second.waiting(), 3U);
+  EXPECT_EQ(first.end({}), kWritten);
+  EXPECT_EQ(second.end({}), kWritten);
+  const Contents contents = contentsOf(file.path());
+  ASSERT_EQ(contents.epochs.at(0).days.size(), 3U);
+  EXPECT_EQ(contents.epochs[0].days[2].date, "2024-10-06");
+  EXPECT_EQ(contents.epochs[0].days[2].turns, 30U);
+}
+
+}  // namespace
+}  // namespace hammer_loads::life

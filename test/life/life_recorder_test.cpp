@@ -1,0 +1,163 @@
+// Channels and hot spots of a machine, in pieces.
+#include "hammer_loads/life/life_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hammer_loads/life/count_state.h"
+#include "life/astm_reference.h"
+#include "support/counting_new.h"
+
+namespace hammer_loads::life {
+namespace {
+
+using namespace test;
+constexpr std::int64_t kSecond = 1000000000;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<std::string> kInputs{"hull_wrench/force_x_N", "hull_wrench/force_z_N",
+                                       "section_loads/foot/torque_y_Nm"};
+
+LifeSettings settings() {
+  const LoadGrid force = LoadGrid::make(-1000.0, 1000.0, 400).value.value();
+  const LoadGrid stress = LoadGrid::make(-50.0, 50.0, 500).value.value();
+  LifeSettings s;
+  s.channels = {{kInputs[1], force}};
+  s.hot_spots = {{"toe", {{kInputs[2], 0.02}, {kInputs[1], -0.01}}, stress, {}, {}}};
+  s.period = 60 * kSecond;
+  s.equivalent_cycles_per_hour = 3600.0;
+  return s;
+}
+
+TEST(LifeRecorder, AHotSpotIsTheSumOfItsLoadsAtEachInstant) {
+  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
+  EXPECT_EQ(recorder.channels(), (std::vector<std::string>{"hull_wrench/force_z_N", "stress/toe_MPa"}));
+  std::mt19937 random(1);
+  std::normal_distribution<double> load(0.0, 300.0);
+  Series force, stress;
+  for (int i = 0; i < 5000; ++i) {
+    const double values[] = {load(random), load(random), load(random)};
+    recorder.sample(i, values, nullptr);
+    force.push_back(values[1]);
+    stress.push_back(0.02 * values[2] - 0.01 * values[1]);
+  }
+  const LifePiece piece = recorder.take();
+  EXPECT_EQ(stateText(piece.counts[0]), stateText(gridCount(force, recorder.grid(0))));
+  EXPECT_EQ(piece.counts[1].closed, gridCount(stress, recorder.grid(1)).closed);
+}
+
+TEST(LifeRecorder, AMissingLoadLeavesItsChannelsOut) {
+  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
+  const double whole[] = {1.0, 2.0, 3.0}, part[] = {1.0, 2.0, kNaN};
+  recorder.sample(1, whole, nullptr);
+  recorder.sample(2, part, nullptr);
+  const LifePiece piece = recorder.take();
+  EXPECT_EQ(piece.counts[0].tally.counted, 2U);
+  EXPECT_EQ(piece.counts[1].tally.counted, 1U);
+  EXPECT_EQ(piece.counts[1].tally.skipped, 1U);
+}
+
+TEST(LifeRecorder, DeviationsAddInSquaresOverAHotSpotsLoads) {
+  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
+  const double values[] = {1.0, 2.0, 3.0}, first[] = {9.0, 40.0, 100.0}, second[] = {9.0, 80.0, 200.0};
+  recorder.sample(1, values, first);
+  recorder.sample(2, values, second);
+  const LifePiece piece = recorder.take();
+  const double force_unit = recorder.grid(0).width() / kDeviationUnits;
+  EXPECT_NEAR(meanDeviation(piece.counts[0]), 60.0, force_unit);
+  EXPECT_NEAR(meanDeviation(piece.counts[1]), 1.5 * std::hypot(2.0, 0.4), recorder.grid(1).width() / kDeviationUnits);
+  EXPECT_TRUE(std::isnan(meanDeviation(CycleCount(recorder.grid(0)))));
+}
+
+TEST(LifeRecorder, UnknownChannelsAreNamed) {
+  LifeSettings s = settings();
+  s.channels.push_back({"hull_wrench/force_y_N", s.channels[0].grid});
+  s.hot_spots[0].influences.push_back({"no/such_N", 1.0});
+  EXPECT_EQ(LifeRecorder::make(s, kInputs).problems,
+            (std::vector<std::string>{"hull_wrench/force_y_N: is no channel of this machine",
+                                      "no/such_N: is no channel of this machine"}));
+}
+
+TEST(LifeRecorder, PiecesEndAtPeriodsAtMidnightAndWhereTimeRunsBack) {
+  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
+  const double values[] = {1.0, 2.0, 3.0};
+  const std::int64_t day = 86400 * kSecond, start = 20000 * day + 3600 * kSecond;
+  EXPECT_FALSE(recorder.due(start));
+  recorder.sample(start, values, nullptr);
+  EXPECT_FALSE(recorder.due(start + 60 * kSecond - 1));
+  EXPECT_TRUE(recorder.due(start + 60 * kSecond));
+  EXPECT_TRUE(recorder.due(start - 1));
+  recorder.take();
+  EXPECT_FALSE(recorder.due(start + 600 * kSecond));
+  recorder.sample(20001 * day - kSecond, values, nullptr);
+  EXPECT_FALSE(recorder.due(20001 * day - 1));
+  EXPECT_TRUE(recorder.due(20001 * day));
+  EXPECT_EQ(dayOf(20001 * day), 20001);
+  EXPECT_EQ(dayOf(20001 * day - 1), 20000);
+  EXPECT_EQ(dayOf(-1), -1);
+  EXPECT_EQ(dayOf(-day), -1);
+}
+
+TEST(LifeRecorder, TimeIsThatBetweenSamplesWithoutGaps) {
+  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
+  const double values[] = {1.0, 2.0, 3.0};
+  std::uint64_t duration = 0;
+  const auto take = [&] { duration += recorder.take().duration; };
+  recorder.sample(10 * kSecond, values, nullptr);
+  recorder.sample(11 * kSecond, values, nullptr);
+  take();
+  recorder.sample(13 * kSecond, values, nullptr);  // across the piece's end
+  take();
+  recorder.gap();
+  recorder.sample(23 * kSecond, values, nullptr);
+  recorder.sample(24 * kSecond, values, nullptr);
+  recorder.sample(20 * kSecond, values, nullptr);  // back
+  recorder.sample(22 * kSecond, values, nullptr);
+  take();
+  EXPECT_EQ(duration, 6U * kSecond);
+}
+
+TEST(LifeRecorder, PiecesOfOneRunGiveItsCount) {
+  LifeRecorder whole = LifeRecorder::make(settings(), kInputs).value.value();
+  LifeRecorder pieces = LifeRecorder::make(settings(), kInputs).value.value();
+  std::mt19937 random(2);
+  std::normal_distribution<double> load(0.0, 300.0);
+  std::optional<LifePiece> sum;
+  for (int i = 0; i < 20000; ++i) {
+    const double values[] = {load(random), load(random), load(random)}, deviations[] = {1.0, 0.01 * i, 2.0};
+    for (LifeRecorder* recorder : {&whole, &pieces}) recorder->sample(i, values, deviations);
+    if (random() % 300 != 0) continue;
+    pieces.turn();
+    whole.turn();
+    const LifePiece piece = pieces.take();
+    if (sum) {
+      sum->advance(piece);
+    } else {
+      sum = piece;
+    }
+  }
+  sum->advance(pieces.take());
+  const LifePiece all = whole.take();
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(stateText(sum->counts[i]), stateText(all.counts[i]));
+  EXPECT_EQ(sum->duration, all.duration);
+  EXPECT_EQ(sum->turns, all.turns);
+}
+
+TEST(LifeRecorder, TakesNoMemoryWhileItCounts) {
+  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
+  std::mt19937 random(3);
+  std::normal_distribution<double> load(0.0, 300.0);
+  const std::size_t before = ::hammer_loads::test::allocations;
+  for (int i = 0; i < 10000; ++i) {
+    const double values[] = {load(random), load(random), load(random)};
+    recorder.sample(i, values, values);
+    recorder.gap();
+    recorder.turn();
+  }
+  EXPECT_EQ(::hammer_loads::test::allocations, before);
+}
+
+}  // namespace
+}  // namespace hammer_loads::life

@@ -1,0 +1,105 @@
+// Counts printed in ASTM E1049-85 and counts worked out by hand, by the exact counter and by the one on a grid.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "life/astm_reference.h"
+
+namespace hammer_loads::life {
+namespace {
+
+using namespace test;
+
+const Series kFigure6{-2, 1, -3, 5, -1, 3, -4, 4, -2};
+
+void expectRanges(const Series& series, const Ranges& expected) {
+  EXPECT_EQ(rangesOf(cyclesOf(rangesAndMeans(exactCount(series)))), expected);
+  Series doubled;
+  for (const double value : series) doubled.insert(doubled.end(), {value, value});
+  EXPECT_EQ(rangesOf(cyclesOf(rangesAndMeans(exactCount(doubled)))), expected);
+  const LoadGrid halves = LoadGrid::make(-20.25, 20.25, 81).value.value();  // centres at multiples of 1/2
+  EXPECT_EQ(rangesOf(cyclesOf(rangesAndMeans(gridCount(series, halves)))), expected);
+}
+
+using ClosedPairs = std::vector<std::tuple<double, double, int>>;  // lower, upper extreme, count
+
+void expectClosed(const Series& series, const ClosedPairs& closed, const Series& residue) {
+  const ExactCycles count = exactCount(series);
+  ExactCycles::Closed expected;
+  for (const auto& [low, high, times] : closed) expected[{low, high}] += static_cast<std::uint64_t>(times);
+  EXPECT_EQ(count.closed(), expected);
+  EXPECT_EQ(count.residue(), residue);
+  const CycleCount on_grid = gridCount(series, integerGrid(-20, 20));
+  ASSERT_EQ(on_grid.closed.size(), expected.size());
+  for (const ClosedCycles& c : on_grid.closed) EXPECT_EQ(expected.at({c.low - 20.0, c.low + c.steps - 20.0}), c.count);
+  ASSERT_EQ(on_grid.residue.size(), residue.size());
+  for (std::size_t i = 0; i < residue.size(); ++i) EXPECT_EQ(on_grid.residue[i] - 20.0, residue[i]);
+}
+
+TEST(Oracles, O1AstmFigure6) {
+  expectRanges(kFigure6, {{3, 0.5}, {4, 1.5}, {6, 0.5}, {8, 1}, {9, 0.5}});
+  expectClosed(kFigure6, {{-1, 3, 1}}, {-2, 1, -3, 5, -4, 4, -2});
+  const Cycles expected{{{3, -0.5}, 0.5}, {{4, -1}, 0.5}, {{4, 1}, 1},    {{6, 1}, 0.5},
+                        {{8, 0}, 0.5},    {{8, 1}, 0.5},  {{9, 0.5}, 0.5}};
+  EXPECT_EQ(cyclesOf(rangesAndMeans(exactCount(kFigure6))), expected);
+}
+
+struct Numbered {
+  double value;
+  int index;
+  bool operator<(const Numbered& o) const { return value < o.value; }
+  bool operator==(const Numbered& o) const { return value == o.value; }
+};
+
+TEST(Oracles, O1PointsCarryWhereTheyAre) {
+  FourPointStack<Numbered> stack;
+  std::vector<std::pair<int, int>> closed;
+  for (int i = 0; i < static_cast<int>(kFigure6.size()); ++i) {
+    stack.push({kFigure6[static_cast<std::size_t>(i)], i},
+               [&](const Numbered& b, const Numbered& c) { closed.emplace_back(b.index, c.index); });
+  }
+  EXPECT_EQ(closed, (std::vector<std::pair<int, int>>{{4, 5}}));
+  std::vector<int> residue;
+  for (const Numbered& point : stack.residue()) residue.push_back(point.index);
+  EXPECT_EQ(residue, (std::vector<int>{0, 1, 2, 3, 6, 7, 8}));
+}
+
+// A repeating history: begun at its largest peak it closes up to one cycle (ASTM E1049-85, 5.4.5).
+TEST(Oracles, O2AstmFigure7) {
+  const Series history{-2, 1, -3, 5, -1, 3, -4, 4};
+  Series from_peak;
+  for (std::size_t i = 0; i <= history.size(); ++i) from_peak.push_back(history[(3 + i) % history.size()]);
+  const Ranges ranges = rangesOf(cyclesOf(rangesAndMeans(exactCount(from_peak))));
+  EXPECT_EQ(ranges, (Ranges{{3, 1}, {4, 1}, {7, 1}, {9, 1}}));
+  double sum = 0.0, sum_once = 0.0;
+  for (const auto& [range, count] : ranges) sum += count * std::pow(range, 5);
+  for (const auto& [range, count] : rangesOf(cyclesOf(rangesAndMeans(exactCount(kFigure6)))))
+    sum_once += count * std::pow(range, 5);
+  EXPECT_EQ(sum, 77123.0);
+  EXPECT_NEAR(sum / sum_once - 1.0, 0.137, 5e-4);
+}
+
+TEST(Oracles, O6) {
+  expectRanges({2, -14, 10, 0, 13, -9, 11, -8, 8, -9, 15, -4, 10, 0, 13, 0},
+               {{10, 2}, {13, 0.5}, {16, 1.5}, {17, 0.5}, {19, 0.5}, {20, 1}, {22, 1}, {29, 0.5}});
+}
+
+TEST(Oracles, O7) {
+  expectClosed({4, 7, 2, 10, 5, 9, 3, 4, 2, 12, 5, 11, 1, 4, 3, 10, 6, 12, 4, 8, 1, 9, 4, 6},
+               {{5, 9, 1}, {3, 4, 2}, {2, 10, 1}, {5, 11, 1}, {6, 10, 1}, {4, 8, 1}, {1, 12, 1}},
+               {4, 7, 2, 12, 1, 9, 4, 6});
+}
+
+TEST(Oracles, O8) {
+  expectClosed({2, 5, 3, 6, 2, 4, 1, 6, 1, 4, 1, 5, 3, 6, 3, 6, 1, 5, 2},
+               {{3, 5, 2}, {3, 6, 1}, {1, 4, 1}, {2, 4, 1}, {1, 6, 2}}, {2, 6, 1, 5, 2});
+}
+
+TEST(Oracles, O9) {
+  expectRanges({-1.5, 1, -3, 10, -1, 3, -8, 4, -2, 6, -1, -4, -8, 2, 1, -5, 0, 2.5, -4, 1, 0, 2, -.5},
+               {{1, 1}, {2.5, 1}, {4, 1.5}, {6, 1.5}, {6.5, .5}, {7, 1}, {10.5, .5}, {13, .5}, {14, 1}, {18, .5}});
+}
+
+}  // namespace
+}  // namespace hammer_loads::life

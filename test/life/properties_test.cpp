@@ -1,0 +1,136 @@
+// What holds for every series: the count of ASTM's own procedure, pieces that add, largest range, sign flip.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "hammer_loads/life/count_state.h"
+#include "life/astm_reference.h"
+
+namespace hammer_loads::life {
+namespace {
+
+using namespace test;
+
+TEST(Properties, EqualsAstmsProcedure) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const Series series = randomIntegers(random, random() % 60, -8, static_cast<int>(random() % 12));
+    const Cycles reference = astmCount(series);
+    ASSERT_EQ(cyclesOf(rangesAndMeans(exactCount(series))), reference) << i;
+    ASSERT_EQ(cyclesOf(rangesAndMeans(gridCount(series, integerGrid(-8, 12)))), reference) << i;
+  }
+}
+
+void expectSame(const CycleCount& a, const CycleCount& b) {
+  ASSERT_EQ(a.closed, b.closed);
+  ASSERT_EQ(a.residue, b.residue);
+  ASSERT_EQ(a.tally, b.tally);
+  ASSERT_EQ(stateText(a), stateText(b));
+}
+
+/// Pieces of 1 to some values; empty pieces between.
+std::vector<Series> cut(const Series& series, std::mt19937& random) {
+  std::vector<Series> pieces(1);
+  const auto every = 2 + random() % 40;
+  for (const double value : series) {
+    while (random() % every == 0) pieces.emplace_back();
+    pieces.back().push_back(value);
+  }
+  return pieces;
+}
+
+TEST(Properties, TenThousandCuttingsAddToTheWholeExactly) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 10000; ++i) {
+    const Series series = randomIntegers(random, random() % 300, 0, 1 + static_cast<int>(random() % 40));
+    const LoadGrid grid = integerGrid(0, 40);
+    const CycleCount whole = gridCount(series, grid);
+    const std::vector<Series> pieces = cut(series, random);
+    CycleCount sum(grid);
+    CycleCounter live(grid);
+    CycleCount taken(grid);
+    for (const Series& piece : pieces) {
+      sum.append(gridCount(piece, grid));
+      for (const double value : piece) live.add(value);
+      taken.advance(live.take());
+    }
+    expectSame(sum, whole);
+    expectSame(taken, whole);
+    ExactCycles exact;
+    for (const Series& piece : pieces) exact.append(exactCount(piece));
+    ASSERT_EQ(stateText(exact), stateText(exactCount(series)));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// ((a + b) + c) and (a + (b + c)): pieces may be added in groups.
+TEST(Properties, AddingIsAssociative) {
+  std::mt19937 random(3);
+  const LoadGrid grid = integerGrid(0, 30);
+  for (int i = 0; i < 2000; ++i) {
+    const CycleCount a = gridCount(randomIntegers(random, random() % 50, 0, 30), grid);
+    const CycleCount b = gridCount(randomIntegers(random, random() % 50, 0, 30), grid);
+    const CycleCount c = gridCount(randomIntegers(random, random() % 50, 0, 30), grid);
+    CycleCount left = a, right = b, whole = a;
+    left.append(b);
+    left.append(c);
+    right.append(c);
+    whole.append(right);
+    expectSame(left, whole);
+  }
+}
+
+TEST(Properties, LargestRangeIsMaximumLessMinimumAndASignFlipMirrors) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> value(3.0, 10.0);
+  for (int i = 0; i < 2000; ++i) {
+    Series series(2 + random() % 200);
+    std::generate(series.begin(), series.end(), [&] { return value(random); });
+    const auto [least, greatest] = std::minmax_element(series.begin(), series.end());
+    const std::vector<RangeMean> cycles = rangesAndMeans(exactCount(series));
+    ASSERT_EQ(cycles.back().range, *greatest - *least);
+    Series flipped = series;
+    for (double& v : flipped) v = -v;
+    Cycles mirrored;
+    for (const RangeMean& c : rangesAndMeans(exactCount(flipped))) mirrored[{c.range, -c.mean}] += c.count;
+    ASSERT_EQ(mirrored, cyclesOf(cycles));
+  }
+}
+
+// n classes: ranges of 1, 2 .. n - 1, n - 1 .. 2, 1 steps never close: 2n - 1 points, one more than often quoted
+// (2n - 2 without the running end).
+TEST(Properties, ResidueOnAGridHasAtMostTwiceTheClassesLessOnePoints) {
+  for (std::uint32_t n = 2; n <= 5; ++n) {
+    std::set<std::vector<std::uint32_t>> reached{{}};  // every residue that any series gives
+    std::vector<std::vector<std::uint32_t>> open{{}};
+    std::size_t longest = 0;
+    while (!open.empty()) {
+      const std::vector<std::uint32_t> residue = std::move(open.back());
+      open.pop_back();
+      longest = std::max(longest, residue.size());
+      for (std::uint32_t next = 0; next < n; ++next) {
+        std::vector<std::uint32_t> joined = residue;
+        std::vector<ClosedCycles> closed;
+        joinResidues(joined, {next}, closed);
+        if (reached.insert(joined).second) open.push_back(joined);
+      }
+    }
+    EXPECT_EQ(longest, 2 * n - 1);
+  }
+  const int n = 4096;
+  Series spiral;
+  double at = n / 2 - 1.0;
+  spiral.push_back(at);
+  for (int step = 1; step < n; ++step) spiral.push_back(at += step % 2 == 1 ? step : -step);
+  Series whole = spiral;
+  for (int step = n - 1; step > 0; --step) whole.push_back(at += step % 2 == 1 ? -step : step);
+  const CycleCount count = gridCount(whole, integerGrid(0, n - 1));
+  EXPECT_EQ(count.residue.size(), static_cast<std::size_t>(2 * n - 1));
+  EXPECT_TRUE(count.closed.empty());
+}
+
+}  // namespace
+}  // namespace hammer_loads::life

@@ -1,0 +1,103 @@
+// Least, largest and mean load of a turn against what a curve has.
+#include "hammer_loads/life/turn_loads.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/counting_new.h"
+
+namespace hammer_loads::life {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kMs = 1000000;
+
+TEST(TurnLoads, OfSamplesAndTheExtremesBetween) {
+  TurnLoadsRecorder recorder(2);
+  const double a[] = {1.0, 5.0}, b[] = {3.0, -2.0}, peak[] = {4.0, kNaN}, c[] = {2.0, 0.0};
+  recorder.add(10 * kMs, a);
+  recorder.add(20 * kMs, b);
+  recorder.add(24 * kMs, peak);
+  recorder.add(30 * kMs, c);
+  const TurnLoads& turn = recorder.endTurn(34 * kMs);
+  EXPECT_FALSE(turn.whole);
+  EXPECT_EQ(turn.start, 10 * kMs);
+  EXPECT_EQ(turn.end, 34 * kMs);
+  EXPECT_EQ(turn.minimum, (std::vector<double>{1.0, -2.0}));
+  EXPECT_EQ(turn.maximum, (std::vector<double>{4.0, 5.0}));
+  EXPECT_EQ(turn.maximum_instant, (std::vector<std::int64_t>{24 * kMs, 10 * kMs}));
+  EXPECT_EQ(turn.minimum_instant, (std::vector<std::int64_t>{10 * kMs, 20 * kMs}));
+  EXPECT_NEAR(turn.mean[0], (20.0 + 14.0 + 18.0 + 8.0) / 24.0, 1e-14);
+  EXPECT_NEAR(turn.mean[1], (15.0 - 10.0 + 0.0) / 24.0, 1e-14);
+  EXPECT_EQ(turn.skipped, (std::vector<std::uint64_t>{0, 1}));
+}
+
+// 10 turns of a curve that jumps at the blow, irregularly sampled: min, max and mean are the curve's.
+TEST(TurnLoads, MeanIsTheCurvesHoweverItIsSampled) {
+  TurnLoadsRecorder recorder(1);
+  const double period = 0.2;
+  const auto curve = [&](double phase) { return 3.0 + 7.0 * phase * phase; };  // jumps from 10 to 3 at the blow
+  double next_blow = period, before = 0.0;
+  int turns = 0;
+  for (int i = 0; turns < 10; ++i) {
+    const double t = before + 5e-4 * (1.0 + 0.9 * std::sin(7.0 * i));
+    before = t;
+    if (t > next_blow) {
+      const TurnLoads& turn = recorder.endTurn(static_cast<std::int64_t>(std::llround(1e9 * next_blow)));
+      EXPECT_EQ(turn.whole, turns > 0);
+      // a value held over at most 0.95 ms at each end, where the slope is at most 70 1/s; trapezoidal rule 3e-5
+      if (turn.whole) {
+        EXPECT_NEAR(turn.mean[0], 3.0 + 7.0 / 3.0, 70.0 * 0.95e-3 * 0.95e-3 / period + 3e-5);
+      }
+      EXPECT_NEAR(turn.minimum[0], 3.0, 1e-3);
+      EXPECT_NEAR(turn.maximum[0], 10.0, 0.1);
+      next_blow += period;
+      ++turns;
+    }
+    const double value = curve(t / period - std::floor(t / period));
+    recorder.add(static_cast<std::int64_t>(std::llround(1e9 * t)), &value);
+  }
+}
+
+TEST(TurnLoads, AChannelWithoutAValueHasNone) {
+  TurnLoadsRecorder recorder(2);
+  const double half[] = {1.0, kNaN};
+  recorder.add(1, half);
+  recorder.add(2, half);
+  const TurnLoads turn = recorder.endTurn(3);
+  EXPECT_EQ(turn.mean[0], 1.0);
+  EXPECT_TRUE(std::isnan(turn.mean[1]) && std::isnan(turn.minimum[1]) && std::isnan(turn.maximum[1]));
+  EXPECT_EQ(turn.skipped[1], 2U);
+  EXPECT_TRUE(std::isnan(recorder.endTurn(4).mean[0]));  // nothing is left of the turn before
+}
+
+TEST(TurnLoads, ARestartForgetsTheTurnBegun) {
+  TurnLoadsRecorder recorder(1);
+  const double large = 1e9, small = 1.0;
+  recorder.add(1, &large);
+  recorder.endTurn(2);
+  recorder.add(3, &large);
+  recorder.restart();
+  recorder.add(0, &small);
+  const TurnLoads& turn = recorder.endTurn(5);
+  EXPECT_FALSE(turn.whole);
+  EXPECT_EQ(turn.maximum[0], 1.0);
+  EXPECT_EQ(turn.start, 0);
+}
+
+TEST(TurnLoads, TakesNoMemoryAfterItsStart) {
+  TurnLoadsRecorder recorder(40);
+  const std::vector<double> values(40, 1.0);
+  const std::size_t before = ::hammer_loads::test::allocations;
+  for (int i = 0; i < 1000; ++i) {
+    recorder.add(i, values.data());
+    if (i % 10 == 9) recorder.endTurn(i);
+  }
+  recorder.restart();
+  EXPECT_EQ(::hammer_loads::test::allocations, before);
+}
+
+}  // namespace
+}  // namespace hammer_loads::life
