@@ -15,6 +15,9 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
     if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g%s, must be %s", key, value, unit, rule));
   };
   check("bulk_modulus_Pa", p.bulk_modulus, " Pa", p.bulk_modulus > 0.0, "a finite number > 0");
+  const double modulus = p.bulk_modulus;
+  if (std::isfinite(modulus) && modulus > 0.0)
+    check("bulk_modulus_Pa", modulus, " Pa", modulus >= 1.0 && modulus <= 1e15, "from 1 to 1e15 Pa");
   const double zeta = p.vibration.damping_ratio;
   check("damping_ratio", zeta, "", zeta > 0.0 && zeta < 1.0, "> 0 and < 1");
   check("mode_refresh_angle_rad", p.vibration.refresh_angle, " rad", p.vibration.refresh_angle >= 0.0,
@@ -27,6 +30,22 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
   check("support_front_half_width_m", s.front_half_width, " m", s.front_half_width > 0.0, "a finite number > 0");
   check("support_rear_x_m", s.rear_x, " m", true, "a finite number");
   check("support_rear_half_width_m", s.rear_half_width, " m", s.rear_half_width > 0.0, "a finite number > 0");
+}
+
+/// A joint on oil needs inertia about its axis, else it would vibrate at an infinite frequency.
+void checkInertia(const Chain& chain, const std::vector<Cylinder>& cylinders, std::vector<std::string>& problems) {
+  JointVector middle(chain.joints());
+  for (int j = 0; j < chain.joints(); ++j) {
+    const double sum = 0.5 * chain.lower()[j] + 0.5 * chain.upper()[j];
+    middle[j] = std::isfinite(sum) ? sum : 0.0;
+  }
+  const JointMatrix M = ChainDynamics(chain).massMatrix(middle);
+  for (const Cylinder& cylinder : cylinders) {
+    const int j = cylinder.joint();
+    if (M(j, j) > 0.0) continue;
+    problems.push_back(format("robot_description: inertia beyond joint %s about its axis: %.6g kg m2, must be > 0",
+                              cylinder.parameters().joint.c_str(), M(j, j)));
+  }
 }
 
 }  // namespace
@@ -63,6 +82,7 @@ Checked<Boom> Boom::build(const std::string& urdf_text, const BoomParameters& pa
                                        given.name.c_str(), given.joint.c_str()));
     }
   }
+  if (result.problems.empty()) checkInertia(*chain.value, cylinders, result.problems);
   if (result.problems.empty()) result.value = Boom(*chain.value, std::move(cylinders), parameters);
   return result;
 }
@@ -100,7 +120,7 @@ ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {
   return reducedAtTip(vibration_.modes(), J.topRows<3>().transpose() * direction);
 }
 
-void Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
+bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
   result.hammer = hammerTorque(w_tip);
   result.weight = weight_;
   result.motion = motion_;
@@ -110,10 +130,14 @@ void Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexc
     result.vibration = vibration_.torque();
   }
   result.total = result.hammer + result.weight + result.motion + result.vibration;
+  bool finite = result.total.allFinite();
   for (std::size_t i = 0; i < cylinders_.size(); ++i) {
     const Cylinder& cylinder = cylinders_[i];
-    result.cylinder[i] = cylinder.load(cylinder.at(position_[cylinder.joint()]), result.total[cylinder.joint()]);
+    CylinderLoad& load = result.cylinder[i];
+    load = cylinder.load(cylinder.at(position_[cylinder.joint()]), result.total[cylinder.joint()]);
+    finite = finite && (load.dead_point || (std::isfinite(load.force) && std::isfinite(load.pressure)));
   }
+  return finite;
 }
 
 RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {

@@ -40,7 +40,7 @@ struct RigidVerdict {
 };
 
 /// Per sample: move() when the boom moved, advance() for the vibration if wanted, then loads(). After make() nothing
-/// allocates, throws or fails for finite input.
+/// allocates or throws; loads() reports an input whose results are not finite.
 class Boom {
  public:
   /// Every problem of description and boom file at once, one line each.
@@ -71,8 +71,9 @@ class Boom {
 
   /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
   /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. rigid: without
-  /// vibration.
-  void loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept;
+  /// vibration. False: the input is so large that a result is not finite and must not be used; a cylinder at its dead
+  /// centre does not count as that.
+  bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
   RigidVerdict rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept;
   /// Whether weight and cylinders hold the hull down against a mean load of the hammer on the tip.

@@ -15,7 +15,7 @@ namespace hammer_loads {
 /// Neglects: flexibility of links, pins, machine and ground; stiffness from weight and from the cylinders' pre-load;
 /// oil moving between chambers (valves shut); forces from the boom's slow motion on its vibration.
 struct BoomModes {
-  int count{};                          ///< modes = joints with a cylinder; 0 at a dead point
+  int count{};                          ///< modes = joints with a cylinder; 0 at a dead centre or without inertia
   bool dead_point{};                    ///< some cylinder does not hold its joint: there are no modes
   std::array<int, kMaxJoints> joint{};  ///< index in the chain of the joints that vibrate
   JointVector stiffness;                ///< K of those [N m/rad]

@@ -1,6 +1,7 @@
 #include "hammer_loads/boom/hold_down.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace hammer_loads {
@@ -10,7 +11,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// How many times `load` may be added to `now` before the sum passes `limit`; each in the direction that gives.
 double factor(double now, double load, double limit) noexcept {
-  if (now > limit) return 0.0;
+  if (!(now <= limit) || std::isnan(load)) return 0.0;
   return load > 0.0 ? (limit - now) / load : kInfinity;
 }
 

@@ -29,6 +29,7 @@ void Vibration::setPose(const JointVector& position) noexcept {
   // Ahead of a moving boom, so that the modes are as often early as late and phases do not drift.
   position_ = middle;
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
+  if (!position_.allFinite()) position_ = position;
   findModes(dynamics_, cylinders_, position_, modes_);
   posed_ = true;
   if (kept) {
@@ -55,9 +56,18 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
     v_[k] = next.v;
   }
   torque_ = torque.to;
+  restIfNotFinite();
 }
 
-void Vibration::strike(const JointVector& impulse) noexcept { v_ += modalForce(modes_, impulse); }
+void Vibration::strike(const JointVector& impulse) noexcept {
+  v_ += modalForce(modes_, impulse);
+  restIfNotFinite();
+}
+
+void Vibration::restIfNotFinite() noexcept {
+  if (x_.allFinite() && v_.allFinite() && torque_.allFinite()) return;
+  rest();
+}
 
 JointVector Vibration::displacement() const noexcept { return jointsOf(modes_, x_); }
 

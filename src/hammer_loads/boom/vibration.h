@@ -33,6 +33,7 @@ class Vibration {
   /// At rest without load, as after a gap in the samples; the next setPose() begins anew.
   void rest() noexcept;
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
+  /// Where torques are so large that the state would not be finite, the boom comes to rest.
   void advance(double step, const TorqueStep& torque) noexcept;
   /// A blow's impulse as joint torque times time [N m s].
   void strike(const JointVector& impulse) noexcept;
@@ -51,6 +52,7 @@ class Vibration {
 
  private:
   JointVector modalAcceleration() const noexcept;
+  void restIfNotFinite() noexcept;
 
   ChainDynamics dynamics_;
   std::vector<Cylinder> cylinders_;
