@@ -9,7 +9,8 @@ namespace {
 
 void clear(BoomModes& modes) noexcept {
   modes.count = 0;
-  modes.omega.resize(0), modes.shape.resize(0, 0), modes.inertia.resize(modes.mass.rows(), 0);
+  modes.omega.resize(0), modes.given_omega.resize(0), modes.shape.resize(0, 0),
+      modes.inertia.resize(modes.mass.rows(), 0);
 }
 
 }  // namespace
@@ -17,7 +18,7 @@ void clear(BoomModes& modes) noexcept {
 void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
                BoomModes& modes) noexcept {
   modes.count = static_cast<int>(cylinders.size());
-  modes.dead_point = false;
+  modes.dead_centre = false;
   modes.mass = dynamics.massMatrix(position);
   modes.stiffness.resize(modes.count);
   for (int i = 0; i < modes.count; ++i) {
@@ -25,9 +26,9 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
     const CylinderPosition at = cylinder.at(position[cylinder.joint()]);
     modes.joint[static_cast<std::size_t>(i)] = cylinder.joint();
     modes.stiffness[i] = cylinder.jointStiffness(at);
-    modes.dead_point = modes.dead_point || at.dead_point;
+    modes.dead_centre = modes.dead_centre || at.dead_centre;
   }
-  if (modes.dead_point) modes.count = 0;
+  if (modes.dead_centre) modes.count = 0;
   const int n = modes.count;
   if (n == 0) {
     clear(modes);
@@ -53,6 +54,7 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
     modes.omega[k] = 1.0 / std::sqrt(inverse_square);
     modes.shape.col(k) = solver.eigenvectors().col(n - 1 - k).cwiseProduct(soft) * modes.omega[k];
   }
+  modes.given_omega = modes.omega;
   modes.inertia.noalias() = columns * modes.shape;
 }
 

@@ -135,12 +135,12 @@ CylinderPosition Cylinder::at(double joint_angle) const noexcept {
   CylinderPosition position;
   position.length = std::sqrt(steady_ + cosine_ * c + sine_ * s);
   position.arm = (sine_ * c - cosine_ * s) / (2.0 * position.length);
-  position.dead_point = !(std::abs(position.arm) >= kDeadPointRatio * shorter_side_);
+  position.dead_centre = !(std::abs(position.arm) >= kDeadCentreRatio * shorter_side_);
   return position;
 }
 
 CylinderLoad Cylinder::load(const CylinderPosition& position, double joint_torque) const noexcept {
-  if (position.dead_point) {
+  if (position.dead_centre) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return {kNaN, kNaN, true};
   }
@@ -148,11 +148,15 @@ CylinderLoad Cylinder::load(const CylinderPosition& position, double joint_torqu
   return {force, force >= 0.0 ? force / bore_area_ : -force / rod_area_, false};
 }
 
-double Cylinder::stiffness(double length) const noexcept {
+OilVolumes Cylinder::volumes(double length) const noexcept {
   const double extension = std::clamp(length - parameters_.closed_length, 0.0, parameters_.stroke);
-  const double bore_volume = parameters_.bore_hose_volume + bore_area_ * extension;
-  const double rod_volume = parameters_.rod_hose_volume + rod_area_ * (parameters_.stroke - extension);
-  return bulk_modulus_ * (bore_area_ * bore_area_ / bore_volume + rod_area_ * rod_area_ / rod_volume);
+  return {parameters_.bore_hose_volume + bore_area_ * extension,
+          parameters_.rod_hose_volume + rod_area_ * (parameters_.stroke - extension)};
+}
+
+double Cylinder::stiffness(double length) const noexcept {
+  const OilVolumes volume = volumes(length);
+  return bulk_modulus_ * (bore_area_ * bore_area_ / volume.bore + rod_area_ * rod_area_ / volume.rod);
 }
 
 double Cylinder::jointStiffness(const CylinderPosition& position) const noexcept {
