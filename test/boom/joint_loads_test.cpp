@@ -115,6 +115,7 @@ TEST(JointLoads, TotalEqualsTheHandMadePlanarChain) {
     BoomParameters parameters = test::shippedBoomParameters();
     parameters.chain = {"base_link", "tip", {"j0", "j1", "j2"}};
     parameters.cylinders.clear();
+    parameters.sections.clear();
     Checked<Boom> boom = Boom::make(planar.urdf(), parameters);
     ASSERT_TRUE(boom.value) << boom.problems.front();
     for (int i = 0; i < 50; ++i) {

@@ -181,7 +181,7 @@ TEST_F(ShippedBoom, BeginsAnewAfterAGap) {
   EXPECT_EQ(vibration().energy(), 0.0);
 }
 
-TEST_F(ShippedBoom, KnowsNothingAtADeadPoint) {
+TEST_F(ShippedBoom, KnowsNothingAtADeadCentre) {
   BoomParameters parameters = boom_.parameters();
   CylinderParameters& p = parameters.cylinders[0];
   p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0, p.closed_length = 1.5, p.stroke = 0.6;
@@ -198,15 +198,15 @@ TEST_F(ShippedBoom, KnowsNothingAtADeadPoint) {
   EXPECT_GT(boom.vibration().energy(), 0.0);
   at(0.0), at(0.0);
   EXPECT_FALSE(boom.vibration().known());
-  EXPECT_TRUE(boom.vibration().modes().dead_point);
+  EXPECT_TRUE(boom.vibration().modes().dead_centre);
   boom.vibration().advance(0.02, {torque, torque, torque});
   EXPECT_TRUE(boom.vibration().displacement().isZero(0.0));
   EXPECT_TRUE(boom.vibration().torque().isZero(0.0));
   EXPECT_EQ(boom.vibration().energy(), 0.0);
   BoomLoads loads;
   boom.loads({}, false, loads);
-  EXPECT_TRUE(loads.cylinder[0].dead_point);
-  EXPECT_FALSE(loads.cylinder[1].dead_point);
+  EXPECT_TRUE(loads.cylinder[0].dead_centre);
+  EXPECT_FALSE(loads.cylinder[1].dead_centre);
   at(0.4), at(0.4);
   EXPECT_TRUE(boom.vibration().known());
   EXPECT_EQ(boom.vibration().energy(), 0.0);

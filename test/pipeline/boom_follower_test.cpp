@@ -218,7 +218,7 @@ TEST(BoomFollower, ADeadPointIsTakenAsRigid) {
   ASSERT_FALSE(state.fault);
   EXPECT_TRUE(state.dead_point);
   EXPECT_FALSE(state.choice.compliant);
-  EXPECT_TRUE(state.loads.cylinder[1].dead_point);
+  EXPECT_TRUE(state.loads.cylinder[1].dead_centre);
   EXPECT_TRUE(state.loads.total.allFinite());
   Follower rigid(BoomModel::kRigid, *made.value);
   rigid.sample(kLoad);

@@ -278,6 +278,23 @@ TEST_F(LoadBoom, FromTheDescriptionAloneItIsRigid) {
   expectOne(loaded(urdf_, "boom: compliant\n"), "boom: compliant, must be none, rigid or auto without a boom file");
 }
 
+TEST_F(LoadBoom, AnotherMachinesDescriptionIsANoteUnlessABoomIsAskedFor) {
+  const std::string other = with(urdf_, "<link name=\"hammer_hull\"", "<link name=\"bucket\"");
+  const std::string foreign = "<robot name=\"other\"><link name=\"base_link\"/></robot>";
+  for (const std::string& more : {std::string("boom: auto\n"), std::string("stale_after_s: 0.3\n")}) {
+    const Checked<Settings> settings = loaded(foreign, more);
+    ASSERT_EQ(settings.problems, Lines{});
+    EXPECT_FALSE(settings.value->boom);
+    EXPECT_EQ(settings.value->notes,
+              Lines{"robot_description: has no link hammer_hull: no boom, the hammer's loads on its hull alone"});
+  }
+  // A boom file, or a model that needs the description, is meant for it.
+  expectOne(loaded(foreign, boom_), "robot_description: link hammer_hull: not in the model");
+  expectOne(loaded(foreign, rigid_), "robot_description: link hammer_hull: not in the model");
+  // What cannot be read is no other machine's.
+  expectOne(loaded(other, "boom: auto\n"), "robot_description: cannot be read: ");
+}
+
 TEST_F(LoadBoom, NoneIsNone) {
   EXPECT_FALSE(loaded(urdf_, boom_, "boom: none").value.value().boom);
   EXPECT_FALSE(loaded("", boom_, "boom: none").value.value().boom);

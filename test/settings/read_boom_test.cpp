@@ -66,6 +66,61 @@ TEST_F(BoomFile, EachFaultIsOneLine) {
   expectOne("rigid_tolerance: 0.05", "rigid_tolerance: 0.0", "rigid_tolerance: 0, must be");
 }
 
+TEST_F(BoomFile, EachFaultOfASectionIsOneLine) {
+  expectOne("boom_foot_section_link: boom_link", "boom_foot_section_link: bucket",
+            "boom_foot_section_link: bucket, must be a link between base_link and hammer_hull");
+  expectOne("boom_foot_section_link: boom_link", "boom_foot_section_link: hammer_tool",
+            "boom_foot_section_link: hammer");
+  expectOne("boom_foot_section_link: boom_link", "boom_foot_section_link: base_link", "boom_foot_section_link: base_l");
+  expectOne("boom_foot_section_x_m: 0.50", "boom_foot_section_x_m: 2.7",
+            "boom_foot_section_x_m: 2.7 m, outside the link");
+  expectOne("boom_foot_section_x_m: 0.50", "boom_foot_section_x_m: -0.1", "boom_foot_section_x_m: -0.1 m, outside");
+  expectOne("boom_foot_section_z_m: 0.08", "boom_foot_section_z_m: 9",
+            "boom_foot_section_x_m: 0.5 m, outside the link");
+  expectOne("boom_foot_section_pitch_rad: 0.0", "boom_foot_section_pitch_rad: 3.1",
+            "boom_foot_section_x_m: 0.5 m, outs");
+  expectOne("boom_foot_section_y_m: 0.0", "boom_foot_section_y_m: 1e300", "boom_foot_section_y_m: 1e+300 m, must be");
+  expectOne("boom_foot_section_mass_beyond_kg: 308.7", "boom_foot_section_mass_beyond_kg: 401",
+            "boom_foot_section_mass_beyond_kg: 401 kg, must be from 0 to the mass of boom_link, 400 kg");
+  expectOne("boom_foot_section_inertia_beyond_kg_m2: 114.3", "boom_foot_section_inertia_beyond_kg_m2: -1",
+            "boom_foot_section_inertia_beyond_kg_m2: -1 kg m2, must be");
+  expectOne("boom_foot_section_mass_beyond_kg: 308.7", "", "boom_foot_section_mass_beyond_kg: ");  // all or none
+  expectOne("sections: [boom_foot,", "sections: [boom_foot, boom_foot,", "sections: ");
+  expectOne("boom_foot_section_pitch_rad: 0.0", "", "boom_foot_section_pitch_rad: ");
+}
+
+TEST_F(BoomFile, SectionsMayBeLeftOut) {
+  yaml_.erase(yaml_.find("sections: ["));
+  EXPECT_TRUE(problems("damping_ratio", "damping_ratio").empty());
+  const Checked<Boom> made = loadBoom(urdf_, {file_.string()});
+  EXPECT_TRUE(made.value->sections().empty());
+  EXPECT_TRUE(problems("rigid_tolerance:", "sections: []\nrigid_tolerance:").empty());
+}
+
+TEST_F(BoomFile, ALinkOfUnknownPartsIsAUniformBarWithANote) {
+  yaml_.erase(yaml_.find("arm_middle_section_mass_beyond_kg"));  // and what follows it
+  ASSERT_TRUE(problems("damping_ratio", "damping_ratio").empty());
+  const Checked<Boom> made = loadBoom(urdf_, {file_.string()});
+  ASSERT_EQ(made.notes.size(), 1U);
+  EXPECT_EQ(made.notes[0],
+            "arm_middle_section_mass_beyond_kg: not given, arm_link counts as a uniform bar between its joints");
+  // 230 kg over 1.70 m, cut at 0.80 m.
+  const RigidBody& part = made.value->sections()[2].part();
+  EXPECT_NEAR(part.mass, 230.0 * 0.9 / 1.7, 1e-12);
+  EXPECT_NEAR(part.com.x(), 1.25, 1e-15);
+  EXPECT_NEAR(part.inertia(1, 1), part.mass * 0.81 / 12.0, 1e-12);
+}
+
+TEST_F(BoomFile, TwoSectionsCannotShareAName) {
+  BoomParameters parameters = test::shippedBoomParameters();
+  parameters.sections.push_back(parameters.sections[0]);
+  EXPECT_EQ(Boom::make(urdf_, parameters).problems,
+            std::vector<std::string>{"sections: boom_foot, given twice, must be different names"});
+  parameters.sections.back().name = "a/b";
+  EXPECT_EQ(Boom::make(urdf_, parameters).problems,
+            std::vector<std::string>{"sections: a/b, must be names of letters, digits and _"});
+}
+
 TEST_F(BoomFile, UnknownAndMissingKeysAreTold) {
   expectOne("rigid_tolerance:", "spare_key: 1.0\nrigid_tolerance:", "spare_key: ");
   EXPECT_EQ(problems("damping_ratio: 0.05", "damping: 0.05").size(), 2U);  // one missing, one unknown
@@ -99,7 +154,7 @@ TEST_F(BoomFile, WithoutCylindersTheBoomIsRigid) {
   const JointVector zero = JointVector::Zero(4);
   made.value->moveCompliant({zero, zero, zero}, Eigen::Vector3d::Zero());
   EXPECT_FALSE(made.value->vibration().known());
-  EXPECT_FALSE(made.value->vibration().modes().dead_point);
+  EXPECT_FALSE(made.value->vibration().modes().dead_centre);
   made.value->vibration().advance(0.1, {zero, zero, zero});
   EXPECT_TRUE(made.value->vibration().torque().isZero(0.0));
 }

@@ -15,6 +15,9 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
     if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g%s, must be %s", key, value, unit, rule));
   };
   check("bulk_modulus_Pa", p.bulk_modulus, " Pa", p.bulk_modulus > 0.0, "a finite number > 0");
+  const double modulus = p.bulk_modulus;
+  if (std::isfinite(modulus) && modulus > 0.0)
+    check("bulk_modulus_Pa", modulus, " Pa", modulus >= 1.0 && modulus <= 1e15, "from 1 to 1e15 Pa");
   const double zeta = p.vibration.damping_ratio;
   check("damping_ratio", zeta, "", zeta > 0.0 && zeta < 1.0, "> 0 and < 1");
   check("mode_refresh_angle_rad", p.vibration.refresh_angle, " rad", p.vibration.refresh_angle >= 0.0,
@@ -27,6 +30,39 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
   check("support_front_half_width_m", s.front_half_width, " m", s.front_half_width > 0.0, "a finite number > 0");
   check("support_rear_x_m", s.rear_x, " m", true, "a finite number");
   check("support_rear_half_width_m", s.rear_half_width, " m", s.rear_half_width > 0.0, "a finite number > 0");
+}
+
+std::vector<Section> makeSections(const std::vector<SectionParameters>& given, const Chain& chain,
+                                  std::vector<std::string>& problems, std::vector<std::string>& notes) {
+  std::vector<Section> sections;
+  std::set<std::string> names;
+  for (const SectionParameters& p : given) {
+    if (!names.insert(p.name).second)
+      problems.push_back(format("sections: %s, given twice, must be different names", p.name.c_str()));
+    const Checked<Section> section = Section::make(p, chain);
+    problems.insert(problems.end(), section.problems.begin(), section.problems.end());
+    notes.insert(notes.end(), section.notes.begin(), section.notes.end());
+    if (section.value) sections.push_back(*section.value);
+  }
+  if (given.size() > kMaxSections)
+    problems.push_back(format("sections: %zu names, must be at most %d", given.size(), kMaxSections));
+  return sections;
+}
+
+/// A joint on oil needs inertia about its axis, else it would vibrate at an infinite frequency.
+void checkInertia(const Chain& chain, const std::vector<Cylinder>& cylinders, std::vector<std::string>& problems) {
+  JointVector middle(chain.joints());
+  for (int j = 0; j < chain.joints(); ++j) {
+    const double sum = 0.5 * chain.lower()[j] + 0.5 * chain.upper()[j];
+    middle[j] = std::isfinite(sum) ? sum : 0.0;
+  }
+  const JointMatrix M = ChainDynamics(chain).massMatrix(middle);
+  for (const Cylinder& cylinder : cylinders) {
+    const int j = cylinder.joint();
+    if (M(j, j) > 0.0) continue;
+    problems.push_back(format("robot_description: inertia beyond joint %s about its axis: %.6g kg m2, must be > 0",
+                              cylinder.parameters().joint.c_str(), M(j, j)));
+  }
 }
 
 }  // namespace
@@ -63,31 +99,35 @@ Checked<Boom> Boom::build(const std::string& urdf_text, const BoomParameters& pa
                                        given.name.c_str(), given.joint.c_str()));
     }
   }
-  if (result.problems.empty()) result.value = Boom(*chain.value, std::move(cylinders), parameters);
+  std::vector<Section> sections = makeSections(parameters.sections, *chain.value, result.problems, result.notes);
+  if (result.problems.empty()) checkInertia(*chain.value, cylinders, result.problems);
+  if (result.problems.empty()) result.value = Boom(*chain.value, std::move(cylinders), std::move(sections), parameters);
   return result;
 }
 
-Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, const BoomParameters& parameters)
+Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Section> sections,
+           const BoomParameters& parameters)
     : chain_(chain),
       cylinders_(std::move(cylinders)),
       parameters_(parameters),
       dynamics_(chain),
-      vibration_(chain, cylinders_, parameters.vibration) {
+      vibration_(chain, cylinders_, parameters.vibration),
+      steel_(chain, cylinders_, std::move(sections)) {
   const JointVector zero = JointVector::Zero(chain.joints());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }
 
 void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
-  position_ = motion.position;
+  joints_ = motion;
   g_B_ = g_B;
-  forwardKinematics(chain_, position_, pose_);
+  forwardKinematics(chain_, joints_.position, pose_);
   weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
   motion_ = dynamics_.torqueOfMotion(motion);
 }
 
 void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
   move(motion, g_B);
-  vibration_.setPose(position_);
+  vibration_.setPose(joints_.position);
 }
 
 Boom::TipVibration Boom::tipVibration() const noexcept {
@@ -100,7 +140,7 @@ ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {
   return reducedAtTip(vibration_.modes(), J.topRows<3>().transpose() * direction);
 }
 
-void Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
+bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
   result.hammer = hammerTorque(w_tip);
   result.weight = weight_;
   result.motion = motion_;
@@ -110,20 +150,30 @@ void Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexc
     result.vibration = vibration_.torque();
   }
   result.total = result.hammer + result.weight + result.motion + result.vibration;
+  bool finite = result.total.allFinite();
   for (std::size_t i = 0; i < cylinders_.size(); ++i) {
     const Cylinder& cylinder = cylinders_[i];
-    result.cylinder[i] = cylinder.load(cylinder.at(position_[cylinder.joint()]), result.total[cylinder.joint()]);
+    CylinderLoad& load = result.cylinder[i];
+    load = cylinder.load(cylinder.at(joints_.position[cylinder.joint()]), result.total[cylinder.joint()]);
+    finite = finite && (load.dead_centre || (std::isfinite(load.force) && std::isfinite(load.pressure)));
   }
+  return finite;
+}
+
+bool Boom::steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
+  JointMotion motion = joints_;
+  if (!rigid) motion.acceleration += vibration_.acceleration();
+  return steel_.find({pose_, motion, g_B_, w_tip}, result);
 }
 
 RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {
-  const double error =
-      rigidError(vibration_.modes(), parameters_.vibration.damping_ratio, hammerTorque(w_peak), pulse_length);
+  const double damping = vibration_.known() ? vibration_.mode(0).zeta : parameters_.vibration.damping_ratio;
+  const double error = rigidError(vibration_.modes(), damping, hammerTorque(w_peak), pulse_length);
   return {error, error <= parameters_.rigid_tolerance};
 }
 
 HoldDown Boom::holdDown(const Wrench& w_mean) const noexcept {
-  return hammer_loads::holdDown(chain_, pose_, position_, cylinders_, parameters_.supports, w_mean, g_B_);
+  return hammer_loads::holdDown(chain_, pose_, joints_.position, cylinders_, parameters_.supports, w_mean, g_B_);
 }
 
 }  // namespace hammer_loads

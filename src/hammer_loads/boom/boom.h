@@ -7,8 +7,11 @@
 #include <vector>
 
 #include "hammer_loads/boom/chain_pose.h"
+#include "hammer_loads/boom/cylinder_flags.h"
 #include "hammer_loads/boom/hold_down.h"
+#include "hammer_loads/boom/steel_loads.h"
 #include "hammer_loads/boom/vibration.h"
+#include "hammer_loads/boom/vibration_spread.h"
 
 namespace hammer_loads {
 
@@ -18,8 +21,9 @@ struct BoomParameters {
   std::vector<CylinderParameters> cylinders;  ///< at most one per joint
   double bulk_modulus{};                      ///< of oil with hose and air [Pa], > 0
   VibrationSettings vibration;
-  std::optional<Supports> supports;  ///< [m]; nothing: not known
-  double rigid_tolerance{};          ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
+  std::optional<Supports> supports;         ///< [m]; nothing: not known
+  std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
+  double rigid_tolerance{};                 ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
 /// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the
@@ -33,6 +37,20 @@ struct BoomLoads {
   std::array<CylinderLoad, kMaxJoints> cylinder;  ///< of the total, index as in Boom::cylinders()
 };
 
+/// Errors of the hammer's load that are independent of each other, one standard deviation each.
+struct WrenchSpread {
+  int count{};                 ///< at most 3: of the crank's angle, speed and acceleration, say
+  std::array<Wrench, 3> part;  ///< on the tip, as the load
+};
+
+/// Standard deviations; at a dead centre as SteelLoads.
+struct BoomDeviations {
+  JointVector torque;                         ///< of BoomLoads::total [N m]
+  std::array<double, kMaxJoints> cylinder{};  ///< of the force [N]
+  std::array<Wrench, kMaxSections> section;   ///< each component
+  std::array<Wrench, kMaxJoints> joint;       ///< of the reactions, each component
+};
+
 /// Whether the boom may be taken as rigid for a pulse.
 struct RigidVerdict {
   double error{};   ///< rigidError() of the pulse [-]
@@ -40,7 +58,7 @@ struct RigidVerdict {
 };
 
 /// Per sample: move() when the boom moved, advance() for the vibration if wanted, then loads(). After make() nothing
-/// allocates, throws or fails for finite input.
+/// allocates or throws; loads() reports an input whose results are not finite.
 class Boom {
  public:
   /// Every problem of description and boom file at once, one line each.
@@ -71,8 +89,20 @@ class Boom {
 
   /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
   /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. rigid: without
-  /// vibration.
-  void loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept;
+  /// vibration. False: the input is so large that a result is not finite and must not be used; a cylinder at its dead
+  /// centre does not count as that.
+  bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept;
+  /// What the steel carries, with w_tip and rigid as for loads(). The cylinders' forces are those of loads() but for
+  /// the mass matrix: here that of the pose, there that of the modes, at most refresh_angle beside. False: as there.
+  bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept;
+  /// Joint torques of the errors of a load: what VibrationSpread::advance() takes.
+  LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
+  /// How far loads() and steelLoads() may be off by the hammer's load and, unless rigid, the oil. Not by masses,
+  /// dimensions, weight and motion.
+  void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
+                  BoomDeviations& result) const noexcept;
+  /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
+  std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
   RigidVerdict rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept;
   /// Whether weight and cylinders hold the hull down against a mean load of the hammer on the tip.
@@ -80,10 +110,12 @@ class Boom {
 
   const Chain& chain() const noexcept { return chain_; }
   const std::vector<Cylinder>& cylinders() const noexcept { return cylinders_; }
+  const std::vector<Section>& sections() const noexcept { return steel_.sections(); }
   const BoomParameters& parameters() const noexcept { return parameters_; }
 
  private:
-  Boom(const Chain& chain, std::vector<Cylinder> cylinders, const BoomParameters& parameters);
+  Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Section> sections,
+       const BoomParameters& parameters);
   static Checked<Boom> build(const std::string& urdf_text, const BoomParameters& parameters,
                              std::vector<std::string> problems);
 
@@ -92,8 +124,10 @@ class Boom {
   BoomParameters parameters_;
   ChainDynamics dynamics_;
   Vibration vibration_;
+  SteelLoadFinder steel_;
   ChainPose pose_;
-  JointVector position_, weight_, motion_;
+  JointMotion joints_;
+  JointVector weight_, motion_;
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

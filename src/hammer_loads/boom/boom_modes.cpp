@@ -5,11 +5,20 @@
 #include <limits>
 
 namespace hammer_loads {
+namespace {
+
+void clear(BoomModes& modes) noexcept {
+  modes.count = 0;
+  modes.omega.resize(0), modes.given_omega.resize(0), modes.shape.resize(0, 0),
+      modes.inertia.resize(modes.mass.rows(), 0);
+}
+
+}  // namespace
 
 void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
                BoomModes& modes) noexcept {
   modes.count = static_cast<int>(cylinders.size());
-  modes.dead_point = false;
+  modes.dead_centre = false;
   modes.mass = dynamics.massMatrix(position);
   modes.stiffness.resize(modes.count);
   for (int i = 0; i < modes.count; ++i) {
@@ -17,16 +26,15 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
     const CylinderPosition at = cylinder.at(position[cylinder.joint()]);
     modes.joint[static_cast<std::size_t>(i)] = cylinder.joint();
     modes.stiffness[i] = cylinder.jointStiffness(at);
-    modes.dead_point = modes.dead_point || at.dead_point;
+    modes.dead_centre = modes.dead_centre || at.dead_centre;
   }
-  if (modes.dead_point) modes.count = 0;
+  if (modes.dead_centre) modes.count = 0;
   const int n = modes.count;
-  const int joints = static_cast<int>(position.size());
   if (n == 0) {
-    modes.omega.resize(0), modes.shape.resize(0, 0), modes.inertia.resize(joints, 0);
+    clear(modes);
     return;
   }
-  JointMatrix M(n, n), columns(joints, n);
+  JointMatrix M(n, n), columns(modes.mass.rows(), n);
   for (int i = 0; i < n; ++i) columns.col(i) = modes.mass.col(modes.joint[static_cast<std::size_t>(i)]);
   for (int i = 0; i < n; ++i) M.row(i) = columns.row(modes.joint[static_cast<std::size_t>(i)]);
   // K^-1/2 M K^-1/2 y = y/omega^2: symmetric, and well conditioned since every K is positive.
@@ -35,12 +43,18 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
   for (int j = 0; j < n; ++j) scaled.col(j).array() *= soft.array() * soft[j];
   Eigen::SelfAdjointEigenSolver<JointMatrix> solver(n);
   solver.compute(scaled);
+  // Rounding makes a pose without inertia about some axis look a little positive or negative.
+  if (!(solver.eigenvalues()[0] > 1e-14 * solver.eigenvalues()[n - 1])) {
+    clear(modes);
+    return;
+  }
   modes.omega.resize(n), modes.shape.resize(n, n);
   for (int k = 0; k < n; ++k) {
     const double inverse_square = solver.eigenvalues()[n - 1 - k];  // lowest frequency first
     modes.omega[k] = 1.0 / std::sqrt(inverse_square);
     modes.shape.col(k) = solver.eigenvectors().col(n - 1 - k).cwiseProduct(soft) * modes.omega[k];
   }
+  modes.given_omega = modes.omega;
   modes.inertia.noalias() = columns * modes.shape;
 }
 

@@ -15,14 +15,21 @@ namespace hammer_loads {
 /// Neglects: flexibility of links, pins, machine and ground; stiffness from weight and from the cylinders' pre-load;
 /// oil moving between chambers (valves shut); forces from the boom's slow motion on its vibration.
 struct BoomModes {
-  int count{};                          ///< modes = joints with a cylinder; 0 at a dead point
-  bool dead_point{};                    ///< some cylinder does not hold its joint: there are no modes
+  int count{};                          ///< modes = joints with a cylinder; 0 at a dead centre or without inertia
+  bool dead_centre{};                   ///< some cylinder does not hold its joint: there are no modes
   std::array<int, kMaxJoints> joint{};  ///< index in the chain of the joints that vibrate
   JointVector stiffness;                ///< K of those [N m/rad]
   JointMatrix mass;                     ///< M of all joints [kg m2]
-  JointVector omega;                    ///< natural frequencies [rad/s]
+  JointVector omega;                    ///< natural frequencies, as identified where they are [rad/s]
+  JointVector given_omega;              ///< those of the stiffness given [rad/s]
   JointMatrix shape;                    ///< of the joints that vibrate, per mode; shape^T M shape = 1 [1/sqrt(kg m2)]
   JointMatrix inertia;                  ///< M shape, of all joints, per mode [sqrt(kg m2)]
+};
+
+/// Joint torques of the hammer over one step, signs as in jointTorqueOfTipLoad() [N m].
+struct TorqueStep {
+  JointVector from, to;  ///< at the step's ends; where the load jumps (a blow), end a step there and begin anew
+  JointVector mean;      ///< over the step; linear between the ends makes it their mean
 };
 
 /// Modes at a pose; at most one cylinder per joint. No allocation.

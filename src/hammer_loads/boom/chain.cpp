@@ -185,7 +185,7 @@ class ChainBuilder {
     return sum;
   }
 
-  /// Else the mass matrix is singular.
+  /// Else the mass matrix is singular: mass beyond every joint, and at rest inertia about a revolute one's axis.
   void checkMassBeyondJoints() {
     const int last = data_.link_beyond.back();
     double mass = 0.0;
@@ -203,6 +203,16 @@ class ChainBuilder {
   KDL::Tree tree_;
   Chain::Data data_;
 };
+
+std::string linksMissing(const std::string& urdf_text, const ChainRequest& request) {
+  std::vector<std::string> problems;
+  const urdf::ModelInterfaceSharedPtr model = readUrdf(urdf_text, problems);
+  if (!model) return {};
+  for (const std::string& name : {request.root, request.tip}) {
+    if (!model->getLink(name)) return "robot_description: has no link " + name;
+  }
+  return {};
+}
 
 Checked<Chain> Chain::make(const std::string& urdf_text, const ChainRequest& request) {
   Checked<Chain> result;

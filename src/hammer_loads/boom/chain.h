@@ -20,6 +20,10 @@ struct ChainRequest {
   std::vector<std::string> joints;  ///< that must move between root and tip
 };
 
+/// One line when the description can be read but does not have root or tip: it is that of another machine. Empty when
+/// both are there, and when the text cannot be read, which Chain::make() reports.
+std::string linksMissing(const std::string& urdf_text, const ChainRequest& request);
+
 /// A body's mass and where it acts.
 struct PointMass {
   double mass{};                                ///< [kg]

@@ -11,6 +11,30 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+/// Beyond these no figure of a cylinder lies, and no product of figures overflows.
+constexpr double kMostLength = 1e3, kLeastLength = 1e-6;   // [m]
+constexpr double kMostVolume = 1e6, kLeastVolume = 1e-12;  // [m3]
+constexpr double kMostPressure = 1e12;                     // [Pa]
+
+/// Finite figures that no cylinder has.
+void checkRange(const CylinderParameters& p, std::vector<std::string>& problems) {
+  const auto check = [&](const char* key, double value, const char* unit, double least, double most) {
+    if (value >= least && value <= most) return;
+    problems.push_back(
+        format("%s_%s: %.9g %s, must be from %.0e to %.0e %s", p.name.c_str(), key, value, unit, least, most, unit));
+  };
+  for (const auto& [key, value] : {std::pair{"base_x_m", p.base_x}, std::pair{"base_z_m", p.base_z},
+                                   std::pair{"rod_x_m", p.rod_x}, std::pair{"rod_z_m", p.rod_z}}) {
+    check(key, value, "m", -kMostLength, kMostLength);
+  }
+  for (const auto& [key, value] : {std::pair{"bore_m", p.bore}, std::pair{"rod_diameter_m", p.rod_diameter},
+                                   std::pair{"closed_length_m", p.closed_length}, std::pair{"stroke_m", p.stroke}}) {
+    check(key, value, "m", kLeastLength, kMostLength);
+  }
+  check("bore_hose_volume_m3", p.bore_hose_volume, "m3", kLeastVolume, kMostVolume);
+  check("rod_hose_volume_m3", p.rod_hose_volume, "m3", kLeastVolume, kMostVolume);
+  check("relief_pressure_Pa", p.relief_pressure, "Pa", 1.0, kMostPressure);
+}
 
 void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems) {
   const char* name = p.name.c_str();
@@ -31,6 +55,8 @@ void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems)
   check("bore_hose_volume_m3", p.bore_hose_volume, "m3", p.bore_hose_volume > 0.0, positive);
   check("rod_hose_volume_m3", p.rod_hose_volume, "m3", p.rod_hose_volume > 0.0, positive);
   check("relief_pressure_Pa", p.relief_pressure, "Pa", p.relief_pressure > 0.0, positive);
+  if (!problems.empty()) return;
+  checkRange(p, problems);
   if (!problems.empty()) return;
   check("rod_diameter_m", p.rod_diameter, "m", p.rod_diameter < p.bore,
         format("< %s_bore_m = %.9g m", name, p.bore).c_str());
@@ -109,12 +135,12 @@ CylinderPosition Cylinder::at(double joint_angle) const noexcept {
   CylinderPosition position;
   position.length = std::sqrt(steady_ + cosine_ * c + sine_ * s);
   position.arm = (sine_ * c - cosine_ * s) / (2.0 * position.length);
-  position.dead_point = !(std::abs(position.arm) >= kDeadPointRatio * shorter_side_);
+  position.dead_centre = !(std::abs(position.arm) >= kDeadCentreRatio * shorter_side_);
   return position;
 }
 
 CylinderLoad Cylinder::load(const CylinderPosition& position, double joint_torque) const noexcept {
-  if (position.dead_point) {
+  if (position.dead_centre) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return {kNaN, kNaN, true};
   }
@@ -122,11 +148,15 @@ CylinderLoad Cylinder::load(const CylinderPosition& position, double joint_torqu
   return {force, force >= 0.0 ? force / bore_area_ : -force / rod_area_, false};
 }
 
-double Cylinder::stiffness(double length) const noexcept {
+OilVolumes Cylinder::volumes(double length) const noexcept {
   const double extension = std::clamp(length - parameters_.closed_length, 0.0, parameters_.stroke);
-  const double bore_volume = parameters_.bore_hose_volume + bore_area_ * extension;
-  const double rod_volume = parameters_.rod_hose_volume + rod_area_ * (parameters_.stroke - extension);
-  return bulk_modulus_ * (bore_area_ * bore_area_ / bore_volume + rod_area_ * rod_area_ / rod_volume);
+  return {parameters_.bore_hose_volume + bore_area_ * extension,
+          parameters_.rod_hose_volume + rod_area_ * (parameters_.stroke - extension)};
+}
+
+double Cylinder::stiffness(double length) const noexcept {
+  const OilVolumes volume = volumes(length);
+  return bulk_modulus_ * (bore_area_ * bore_area_ / volume.bore + rod_area_ * rod_area_ / volume.rod);
 }
 
 double Cylinder::jointStiffness(const CylinderPosition& position) const noexcept {

@@ -24,25 +24,30 @@ struct CylinderParameters {
 
 /// Length and leverage at a joint angle.
 struct CylinderPosition {
-  double length{};    ///< L between the anchors [m]
-  double arm{};       ///< dL/dq [m]; positive: extending drives the joint forward
-  bool dead_point{};  ///< the arm is so short that no finite force holds the joint
+  double length{};     ///< L between the anchors [m]
+  double arm{};        ///< dL/dq [m]; positive: extending drives the joint forward
+  bool dead_centre{};  ///< the arm is so short that no finite force holds the joint
 };
 
-/// What the cylinder carries. At a dead point force and pressure are NaN.
+/// What the cylinder carries. At a dead centre force and pressure are NaN.
 struct CylinderLoad {
   double force{};     ///< BY the cylinder ON both anchors [N], positive pushes them apart
   double pressure{};  ///< in the chamber that carries it, above the other chamber's, >= 0 [Pa]
-  bool dead_point{};
+  bool dead_centre{};
+};
+
+/// Oil trapped beside the piston, hose included [m3].
+struct OilVolumes {
+  double bore{}, rod{};
 };
 
 /// Neglects: mass of the cylinder, friction, flexibility of rod, pins and mounts, the tilt of a link by its cylinder's
 /// own compression.
 class Cylinder {
  public:
-  /// Arms below this share of the triangle's shorter fixed side are a dead point: the force would be 50 times the
+  /// Arms below this share of the triangle's shorter fixed side are a dead centre: the force would be 50 times the
   /// torque over that side.
-  static constexpr double kDeadPointRatio = 0.02;
+  static constexpr double kDeadCentreRatio = 0.02;
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, and a triangle
   /// that needs the cylinder shorter than closed or longer than open within the joint's limits. bulk_modulus: of oil
@@ -57,7 +62,8 @@ class Cylinder {
   CylinderLoad load(const CylinderPosition& position, double joint_torque) const noexcept;
   /// dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.
   double stiffness(double length) const noexcept;
-  /// What that gives about the joint [N m/rad]: stiffness times arm^2; zero at a dead point, nothing is divided.
+  OilVolumes volumes(double length) const noexcept;  ///< beyond the stroke as at its end
+  /// What that gives about the joint [N m/rad]: stiffness times arm^2; zero at a dead centre, nothing is divided.
   /// Neglects the pre-load's share, force times d2L/dq2.
   double jointStiffness(const CylinderPosition& position) const noexcept;
 

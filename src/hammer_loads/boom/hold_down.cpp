@@ -1,6 +1,7 @@
 #include "hammer_loads/boom/hold_down.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace hammer_loads {
@@ -10,7 +11,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// How many times `load` may be added to `now` before the sum passes `limit`; each in the direction that gives.
 double factor(double now, double load, double limit) noexcept {
-  if (now > limit) return 0.0;
+  if (!(now <= limit) || std::isnan(load)) return 0.0;
   return load > 0.0 ? (limit - now) / load : kInfinity;
 }
 
@@ -22,7 +23,7 @@ double tippingMoment(const Eigen::Vector3d& from, const Eigen::Vector3d& to, con
 
 double cylinderFactor(const Cylinder& cylinder, double angle, double weight, double load) noexcept {
   const CylinderPosition at = cylinder.at(angle);
-  if (at.dead_point) return weight == 0.0 && load == 0.0 ? kInfinity : 0.0;
+  if (at.dead_centre) return weight == 0.0 && load == 0.0 ? kInfinity : 0.0;
   const double force_weight = -weight / at.arm, force_load = -load / at.arm;
   return std::min(factor(force_weight, force_load, cylinder.greatestPush()),
                   factor(-force_weight, -force_load, cylinder.greatestPull()));

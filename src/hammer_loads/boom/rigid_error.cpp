@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "hammer_loads/boom/mode.h"
 
@@ -11,6 +12,7 @@ namespace hammer_loads {
 double rigidError(const BoomModes& modes, double damping_ratio, const JointVector& peak_torque,
                   double pulse_length) noexcept {
   constexpr double kPi = 3.14159265358979323846;
+  if (!peak_torque.allFinite()) return std::numeric_limits<double>::infinity();
   const double peak = peak_torque.size() > 0 ? peak_torque.cwiseAbs().maxCoeff() : 0.0;
   if (modes.count == 0 || !(peak > 0.0) || !(pulse_length > 0.0)) return 0.0;
   const double mu = kPi / pulse_length;

@@ -5,45 +5,69 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <exception>
+#include <set>
 
+#include "hammer_loads/boom/urdf_limits.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-/// urdfdom reports through console_bridge; while this lives, its first error is kept instead of printed.
-class FirstError : public console_bridge::OutputHandler {
+/// urdfdom reports through console_bridge; while this lives, its errors are kept instead of printed.
+class Errors : public console_bridge::OutputHandler {
  public:
-  FirstError() { console_bridge::useOutputHandler(this); }
-  ~FirstError() override { console_bridge::restorePreviousOutputHandler(); }
-  FirstError(const FirstError&) = delete;
-  FirstError& operator=(const FirstError&) = delete;
+  Errors() { console_bridge::useOutputHandler(this); }
+  ~Errors() override { console_bridge::restorePreviousOutputHandler(); }
+  Errors(const Errors&) = delete;
+  Errors& operator=(const Errors&) = delete;
 
   void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override {
-    if (text_.empty() && level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) text_ = text;
-  }
-  [[nodiscard]] std::string oneLine() const {
-    std::string line = text_.empty() ? "it is no URDF" : text_;
-    for (char& letter : line) {
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR || lines_.size() == kMost) return;
+    lines_.push_back(text);
+    for (char& letter : lines_.back()) {
       if (static_cast<unsigned char>(letter) < ' ') letter = ' ';
     }
-    return line;
+  }
+  [[nodiscard]] std::string first() const { return lines_.empty() ? "it is no URDF" : lines_.front(); }
+  /// The parser goes on with mass 0 where it cannot read a link's inertia: cause, then the link, in two reports.
+  void addUnreadInertias(std::vector<std::string>& problems) const {
+    for (std::size_t i = 1; i < lines_.size(); ++i) {
+      if (lines_[i].find("parse inertial element") == std::string::npos) continue;
+      problems.push_back("robot_description: " + lines_[i] + ": " + lines_[i - 1]);
+    }
   }
 
  private:
-  std::string text_;
+  static constexpr std::size_t kMost = 1000;
+  std::vector<std::string> lines_;
 };
+
+/// Beyond these no figure of a machine lies, and no product of figures overflows.
+constexpr double kMostLength = 1e6;    // [m]
+constexpr double kMostMass = 1e9;      // [kg]
+constexpr double kMostInertia = 1e18;  // [kg m2]
+
+bool within(double value, double most) { return std::abs(value) <= most; }  // false for NaN
+
+bool within(const urdf::Vector3& p, double most) { return within(p.x, most) && within(p.y, most) && within(p.z, most); }
 
 void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
   const urdf::Inertial& body = *link.inertial;
-  if (!(body.mass >= 0.0) || !std::isfinite(body.mass)) {
+  const char* name = link.name.c_str();
+  if (!(body.mass >= 0.0 && body.mass <= kMostMass)) {
+    problems.push_back(format("robot_description: mass of link %s: %.9g kg, must be >= 0 and at most %.0e kg", name,
+                              body.mass, kMostMass));
+  }
+  if (!within(body.origin.position, kMostLength)) {
     problems.push_back(
-        format("robot_description: mass of link %s: %.9g kg, must be >= 0 and finite", link.name.c_str(), body.mass));
+        format("robot_description: centre of mass of link %s: must be within %.0e m", name, kMostLength));
   }
   Eigen::Matrix3d inertia;
   inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz, body.izz;
-  if (!inertia.allFinite()) {
-    problems.push_back(format("robot_description: inertia of link %s: must be finite", link.name.c_str()));
+  if (!inertia.allFinite() || inertia.cwiseAbs().maxCoeff() > kMostInertia) {
+    problems.push_back(
+        format("robot_description: inertia of link %s: must be finite and at most %.0e kg m2", name, kMostInertia));
     return;
   }
   const Eigen::Vector3d moments =
@@ -54,23 +78,83 @@ void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
     problems.push_back(
         format("robot_description: inertia of link %s: principal moments %.6g, %.6g, %.6g kg m2, must "
                "be >= 0 and the largest at most the sum of the others",
-               link.name.c_str(), moments[0], moments[1], moments[2]));
+               name, moments[0], moments[1], moments[2]));
   }
+}
+
+void checkJoint(const urdf::Joint& joint, std::vector<std::string>& problems) {
+  const char* name = joint.name.c_str();
+  if (!within(joint.parent_to_joint_origin_transform.position, kMostLength)) {
+    problems.push_back(format("robot_description: origin of joint %s: must be within %.0e m", name, kMostLength));
+  }
+  const urdf::Vector3& a = joint.axis;
+  const double length = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+  const bool turns = joint.type != urdf::Joint::FIXED && joint.type != urdf::Joint::FLOATING;
+  if (turns && !(length > 1e-6 && length < 1e6)) {
+    problems.push_back(
+        format("robot_description: axis of joint %s: length %.6g, must be from 1e-6 to 1e6", name, length));
+  }
+}
+
+/// Else the parsers that walk from link to link would not come to an end.
+void checkIsTree(const urdf::ModelInterface& model, std::vector<std::string>& problems) {
+  std::set<std::string> children;
+  for (const auto& [name, joint] : model.joints_) {
+    if (!children.insert(joint->child_link_name).second) {
+      problems.push_back(format("robot_description: link %s: child of more than one joint, must be of one",
+                                joint->child_link_name.c_str()));
+    }
+  }
+  if (children.size() != model.joints_.size()) return;
+  for (const auto& [name, link] : model.links_) {
+    urdf::LinkConstSharedPtr before = link;
+    std::size_t steps = 0;
+    while (before && before->parent_joint && steps <= model.links_.size()) before = before->getParent(), ++steps;
+    if (steps <= model.links_.size()) continue;
+    problems.push_back(format("robot_description: link %s: hangs on itself, must hang on the root", name.c_str()));
+    return;
+  }
+}
+
+/// Links that hang on each other would keep each other alive.
+void release(const urdf::ModelInterface& model) {
+  for (const auto& [name, link] : model.links_) link->child_links.clear();
+}
+
+urdf::ModelInterfaceSharedPtr parsed(const std::string& text, std::vector<std::string>& problems) {
+  const std::string passed = urdfLimitPassed(text);
+  if (!passed.empty()) {
+    problems.push_back(passed);
+    return nullptr;
+  }
+  const Errors errors;
+  urdf::ModelInterfaceSharedPtr model;
+  try {
+    model = urdf::parseURDF(text);
+  } catch (const std::exception& exception) {  // of numbers, in some versions of the parser
+    problems.push_back(std::string("robot_description: cannot be read: ") + exception.what());
+    return nullptr;
+  }
+  if (!model) problems.push_back("robot_description: cannot be read: " + errors.first());
+  if (model) errors.addUnreadInertias(problems);
+  return model;
 }
 
 }  // namespace
 
 urdf::ModelInterfaceSharedPtr readUrdf(const std::string& text, std::vector<std::string>& problems) {
-  urdf::ModelInterfaceSharedPtr model;
-  {
-    const FirstError error;
-    model = urdf::parseURDF(text);
-    if (!model) problems.push_back("robot_description: cannot be read: " + error.oneLine());
-  }
+  const urdf::ModelInterfaceSharedPtr model = parsed(text, problems);
   if (!model) return nullptr;
+  const std::size_t before = problems.size();
+  checkIsTree(*model, problems);
+  if (problems.size() != before) {
+    release(*model);
+    return nullptr;
+  }
   for (const auto& [name, link] : model->links_) {
     if (link->inertial) checkInertia(*link, problems);
   }
+  for (const auto& [name, joint] : model->joints_) checkJoint(*joint, problems);
   return model;
 }
 

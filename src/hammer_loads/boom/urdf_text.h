@@ -9,8 +9,9 @@
 
 namespace hammer_loads {
 
-/// Null when the text is no URDF. Problems, one line each: why it is none, or a link whose mass or inertia no body can
-/// have (negative, not finite, or principal moments that violate the triangle inequality).
+/// Null when the text is no URDF, passes a limit (UrdfLimits) or is no tree. Problems, one line each: why, or a link
+/// whose mass or inertia no body can have (negative, not finite, beyond every machine, or principal moments that
+/// violate the triangle inequality), or a joint whose place or axis is none.
 urdf::ModelInterfaceSharedPtr readUrdf(const std::string& text, std::vector<std::string>& problems);
 
 }  // namespace hammer_loads

@@ -29,8 +29,11 @@ void Vibration::setPose(const JointVector& position) noexcept {
   // Ahead of a moving boom, so that the modes are as often early as late and phases do not drift.
   position_ = middle;
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
+  if (!position_.allFinite()) position_ = position;
   findModes(dynamics_, cylinders_, position_, modes_);
   posed_ = true;
+  if (identifier_) identifier_->setModes(modes_);
+  useIdentified();
   if (kept) {
     x_ = modalOf(modes_, displacement);
     v_ = modalOf(modes_, velocity);
@@ -43,6 +46,7 @@ void Vibration::rest() noexcept {
   x_.setZero(modes_.count);
   v_.setZero(modes_.count);
   torque_.setZero();
+  if (identifier_) identifier_->forgetMotion();
   posed_ = false;
 }
 
@@ -55,9 +59,31 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
     v_[k] = next.v;
   }
   torque_ = torque.to;
+  if (identifier_) identifier_->advance(step, torque);
+  restIfNotFinite();
 }
 
-void Vibration::strike(const JointVector& impulse) noexcept { v_ += modalForce(modes_, impulse); }
+void Vibration::strike(const JointVector& impulse) noexcept {
+  v_ += modalForce(modes_, impulse);
+  if (identifier_) identifier_->strike(impulse);
+  restIfNotFinite();
+}
+
+void Vibration::observe(int channel, const VibrationReading& reading) noexcept {
+  if (!identifier_) return;
+  identifier_->observe(channel, reading);
+  useIdentified();
+}
+
+void Vibration::useIdentified() noexcept {
+  if (!identifier_) return;
+  for (int k = 0; k < modes_.count; ++k) modes_.omega[k] = modes_.given_omega[k] * identifier_->frequencyRatio(k);
+}
+
+void Vibration::restIfNotFinite() noexcept {
+  if (x_.allFinite() && v_.allFinite() && torque_.allFinite()) return;
+  rest();
+}
 
 JointVector Vibration::displacement() const noexcept { return jointsOf(modes_, x_); }
 

@@ -1,10 +1,12 @@
 /// The boom's vibration under the hammer: each mode advanced exactly from sample to sample.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hammer_loads/boom/boom_modes.h"
 #include "hammer_loads/boom/mode.h"
+#include "hammer_loads/boom/mode_identifier.h"
 
 namespace hammer_loads {
 
@@ -13,15 +15,9 @@ struct VibrationSettings {
   double refresh_angle{};  ///< new modes for each such move of a joint; theirs is off by half of it [rad], >= 0
 };
 
-/// Joint torques of the hammer over one step, signs as in jointTorqueOfTipLoad() [N m].
-struct TorqueStep {
-  JointVector from, to;  ///< at the step's ends; where the load jumps (a blow), end a step there and begin anew
-  JointVector mean;      ///< over the step; linear between the ends makes it their mean
-};
-
 /// Vibration of the joints about the pose that joint_states report. Between refreshes the modes stay; at a refresh
 /// displacements and velocities of the joints carry over, so that what the boom's own motion does to the energy is kept
-/// to first order. At a dead point there is no answer (known() is false) and the boom comes to rest.
+/// to first order. At a dead centre there is no answer (known() is false) and the boom comes to rest.
 ///
 /// The load must be the part that comes from motion relative to the hull, the links' mass being in the hull's already.
 class Vibration {
@@ -33,9 +29,17 @@ class Vibration {
   /// At rest without load, as after a gap in the samples; the next setPose() begins anew.
   void rest() noexcept;
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
+  /// Where torques are so large that the state would not be finite, the boom comes to rest.
   void advance(double step, const TorqueStep& torque) noexcept;
   /// A blow's impulse as joint torque times time [N m s].
   void strike(const JointVector& impulse) noexcept;
+
+  /// Frequencies and damping as readings show them, from now on (`boom_stiffness: identified`).
+  void identify() { identifier_.emplace(settings_.damping_ratio); }
+  /// A sensor's reading at the end of the last step; nothing without identify(). Displacement and velocity stay those
+  /// of the hammer's load, with better modes.
+  void observe(int channel, const VibrationReading& reading) noexcept;
+  const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
 
   bool known() const noexcept { return modes_.count > 0; }
   JointVector displacement() const noexcept;  ///< [rad], zero for held joints
@@ -47,14 +51,19 @@ class Vibration {
   /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
   double energy() const noexcept;
   const BoomModes& modes() const noexcept { return modes_; }
-  Mode mode(int index) const noexcept { return {modes_.omega[index], settings_.damping_ratio}; }
+  Mode mode(int index) const noexcept {
+    return {modes_.omega[index], identifier_ ? identifier_->damping(index) : settings_.damping_ratio};
+  }
 
  private:
   JointVector modalAcceleration() const noexcept;
+  void restIfNotFinite() noexcept;
+  void useIdentified() noexcept;
 
   ChainDynamics dynamics_;
   std::vector<Cylinder> cylinders_;
   VibrationSettings settings_;
+  std::optional<ModeIdentifier> identifier_;
   BoomModes modes_;
   JointVector position_;  ///< where the modes belong
   JointVector last_;      ///< as last told

@@ -85,7 +85,7 @@ void BoomFollower::vibrate(const LoadStep& step) noexcept {
 
 void BoomFollower::tellVibration() noexcept {
   const BoomModes& modes = boom_.vibration().modes();
-  state_.dead_point = modes.dead_point;
+  state_.dead_centre = modes.dead_centre;
   state_.frequency = modes.omega / kTwoPi;
   state_.reduced = boom_.reducedHull(Eigen::Vector3d::UnitZ());
   if (state_.choice.compliant) {

@@ -37,7 +37,7 @@ struct BoomState {
   std::optional<JointFault> fault;
   BoomLoads loads;
   Eigen::Vector3d gravity_tip = Eigen::Vector3d::Zero();  ///< in the hull's axes [m/s2]
-  bool dead_point{};       ///< a cylinder does not hold its joint: no modes, taken as rigid
+  bool dead_centre{};      ///< a cylinder does not hold its joint: no modes, taken as rigid
   JointVector frequency;   ///< natural frequencies, per mode [Hz]; none when vibration is not followed
   ReducedHull reduced;     ///< along hull z; infinite without modes
   Boom::TipVibration tip;  ///< zero for a rigid boom

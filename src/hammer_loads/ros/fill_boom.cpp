@@ -60,7 +60,7 @@ void fillVibration(const BoomFollower& follower, BoomVibration& message) {
   message.reduced_mass_kg = state.reduced.mass;
   message.reduced_stiffness_N_m = state.reduced.stiffness;
   message.compliant = state.choice.compliant;
-  message.dead_point = state.dead_point;
+  message.dead_point = state.dead_centre;
   message.rigid_error = state.choice.judged ? state.choice.rigid_error : kNaN;
   message.rigid_tolerance = state.choice.rigid_tolerance;
   message.pulse_length_s = state.choice.judged ? state.choice.pulse_length : kNaN;

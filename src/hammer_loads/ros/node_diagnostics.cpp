@@ -169,7 +169,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
     std::string text;
     for (const std::string& complaint : complaints) text += "; " + complaint;
     status.summary(DiagnosticStatus::WARN, "no joint loads" + text);
-  } else if (state.dead_point) {
+  } else if (state.dead_centre) {
     status.summary(DiagnosticStatus::WARN, "a cylinder is at its dead centre: taken as rigid");
   } else {
     status.summary(DiagnosticStatus::OK, state.choice.compliant ? "compliant" : "rigid");

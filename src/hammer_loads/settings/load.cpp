@@ -39,6 +39,13 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
   const std::string conflict = boomConflict(model, boom_file, !description.empty());
   if (!conflict.empty()) reader.addProblem(conflict);
   if (description.empty() || model == BoomModel::kNone || reader.problems().size() != problems_before) return {};
+  if (!boom_file && model == BoomModel::kAuto) {
+    const std::string missing = linksMissing(description, {});
+    if (!missing.empty()) {
+      notes.push_back(missing + ": no boom, the hammer's loads on its hull alone");
+      return {};
+    }
+  }
   Checked<Boom> boom = boom_file ? Boom::make(description, parameters) : Boom::make(description);
   for (const std::string& problem : boom.problems) reader.addProblem(problem);
   notes.insert(notes.end(), boom.notes.begin(), boom.notes.end());

@@ -20,7 +20,7 @@ struct Settings {
   Mechanism mechanism;
   PipelineSettings pipeline;
   LogSettings log;
-  std::optional<Boom> boom;        ///< nothing: no robot description, or `boom: none`
+  std::optional<Boom> boom;        ///< nothing: `boom: none`, no robot description, or a foreign one
   bool hammer_given{};             ///< else the shipped MO-100 is used
   std::string robot_description;   ///< the URDF's text, as given
   std::string yaml;                ///< every parameter in force; loading it alone with the same robot description
@@ -35,7 +35,8 @@ struct Settings {
 /// hammer key given means that all must be; with none given hammer_mo100.yaml is used.
 ///
 /// Boom: from the text of a robot description (URDF; empty: none) and the boom file's keys, of which a single one given
-/// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`.
+/// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`; where the description lacks one of
+/// the two and `boom` is auto, there is no boom and a note says so.
 Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
                        const std::string& robot_description = {});
 

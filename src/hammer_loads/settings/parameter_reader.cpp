@@ -63,6 +63,11 @@ bool areNames(const std::vector<std::string>& texts) {
 
 }  // namespace
 
+bool ParameterReader::given(const std::string& key) {
+  known_.insert(key);
+  return parameters_.count(key) != 0;
+}
+
 double ParameterReader::number(const std::string& key, const std::string& unit, NumberRule rule) {
   const Parameter* parameter = find(key, unit, ruleText(rule));
   if (parameter == nullptr) return std::numeric_limits<double>::quiet_NaN();
@@ -122,7 +127,9 @@ std::vector<std::string> ParameterReader::names(const std::string& key) {
   const std::optional<std::vector<std::string>> value = asTexts(parameter->value);
   if (!value || !areNames(*value)) {
     refuse(key, *parameter, "", rule);
-    return {};
+    if (!value) return {};
+    const std::set<std::string> different(value->begin(), value->end());
+    return {different.begin(), different.end()};
   }
   std::string list;
   for (const std::string& name : *value) list += (list.empty() ? "" : ", ") + quotedText(name);

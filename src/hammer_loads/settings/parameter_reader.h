@@ -35,11 +35,8 @@ class ParameterReader {
  public:
   explicit ParameterReader(ParameterMap parameters) : parameters_(std::move(parameters)) {}
 
-  /// Whether the key is given; for one that may be left out.
-  bool has(const std::string& key) {
-    known_.insert(key);
-    return parameters_.count(key) != 0;
-  }
+  /// Whether an optional parameter is given; the key is then known.
+  bool given(const std::string& key);
   /// In the parameter's unit, which is only for the report; "" for none. An integer literal will do.
   double number(const std::string& key, const std::string& unit, NumberRule rule);
   /// In [least, most].
@@ -47,7 +44,8 @@ class ParameterReader {
   bool boolean(const std::string& key);
   /// Not empty.
   std::string text(const std::string& key);
-  /// List of texts, each not empty and given once; the list may be empty.
+  /// List of texts, each not empty and given once; the list may be empty. With a problem, the different texts of it, so
+  /// that keys named after them are not unknown.
   std::vector<std::string> names(const std::string& key);
   /// One of several words.
   template <typename T, std::size_t N>

@@ -39,6 +39,28 @@ CylinderParameters readCylinder(ParameterReader& reader, const std::string& name
   return cylinder;
 }
 
+SectionParameters readSection(ParameterReader& reader, const std::string& name) {
+  const std::string prefix = name + "_section_";
+  const auto number = [&](const char* key, const char* unit) {
+    return reader.number(prefix + key, unit, NumberRule::any());
+  };
+  SectionParameters section;
+  section.name = name;
+  section.link = reader.text(prefix + "link");
+  section.origin = {number("x_m", "m"), number("y_m", "m"), number("z_m", "m")};
+  section.pitch = number("pitch_rad", "rad");
+  bool beyond = false;
+  for (const char* key :
+       {"mass_beyond_kg", "com_beyond_x_m", "com_beyond_y_m", "com_beyond_z_m", "inertia_beyond_kg_m2"})
+    beyond = reader.given(prefix + key) || beyond;
+  if (!beyond) return section;
+  PartBeyond& part = section.beyond.emplace();
+  part.mass = number("mass_beyond_kg", "kg");
+  part.com = {number("com_beyond_x_m", "m"), number("com_beyond_y_m", "m"), number("com_beyond_z_m", "m")};
+  part.inertia_y = number("inertia_beyond_kg_m2", "kg m2");
+  return section;
+}
+
 }  // namespace
 
 BoomParameters readBoomParameters(ParameterReader& reader) {
@@ -50,6 +72,9 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
   p.vibration.damping_ratio = reader.number("damping_ratio", "", NumberRule::any());
   p.vibration.refresh_angle = reader.number("mode_refresh_angle_rad", "rad", NumberRule::any());
   p.rigid_tolerance = reader.number("rigid_tolerance", "", NumberRule::any());
+  if (reader.given("sections")) {
+    for (const std::string& name : reader.names("sections")) p.sections.push_back(readSection(reader, name));
+  }
   Supports& s = p.supports.emplace();
   s.front_x = reader.number("support_front_x_m", "m", NumberRule::any());
   s.front_half_width = reader.number("support_front_half_width_m", "m", NumberRule::any());
@@ -59,17 +84,12 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
 }
 
 bool hasBoomKey(const ParameterMap& parameters) {
-  constexpr const char* kKeys[] = {"root_link",
-                                   "tip_link",
-                                   "cylinders",
-                                   "bulk_modulus_Pa",
-                                   "damping_ratio",
-                                   "mode_refresh_angle_rad",
-                                   "rigid_tolerance",
-                                   "support_front_x_m",
-                                   "support_front_half_width_m",
-                                   "support_rear_x_m",
-                                   "support_rear_half_width_m"};
+  constexpr const char* kKeys[] = {"root_link",         "tip_link",
+                                   "cylinders",         "bulk_modulus_Pa",
+                                   "damping_ratio",     "mode_refresh_angle_rad",
+                                   "rigid_tolerance",   "sections",
+                                   "support_front_x_m", "support_front_half_width_m",
+                                   "support_rear_x_m",  "support_rear_half_width_m"};
   return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return parameters.count(key) != 0; });
 }
 

@@ -1,4 +1,4 @@
-/// The boom file: cylinders, damping, supports; every key required.
+/// The boom file: cylinders, damping, supports, sections; every key required but `sections`.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,9 @@ namespace hammer_loads {
 
 class ParameterReader;
 
-/// `cylinders` names them; the keys of each begin with its name. Usable only if the reader got no problem; what values
-/// demand of each other and of the chain is Boom::make()'s to judge.
+/// `cylinders` and `sections` name them; the keys of each begin with its name. The keys of a section's part beyond
+/// (NAME_section_mass_beyond_kg and its like) are given together or not at all. Usable only if the reader got no
+/// problem; what values demand of each other and of the chain is Boom::make()'s to judge.
 BoomParameters readBoomParameters(ParameterReader& reader);
 
 /// Whether any key of a boom file is there that is not a cylinder's own.

@@ -40,17 +40,17 @@ std::optional<LoadGrid> readGrid(ParameterReader& reader, const std::string& nam
 /// [MPa per unit of the channel]
 double readInfluence(ParameterReader& reader, const std::string& key, const std::string& channel) {
   const std::string direct = key + "_MPa_per_unit", modulus = key + "_modulus_m3", area = key + "_area_m2";
-  const int given = int{reader.has(direct)} + int{reader.has(modulus)} + int{reader.has(area)};
+  const int given = int{reader.given(direct)} + int{reader.given(modulus)} + int{reader.given(area)};
   double factor = 0.0;
-  if (reader.has(modulus)) factor = 1.0 / (kPaPerMPa * reader.number(modulus, "m3", NumberRule::any()));
-  if (reader.has(area)) factor = 1.0 / (kPaPerMPa * reader.number(area, "m2", NumberRule::positive()));
-  if (reader.has(direct) || given == 0) factor = reader.number(direct, "MPa per unit", NumberRule::any());
+  if (reader.given(modulus)) factor = 1.0 / (kPaPerMPa * reader.number(modulus, "m3", NumberRule::any()));
+  if (reader.given(area)) factor = 1.0 / (kPaPerMPa * reader.number(area, "m2", NumberRule::positive()));
+  if (reader.given(direct) || given == 0) factor = reader.number(direct, "MPa per unit", NumberRule::any());
   if (given > 1) reader.addProblem(direct + ": must be the only one beside " + modulus + " and " + area);
-  if (reader.has(modulus) && !endsWith(channel, "_Nm"))
+  if (reader.given(modulus) && !endsWith(channel, "_Nm"))
     reader.addProblem(modulus + ": given for " + channel + ", must be for a moment (..._Nm)");
-  if (reader.has(area) && !endsWith(channel, "_N"))
+  if (reader.given(area) && !endsWith(channel, "_N"))
     reader.addProblem(area + ": given for " + channel + ", must be for a force (..._N)");
-  if (reader.has(modulus) && std::isinf(factor)) reader.addProblem(modulus + ": 0 m3, must not be 0");
+  if (reader.given(modulus) && std::isinf(factor)) reader.addProblem(modulus + ": 0 m3, must not be 0");
   return factor;
 }
 
@@ -58,7 +58,7 @@ double readInfluence(ParameterReader& reader, const std::string& key, const std:
 std::optional<life::SnCurve> readCurve(ParameterReader& reader, const std::string& name) {
   const std::string keys[] = {name + "_sn_knee_range_MPa", name + "_sn_knee_cycles", name + "_sn_slope",
                               name + "_sn_slope_below"};
-  if (std::none_of(std::begin(keys), std::end(keys), [&](const std::string& key) { return reader.has(key); }))
+  if (std::none_of(std::begin(keys), std::end(keys), [&](const std::string& key) { return reader.given(key); }))
     return {};
   const std::size_t before = reader.problems().size();
   const double range = reader.number(keys[0], "MPa", NumberRule::positive());

@@ -1,0 +1,291 @@
+#include "hammer_loads/boom/mode_identifier.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kCommonDeviation = 0.15;  // of log frequency, of all modes together
+constexpr double kOwnDeviation = 0.05;     // and of each
+constexpr double kDampingDeviation = 0.5;  // of log damping
+constexpr double kFrequencyWalk = 0.002;   // of log frequency in a second: oil that warms up, a pose that changes
+constexpr double kDampingWalk = 0.01;      // of log damping in a second
+constexpr double kForcePart = 0.05;        // deviation of the modal force over its root mean square
+constexpr double kForceTime = 0.01;        // for which a force stays wrong the same way [s]
+constexpr double kForceMemory = 2.0;       // of the mean square [s]
+constexpr double kUnknownRate = 0.05;      // joint velocity where nothing is known [rad/s]
+constexpr double kFarOff = 3.0;            // standard deviations beyond which a reading counts less
+constexpr double kKnown = 0.03;            // deviation of log frequency of a mode that is known
+constexpr double kMostRatio = 1.0;         // of log frequency: e
+constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
+
+VibrationReading emptyReading(Eigen::Index joints) {
+  VibrationReading reading;
+  reading.displacement = reading.velocity = reading.acceleration = JointVector::Zero(joints);
+  return reading;
+}
+
+double square(double x) noexcept { return x * x; }
+
+}  // namespace
+
+VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, double rate) {
+  VibrationReading reading = emptyReading(J.cols());
+  reading.velocity = J.bottomRows<3>().transpose() * n_T;
+  reading.value = rate;
+  return reading;
+}
+
+VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
+                                        const Eigen::Vector3d& g_T, double acceleration) {
+  VibrationReading reading = emptyReading(J.cols());
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    const Eigen::Vector3d v = J.col(j).head<3>(), omega = J.col(j).tail<3>();
+    reading.acceleration[j] = n_T.dot(v + omega.cross(p_T));
+    // The vibration tilts the sensor: gravity turns against it.
+    reading.displacement[j] = n_T.dot(omega.cross(g_T));
+  }
+  reading.value = acceleration + n_T.dot(g_T);
+  return reading;
+}
+
+VibrationReading jointAngleReading(int joints, int joint, double angle) {
+  VibrationReading reading = emptyReading(joints);
+  reading.displacement[joint] = 1.0;
+  reading.value = angle;
+  return reading;
+}
+
+VibrationReading jointTorqueReading(const BoomModes& modes, int joint, double torque) {
+  VibrationReading reading = emptyReading(modes.mass.rows());
+  reading.acceleration = -modes.mass.row(joint).transpose();
+  reading.value = torque;
+  return reading;
+}
+
+ModeIdentifier::ModeIdentifier(double damping_ratio) : damping_ratio_(damping_ratio) {
+  for (int k = 0; k < kMaxJoints; ++k) {
+    for (int l = 0; l < kMaxJoints; ++l)
+      covariance_(at(k, kFrequency), at(l, kFrequency)) =
+          square(kCommonDeviation) + (k == l ? square(kOwnDeviation) : 0);
+    covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
+  }
+}
+
+Mode ModeIdentifier::modeAt(int mode) const noexcept {
+  return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)};
+}
+
+double ModeIdentifier::frequencyRatio(int mode) const noexcept { return std::exp(state_[at(mode, kFrequency)]); }
+
+double ModeIdentifier::damping(int mode) const noexcept {
+  return damping_ratio_ * std::exp(state_[at(mode, kDamping)]);
+}
+
+double ModeIdentifier::frequencyDeviation(int mode) const noexcept {
+  return std::sqrt(covariance_(at(mode, kFrequency), at(mode, kFrequency)));
+}
+
+double ModeIdentifier::dampingDeviation(int mode) const noexcept {
+  return std::sqrt(covariance_(at(mode, kDamping), at(mode, kDamping)));
+}
+
+bool ModeIdentifier::identified() const noexcept {
+  for (int k = 0; k < count_; ++k) {
+    if (!(frequencyDeviation(k) < kKnown)) return false;
+  }
+  return count_ > 0;
+}
+
+JointVector ModeIdentifier::displacement() const noexcept {
+  JointVector x(count_);
+  for (int k = 0; k < count_; ++k) x[k] = state_[at(k, kX)];
+  return jointsOf(modes_, x);
+}
+
+JointVector ModeIdentifier::velocity() const noexcept {
+  JointVector v(count_);
+  for (int k = 0; k < count_; ++k) v[k] = state_[at(k, kV)];
+  return jointsOf(modes_, v);
+}
+
+void ModeIdentifier::setModes(const BoomModes& given) noexcept {
+  const bool carries = moving_known_ && count_ == given.count;
+  JointMatrix T(given.count, given.count);  // new modal displacements of the old ones, through the joints
+  if (carries) {
+    for (int k = 0; k < count_; ++k) {
+      JointVector unit = JointVector::Zero(count_);
+      unit[k] = 1.0;
+      T.col(k) = modalOf(given, jointsOf(modes_, unit));
+    }
+  }
+  modes_ = given;
+  count_ = given.count;
+  if (force_.size() != count_) force_.setZero(count_);
+  if (!carries) {
+    forgetMotion();
+  } else {
+    transform(T);
+  }
+}
+
+/// Displacements and velocities of the modes by T; frequencies, dampings and offsets stay.
+void ModeIdentifier::transform(const JointMatrix& T) noexcept {
+  const auto apply = [&](auto&& value) {  // of a vector with the states' order
+    for (Part part : {kX, kV}) {
+      JointVector old(count_);
+      for (int k = 0; k < count_; ++k) old[k] = value[at(k, part)];
+      for (int k = 0; k < count_; ++k) value[at(k, part)] = T.row(k).dot(old);
+    }
+  };
+  apply(state_);
+  for (int i = 0; i < states(); ++i) apply(covariance_.col(i));
+  for (int i = 0; i < states(); ++i) apply(covariance_.row(i));
+  force_ = (T * force_).eval();
+}
+
+void ModeIdentifier::forgetMotion() noexcept {
+  moving_known_ = count_ > 0;
+  force_.setZero(count_);
+  for (int k = 0; k < kMaxJoints; ++k) {
+    for (Part part : {kX, kV}) {
+      const int i = at(k, part);
+      state_[i] = 0.0;
+      covariance_.row(i).setZero();
+      covariance_.col(i).setZero();
+      if (k >= count_) continue;
+      const double rate = kUnknownRate / modes_.shape.col(k).cwiseAbs().maxCoeff();
+      covariance_(i, i) = square(part == kV ? rate : rate / modeAt(k).omega);
+    }
+  }
+}
+
+void ModeIdentifier::advance(double step, const TorqueStep& torque) noexcept {
+  if (!moving_known_ || !(step > 0.0)) return;
+  const JointVector from = modalForce(modes_, torque.from), to = modalForce(modes_, torque.to);
+  const JointVector mean = modalForce(modes_, torque.mean);
+  const double share = std::min(1.0, step / kForceMemory);
+  for (int k = 0; k < count_; ++k) {
+    double& power = force_power_[static_cast<std::size_t>(k)];
+    power += share * (square(mean[k]) - power);
+    advanceMode(k, step, {from[k], to[k], mean[k]});
+  }
+  force_ = to;
+  for (double& age : age_) age += step;
+  keepWithinBounds();
+}
+
+/// One mode's state, and P <- F P F^T + Q for its rows and columns. The derivatives by frequency and damping are
+/// differences of the exact step.
+void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) noexcept {
+  const Mode here = modeAt(mode);
+  const ModeState now{state_[at(mode, kX)], state_[at(mode, kV)]};
+  const ModeState next = advanced(here, now, force, step);
+  constexpr double e = 1e-4;
+  const ModeState stiffer = advanced({here.omega * (1.0 + e), here.zeta}, now, force, step);
+  const ModeState damped = advanced({here.omega, here.zeta * (1.0 + e)}, now, force, step);
+  const ModeResponse r = responseAt(here, step);
+  const ModeState of_x = advancedFreely(here, {1.0, 0.0}, r), of_v = advancedFreely(here, {0.0, 1.0}, r);
+  const int x = at(mode, kX);
+  Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
+  F.row(kX) << of_x.x, of_v.x, (stiffer.x - next.x) / e, (damped.x - next.x) / e;
+  F.row(kV) << of_x.v, of_v.v, (stiffer.v - next.v) / e, (damped.v - next.v) / e;
+  const int n = states();
+  for (int i = 0; i < n; ++i) covariance_.block<kParts, 1>(x, i) = (F * covariance_.block<kParts, 1>(x, i)).eval();
+  for (int i = 0; i < n; ++i) {
+    covariance_.block<1, kParts>(i, x) = (covariance_.block<1, kParts>(i, x) * F.transpose()).eval();
+  }
+  state_[x + kX] = next.x, state_[x + kV] = next.v;
+
+  const double power = force_power_[static_cast<std::size_t>(mode)];
+  const double v_walk = square(kForcePart) * power * 2.0 * kForceTime * step;
+  covariance_(x + kV, x + kV) += v_walk;
+  covariance_(x + kX, x + kX) += v_walk * step * step / 3.0;
+  const auto walk = [&](int i, double per_second, double most) {
+    if (covariance_(i, i) < most * most) covariance_(i, i) += square(per_second) * step;
+  };
+  walk(x + kFrequency, kFrequencyWalk, kCommonDeviation);
+  walk(x + kDamping, kDampingWalk, kDampingDeviation);
+}
+
+void ModeIdentifier::strike(const JointVector& impulse) noexcept {
+  if (!moving_known_) return;
+  const JointVector jump = modalForce(modes_, impulse);
+  for (int k = 0; k < count_; ++k) {
+    state_[at(k, kV)] += jump[k];
+    covariance_(at(k, kV), at(k, kV)) += square(kForcePart * jump[k]);
+  }
+}
+
+void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) noexcept {
+  const auto i = static_cast<std::size_t>(channel);
+  double& variance = covariance_(channel, channel);
+  if (!used_[i]) {
+    used_[i] = true;
+    variance = square(reading.offset_deviation);
+  } else {
+    variance = std::min(variance + square(reading.offset_walk) * age_[i],
+                        square(reading.offset_deviation) + square(reading.offset_walk));
+  }
+  age_[i] = 0.0;
+}
+
+ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading& reading,
+                                            double& predicted) const noexcept {
+  State row = State::Zero();
+  row[channel] = 1.0;
+  predicted = state_[channel];
+  for (int k = 0; k < count_; ++k) {
+    double by_x = 0.0, by_v = 0.0, by_a = 0.0;  // per modal displacement, velocity, acceleration
+    for (int i = 0; i < count_; ++i) {
+      const int joint = modes_.joint[static_cast<std::size_t>(i)];
+      by_x += reading.displacement[joint] * modes_.shape(i, k);
+      by_v += reading.velocity[joint] * modes_.shape(i, k);
+      by_a += reading.acceleration[joint] * modes_.shape(i, k);
+    }
+    const Mode m = modeAt(k);
+    const ModeState s{state_[at(k, kX)], state_[at(k, kV)]};
+    predicted += by_x * s.x + by_v * s.v + by_a * acceleration(m, s, force_[k]);
+    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
+    row[at(k, kX)] = by_x - by_a * stiff;
+    row[at(k, kV)] = by_v - by_a * damped;
+    row[at(k, kFrequency)] = -by_a * (2.0 * stiff * s.x + damped * s.v);
+    row[at(k, kDamping)] = -by_a * damped * s.v;
+  }
+  return row;
+}
+
+void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexcept {
+  if (!moving_known_ || channel < 0 || channel >= kMaxChannels || !std::isfinite(reading.value)) return;
+  useChannel(channel, reading);
+  double predicted = 0.0;
+  const State row = rowOf(channel, reading, predicted);
+  const int n = states();
+  State gain_S;
+  gain_S.head(n).noalias() = covariance_.topLeftCorner(n, n) * row.head(n);
+  double S = row.head(n).dot(gain_S.head(n)) + square(reading.noise);
+  const double difference = reading.value - predicted;
+  if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
+  S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
+  state_.head(n) += gain_S.head(n) * (difference / S);
+  for (int i = 0; i < n; ++i) covariance_.col(i).head(n) -= gain_S.head(n) * (gain_S[i] / S);
+  keepWithinBounds();
+}
+
+void ModeIdentifier::keepWithinBounds() noexcept {
+  const int n = states();
+  if (!state_.head(n).allFinite() || !covariance_.topLeftCorner(n, n).allFinite()) {
+    *this = ModeIdentifier(damping_ratio_);
+    return;
+  }
+  for (int k = 0; k < count_; ++k) {
+    double& frequency = state_[at(k, kFrequency)];
+    frequency = std::clamp(frequency, -kMostRatio, kMostRatio);
+    double& damping = state_[at(k, kDamping)];
+    damping = std::clamp(damping, std::log(kLeastDamping / damping_ratio_), std::log(kMostDamping / damping_ratio_));
+  }
+  for (int i = 0; i < n; ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
+}
+
+}  // namespace hammer_loads

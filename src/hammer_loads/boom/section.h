@@ -1,0 +1,62 @@
+/// Where a link of the chain is cut to know what the steel carries there.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hammer_loads/boom/chain.h"
+#include "hammer_loads/boom/wrench.h"
+
+namespace hammer_loads {
+
+/// A rigid body in a link's frame.
+struct RigidBody {
+  double mass{};                                      ///< [kg]
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< centre of mass [m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass [kg m2]
+};
+
+/// The part of a cut link that lies beyond the cut, in the link's frame.
+struct PartBeyond {
+  double mass{};                                  ///< mass_beyond_kg [kg], >= 0, at most the link's
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< com_beyond_x_m, _y_m, _z_m [m]
+  double inertia_y{};                             ///< inertia_beyond_kg_m2: about y through that point [kg m2], >= 0
+};
+
+/// As the boom file gives it; keys are `NAME_section_` and the names beside each member.
+struct SectionParameters {
+  std::string name;
+  std::string link;                                  ///< link: between root_link and tip_link
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< x_m, y_m, z_m: origin of the cut in the link's frame [m]
+  double pitch{};                                    ///< pitch_rad: the cut's axes are the link's, turned about y [rad]
+  std::optional<PartBeyond> beyond;                  ///< nothing: the link counts as a uniform bar
+};
+
+/// A plane across a link, x normal to it and towards the hammer. What is on the side x > 0 is beyond the cut.
+///
+/// Neglects: how the part beyond is spread across the link where only its inertia about y is known: it counts as a
+/// slender bar along x, so about z as about y and nothing about x.
+class Section {
+ public:
+  /// Problems, one line each, beginning with the key: the name, an unknown link, a plane that does not part the link's
+  /// two joints, an origin far from the link, a part beyond that is more than the link. A note where the link counts as
+  /// a uniform bar of its mass between its joints.
+  static Checked<Section> make(const SectionParameters& parameters, const Chain& chain);
+
+  const std::string& name() const noexcept { return parameters_.name; }
+  const SectionParameters& parameters() const noexcept { return parameters_; }
+  int link() const noexcept { return link_; }                ///< index in the chain
+  const Pose& poseInLink() const noexcept { return X_LC_; }  ///< of the cut in its link
+  const RigidBody& part() const noexcept { return part_; }   ///< of the link beyond the cut, in the link's frame
+  /// Whether a point of the link, in its frame, lies beyond.
+  bool beyond(const Eigen::Vector3d& p_L) const noexcept { return (X_LC_.inverse() * p_L).x() > 0.0; }
+
+ private:
+  Section() = default;
+  SectionParameters parameters_;
+  int link_{};
+  Pose X_LC_ = Pose::Identity();
+  RigidBody part_;
+};
+
+}  // namespace hammer_loads

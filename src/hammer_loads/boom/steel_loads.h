@@ -1,0 +1,75 @@
+/// What the steel of the boom carries: loads of its sections, reactions of its joints, forces of its cylinders' pins.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hammer_loads/boom/chain_pose.h"
+#include "hammer_loads/boom/cylinder.h"
+#include "hammer_loads/boom/section.h"
+
+namespace hammer_loads {
+
+constexpr int kMaxSections = 32;
+
+/// Forces of a cylinder ON the links that its two pins join [N].
+struct PinForces3d {
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< on the link before, in its axes
+  Eigen::Vector3d rod = Eigen::Vector3d::Zero();   ///< on the link beyond, in its axes
+};
+
+/// Where a cylinder stands at its dead centre, all that it carries is NaN: its pins, the reaction of its joint, and the
+/// sections that it crosses.
+struct SteelLoads {
+  /// BY everything beyond the cut, towards the hammer, ON what lies before it, about the cut's origin, axes of the cut.
+  std::array<Wrench, kMaxSections> section;
+  /// BY the link beyond ON the link before at the joint's origin, axes of the link before; without what the joint's
+  /// cylinder takes. No moment about the axis of a revolute joint with a cylinder; that of a held joint is its total
+  /// torque.
+  std::array<Wrench, kMaxJoints> joint;
+  std::array<PinForces3d, kMaxJoints> pins;  ///< index as the cylinders
+};
+
+/// Accelerations and loads that the chain has at one instant.
+struct ChainState {
+  const ChainPose& pose;
+  const JointMotion& motion;   ///< accelerations with those of the vibration
+  const Eigen::Vector3d& g_B;  ///< gravity in the root's axes [m/s2]
+  const Wrench& w_tip;         ///< BY the hammer ON the tip, as for Boom::loads()
+};
+
+/// Newton and Euler for everything beyond each cut. A cylinder's force is the one that leaves no moment about its
+/// joint's axis, so a section is the same from either side. Made once; no allocation later.
+///
+/// Neglects: what Cylinder and Section neglect; coupling of vibration and slow motion.
+class SteelLoadFinder {
+ public:
+  SteelLoadFinder(const Chain& chain, const std::vector<Cylinder>& cylinders, std::vector<Section> sections);
+
+  /// False: the state is so large that results are not finite and must not be used.
+  bool find(const ChainState& state, SteelLoads& result) const noexcept;
+  const std::vector<Section>& sections() const noexcept { return sections_; }
+
+ private:
+  /// A cylinder whose rod's pin pushes on the chain beyond a joint.
+  struct Anchors {
+    Cylinder cylinder;
+    int beyond{};                   ///< link of the rod's pin; the base's is on the one before
+    Eigen::Vector3d base_P, rod_L;  ///< in the frames of the two links [m]
+  };
+  /// In the root's frame, moments about its origin.
+  struct Working;
+
+  bool addInertiaAndWeight(const ChainState& state, Working& working) const noexcept;
+  void findCylinders(const ChainState& state, Working& working, SteelLoads& result) const noexcept;
+  void findJoints(const ChainState& state, const Working& working, SteelLoads& result) const noexcept;
+  void findSections(const ChainState& state, const Working& working, SteelLoads& result) const noexcept;
+
+  Chain chain_;
+  std::vector<RigidBody> body_;  ///< per link, with what is fixed to it beside the chain
+  std::vector<Anchors> anchors_;
+  std::vector<Section> sections_;
+  std::vector<std::vector<std::size_t>> crossing_;  ///< per section: cylinders with one pin on each side
+};
+
+}  // namespace hammer_loads

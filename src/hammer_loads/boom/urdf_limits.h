@@ -1,0 +1,21 @@
+/// Bounds of a robot description's text, checked before parsers that call themselves for each level of it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace hammer_loads {
+
+/// Far beyond any machine, and far below what fills a thread's stack.
+struct UrdfLimits {
+  static constexpr std::size_t kBytes = std::size_t{16} << 20;  ///< length of the text
+  static constexpr int kDepth = 64;                             ///< tags within tags
+  static constexpr int kLinks = 1000;                           ///< links of the robot
+  static constexpr int kJoints = 1000;                          ///< joints of the robot
+};
+
+/// One line when the text passes a limit, naming it, or has a `<` within a tag, where parsers may disagree; else empty.
+/// Does not judge anything else: a text that is no XML passes.
+std::string urdfLimitPassed(const std::string& text);
+
+}  // namespace hammer_loads

@@ -1,0 +1,83 @@
+#include "hammer_loads/boom/vibration_spread.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+
+Mode VibrationSpread::mode(int run, int k) const noexcept {
+  const auto i = static_cast<std::size_t>(k);
+  Mode m = mode_[i];
+  if (run == kStiffer) m.omega *= std::exp(deviation_[i].frequency);
+  if (run == kSofter) m.omega *= std::exp(-deviation_[i].frequency);
+  if (run == kDamped) m.zeta = std::min(0.9, m.zeta * std::exp(deviation_[i].damping));
+  return m;
+}
+
+void VibrationSpread::follow(const Vibration& vibration) noexcept {
+  const BoomModes& now = vibration.modes();
+  if (now.count != modes_.count) {
+    modes_ = now;
+    rest();
+  } else if (now.shape != modes_.shape) {
+    for (std::size_t run = 0; run < kMaxRuns; ++run) {
+      for (auto* values : {&x_, &v_, &force_}) (*values)[run] = modalOf(now, jointsOf(modes_, (*values)[run]));
+    }
+    modes_ = now;
+  }
+  for (int k = 0; k < now.count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    mode_[i] = vibration.mode(k);
+    deviation_[i] = given_;
+    if (!vibration.identifier()) continue;
+    deviation_[i].frequency = std::min(given_.frequency, vibration.identifier()->frequencyDeviation(k));
+    deviation_[i].damping = std::min(given_.damping, vibration.identifier()->dampingDeviation(k));
+  }
+}
+
+void VibrationSpread::rest() noexcept {
+  for (auto* values : {&x_, &v_, &force_}) {
+    for (JointVector& value : *values) value.setZero(modes_.count);
+  }
+  load_.resize(modes_.mass.rows(), 0);
+}
+
+void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept {
+  if (modes_.count == 0) return;
+  const bool same = load_.cols() == to.cols();
+  const JointVector from = modalForce(modes_, torque.from), end = modalForce(modes_, torque.to);
+  const JointVector mean = modalForce(modes_, torque.mean);
+  load_ = to;
+  for (int run = 0; run < runs(); ++run) {
+    const auto i = static_cast<std::size_t>(run);
+    const bool error = run >= kLoads;
+    const JointVector last = error ? modalForce(modes_, to.col(run - kLoads)) : end;
+    const JointVector first = !error ? from : same ? force_[i] : last;
+    const JointVector middle = error ? JointVector(0.5 * (first + last)) : mean;
+    for (int k = 0; k < modes_.count; ++k) {
+      const ModeState next = advanced(mode(run, k), {x_[i][k], v_[i][k]}, {first[k], last[k], middle[k]}, step);
+      x_[i][k] = next.x, v_[i][k] = next.v;
+    }
+    force_[i] = last;
+    if (!x_[i].allFinite() || !v_[i].allFinite() || !last.allFinite()) {
+      rest();
+      return;
+    }
+  }
+}
+
+void VibrationSpread::strike(const JointVector& impulse) noexcept {
+  if (modes_.count == 0) return;
+  for (std::size_t run = 0; run < kLoads; ++run) v_[run] += modalForce(modes_, impulse);
+}
+
+JointVector VibrationSpread::accelerationDifference(int run, const Vibration& vibration) const noexcept {
+  if (modes_.count == 0) return JointVector::Zero(modes_.mass.rows());
+  const auto i = static_cast<std::size_t>(run);
+  JointVector modal(modes_.count);
+  for (int k = 0; k < modes_.count; ++k) modal[k] = acceleration(mode(run, k), {x_[i][k], v_[i][k]}, force_[i][k]);
+  const JointVector joints = jointsOf(modes_, modal);
+  return run < kLoads ? JointVector(joints - vibration.acceleration()) : joints;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,52 @@
+/// How far the vibration may be off: the same hammer on oil that is stiffer, softer, more damped, and its own errors.
+#pragma once
+
+#include <array>
+
+#include "hammer_loads/boom/vibration.h"
+
+namespace hammer_loads {
+
+/// Standard deviations of the logarithms of every mode's frequency (half of the bulk modulus's) and damping.
+struct OilDeviation {
+  double frequency{0.15};  ///< bulk modulus +-30 %: what a file can know of oil with air in it [-]
+  double damping{0.5};     ///< [-]
+};
+
+/// Errors of the hammer's load that are independent of each other, one standard deviation each; they last, as that of
+/// an encoder's zero does. Columns: joint torques of each [N m].
+using LoadSpread = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, 3>;
+
+/// Runs beside a Vibration, with its steps: one run for each thing that may be otherwise. Not linearised in the
+/// frequency, whose error changes phases. No allocation.
+class VibrationSpread {
+ public:
+  static constexpr int kStiffer = 0, kSofter = 1, kDamped = 2, kLoads = 3, kMaxRuns = 6;
+
+  explicit VibrationSpread(const OilDeviation& given = {}) : given_(given) {}
+
+  /// After Vibration::setPose(): its modes and, where they are identified, how well.
+  void follow(const Vibration& vibration) noexcept;
+  /// As Vibration::advance(); errors of the load at the step's end, linear from those at its begin.
+  void advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept;
+  void strike(const JointVector& impulse) noexcept;
+  void rest() noexcept;
+
+  int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }
+  /// Weight of a run's squared difference in the variance: the two of the stiffness count half each.
+  static double weight(int run) noexcept { return run == kStiffer || run == kSofter ? 0.5 : 1.0; }
+  /// By what the joints' accelerations of a run differ from those of the vibration, at the same instant [rad/s2].
+  JointVector accelerationDifference(int run, const Vibration& vibration) const noexcept;
+
+ private:
+  Mode mode(int run, int k) const noexcept;
+
+  OilDeviation given_;
+  BoomModes modes_;
+  std::array<Mode, kMaxJoints> mode_;                ///< as the vibration has them
+  std::array<OilDeviation, kMaxJoints> deviation_;   ///< of each
+  std::array<JointVector, kMaxRuns> x_, v_, force_;  ///< modal, of each run
+  LoadSpread load_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,106 @@
+// Weight with tilts of the description and of the ground, against rotations multiplied by hand.
+#include "hammer_loads/boom/gravity.h"
+
+#include <gtest/gtest.h>
+
+#include "boom/booms.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kGravity = 9.80665;
+
+/// Rotation about a coordinate axis, written down.
+Eigen::Matrix3d about(int axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  R(a, a) = c, R(a, b) = -s, R(b, a) = s, R(b, b) = c;
+  return R;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// The shipped description with the hull turned on its bracket and the boom's foot askew.
+std::string tiltedUrdf() {
+  return replaced(replaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
+                           "<origin xyz=\"0.10 0 -0.55\" rpy=\"0.05 0.4 -0.1\"/>"),
+                  "<origin xyz=\"0.25 0 0.40\" rpy=\"0 0 0\"/>",
+                  "<origin xyz=\"0.25 0 0.40\" rpy=\"0.02 -0.03 0.01\"/>");
+}
+
+TEST(Gravity, InTheRootOfABaseThatLeans) {
+  std::mt19937 random(51);
+  for (int i = 0; i < 100; ++i) {
+    const BaseTilt base{test::between(random, -3.0, 3.0), test::between(random, -1.5, 1.5)};
+    const Eigen::Matrix3d R_WB = about(1, base.pitch) * about(0, base.roll);
+    const Eigen::Vector3d expected = R_WB.transpose() * Eigen::Vector3d(0.0, 0.0, -kGravity);
+    EXPECT_LT((gravityInRoot(kGravity, base) - expected).norm(), 1e-14);
+  }
+  EXPECT_EQ(gravityInRoot(kGravity, {}), Eigen::Vector3d(0.0, 0.0, -kGravity));
+  // Boom's side down: gravity pulls along +x. Right side down: along -y, which is to the right.
+  EXPECT_GT(gravityInRoot(kGravity, {0.0, 0.1}).x(), 0.9);
+  EXPECT_LT(gravityInRoot(kGravity, {0.1, 0.0}).y(), -0.9);
+}
+
+TEST(Gravity, InTheTipWithTiltsOfTheDescription) {
+  const Checked<Chain> made = Chain::make(tiltedUrdf(), {});
+  ASSERT_TRUE(made.value);
+  std::mt19937 random(52);
+  for (int i = 0; i < 100; ++i) {
+    const JointVector q = test::randomPosition(*made.value, random);
+    const BaseTilt base{test::between(random, -0.3, 0.3), test::between(random, -0.3, 0.3)};
+    const Eigen::Matrix3d foot = about(2, 0.01) * about(1, -0.03) * about(0, 0.02);
+    const Eigen::Matrix3d mount = about(2, -0.1) * about(1, 0.4) * about(0, 0.05);
+    const Eigen::Matrix3d R_WH =
+        about(1, base.pitch) * about(0, base.roll) * about(2, q[0]) * foot * about(1, q[1] + q[2] + q[3]) * mount;
+    const Eigen::Vector3d expected = R_WH.transpose() * Eigen::Vector3d(0.0, 0.0, -kGravity);
+    const Eigen::Vector3d g_B = gravityInRoot(kGravity, base);
+    EXPECT_LT((gravityInTip(*made.value, q, g_B) - expected).norm(), 1e-13);
+  }
+}
+
+TEST(Gravity, OfALevelBaseIsThatOfThePitch) {
+  const Checked<Chain> made = Chain::make(test::shippedUrdf(), {});
+  const JointVector q = test::joints({0.7, -0.3, 1.1, -0.6});
+  const Eigen::Vector3d g = gravityInTip(*made.value, q, gravityInRoot(kGravity, {}));
+  EXPECT_LT((g - kGravity * Eigen::Vector3d(std::sin(0.2), 0.0, -std::cos(0.2))).norm(), 1e-14);
+}
+
+TEST(Gravity, TiltOfTheMountTurnsTheWeightOfTheHammer) {
+  // 0.4 rad: the pitch joints alone miss 40 % of a vertical weight, 137 of 345 N.
+  const Checked<Chain> made = Chain::make(replaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
+                                                   "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0.4 0\"/>"),
+                                          {});
+  const double mass = 345.0 / kGravity;
+  const Eigen::Vector3d g = gravityInTip(*made.value, test::joints({0.0, -0.35, 1.2, -0.85}), {0.0, 0.0, -kGravity});
+  EXPECT_NEAR((mass * g - Eigen::Vector3d(0.0, 0.0, -345.0)).norm(), 2.0 * 345.0 * std::sin(0.2), 1e-9);
+  EXPECT_NEAR(2.0 * 345.0 * std::sin(0.2), 137.0, 0.2);
+}
+
+TEST(Gravity, JointTorquesOfABaseThatLeansAreThoseOfALeaningDescription) {
+  // The same tilt in the description: base_link upright, all beyond on a tilted swing axis.
+  const BaseTilt base{0.12, -0.2};
+  // R_WB = Ry(pitch) Rx(roll) is rpy = (roll, pitch, 0) of the first joint.
+  const Checked<Boom> tilted = Boom::make(replaced(test::shippedUrdf(), "<origin xyz=\"0 0 0.60\" rpy=\"0 0 0\"/>",
+                                                   "<origin xyz=\"0 0 0.60\" rpy=\"0.12 -0.2 0\"/>"));
+  ASSERT_TRUE(tilted.value);
+  Boom in_description = *tilted.value, on_ground = *Boom::make(test::shippedUrdf()).value;
+  const JointVector zero = JointVector::Zero(4);
+  const JointMotion motion{test::workingPosition(), zero, zero};
+  in_description.move(motion, {0.0, 0.0, -kGravity});
+  on_ground.move(motion, gravityInRoot(kGravity, base));
+  BoomLoads a, b;
+  ASSERT_TRUE(in_description.loads({}, true, a));
+  ASSERT_TRUE(on_ground.loads({}, true, b));
+  EXPECT_LT((a.weight - b.weight).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_GT(std::abs(a.weight[0]), 100.0);  // the swing feels the roll
+  EXPECT_LT((in_description.gravityAtTip() - on_ground.gravityAtTip()).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace hammer_loads

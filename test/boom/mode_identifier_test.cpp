@@ -1,0 +1,207 @@
+// Frequencies and damping from noisy sensors on a boom that a hand-made chain vibrates: its own mass matrix, stiffness
+// from the cylinders' triangles by differences, damping by Rayleigh, integrated in small steps.
+#include "hammer_loads/boom/mode_identifier.h"
+
+#include <gtest/gtest.h>
+
+#include "boom/vibrating_machine.h"
+#include "support/counting_new.h"
+
+namespace hammer_loads {
+namespace {
+
+using Vector = Eigen::Vector3d;
+using test::kMillisecond;
+
+constexpr double kGravity = 9.80665;
+
+enum class Sensor { kImu, kSlowImu, kJoints, kPressures };
+
+/// Runs the machine and an identifier whose boom file gives another bulk modulus.
+class Session {
+ public:
+  Session(double given_over_true, Sensor sensor, unsigned seed = 1, bool identify = true)
+      : parameters_(test::shippedBoomParameters()), machine_(parameters_, 1e9, seed), sensor_(sensor) {
+    parameters_.bulk_modulus = 1e9 * given_over_true;
+    boom_.emplace(*Boom::make(test::shippedUrdf(), parameters_).value);
+    const JointVector zero = JointVector::Zero(4);
+    boom_->moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
+    if (identify) boom_->vibration().identify();
+    boom_->vibration().rest();
+    boom_->moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
+    J_ = tipJacobian(boom_->pose());
+  }
+
+  void run(double seconds, double hammer_error = 0.0) {
+    const int steps = static_cast<int>(seconds / kMillisecond);
+    for (int i = 0; i < steps; ++i) {
+      time_ += kMillisecond;
+      const Wrench w = hammer_.at(time_);
+      const Vector load = machine_.load(w);
+      machine_.step(load_, load);
+      load_ = load;
+      Wrench known = w;  // what the identifier is given of it
+      known.force *= 1.0 + hammer_error, known.torque *= 1.0 + hammer_error;
+      const JointVector to = boom_->hammerTorque(known);
+      const std::size_t before = test::allocations;
+      boom_->vibration().advance(kMillisecond, {torque_, to, 0.5 * (torque_ + to)});
+      torque_ = to;
+      observe(i);
+      allocations_ += test::allocations - before;
+      const JointVector hold = to + boom_->vibration().torque();
+      error_ += (hold.tail<3>() - machine_.hold()).squaredNorm();
+      size_ += machine_.hold().squaredNorm();
+    }
+  }
+  double frequencyError(int mode) const { return boom_->vibration().mode(mode).omega / machine_.omega[mode] - 1.0; }
+  double dampingError(int mode) const { return boom_->vibration().mode(mode).zeta / machine_.zeta[mode] - 1.0; }
+
+  const ModeIdentifier& identifier() const { return *boom_->vibration().identifier(); }
+  /// Of hammer + vibration on the joints against what the machine's cylinders carry, over some seconds, of its rms.
+  double torqueError(double seconds) {
+    error_ = size_ = 0.0;
+    run(seconds);
+    return std::sqrt(error_ / size_);
+  }
+
+  BoomParameters parameters_;
+  test::VibratingMachine machine_;
+  Sensor sensor_;
+  std::optional<Boom> boom_;
+  std::size_t allocations_{};
+
+ private:
+  void observe(int i) {
+    if (sensor_ == Sensor::kImu || (sensor_ == Sensor::kSlowImu && i % 5 == 0)) observeImu();
+    if (sensor_ == Sensor::kJoints && i % 5 == 0) observeJoints();
+    if (sensor_ == Sensor::kPressures && i % 2 == 0) observePressures();
+  }
+  void observeImu() {
+    const Vector imu = machine_.imu(0.3, 0.005);
+    const Eigen::Vector3d g_T = boom_->gravityAtTip(), here = Eigen::Vector3d::Zero();
+    const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+    see(0, tipAccelerationReading(J_, here, x, g_T, imu[0]), 0.3, 0.3, 0.05);
+    see(1, tipAccelerationReading(J_, here, z, g_T, imu[1]), 0.3, 0.3, 0.05);
+    see(2, tipRateReading(J_, y, imu[2]), 0.005, 0.02, 0.005);
+  }
+  void observeJoints() {
+    for (int j = 1; j < 4; ++j) {
+      const double slow = 0.002 * std::sin(0.5 * time_ + j);  // of which joint_states alone know nothing
+      see(j, jointAngleReading(4, j, machine_.displacement()[j - 1] + slow + machine_.noise(2e-4)), 2e-4, 0.01, 0.002);
+    }
+  }
+  void observePressures() {
+    for (int j = 1; j < 4; ++j) {
+      const double hold = machine_.hold()[j - 1] * 1.0 + machine_.noise(200.0);
+      // Load on the joint less the hammer's own torque: -M x''.
+      see(j, jointTorqueReading(boom_->vibration().modes(), j, hold - torque_[j]), 200.0, 1000.0, 100.0);
+    }
+  }
+  void see(int channel, VibrationReading reading, double noise, double offset, double walk) {
+    reading.noise = noise, reading.offset_deviation = offset, reading.offset_walk = walk;
+    boom_->vibration().observe(channel, reading);
+  }
+
+  test::PulsingHammer hammer_;
+  Jacobian J_;
+  Vector load_ = Vector::Zero();
+  JointVector torque_ = JointVector::Zero(4);
+  double time_{}, error_{}, size_{};
+};
+
+struct WrongOil {
+  double given_over_true;
+  Sensor sensor;
+  const char* name;
+};
+class Oil : public testing::TestWithParam<WrongOil> {};
+
+TEST_P(Oil, IsIdentifiedFromANoisySensor) {
+  const WrongOil& oil = GetParam();
+  double worst_frequency = 0.0, worst_torque = 0.0;
+  for (unsigned seed : {1U, 2U, 3U}) {
+    Session run(oil.given_over_true, oil.sensor, seed);
+    EXPECT_FALSE(run.identifier().identified());
+    EXPECT_GT(std::abs(run.frequencyError(0)), 0.14);
+    run.run(12.0);
+    EXPECT_TRUE(run.identifier().identified());
+    // The two modes that carry the vibration; the third, at 20 Hz and more, moves a joint by less than its sensor's
+    // noise.
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_LT(std::abs(run.frequencyError(k)), 0.01) << k;
+      EXPECT_LT(std::abs(run.dampingError(k)), 0.15) << k;
+      worst_frequency = std::max(worst_frequency, std::abs(run.frequencyError(k)));
+    }
+    EXPECT_LT(std::abs(run.frequencyError(2)), 0.08);
+    EXPECT_EQ(run.allocations_, 0U);
+    worst_torque = std::max(worst_torque, run.torqueError(4.0));
+  }
+  EXPECT_LT(worst_torque, 0.05);
+  Session given(oil.given_over_true, oil.sensor, 1, false);
+  given.run(12.0);
+  const double torque_as_given = given.torqueError(4.0);
+  EXPECT_GT(torque_as_given, 0.25);
+  RecordProperty("frequency_error", format("%.2g", worst_frequency));
+  RecordProperty("torque_error", format("%.2g", worst_torque));
+  RecordProperty("torque_error_as_given", format("%.2g", torque_as_given));
+}
+
+INSTANTIATE_TEST_SUITE_P(BulkModulus, Oil,
+                         testing::Values(WrongOil{0.7, Sensor::kImu, "SoftImu"},
+                                         WrongOil{1.4, Sensor::kImu, "StiffImu"},
+                                         WrongOil{0.7, Sensor::kSlowImu, "SoftImu200Hz"},
+                                         WrongOil{1.4, Sensor::kSlowImu, "StiffImu200Hz"},
+                                         WrongOil{0.7, Sensor::kJoints, "SoftJoints200Hz"},
+                                         WrongOil{1.4, Sensor::kJoints, "StiffJoints200Hz"},
+                                         WrongOil{0.7, Sensor::kPressures, "SoftPressures"},
+                                         WrongOil{1.4, Sensor::kPressures, "StiffPressures"}),
+                         [](const auto& named) { return named.param.name; });
+
+TEST(ModeIdentifier, WithoutReadingsNothingIsFound) {
+  Session run(0.7, Sensor::kImu);
+  const double before = run.identifier().frequencyDeviation(0);
+  const JointVector torque = JointVector::Constant(4, 1e3);
+  for (int i = 0; i < 5000; ++i) run.boom_->vibration().advance(kMillisecond, {torque, torque, torque});
+  EXPECT_EQ(run.identifier().frequencyRatio(0), 1.0);
+  EXPECT_GE(run.identifier().frequencyDeviation(0), before);
+  EXPECT_FALSE(run.identifier().identified());
+}
+
+TEST(ModeIdentifier, SurvivesNonsenseAndAForceThatIsAFewPercentWrong) {
+  Session run(0.7, Sensor::kImu);
+  run.run(12.0, 0.05);
+  for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(run.frequencyError(k)), 0.025) << k;
+  // A reading of a thousand times its size moves little; one that is no number nothing.
+  const double ratio = run.identifier().frequencyRatio(0);
+  VibrationReading reading = jointAngleReading(4, 1, 100.0);
+  reading.noise = 1e-4, reading.offset_deviation = 0.01;
+  run.boom_->vibration().observe(5, reading);
+  EXPECT_NEAR(run.identifier().frequencyRatio(0), ratio, 0.02);
+  reading.value = std::nan("");
+  run.boom_->vibration().observe(5, reading);
+  reading.value = 1e308;
+  reading.velocity.setConstant(1e200);
+  run.boom_->vibration().observe(5, reading);
+  EXPECT_TRUE(std::isfinite(run.identifier().frequencyRatio(0)));
+  run.boom_->vibration().observe(-1, reading);
+  run.boom_->vibration().observe(ModeIdentifier::kMaxChannels, reading);
+}
+
+TEST(ModeIdentifier, AnotherPoseKeepsWhatIsKnown) {
+  Session run(0.7, Sensor::kImu);
+  run.run(6.0);
+  const JointVector x = run.identifier().displacement(), v = run.identifier().velocity(), zero = JointVector::Zero(4);
+  const double ratio = run.identifier().frequencyRatio(1), deviation = run.identifier().frequencyDeviation(1);
+  run.boom_->moveCompliant({test::workingPosition() + test::joints({0.0, 0.1, -0.1, 0.05}), zero, zero},
+                           {0.0, 0.0, -kGravity});
+  EXPECT_LT((run.identifier().displacement() - x).norm(), 1e-12);
+  EXPECT_LT((run.identifier().velocity() - v).norm(), 1e-11);
+  EXPECT_EQ(run.identifier().frequencyRatio(1), ratio);
+  EXPECT_EQ(run.identifier().frequencyDeviation(1), deviation);
+  run.boom_->vibration().rest();
+  EXPECT_TRUE(run.identifier().displacement().isZero(0.0));
+  EXPECT_EQ(run.identifier().frequencyRatio(1), ratio);
+}
+
+}  // namespace
+}  // namespace hammer_loads

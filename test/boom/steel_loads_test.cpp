@@ -1,0 +1,457 @@
+// Section loads, joint reactions and pin forces against points of mass whose accelerations are differences in time,
+// with Newton's law for the part before the cut and the reaction of the base.
+#include "hammer_loads/boom/steel_loads.h"
+
+#include <gtest/gtest.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "boom/booms.h"
+
+namespace hammer_loads {
+namespace {
+
+using Real = long double;
+using Vector = Eigen::Matrix<Real, 3, 1>;
+using Matrix = Eigen::Matrix<Real, 3, 3>;
+
+constexpr double kGravity = 9.80665;
+
+struct Load {
+  Vector force = Vector::Zero(), moment = Vector::Zero();
+  void add(const Vector& p, const Vector& f) { force += f, moment += p.cross(f); }
+};
+
+struct Place {
+  Matrix R = Matrix::Identity();
+  Vector p = Vector::Zero();
+  Vector at(const Vector& point) const { return p + R * point; }
+};
+
+/// A point of mass on a link of the description.
+struct Point {
+  int link;  ///< index in the row
+  Vector p;
+  Real mass;
+};
+
+/// The row of links from base_link to hammer_hull, read from the description again, by hand.
+class Row {
+ public:
+  explicit Row(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
+    for (urdf::LinkConstSharedPtr link = model_->getLink("hammer_hull"); link->parent_joint; link = link->getParent())
+      joints_.insert(joints_.begin(), link->parent_joint);
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const urdf::LinkConstSharedPtr link = model_->getLink(joints_[i]->child_link_name);
+      const int index = static_cast<int>(i) + 1;
+      names_[link->name] = index;
+      if (!link->inertial) continue;
+      const urdf::Inertial& b = *link->inertial;
+      Eigen::Matrix3d inertia;
+      inertia << b.ixx, b.ixy, b.ixz, b.ixy, b.iyy, b.iyz, b.ixz, b.iyz, b.izz;
+      const urdf::Vector3& c = b.origin.position;
+      addBody(index, {b.mass, {c.x, c.y, c.z}, inertia}, 1.0, points_);
+    }
+  }
+
+  int link(const std::string& name) const { return names_.at(name); }
+  const std::vector<Point>& points() const { return points_; }
+
+  /// Six points with the mass, centre and inertia of a body; sign -1 takes it away.
+  static void addBody(int link, const RigidBody& body, Real sign, std::vector<Point>& points) {
+    if (body.mass == 0.0) return;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(body.inertia);
+    const Eigen::Vector3d I = principal.eigenvalues();
+    for (int k = 0; k < 3; ++k) {
+      const Real spread = 0.5L * (Real(I[(k + 1) % 3]) + I[(k + 2) % 3] - I[k]);
+      // The eigenvectors are orthogonal to 1e-15 only, which is the error of this reference.
+      const Vector away =
+          std::sqrt(std::max(Real(0), 3 * spread / Real(body.mass))) * principal.eigenvectors().col(k).cast<Real>();
+      for (Real side : {-1.0L, 1.0L})
+        points.push_back({link, body.com.cast<Real>() + side * away, sign * Real(body.mass) / 6});
+    }
+  }
+
+  /// Places of the links at a time, joints moving with constant accelerations.
+  std::vector<Place> places(const JointMotion& m, Real t) const {
+    std::vector<Place> places(1);
+    int moving = 0;
+    for (const urdf::JointSharedPtr& joint : joints_) {
+      const urdf::Vector3& p = joint->parent_to_joint_origin_transform.position;
+      Place place = places.back();
+      place.p = place.at(Vector(p.x, p.y, p.z));
+      if (joint->type != urdf::Joint::FIXED) {
+        const Real q = m.position[moving] + t * m.velocity[moving] + t * t / 2 * m.acceleration[moving];
+        const Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
+        place.R = place.R * Eigen::AngleAxis<Real>(q, axis).toRotationMatrix();
+        ++moving;
+      }
+      places.push_back(place);
+    }
+    return places;
+  }
+
+  /// What the points' weight and inertia need, of those wanted: sum of m (a - g), about the base's origin.
+  template <typename Wanted>
+  Load demanded(const std::vector<Point>& points, const JointMotion& m, const Eigen::Vector3d& g, Wanted wanted) const {
+    constexpr Real h = 4e-3L;
+    constexpr Real kWeight[] = {-205.0L / 72, 8.0L / 5, -1.0L / 5, 8.0L / 315, -1.0L / 560};  // order 8
+    Load load;
+    for (int step = -4; step <= 4; ++step) {
+      const std::vector<Place> now = places(m, 0), then = places(m, step * h);
+      for (const Point& point : points) {
+        if (!wanted(point)) continue;
+        const auto link = static_cast<std::size_t>(point.link);
+        Vector a = kWeight[std::abs(step)] / (h * h) * then[link].at(point.p);
+        if (step == 0) a -= g.cast<Real>();
+        load.add(now[link].at(point.p), point.mass * a);
+      }
+    }
+    return load;
+  }
+
+ private:
+  urdf::ModelInterfaceSharedPtr model_;
+  std::vector<urdf::JointSharedPtr> joints_;
+  std::map<std::string, int> names_;
+  std::vector<Point> points_;
+};
+
+/// A pose of the shipped boom with its joints moving, a base that leans, any hammer.
+struct Case {
+  JointMotion motion;
+  Eigen::Vector3d g;
+  Wrench w;
+};
+
+Case randomCase(const Chain& chain, std::mt19937& random) {
+  Case c;
+  c.motion.position = test::randomPosition(chain, random);
+  c.motion.velocity.resize(4), c.motion.acceleration.resize(4);
+  for (int j = 0; j < 4; ++j) {
+    c.motion.velocity[j] = test::between(random, -1.0, 1.0);
+    c.motion.acceleration[j] = test::between(random, -20.0, 20.0);
+  }
+  c.g = test::randomVector(random, 8.0);
+  c.w = test::randomWrench(random);
+  return c;
+}
+
+class Steel : public testing::Test {
+ protected:
+  Steel() : boom_(test::shippedBoom()), row_(test::shippedUrdf()) {}
+
+  Load tip(const Case& c) const {
+    const Place hull = row_.places(c.motion, 0).back();
+    Load load;
+    load.add(hull.p, hull.R * c.w.force.cast<Real>());
+    load.moment += hull.R * c.w.torque.cast<Real>();
+    return load;
+  }
+
+  /// A cylinder's two pins in the base's frame, and the force that holds its joint against everything beyond by the
+  /// work that they do: length by differences.
+  struct Held {
+    int beyond;
+    Vector base, rod, push;
+  };
+  Held held(const Case& c, const CylinderParameters& p) const {
+    const int joint = *boom_.chain().jointIndex(p.joint), beyond = boom_.chain().linkBeyond(joint);
+    const auto pins = [&](const JointMotion& motion) {
+      const std::vector<Place> places = row_.places(motion, 0);
+      const auto link = static_cast<std::size_t>(beyond);
+      return std::pair<Vector, Vector>(places[link - 1].at(Vector(p.base_x, 0, p.base_z)),
+                                       places[link].at(Vector(p.rod_x, 0, p.rod_z)));
+    };
+    const auto length = [&](Real step) {
+      JointMotion moved = c.motion;
+      moved.position[joint] += static_cast<double>(step);
+      const auto [base, rod] = pins(moved);
+      return (rod - base).norm();
+    };
+    constexpr Real h = 1.0L / 1024;
+    Real slope = 0;
+    constexpr Real kWeight[] = {4.0L / 5, -1.0L / 5, 4.0L / 105, -1.0L / 280};
+    for (int k = 1; k <= 4; ++k) slope += kWeight[k - 1] / h * (length(k * h) - length(-k * h));
+    const Load beyond_demands =
+        row_.demanded(row_.points(), c.motion, c.g, [&](const Point& point) { return point.link >= beyond; });
+    const Load hammer = tip(c);
+    const Place place = row_.places(c.motion, 0)[static_cast<std::size_t>(beyond)];
+    const Vector axis = place.R * boom_.chain().link(beyond).axis.cast<Real>();
+    const Load net{hammer.force - beyond_demands.force, hammer.moment - beyond_demands.moment};
+    const Real torque = axis.dot(net.moment - place.p.cross(net.force));
+    const auto [base, rod] = pins(c.motion);
+    return {beyond, base, rod, -torque / slope * (rod - base).normalized()};
+  }
+
+  /// By the part beyond on the part before, from the part before: what the base and the cylinders do to it and what its
+  /// motion demands. `before` of points, `crosses` of cylinders.
+  template <typename Before, typename Crosses>
+  Load fromBefore(const Case& c, const std::vector<Point>& points, Before before, Crosses crosses) const {
+    const Load all = row_.demanded(row_.points(), c.motion, c.g, [](const Point&) { return true; });
+    const Load hammer = tip(c);
+    const Load base{all.force - hammer.force, all.moment - hammer.moment};
+    Load result = row_.demanded(points, c.motion, c.g, before);
+    result.force -= base.force, result.moment -= base.moment;
+    for (const CylinderParameters& p : boom_.parameters().cylinders) {
+      const Held held = this->held(c, p);
+      if (crosses(held, p)) result.add(held.base, held.push);  // by it on the part before: -push
+    }
+    return result;
+  }
+
+  static Wrench seenAt(const Load& load, const Place& place) {
+    return {(place.R.transpose() * load.force).cast<double>(),
+            (place.R.transpose() * (load.moment - place.p.cross(load.force))).cast<double>()};
+  }
+  static double difference(const Wrench& a, const Wrench& b) {
+    return std::max((a.force - b.force).norm() / 5e4, (a.torque - b.torque).norm() / 1e5);
+  }
+
+  Boom boom_;
+  Row row_;
+};
+
+TEST_F(Steel, SectionsAreTheSameFromEitherSide) {
+  // Also turned cuts, uniform bars and cuts on the bracket.
+  BoomParameters parameters = test::shippedBoomParameters();
+  ASSERT_EQ(parameters.sections.size(), 3U);
+  parameters.sections.push_back({"turned", "boom_link", {1.0, 0.1, 0.2}, 0.7, {}});
+  parameters.sections.push_back({"before_the_pins", "arm_link", {0.2, 0.0, 0.0}, -0.3, {}});
+  parameters.sections.push_back({"bracket", "hammer_link", {0.05, 0.0, -0.2}, 1.4, {}});
+  const Checked<Boom> made = Boom::make(test::shippedUrdf(), parameters);
+  ASSERT_TRUE(made.value) << made.problems.front();
+  EXPECT_EQ(made.notes.size(), 3U);
+  boom_ = *made.value;
+  std::mt19937 random(31);
+  double worst = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const Case c = randomCase(boom_.chain(), random);
+    boom_.move(c.motion, c.g);
+    SteelLoads loads;
+    ASSERT_TRUE(boom_.steelLoads(c.w, true, loads));
+    for (std::size_t k = 0; k < boom_.sections().size(); ++k) {
+      const Section& section = boom_.sections()[k];
+      const SectionParameters& p = section.parameters();
+      const int link = row_.link(p.link);
+      const Matrix turn = Eigen::AngleAxis<Real>(p.pitch, Vector::UnitY()).toRotationMatrix();
+      const auto x = [&](const Vector& point) { return turn.col(0).dot(point - p.origin.cast<Real>()); };
+      std::vector<Point> points = row_.points();
+      Row::addBody(link, section.part(), -1.0, points);
+      const Load load = fromBefore(
+          c, points, [&](const Point& point) { return point.link <= link; },
+          [&](const Held& held, const CylinderParameters& cylinder) {
+            const int base = held.beyond - 1;
+            const bool base_beyond = base > link || (base == link && x({cylinder.base_x, 0, cylinder.base_z}) > 0);
+            const bool rod_beyond = base + 1 > link || (base + 1 == link && x({cylinder.rod_x, 0, cylinder.rod_z}) > 0);
+            return rod_beyond && !base_beyond;
+          });
+      Place place = row_.places(c.motion, 0)[static_cast<std::size_t>(link)];
+      place.p = place.at(p.origin.cast<Real>());
+      place.R = place.R * turn;
+      const double error = difference(loads.section[k], seenAt(load, place));
+      EXPECT_LT(error, 1e-9) << p.name;
+      worst = std::max(worst, error);
+    }
+  }
+  RecordProperty("worst", format("%.2g", worst));
+}
+
+TEST_F(Steel, JointReactionsAreTheSameFromEitherSide) {
+  std::mt19937 random(32);
+  double worst = 0.0, worst_moment = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const Case c = randomCase(boom_.chain(), random);
+    boom_.move(c.motion, c.g);
+    SteelLoads loads;
+    BoomLoads torques;
+    ASSERT_TRUE(boom_.steelLoads(c.w, true, loads));
+    boom_.loads(c.w, true, torques);
+    for (int j = 0; j < 4; ++j) {
+      const int beyond = boom_.chain().linkBeyond(j);
+      const Load load = fromBefore(
+          c, row_.points(), [&](const Point& point) { return point.link < beyond; },
+          [&](const Held& held, const CylinderParameters&) { return held.beyond == beyond; });
+      Place place = row_.places(c.motion, 0)[static_cast<std::size_t>(beyond) - 1];
+      place.p = place.at(boom_.chain().link(beyond).origin.cast<Real>());
+      const Wrench& reaction = loads.joint[static_cast<std::size_t>(j)];
+      worst = std::max(worst, difference(reaction, seenAt(load, place)));
+      const double about_axis = reaction.torque.dot(boom_.chain().link(beyond).axis);
+      const double expected = j == 0 ? torques.total[0] : 0.0;  // swing is held, the others have cylinders
+      worst_moment = std::max(worst_moment, std::abs(about_axis - expected) / 1e5);
+    }
+  }
+  RecordProperty("worst", format("%.2g", worst));
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_LT(worst_moment, 1e-13);
+}
+
+TEST_F(Steel, PinsCarryTheCylindersForce) {
+  std::mt19937 random(33);
+  for (int i = 0; i < 40; ++i) {
+    const Case c = randomCase(boom_.chain(), random);
+    boom_.move(c.motion, c.g);
+    SteelLoads loads;
+    BoomLoads torques;
+    boom_.steelLoads(c.w, true, loads);
+    boom_.loads(c.w, true, torques);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Held held = this->held(c, boom_.parameters().cylinders[k]);
+      const std::vector<Place> places = row_.places(c.motion, 0);
+      const auto beyond = static_cast<std::size_t>(held.beyond);
+      const Eigen::Vector3d rod = (places[beyond].R.transpose() * held.push).cast<double>();
+      const Eigen::Vector3d base = -(places[beyond - 1].R.transpose() * held.push).cast<double>();
+      EXPECT_LT((loads.pins[k].rod - rod).norm(), 1e-9 * (rod.norm() + 1e4));
+      EXPECT_LT((loads.pins[k].base - base).norm(), 1e-9 * (rod.norm() + 1e4));
+      EXPECT_NEAR(loads.pins[k].rod.norm(), std::abs(torques.cylinder[k].force), 1e-9 * (rod.norm() + 1e4));
+    }
+  }
+}
+
+TEST_F(Steel, StaticSectionIsTheWorkOfASmallYieldThere) {
+  // Everything beyond the cut shifts or turns a little about it: the load's work is that of hammer, weight and the
+  // cylinders whose length it changes.
+  std::mt19937 random(34);
+  for (int i = 0; i < 20; ++i) {
+    Case c = randomCase(boom_.chain(), random);
+    c.motion.velocity.setZero(), c.motion.acceleration.setZero();
+    boom_.move(c.motion, c.g);
+    SteelLoads loads;
+    BoomLoads torques;
+    ASSERT_TRUE(boom_.steelLoads(c.w, true, loads));
+    boom_.loads(c.w, true, torques);
+    const std::vector<Place> places = row_.places(c.motion, 0);
+    for (std::size_t k = 0; k < boom_.sections().size(); ++k) {
+      const Section& section = boom_.sections()[k];
+      const auto link = static_cast<std::size_t>(section.link());
+      const Vector origin = places[link].at(section.parameters().origin.cast<Real>());
+      std::vector<Point> part;
+      Row::addBody(section.link(), section.part(), 1.0, part);
+      for (int axis = 0; axis < 6; ++axis) {
+        const Vector along = places[link].R.col(axis % 3);  // pitch of the shipped cuts is zero
+        /// Where a point beyond goes.
+        const auto moved = [&](const Vector& p, Real step) -> Vector {
+          if (axis < 3) return p + step * along;
+          return origin + Eigen::AngleAxis<Real>(step, along).toRotationMatrix() * (p - origin);
+        };
+        const auto work = [&](Real step) {
+          Real sum = 0;
+          const auto weight = [&](const Point& point) {
+            const Vector p = places[static_cast<std::size_t>(point.link)].at(point.p);
+            sum += point.mass * c.g.cast<Real>().dot(moved(p, step) - p);
+          };
+          for (const Point& point : part) weight(point);
+          for (const Point& point : row_.points())
+            if (point.link > section.link()) weight(point);
+          for (std::size_t n = 0; n < 3; ++n) {
+            const CylinderParameters& p = boom_.parameters().cylinders[n];
+            const Held held = this->held(c, p);
+            const auto beyond = [&](int on, Real x) {
+              return on > section.link() || (on == section.link() && x > section.parameters().origin.x());
+            };
+            if (!beyond(held.beyond, p.rod_x) || beyond(held.beyond - 1, p.base_x)) continue;
+            const Real stretch = (moved(held.rod, step) - held.base).norm() - (held.rod - held.base).norm();
+            sum += torques.cylinder[n].force * stretch;
+          }
+          return sum;
+        };
+        constexpr Real h = 1e-3L;
+        const Real slope = (8 * (work(h) - work(-h)) - (work(2 * h) - work(-2 * h))) / (12 * h);
+        // The hammer's share, linear in the step.
+        const Vector f = places.back().R * c.w.force.cast<Real>(), t = places.back().R * c.w.torque.cast<Real>();
+        const Real hammer = axis < 3 ? along.dot(f) : along.dot(t + (places.back().p - origin).cross(f));
+        const Wrench& w = loads.section[k];
+        const double got = axis < 3 ? w.force[axis] : w.torque[axis - 3];
+        EXPECT_NEAR(got, static_cast<double>(slope + hammer), axis < 3 ? 5e-5 : 1e-4) << section.name() << " " << axis;
+      }
+    }
+  }
+}
+
+TEST(SteelByHand, CantileverOfABarWithALoadAtItsEnd) {
+  // 4 m bar of 80 kg, level, held at its joint; at its end 1 kN down and 500 N to the side.
+  const std::string urdf =
+      "<robot name=\"bar\"><link name=\"base_link\"/><link name=\"bar\"><inertial><origin xyz=\"2 0 0\"/>"
+      "<mass value=\"80\"/><inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"106.6666666\" iyz=\"0\" izz=\"106.6666666\"/>"
+      "</inertial></link><link name=\"hammer_hull\"/>"
+      "<joint name=\"j\" type=\"continuous\"><parent link=\"base_link\"/><child link=\"bar\"/><axis xyz=\"0 1 0\"/>"
+      "</joint><joint name=\"end\" type=\"fixed\"><parent link=\"bar\"/><child link=\"hammer_hull\"/>"
+      "<origin xyz=\"4 0 0\"/></joint></robot>";
+  BoomParameters parameters = test::shippedBoomParameters();
+  parameters.cylinders.clear();
+  parameters.sections = {{"quarter", "bar", {1.0, 0.0, 0.0}, 0.0, {}}, {"turned", "bar", {3.0, 0.0, 0.0}, 0.5, {}}};
+  Checked<Boom> made = Boom::make(urdf, parameters);
+  ASSERT_TRUE(made.value) << made.problems.front();
+  const JointVector zero = JointVector::Zero(1);
+  made.value->move({zero, zero, zero}, {0.0, 0.0, -kGravity});
+  SteelLoads loads;
+  ASSERT_TRUE(made.value->steelLoads({{0.0, 500.0, -1000.0}, Eigen::Vector3d::Zero()}, true, loads));
+  // Beyond 1 m: 60 kg with its centre 1.5 m away.
+  const Wrench& w = loads.section[0];
+  EXPECT_LT((w.force - Eigen::Vector3d(0.0, 500.0, -1000.0 - 60.0 * kGravity)).norm(), 1e-10);
+  // Down at x > 0 turns x towards -z: about +y.
+  EXPECT_LT((w.torque - Eigen::Vector3d(0.0, 3.0 * 1000.0 + 1.5 * 60.0 * kGravity, 3.0 * 500.0)).norm(), 1e-9);
+  // Turned by 0.5 rad about y: x of the cut points down by it. 20 kg beyond.
+  const double down = 1000.0 + 20.0 * kGravity;
+  EXPECT_NEAR(loads.section[1].force.x(), down * std::sin(0.5), 1e-9);
+  EXPECT_NEAR(loads.section[1].force.z(), -down * std::cos(0.5), 1e-9);
+  EXPECT_NEAR(loads.section[1].torque.y(), 1000.0 + 0.5 * 20.0 * kGravity, 1e-9);
+  EXPECT_NEAR(loads.joint[0].force.z(), -1000.0 - 80.0 * kGravity, 1e-9);
+  EXPECT_NEAR(loads.joint[0].torque.y(), 4000.0 + 160.0 * kGravity, 1e-9);
+  // Turning it faster and faster about its joint: the part beyond lags behind, 60 kg at 2.5 m, 45 kg m2.
+  JointVector fast = JointVector::Constant(1, 2.0), faster = JointVector::Constant(1, 3.0);
+  made.value->move({zero, fast, faster}, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(made.value->steelLoads({}, true, loads));
+  EXPECT_NEAR(loads.section[0].force.x(), 60.0 * 2.5 * 4.0, 1e-9);
+  EXPECT_NEAR(loads.section[0].force.z(), 60.0 * 2.5 * 3.0, 1e-9);
+  EXPECT_NEAR(loads.section[0].torque.y(), -(60.0 * 2.5 * 1.5 + 60.0 * 9.0 / 12.0) * 3.0, 1e-9);
+}
+
+TEST_F(Steel, VibrationCountsAsWhatItAccelerates) {
+  const JointVector zero = JointVector::Zero(4);
+  boom_.moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
+  const Wrench w{Eigen::Vector3d(1e3, 50.0, 8e3), Eigen::Vector3d(20.0, -700.0, 30.0)};
+  const JointVector torque = boom_.hammerTorque(w);
+  for (int i = 0; i < 30; ++i) boom_.vibration().advance(1e-3, {torque, torque, torque});
+  BoomLoads torques;
+  SteelLoads loads;
+  ASSERT_TRUE(boom_.loads(w, false, torques));
+  ASSERT_TRUE(boom_.steelLoads(w, false, loads));
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(loads.pins[k].rod.norm(), std::abs(torques.cylinder[k].force), 1e-9 * loads.pins[k].rod.norm());
+  EXPECT_NEAR(loads.joint[0].torque.z(), torques.total[0], 1e-8);
+  // The same accelerations, as if the joints made them.
+  Boom driven = test::shippedBoom();
+  driven.move({test::workingPosition(), zero, boom_.vibration().acceleration()}, {0.0, 0.0, -kGravity});
+  SteelLoads expected;
+  driven.steelLoads(w, true, expected);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(difference(loads.section[k], expected.section[k]), 1e-14);
+  // And it matters.
+  driven.move({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
+  driven.steelLoads(w, true, expected);
+  EXPECT_GT(std::abs(loads.section[0].torque.y() - expected.section[0].torque.y()), 500.0);
+}
+
+TEST(SteelAtDeadCentre, OnlyWhatTheCylinderCrossesIsUnknown) {
+  BoomParameters parameters = test::shippedBoomParameters();
+  CylinderParameters& p = parameters.cylinders[0];
+  p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0, p.closed_length = 1.5, p.stroke = 0.6;
+  Checked<Boom> made = Boom::make(test::shippedUrdf(), parameters);
+  ASSERT_TRUE(made.value) << made.problems.front();
+  const JointVector zero = JointVector::Zero(4);
+  made.value->move({test::joints({0.0, 0.0, 1.0, -1.0}), zero, zero}, {0.0, 0.0, -kGravity});
+  SteelLoads loads;
+  EXPECT_TRUE(made.value->steelLoads({}, true, loads));
+  EXPECT_TRUE(std::isnan(loads.section[0].torque.y()));  // before the pin at 1.0 m
+  EXPECT_TRUE(loads.section[1].torque.allFinite());      // beyond it
+  EXPECT_TRUE(loads.section[2].torque.allFinite());
+  EXPECT_TRUE(loads.joint[0].torque.allFinite());
+  EXPECT_TRUE(std::isnan(loads.joint[1].force.x()));
+  EXPECT_TRUE(loads.joint[2].force.allFinite());
+  // Infinite is not the same as unknown.
+  EXPECT_FALSE(made.value->steelLoads({Eigen::Vector3d(1e300, 1e308, 0.0), {}}, true, loads));
+}
+
+}  // namespace
+}  // namespace hammer_loads
