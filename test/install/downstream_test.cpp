@@ -69,14 +69,15 @@ class DownstreamTest : public ::testing::Test {
 
 TEST_F(DownstreamTest, LinksTheLibrariesWithoutRosByTheirOwnNames) {
   build("use_library");
-  const Answer own = run((build_ / "use_pipeline").string(), build_ / "own.txt");  // no setup.bash: they are found
+  const Answer own = run((build_ / "devel/lib/use_library/use_pipeline").string(),
+                         build_ / "own.txt");  // no setup.bash: they are found
   EXPECT_EQ(own.status, 0) << own.text;
   const Answer ours =
       run((kPrefix / "lib/hammer_loads/turn_table --summary --level rocker").string(), build_ / "a.txt");
   EXPECT_EQ(ours.status, 0);
   EXPECT_EQ(own.text, ours.text);
-  EXPECT_EQ(run((build_ / "use_core").string(), build_ / "core.txt").status, 0);
-  const Answer libraries = run("ldd " + (build_ / "use_core").string(), build_ / "ldd.txt");
+  EXPECT_EQ(run((build_ / "devel/lib/use_library/use_core").string(), build_ / "core.txt").status, 0);
+  const Answer libraries = run("ldd " + (build_ / "devel/lib/use_library/use_core").string(), build_ / "ldd.txt");
   EXPECT_NE(libraries.text.find((kPrefix / "lib/libhammer_loads_core.so").string()), std::string::npos);
   for (const char* other : {"libros", "libboost", "librosbag", "hammer_loads_ros", "libkdl"})
     EXPECT_EQ(libraries.text.find(other), std::string::npos) << libraries.text;
@@ -84,7 +85,7 @@ TEST_F(DownstreamTest, LinksTheLibrariesWithoutRosByTheirOwnNames) {
 
 TEST_F(DownstreamTest, UsesMessagesAndTheLibrariesWithRos) {
   build("use_messages");
-  const Answer own = run((build_ / "use_messages").string(), build_ / "own.txt");
+  const Answer own = run((build_ / "devel/lib/use_messages/use_messages").string(), build_ / "own.txt");
   EXPECT_EQ(own.status, 0) << own.text;
   EXPECT_EQ(own.text, "hammer_loads/HullLoads\nhammer_loads/RunInfo\n");
   const Answer python = inInstallSpace("python3 -c \"import hammer_loads.msg as m; print(m.HullLoads._type)\"");

@@ -11,7 +11,7 @@ class Use(unittest.TestCase):
     def test_node_explains_itself(self):
         rospy.init_node('use')
         info = rospy.wait_for_message('/hammer_loads/run_info', RunInfo, timeout=20)
-        self.assertIn('crank_length_m', info.parameters)
+        self.assertIn('crank_length_m', info.parameters_yaml)
 
 
 if __name__ == '__main__':
