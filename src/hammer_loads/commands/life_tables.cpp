@@ -142,9 +142,9 @@ std::string csvLines(std::int64_t epoch, const ChannelReport& c) {
 
 // --- JSON ---------------------------------------------------------------------------------------------------------
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
-/// nlohmann writes null for what is no finite number.
+/// Keys are sorted by name; null is written for what is no finite number.
 Json json(const Figure& figure) { return {{"value", figure.value}, {"deviation", figure.deviation}}; }
 Json json(const std::optional<Figure>& figure) { return figure ? json(*figure) : Json(nullptr); }
 
