@@ -216,7 +216,7 @@ TEST(BoomFollower, ADeadPointIsTakenAsRigid) {
   compliant.sample(kLoad);
   const BoomState& state = compliant.sample(kLoad);
   ASSERT_FALSE(state.fault);
-  EXPECT_TRUE(state.dead_point);
+  EXPECT_TRUE(state.dead_centre);
   EXPECT_FALSE(state.choice.compliant);
   EXPECT_TRUE(state.loads.cylinder[1].dead_centre);
   EXPECT_TRUE(state.loads.total.allFinite());
