@@ -68,10 +68,14 @@ HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) n
           (per_speed_x - rocker.reduced_rod_mass * rocker.rod_joint.z) / rocker.mass};
 }
 
+RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept {
+  const double rocker_before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * before;
+  const double rocker_after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * after;
+  return blowInSupport(strikingRocker(mechanism, level), rocker_before, rocker_after);
+}
+
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept {
-  const double before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * crank_speed;
-  const double after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * crank_speed;
-  return blowInSupport(strikingRocker(mechanism, level), before, after);
+  return blowAtCrankSpeeds(mechanism, level, crank_speed, crank_speed);
 }
 
 }  // namespace hammer_loads

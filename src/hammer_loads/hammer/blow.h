@@ -55,6 +55,9 @@ HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) n
 /// from u(2 pi -) w to u(0 +) w (model.md 1).
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept;
 
+/// Blow of a crank that does not keep its speed: [rad/s] before, > 0, and after.
+RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept;
+
 /// The same at level rocker: massless rod.
 inline RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {
   return blowAtCrankSpeed(mechanism, Level::kRocker, crank_speed);

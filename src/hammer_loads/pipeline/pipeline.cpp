@@ -25,11 +25,15 @@ HullMotion withVibration(Gravity weight, const BoomState* boom) noexcept {
   return {{weight.x - a[0], weight.z - a[2]}, boom->tip.velocity[4], a[4]};
 }
 
-Intake::Limits limitsOf(const PipelineSettings& s) noexcept {
-  double frozen_turn = kFrozenCounts * s.crank_angle_resolution + kFrozenDeviations * s.crank_angle_noise;
+/// resolution: of the angle sensor [rad].
+double frozenTurn(const PipelineSettings& s, double resolution) noexcept {
   // The trackers for comparison take every reading as it is.
-  if (s.crank_estimator != CrankEstimator::kMechanism) frozen_turn = std::numeric_limits<double>::infinity();
-  return {s.max_crank_speed, s.stale_after, frozen_turn, kFrozenDeviations * s.crank_speed_noise};
+  if (s.crank_estimator != CrankEstimator::kMechanism) return std::numeric_limits<double>::infinity();
+  return kFrozenCounts * resolution + kFrozenDeviations * s.crank_angle_noise;
+}
+
+Intake::Limits limitsOf(const PipelineSettings& s, double resolution) noexcept {
+  return {s.max_crank_speed, s.stale_after, frozenTurn(s, resolution), kFrozenDeviations * s.crank_speed_noise};
 }
 
 double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSecondsPerNs; }
@@ -45,7 +49,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
       imu_(settings.imu),
       unit_check_(settings.max_crank_speed),
-      intake_(limitsOf(settings)),
+      intake_(limitsOf(settings, tracker_->angleResolution())),
       step_(*tracker_),
       outputs_(hull_model_, step_, settings),
       counts_(counts) {
@@ -138,6 +142,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& measured) n
     }
   }
   intake_.accept(stamp, measured);
+  intake_.setFrozenTurn(frozenTurn(settings_, tracker_->angleResolution()));
   last_position_ = loads_.crank.position;
   if (!settled()) {
     boom_follows_ = false;
@@ -246,7 +251,7 @@ void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd end;
   end.stamp = stamp;
   end.turn = turns_;
-  end.blow = blowAtCrankSpeed(mechanism_, settings_.level, passage.speed);
+  end.blow = blowAtCrankSpeeds(mechanism_, settings_.level, passage.speed_before, passage.speed_after);
   end.pulse = turn_.end(instant(time, step_.besides(passage, Side::kBeforeBlow)));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
   end.mean_press_force =
