@@ -281,8 +281,10 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  return {now_.factor, std::sqrt(consistency_.growth() * now_.covariance(Belief::kFactor, Belief::kFactor)),
-          now_.state.drive_inertia};
+  const auto deviation = [&](Belief::Row row) {
+    return std::sqrt(consistency_.growth() * now_.covariance(row, row));
+  };
+  return {now_.factor, deviation(Belief::kFactor), now_.state.drive_inertia, deviation(Belief::kInertia)};
 }
 
 /// Faster or further than any crank gets within the last step.

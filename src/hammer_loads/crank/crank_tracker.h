@@ -27,7 +27,8 @@ struct CrankEstimate {
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
-  double drive_inertia{};                                      ///< Jc with which it tells the restitution [kg m2]
+  double drive_inertia{};      ///< Jc, with which it tells the restitution [kg m2]; 0: not known
+  double inertia_deviation{};  ///< relative [-]
 };
 
 /// How a sample was taken.

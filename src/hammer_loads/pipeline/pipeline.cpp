@@ -175,6 +175,7 @@ void Pipeline::followBoom(StampNs stamp) noexcept {
 }
 
 void Pipeline::restart() noexcept {
+  tellBlow();
   step_.forget(tracker_->estimate().position);
   outputs_.forget();
   boom_follows_ = false;
@@ -238,12 +239,17 @@ void Pipeline::followTurn() noexcept {
   for (const CrankStep::Passage& passage : step_) {
     if (!passage.strikes) continue;
     recordTo(from, std::max(from, passage.time - kSideOfBlow));
+    tellBlow();
     endTurn(passage);
     from = passage.time + kSideOfBlow;
   }
   recordTo(from, step_.length());
+  if (pending_.isWaiting()) pending_.follow(tracker_->blowFactor());
+  const double now = seconds(step_.start() - epoch_) + step_.length();
+  if (pending_.isMeasured(now, loads_.crank.position)) tellBlow();
 }
 
+/// The turn ends now; what the blow was shows later.
 void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
   const StampNs stamp = step_.start() + static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
   const double time = seconds(step_.start() - epoch_) + passage.time;
@@ -251,14 +257,27 @@ void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd end;
   end.stamp = stamp;
   end.turn = turns_;
-  end.blow = blowAtCrankSpeeds(mechanism_, settings_.level, passage.speed_before, passage.speed_after);
   end.pulse = turn_.end(instant(time, step_.besides(passage, Side::kBeforeBlow)));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
   end.mean_press_force =
-      last_blow_ ? end.blow.tool_impulse_z / seconds(stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
-  if (loads_.turn_ends < loads_.ends.size()) loads_.ends[loads_.turn_ends++] = end;
+      last_blow_ ? 1.0 / seconds(stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();  // times the impulse
+  const double deviation = std::sqrt(tracker_->covarianceBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0)(1, 1));
+  pending_end_ = end;
+  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, deviation);
+  pending_.follow(tracker_->blowFactor());
   last_blow_ = stamp;
   turn_.begin(instant(time, step_.besides(passage, Side::kAfterBlow)));
+}
+
+/// The pending blow, as it is known by now.
+void Pipeline::tellBlow() noexcept {
+  if (!pending_.isWaiting()) return;
+  turn_.correctBegin(linkMomentum(hull_model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
+  const CrankBlow crank = pending_.take();
+  pending_end_.blow = crank.drive_inertia > 0.0 ? measuredBlow(mechanism_, settings_.level, crank)
+                                                : blowAtCrankSpeed(mechanism_, settings_.level, crank.speed);
+  pending_end_.mean_press_force *= pending_end_.blow.tool_impulse_z;
+  if (loads_.turn_ends < loads_.ends.size()) loads_.ends[loads_.turn_ends++] = pending_end_;
 }
 
 }  // namespace hammer_loads
