@@ -80,6 +80,12 @@ void CrankBelief::forgetInertiaCoupling() noexcept {
   covariance(kInertia, kInertia) = variance;
 }
 
+void CrankBelief::forgetAngle(double variance) noexcept {
+  covariance.row(kAngle).setZero();
+  covariance.col(kAngle).setZero();
+  covariance(kAngle, kAngle) = variance;
+}
+
 void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn) noexcept {
   const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
   if (!tool_met && state.speed > 0.0) drawFactor(prior);

@@ -36,6 +36,8 @@ struct CrankBelief {
   void correct(Row row, double innovation, double variance) noexcept;
   /// The coming correction teaches nothing of the inertia.
   void forgetInertiaCoupling() noexcept;
+  /// Nothing is known of the angle beyond a variance [rad2] about the present one.
+  void forgetAngle(double variance) noexcept;
   /// The position stands beyond the blow that it should have passed: passes it now.
   void passLate(const ShaftModel& model, const BlowPrior& prior) noexcept;
   /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.

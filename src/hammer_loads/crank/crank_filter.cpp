@@ -28,6 +28,7 @@ constexpr double kToolSeen = 16.0;         // innovation^2 over its variance tha
 constexpr double kCertain = 3.0;           // deviations of the stamp within which the encoder's edge decides nothing
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
+constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
 constexpr double kForgetRestarts = 2.0;    // [s]
 
 double square(double x) noexcept { return x * x; }
@@ -251,7 +252,10 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
         outlier_ = innovation.value;
         return Tracking::kOutlier;
       }
-      return begin(measured, {sample.angle, std::nullopt});
+      if (!agrees || std::abs(innovation.value) > kSlip * std::abs(now_.state.speed))
+        return begin(measured, {sample.angle, std::nullopt});
+      now_.forgetAngle(square(innovation.value));  // the sequence lost a sample: time is off, not the motion
+      innovation = angleInnovation(measured);
     }
   }
   before_ = last;
@@ -281,9 +285,7 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  const auto deviation = [&](Belief::Row row) {
-    return std::sqrt(consistency_.growth() * now_.covariance(row, row));
-  };
+  const auto deviation = [&](Belief::Row row) { return std::sqrt(consistency_.growth() * now_.covariance(row, row)); };
   return {now_.factor, deviation(Belief::kFactor), now_.state.drive_inertia, deviation(Belief::kInertia)};
 }
 

@@ -49,6 +49,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
       imu_(settings.imu),
       unit_check_(settings.max_crank_speed),
+      sequence_(settings.crank_stamps, settings.stale_after),
       intake_(limitsOf(settings, tracker_->angleResolution())),
       step_(*tracker_),
       outputs_(hull_model_, step_, settings),
@@ -98,7 +99,7 @@ void Pipeline::predictHull(StampNs stamp) noexcept {
 const Loads& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>& names,
                                   const std::vector<double>& positions,
                                   const std::vector<double>& velocities) noexcept {
-  loads_.stamp = stamp;
+  loads_.stamp = loads_.sample_stamp = stamp;
   loads_.turn_ends = 0;
   const auto found = std::find(names.begin(), names.end(), settings_.crank_joint);
   if (found == names.end()) return refuse(Refusal::kMissingJoint);
@@ -114,10 +115,16 @@ const Loads& Pipeline::refuse(Refusal refusal) noexcept {
   return loads_;
 }
 
-const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& measured) noexcept {
-  loads_.stamp = stamp;
+const Loads& Pipeline::crankSample(StampNs header, const CrankSample& measured) noexcept {
   loads_.turn_ends = 0;
   loads_.refusal.reset();
+  loads_.sample_stamp = header;
+  const bool repeats = measured.angle == last_raw_.angle && measured.speed == last_raw_.speed;
+  last_raw_ = measured;
+  const StampSequence::Place place = sequence_.place(header, repeats);
+  const StampNs stamp = loads_.stamp = place.stamp;
+  if (place.kind == StampSequence::Kind::kDuplicate) return refuse(Refusal::kDuplicate);
+  if (place.kind == StampSequence::Kind::kOutOfOrder) return refuse(Refusal::kOutOfOrder);
   unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
   last_raw_stamp_ = stamp;
   const Intake::Verdict verdict = intake_.judge(stamp, measured);

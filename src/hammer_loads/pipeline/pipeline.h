@@ -37,7 +37,8 @@ struct TurnEnd {
 
 /// What one crank sample gave.
 struct Loads {
-  StampNs stamp{};
+  StampNs stamp{};         ///< instant of the sample: its header stamp, or that refitted by sequence
+  StampNs sample_stamp{};  ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, crank and wrench are void (the turn ends are not)
   CrankEstimate crank;
   HullWrench wrench;        ///< at the sample
@@ -127,6 +128,8 @@ class Pipeline {
   bool hull_known_{true};
   UnitCheck unit_check_;
   std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
+  StampSequence sequence_;
+  CrankSample last_raw_;  ///< last sample, taken or not
   Intake intake_;
   CrankStep step_;
   HullOutputs outputs_;
