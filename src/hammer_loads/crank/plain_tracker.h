@@ -22,6 +22,7 @@ class PlainTracker final : public CrankTracker {
   /// Angle by the cubic through both angles and speeds, speed and acceleration linear.
   CrankEstimate between(double dt) const noexcept override;
   bool hasSpeed() const noexcept override { return has_speed_; }
+  double angleResolution() const noexcept override { return encoder_.resolution(); }
 
  private:
   Acceleration acceleration_;

@@ -39,9 +39,10 @@ inline PinReactions pinForces(const HullModel& model, const CrankMotion& crank, 
   return pinForces(model.mechanism(), model.level(), crank, hull, NearBlow(near_blow));
 }
 
-/// Blow of a crank that passes the blow forward at that speed [rad/s].
-inline RockerBlow blowAtCrankSpeed(const HullModel& model, double crank_speed) noexcept {
-  return blowAtCrankSpeed(model.mechanism(), model.level(), crank_speed);
+/// Blow by what the crank's speed did at it; where that is not known, of a crank that keeps its speed.
+inline RockerBlow measuredBlow(const HullModel& model, const CrankBlow& crank) noexcept {
+  if (!(crank.drive_inertia > 0.0)) return blowAtCrankSpeed(model.mechanism(), model.level(), crank.speed);
+  return measuredBlow(model.mechanism(), model.level(), crank);
 }
 
 /// Wrench from motion of the links relative to the hull alone: without weight, in a hull at rest.

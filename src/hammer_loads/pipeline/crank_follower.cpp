@@ -13,29 +13,47 @@ constexpr double kSettledDeviations = 3;  // predicted error = so many standard 
 constexpr double kFrozenCounts = 5;       // a crank that turned further gives another angle
 constexpr double kFrozenDeviations = 5;   // of a sensor's noise, likewise
 
-CrankSampleGate::Limits limitsOf(const PipelineSettings& s) noexcept {
-  double frozen_turn = kFrozenCounts * s.crank_angle_resolution + kFrozenDeviations * s.crank_angle_noise;
+/// resolution: of the angle sensor [rad].
+double frozenTurn(const PipelineSettings& s, double resolution) noexcept {
   // The trackers for comparison take every reading as it is.
-  if (s.crank_estimator != CrankEstimator::kMechanism) frozen_turn = std::numeric_limits<double>::infinity();
-  return {s.max_crank_speed, s.stale_after, frozen_turn, kFrozenDeviations * s.crank_speed_noise};
+  if (s.crank_estimator != CrankEstimator::kMechanism) return std::numeric_limits<double>::infinity();
+  return kFrozenCounts * resolution + kFrozenDeviations * s.crank_angle_noise;
+}
+
+CrankSampleGate::Limits limitsOf(const PipelineSettings& s, double resolution) noexcept {
+  return {s.max_crank_speed, s.stale_after, frozenTurn(s, resolution), kFrozenDeviations * s.crank_speed_noise};
 }
 
 }  // namespace
 
 CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& settings)
     : model_(&model),
-      withhold_above_(settings.withhold_above),
+      settings_(settings),
       unit_check_(settings.max_crank_speed),
-      gate_(limitsOf(settings)),
+      sequence_(settings.crank_stamps, settings.stale_after),
       tracker_(makeTracker(model.mechanism(), settings)),
+      gate_(limitsOf(settings, tracker_->angleResolution())),
       step_(*tracker_) {}
 
-std::optional<Refusal> CrankFollower::judge(StampNs stamp, const CrankSample& measured) noexcept {
-  stamp_ = stamp;
+/// Its instant, by its place in the sequence of arrival.
+std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& measured) noexcept {
+  stamp_ = header;
+  if (header < 0 || header > kLastStamp) return Refusal::kBadStamp;
+  const bool repeats = measured.angle == last_raw_.angle && measured.speed == last_raw_.speed;
+  last_raw_ = measured;
+  const StampSequence::Place place = sequence_.place(header, repeats);
+  stamp_ = place.stamp;
+  if (place.kind == StampSequence::Kind::kDuplicate) return Refusal::kDuplicate;
+  if (place.kind == StampSequence::Kind::kOutOfOrder) return Refusal::kOutOfOrder;
+  return std::nullopt;
+}
+
+std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& measured) noexcept {
+  if (const auto refusal = place(header, measured)) return refusal;
   measured_ = measured;
-  unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
-  last_raw_stamp_ = stamp;
-  verdict_ = gate_.judge(stamp, measured);
+  unit_check_.add(last_raw_stamp_ ? seconds(stamp_ - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
+  last_raw_stamp_ = stamp_;
+  verdict_ = gate_.judge(stamp_, measured);
   if (verdict_.refusal) return verdict_.refusal;
   if (unit_check_.looksLikeDegrees()) return Refusal::kDegrees;
   return std::nullopt;
@@ -64,6 +82,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
 
 void CrankFollower::accept() noexcept {
   gate_.accept(stamp_, measured_);
+  gate_.setFrozenTurn(frozenTurn(settings_, tracker_->angleResolution()));
   last_position_ = estimate_.position;
 }
 
@@ -82,7 +101,7 @@ bool CrankFollower::isSettled(const HullMotion& hull, double peak_force) noexcep
   if (peak_force > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;
   if (peak_force > 0.0) {
     const double deviation = hullDeviation(*model_, estimate_, hull, tracker_->motionCovariance(1.0)).wrench.force_z;
-    if (kSettledDeviations * deviation > withhold_above_ * peak_force) return false;
+    if (kSettledDeviations * deviation > settings_.withhold_above * peak_force) return false;
   }
   unsettled_ = false;
   return true;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/crank_sample_gate.h"
 #include "hammer_loads/pipeline/crank_step.h"
@@ -28,8 +29,10 @@ class CrankFollower {
     kContinued,  ///< taken; step() is the time since the sample before
   };
 
-  /// Judges a sample by itself. Only if there is no refusal, take() must follow.
-  std::optional<Refusal> judge(StampNs stamp, const CrankSample& measured) noexcept;
+  /// Judges a sample by itself: header stamp and reading. Only if there is no refusal, take() must follow.
+  std::optional<Refusal> judge(StampNs header, const CrankSample& measured) noexcept;
+  /// Instant of the judged sample: its header stamp, or that refitted by sequence.
+  StampNs stamp() const noexcept { return stamp_; }
   /// Takes the judged sample. hull: motion at it.
   Taken take(const HullMotion& hull) noexcept;
   /// Ends a step: later steps begin at this sample.
@@ -45,14 +48,17 @@ class CrankFollower {
   bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
 
  private:
+  std::optional<Refusal> place(StampNs header, const CrankSample& measured) noexcept;
   void restart() noexcept;
 
   const HullModel* model_;
-  double withhold_above_;
+  PipelineSettings settings_;
   UnitCheck unit_check_;
   std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
-  CrankSampleGate gate_;
+  CrankSample last_raw_;                   ///< likewise
+  StampSequence sequence_;
   std::unique_ptr<CrankTracker> tracker_;
+  CrankSampleGate gate_;
   CrankStep step_;
   CrankEstimate estimate_;
 

@@ -2,6 +2,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/plain_tracker.h"
+#include "hammer_loads/linkage/blow_inertia.h"
 
 namespace hammer_loads {
 
@@ -15,6 +16,7 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
   CrankFilterSettings filter;
   filter.angle_resolution = s.crank_angle_resolution;
   filter.angle_noise = s.crank_angle_noise;
+  filter.timing_noise = s.crank_timing_noise;
   filter.speed_noise = s.crank_speed_noise;
   filter.torque_walk = s.torque_walk * inertia;
   filter.speed_walk = s.speed_walk;
@@ -22,6 +24,7 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
   filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
   filter.initial_inertia_deviation = s.initial_inertia_deviation;
   filter.max_speed = s.max_crank_speed;
+  filter.blow_factor = blowInertia(mechanism, s.level, mechanism.parameters().drive_inertia).smoothFactor();
   return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia, filter);
 }
 

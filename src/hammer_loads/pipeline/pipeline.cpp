@@ -18,7 +18,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       model_(mechanism_, settings.level),
       crank_(model_, settings_),
       hull_(settings_),
-      turn_(model_, crank_.step()),
+      turn_(model_, crank_.step(), crank_.tracker()),
       sampler_(model_, crank_.step(), crank_.tracker(), settings_),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings_, mechanism.parameters().striking_distance);
@@ -38,7 +38,7 @@ std::optional<ImuRefusal> Pipeline::hullImu(StampNs stamp, const ImuReading& rea
 const SampleResult& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>& names,
                                          const std::vector<double>& positions,
                                          const std::vector<double>& velocities) noexcept {
-  result_.stamp = stamp;
+  result_.stamp = result_.sample_stamp = stamp;
   result_.turn_ends = 0;
   result_.outputs.clear();
   const auto found = std::find(names.begin(), names.end(), settings_.crank_joint);
@@ -63,13 +63,14 @@ const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
   return refuse(refusal);
 }
 
-const SampleResult& Pipeline::crankSample(StampNs stamp, const CrankSample& measured) noexcept {
-  result_.stamp = stamp;
+const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& measured) noexcept {
+  result_.stamp = result_.sample_stamp = header;
   result_.turn_ends = 0;
   result_.outputs.clear();
   result_.refusal.reset();
-  if (const auto refusal = crank_.judge(stamp, measured)) return refuse(*refusal);
+  if (const auto refusal = crank_.judge(header, measured)) return refuse(*refusal);
 
+  const StampNs stamp = result_.stamp = crank_.stamp();
   const CrankFollower::Taken taken = crank_.take(hull_.predict(stamp));
   if (taken == CrankFollower::Taken::kRefused) return refuse(Refusal::kImplausible);
   result_.crank = crank_.estimate();
@@ -108,7 +109,7 @@ void Pipeline::followBoom() noexcept {
 }
 
 void Pipeline::restart() noexcept {
-  turn_.restart();
+  turn_.restart(result_);
   sampler_.forget();
   boom_follows_ = false;
   ++counts_.restarts;

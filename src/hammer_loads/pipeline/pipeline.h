@@ -33,7 +33,7 @@ class Pipeline {
   const SampleResult& crankJoint(StampNs stamp, const std::vector<std::string>& names,
                                  const std::vector<double>& positions, const std::vector<double>& velocities) noexcept;
   /// A crank sample. The result is valid until the next call. No allocation.
-  const SampleResult& crankSample(StampNs stamp, const CrankSample& measured) noexcept;
+  const SampleResult& crankSample(StampNs header, const CrankSample& measured) noexcept;
 
   const SampleResult& result() const noexcept { return result_; }  ///< of the last sample
   SampleCounts counts() const noexcept;

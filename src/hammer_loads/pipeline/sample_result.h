@@ -16,7 +16,7 @@
 
 namespace hammer_loads {
 
-/// A blow and, if the turn before it was seen whole, its pulse.
+/// A blow and, if the turn before it was seen whole, its pulse. Known some 50 ms after the blow.
 struct TurnEnd {
   StampNs stamp{};       ///< instant of the blow, found between samples [ns]
   std::uint64_t turn{};  ///< blows since the start, 1 for the first
@@ -36,7 +36,8 @@ struct WrenchOutput {
 };
 
 struct SampleResult {
-  StampNs stamp{};
+  StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence
+  StampNs sample_stamp{};          ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
   CrankEstimate crank;
   LinkState links;

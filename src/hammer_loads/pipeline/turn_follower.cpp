@@ -12,7 +12,8 @@ constexpr double kSideOfBlow = 1e-7;    // [s] before and after the blow where i
 
 }  // namespace
 
-void TurnFollower::restart() noexcept {
+void TurnFollower::restart(SampleResult& result) noexcept {
+  finishBlow(result);
   turn_.abandon();
   last_blow_.reset();
 }
@@ -45,26 +46,41 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
     }
     if (!passage.strikes) continue;
     recordTo(from, std::max(from, passage.time - kSideOfBlow));
-    const TurnEnd end = endTurn(passage);
-    if (result.turn_ends < result.ends.size()) result.ends[result.turn_ends++] = end;
+    finishBlow(result);
+    endTurn(passage);
     from = passage.time + kSideOfBlow;
   }
   recordTo(from, step_->length());
+  if (pending_.isWaiting()) pending_.follow(tracker_->blowFactor());
+  const double now = seconds(step_->start() - epoch_) + step_->length();
+  if (pending_.isMeasured(now, result.crank.position)) finishBlow(result);
 }
 
-TurnEnd TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
-  TurnEnd end;
+/// The turn ends now; what the blow was shows later.
+void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
+  TurnEnd& end = pending_end_;
+  end = {};
   end.stamp = step_->start() + static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
   end.turn = ++turns_;
-  end.blow = blowAtCrankSpeed(*model_, passage.speed);
   const double time = seconds(step_->start() - epoch_) + passage.time;
   end.pulse = turn_.end(instant(time, step_->besides(passage, Side::kBeforeBlow)));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
-  end.mean_press_force = last_blow_ ? end.blow.tool_impulse_z / seconds(end.stamp - *last_blow_)
-                                    : std::numeric_limits<double>::quiet_NaN();
+  end.mean_press_force =  // times the impulse, once that is known
+      last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
+  const double deviation = std::sqrt(tracker_->covarianceBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0)(1, 1));
+  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, deviation);
+  pending_.follow(tracker_->blowFactor());
   last_blow_ = end.stamp;
   turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
-  return end;
+}
+
+/// The pending blow, as it is known by now.
+void TurnFollower::finishBlow(SampleResult& result) noexcept {
+  if (!pending_.isWaiting()) return;
+  turn_.correctBegin(linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
+  pending_end_.blow = measuredBlow(*model_, pending_.take());
+  pending_end_.mean_press_force *= pending_end_.blow.tool_impulse_z;
+  if (result.turn_ends < result.ends.size()) result.ends[result.turn_ends++] = pending_end_;
 }
 
 }  // namespace hammer_loads

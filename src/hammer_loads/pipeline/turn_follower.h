@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/pending_blow.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
 
@@ -12,14 +14,16 @@ namespace hammer_loads {
 
 class TurnFollower {
  public:
-  /// Refers to both, which must outlive it.
-  TurnFollower(const HullModel& model, const CrankStep& step) : model_(&model), step_(&step) {}
+  /// Refers to them, which must outlive it.
+  TurnFollower(const HullModel& model, const CrankStep& step, const CrankTracker& tracker)
+      : model_(&model), step_(&step), tracker_(&tracker) {}
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
-  /// What came before does not belong to the coming turn.
-  void restart() noexcept;
-  /// Follows the step up to the sample of `result`; turns that end in it are its `ends`. hull: motion over the step.
+  /// What came before does not belong to the coming turn; a blow that was being measured is one of `ends`.
+  void restart(SampleResult& result) noexcept;
+  /// Follows the step up to the sample of `result`. Turns whose blow is measured by now are its `ends`: some 50 ms
+  /// after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
 
   double peakForce() const noexcept { return peak_force_; }            ///< of the last whole turn [N], 0 before it
@@ -28,12 +32,16 @@ class TurnFollower {
 
  private:
   void recordTo(double from, double to) noexcept;
-  TurnEnd endTurn(const CrankStep::Passage& passage) noexcept;
+  void endTurn(const CrankStep::Passage& passage) noexcept;
+  void finishBlow(SampleResult& result) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
 
   const HullModel* model_;
   const CrankStep* step_;
+  const CrankTracker* tracker_;
   TurnRecorder turn_;
+  PendingBlow pending_;
+  TurnEnd pending_end_;  ///< of the pending blow
   HullMotion hull_;
   StampNs epoch_{};                   ///< first sample since the last restart by time
   std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole

@@ -59,8 +59,10 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.pitch_joints = reader.names("pitch_joints");
   s.hull_pitch = reader.number("hull_pitch_rad", "rad", kAny);
   s.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
-  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kPositive);
+  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kNotNegative);
   s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", kNotNegative);
+  s.crank_stamps = reader.choice("crank_stamps", kCrankStampsNames);
+  s.crank_timing_noise = reader.number("crank_timing_noise_s", "s", kNotNegative);
   s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kPositive);
   s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", kPositive);
   s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", kNotNegative);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
 
@@ -36,6 +37,9 @@ constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorN
     {{"mechanism", CrankEstimator::kMechanism},
      {"difference", CrankEstimator::kDifference},
      {"none", CrankEstimator::kNone}}};
+
+constexpr std::array<std::pair<const char*, CrankStamps>, 3> kCrankStampsNames{
+    {{"auto", CrankStamps::kAuto}, {"header", CrankStamps::kHeader}, {"steady", CrankStamps::kSteady}}};
 
 constexpr std::array<std::pair<const char*, OutputKind>, 2> kOutputNames{
     {{"instantaneous", OutputKind::kInstantaneous}, {"mean", OutputKind::kMean}}};
@@ -84,8 +88,10 @@ struct PipelineSettings {
   HullMotionSource hull_motion{};
   HullImuSettings imu;                 ///< where the IMU sits
   double gravity{};                    ///< [m/s2], >= 0
-  double crank_angle_resolution{};     ///< encoder count [rad], > 0
+  double crank_angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings
   double crank_angle_noise{};          ///< standard deviation beside the count [rad], >= 0
+  CrankStamps crank_stamps{};          ///< which instants the samples get
+  double crank_timing_noise{};         ///< standard deviation of a sample's stamp, first guess [s], >= 0
   double crank_speed_noise{};          ///< standard deviation of a measured speed [rad/s], > 0
   double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
   double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0

@@ -1,0 +1,62 @@
+#include "hammer_loads/crank/stamp_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kOfLate = 1000.0;         // samples over which irregular stamps are counted
+constexpr double kMany = 5.0;              // of them: not a single late message
+constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
+
+}  // namespace
+
+StampSequence::StampSequence(CrankStamps mode, double stale_after) noexcept
+    : mode_(mode), stale_(static_cast<std::int64_t>(std::llround(stale_after * 1e9))) {}
+
+StampSequence::Place StampSequence::begin(std::int64_t header) noexcept {
+  header_ = newest_ = placed_ = header;
+  rewound_.reset();
+  irregularity_ = 0.0;
+  steady_ = mode_ == CrankStamps::kSteady;
+  fit_.begin(header);
+  return {Kind::kRestart, header, false};
+}
+
+StampSequence::Place StampSequence::place(std::int64_t header, bool repeats) noexcept {
+  if (!header_) return begin(header);
+  if (header == *header_ && repeats) return {Kind::kDuplicate, header, false};
+  const std::int64_t back = newest_ - header;
+  const bool too_far = mode_ == CrankStamps::kHeader ? back > 0 : back > stale_;
+  if (too_far) {  // a single one may just be late
+    const bool again = rewound_ && header > *rewound_;
+    rewound_ = header;
+    return again ? begin(header) : Place{Kind::kOutOfOrder, header, false};
+  }
+  if (mode_ == CrankStamps::kHeader && back == 0) return {Kind::kDuplicate, header, false};
+  rewound_.reset();
+  if (-back > stale_) return begin(header);
+  return next(header);
+}
+
+StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
+  const std::int64_t fitted = fit_.add(header);
+  const bool irregular = header <= newest_;
+  irregular_ += irregular;
+  irregularity_ += (irregular ? 1.0 : 0.0) - irregularity_ / kOfLate;
+  header_ = header;
+  newest_ = std::max(newest_, header);
+  if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;
+  std::int64_t instant = header;
+  if (steady_) {
+    instant = fitted;
+  } else if (header <= placed_) {
+    const auto half = static_cast<std::int64_t>(0.5 * fit_.interval());
+    instant = std::min(fitted, placed_ + std::max(half, kLeastStep));
+  }
+  placed_ = instant > placed_ ? instant : placed_ + kLeastStep;
+  return {Kind::kPlaced, placed_, placed_ != header};
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,63 @@
+/// Instants of crank samples whose stamps repeat, come in bursts or change places.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "hammer_loads/crank/steady_clock_fit.h"
+
+namespace hammer_loads {
+
+/// Which instants the samples get.
+enum class CrankStamps {
+  kAuto,    ///< header stamps as they are, unless they repeat or change places
+  kHeader,  ///< header stamps; what does not follow them is refused
+  kSteady,  ///< taken at equal intervals: header stamps refitted by the sequence of arrival
+};
+
+/// The sequence of samples is their order of arrival. A sample without irregular ones among the last thousand keeps its
+/// header stamp, bit for bit, however irregular the intervals. Where a few stamps repeat or run back a little, the
+/// sample gets an instant between its neighbours; where many do and the sensor evidently samples at equal intervals,
+/// all get the line through the stamps so far. Causal; instants strictly increase until a restart.
+class StampSequence {
+ public:
+  enum class Kind {
+    kPlaced,      ///< the instant holds
+    kDuplicate,   ///< the same message again: it changes nothing
+    kOutOfOrder,  ///< with kHeader: not after the last; else: so far back that the next one shows whether time ran back
+    kRestart,     ///< placed, but nothing before it continues: a gap, or time ran back
+  };
+  struct Place {
+    Kind kind{Kind::kPlaced};
+    std::int64_t stamp{};  ///< instant [ns]
+    bool refitted{};       ///< it is not the header stamp
+  };
+
+  /// stale_after: gap or way back from which on a sample starts anew [s].
+  StampSequence(CrankStamps mode, double stale_after) noexcept;
+
+  /// header: stamp of the message that arrives [ns]; repeats: all its values are those of the message before.
+  Place place(std::int64_t header, bool repeats) noexcept;
+  /// Stamps are being refitted by sequence.
+  bool isSteady() const noexcept { return steady_; }
+  /// Stamps that repeated or changed places since the start.
+  std::uint64_t irregular() const noexcept { return irregular_; }
+  const SteadyClockFit& fit() const noexcept { return fit_; }
+
+ private:
+  Place begin(std::int64_t header) noexcept;
+  Place next(std::int64_t header) noexcept;
+
+  CrankStamps mode_;
+  std::int64_t stale_;                   ///< [ns]
+  std::optional<std::int64_t> header_;   ///< of the last message taken [ns]
+  std::optional<std::int64_t> rewound_;  ///< of the last message, if it was refused as out of order
+  std::int64_t newest_{};                ///< latest header stamp since the beginning [ns]
+  std::int64_t placed_{};                ///< instant of the last message [ns]
+  double irregularity_{};                ///< irregular stamps of late
+  std::uint64_t irregular_{};
+  bool steady_{};
+  SteadyClockFit fit_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,100 @@
+#include "hammer_loads/crank/steady_clock_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kMemory = 4096.0;         // samples
+constexpr double kScatterSamples = 300.0;  // over which scatter is learned, but no fewer than kWarm runs
+constexpr int kWarm = 20;                  // runs from which on the line is good enough to judge by
+constexpr int kFirst = 4;                  // runs until there is a line
+constexpr double kClip = 4.0;              // root mean squares: a stamp further off counts as that far off
+constexpr double kGap = 6.0;               // root mean squares beyond which samples were lost for certain
+constexpr double kEvidence = 7.0;          // logarithm of likelihood ratio that a sample was lost
+constexpr double kLeastScatter = 0.15;     // of the interval: a run's beginning is not known better
+constexpr double kGrown = 2.0;             // scatter about the line over that of white jitter with such steps
+
+double square(double x) noexcept { return x * x; }
+
+}  // namespace
+
+void SteadyClockFit::begin(std::int64_t stamp) noexcept {
+  *this = SteadyClockFit{};
+  origin_ = stamp_ = stamp;
+  run_length_ = 1;
+}
+
+bool SteadyClockFit::explains() const noexcept {
+  return runs_ >= kWarm && interval_ > 0.0 && end_square_ <= square(kGrown) * 0.5 * step_square_;
+}
+
+double SteadyClockFit::scatterGain() const noexcept {
+  return 1.0 / std::min<double>(runs_, std::max<double>(kWarm, kScatterSamples / mean_length_));
+}
+
+/// The line takes up the run that has ended, by its last sample.
+void SteadyClockFit::endRun() noexcept {
+  const double end = residual_, step = end - end_residual_;
+  end_residual_ = end;
+  if (++runs_ == 1) return;  // the first one is the line's beginning
+  mean_length_ += (run_length_ - mean_length_) / std::min<double>(runs_, kScatterSamples);
+  const double n = std::min<double>(runs_, kMemory / mean_length_);
+  double used = end;
+  if (runs_ >= kWarm) {
+    const double most = kClip * std::max(std::sqrt(end_square_), 0.01 * interval_);
+    used = std::clamp(used, -most, most);
+  }
+  instant_ += used * 2.0 * (2.0 * n - 1.0) / (n * (n + 1.0));
+  interval_ = std::max(0.0, interval_ + used / run_length_ * 6.0 / (n * (n + 1.0)));
+  const double gain = scatterGain();
+  end_square_ += gain * (square(used) - end_square_);
+  step_square_ += gain * (square(step) - step_square_);
+}
+
+/// residual: of a run's first sample. Shifts the line by whole intervals.
+void SteadyClockFit::watchLost(double residual) noexcept {
+  if (runs_ < kFirst) {
+    start_mean_ = residual;
+    return;
+  }
+  double off = residual - start_mean_;
+  if (runs_ >= kWarm && interval_ > 0.0) {
+    const double scatter = std::max(std::sqrt(start_variance_), kLeastScatter * interval_);
+    const double per_interval = interval_ / square(scatter);
+    lost_evidence_ = std::max(0.0, lost_evidence_ + per_interval * (off - 0.5 * interval_));
+    gained_evidence_ = std::max(0.0, gained_evidence_ + per_interval * (-off - 0.5 * interval_));
+    double shift = 0.0;
+    if (off > kGap * scatter + 2.0 * interval_)
+      shift = std::nearbyint(off / interval_);
+    else if (lost_evidence_ > kEvidence)
+      shift = std::max(1.0, std::nearbyint(off / interval_));
+    else if (gained_evidence_ > kEvidence)
+      shift = std::min(-1.0, std::nearbyint(off / interval_));
+    if (shift != 0.0) {
+      lost_evidence_ = gained_evidence_ = 0.0;
+      instant_ += shift * interval_;
+      off -= shift * interval_;
+      end_residual_ -= shift * interval_;
+    }
+    off = std::clamp(off, -kClip * scatter, kClip * scatter);
+  }
+  const double gain = scatterGain();
+  start_mean_ += gain * off;
+  start_variance_ += gain * (square(off) - start_variance_);
+}
+
+std::int64_t SteadyClockFit::add(std::int64_t stamp) noexcept {
+  const bool new_run = stamp != stamp_;
+  stamp_ = stamp;
+  const double now = static_cast<double>(stamp - origin_);
+  if (new_run) endRun();
+  instant_ += interval_;
+  if (new_run) watchLost(now - instant_);
+  residual_ = now - instant_;
+  run_length_ = new_run ? 1 : run_length_ + 1;
+  return origin_ + static_cast<std::int64_t>(std::llround(instant_));
+}
+
+}  // namespace hammer_loads
