@@ -8,6 +8,8 @@
 #include <set>
 #include <sstream>
 
+#include "hammer_loads/ros/grapple_outputs.h"
+#include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -83,8 +85,8 @@ std::string shown(const YAML::Node& value) {
   return "[" + list + "]";
 }
 
-TEST(Readme, TablesHoldEveryParameterWithItsShippedValue) {
-  const std::string readme = textOf("README.md");
+TEST(Parameters, TablesHoldEachOneWithItsShippedValue) {
+  const std::string readme = textOf("doc/parameters.md");
   for (const std::string file :
        {"config/hammer_mo100.yaml", "config/pipeline.yaml", "config/log.yaml", "config/grapple_node.yaml"}) {
     std::vector<std::string> problems;
@@ -99,24 +101,22 @@ TEST(Readme, TablesHoldEveryParameterWithItsShippedValue) {
       in_readme.insert(key);
       const auto found = parameters.find(key);
       if (found == parameters.end()) {
-        ADD_FAILURE() << key << " is in README.md, but not in " << file;
+        ADD_FAILURE() << key << " is in doc/parameters.md, but not in " << file;
       } else {
         EXPECT_EQ(row[1], shown(found->second.value)) << key;
       }
     }
     for (const auto& [key, parameter] : parameters)
-      EXPECT_EQ(in_readme.count(key), 1U) << key << " of " << file << " is not in README.md";
+      EXPECT_EQ(in_readme.count(key), 1U) << key << " of " << file << " is not in doc/parameters.md";
   }
 }
 
-/// Of a node's source.
-Names topicsOf(const std::string& file) {
-  const std::string node = textOf(file);
-  Names topics = matches(node, "node\\.subscribe\\(\"(\\w+)\"");
-  for (const std::string& output : matches(node, "private_node\\.advertise<[^>]*>\\(\"([\\w/]+)\""))
-    topics.insert("~" + output + (output.back() == '/' ? "LINK" : ""));
-  topics.insert("/diagnostics");
-  return topics;
+/// What a table of outputs publishes, and what its node takes.
+template <typename Outputs>
+Names topicsOf(Outputs outputs, Names inputs) {
+  outputs.forEach([&inputs](const auto& output) { inputs.insert("~" + output.name()); });
+  inputs.insert("/diagnostics");
+  return inputs;
 }
 
 /// First cells of a section's tables; JAW in one stands for left and right.
@@ -130,11 +130,10 @@ Names topicsInReadme(const std::string& heading) {
 }
 
 TEST(Readme, TablesHoldEveryTopicOfTheNodes) {
-  const Names hammer = topicsOf("src/hammer_loads/ros/hammer_loads_node.cpp");
-  EXPECT_GE(hammer.size(), 8U);
-  EXPECT_EQ(topicsInReadme("## Topics"), hammer);
-  const Names grapple = topicsOf("src/hammer_loads/ros/grapple_node.cpp");
-  EXPECT_EQ(grapple.size(), 10U);
+  HammerOutputs outputs;
+  outputs.boom_wrench.emplace_back("boom_wrench/LINK");
+  EXPECT_EQ(topicsInReadme("## Topics"), topicsOf(outputs, {"crank", "joint_states", "hull_imu"}));
+  const Names grapple = topicsOf(GrappleOutputs{}, {"joint_states"});
   EXPECT_EQ(topicsInReadme("### Grapple\n"), grapple);
 }
 
@@ -149,7 +148,7 @@ TEST(Readme, TableHoldsEveryMessage) {
 
 TEST(Readme, HoldsEveryCommandAndNode) {
   const std::string commands = section(textOf("README.md"), "## Commands");
-  for (const auto& entry : fs::directory_iterator(kRoot / "src/hammer_loads")) {
+  for (const auto& entry : fs::directory_iterator(kRoot / "src/hammer_loads/commands")) {
     const std::string name = entry.path().stem().string();
     const std::size_t end = name.rfind("_main");
     if (end == std::string::npos) continue;
@@ -157,7 +156,7 @@ TEST(Readme, HoldsEveryCommandAndNode) {
   }
   for (const Cells& row : tableRows(commands)) {
     const std::string name = withoutBackquotes(row[0]).substr(0, withoutBackquotes(row[0]).find(' '));
-    EXPECT_TRUE(fs::exists(kRoot / "src/hammer_loads" / (name + "_main.cpp"))) << name;
+    EXPECT_TRUE(fs::exists(kRoot / "src/hammer_loads/commands" / (name + "_main.cpp"))) << name;
   }
 }
 
