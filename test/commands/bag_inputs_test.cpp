@@ -73,6 +73,16 @@ TEST_F(BagInputFiles, AnUnindexedBagNamesReindex) {
   EXPECT_EQ(names().size(), 2U);
 }
 
+/// Chunks in the middle overwritten: the index is whole, what it leads to is not.
+TEST_F(BagInputFiles, ADamagedBagIsBlamedNotTheOutput) {
+  std::string bytes = test::contentOf(kSession);
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 3), 20000, '\x5a');
+  std::ofstream(path("damaged.bag"), std::ios::binary) << bytes;
+  const test::Outcome outcome = run(path("damaged.bag") + " " + path("out.bag"));
+  expectRefused(outcome, {path("damaged.bag") + ": cannot be read"});
+  EXPECT_EQ(names().size(), 1U);
+}
+
 TEST_F(BagInputFiles, WhatIsNoBagIsNamed) {
   std::ofstream(path("text.bag")) << "no bag at all\n";
   expectRefused(run(path("text.bag") + " " + path("out.bag")), {path("text.bag") + ": cannot be read as a bag"});

@@ -78,13 +78,15 @@ TEST_F(RecordedRuns, ParametersAndTopicsAreThoseOfTheLog) {
   EXPECT_TRUE(again == reference(plain("plain.bag"), changed));
   EXPECT_FALSE(again == reference(path("plain.bag"), "level: rocker\n")) << "the parameters count";
 
-  // Given parameters go over the log's, given names of topics as well.
-  const test::TemporaryFile other("level: rocker\ninput_topic_crank: /machine/turns\n");
-  const test::Outcome given =
-      run(log + " " + path("given.bag") + " --params " + other.path() + " --joint-states-topic /machine/joints");
+  // Given parameters go over the log's; it still says where its inputs are.
+  const test::TemporaryFile other("level: rocker\n");
+  const test::Outcome given = run(log + " " + path("given.bag") + " --params " + other.path());
   ASSERT_EQ(given.exit_code, 0) << given.err;
   EXPECT_EQ(given.err.find("parameters of"), std::string::npos) << given.err;
   EXPECT_TRUE(contentOfBag(path("given.bag")) == reference(path("plain.bag"), "level: rocker\n"));
+  // Names that are given go over both.
+  const test::TemporaryFile named("level: rocker\ninput_topic_crank: /nowhere\n");
+  expectRefused(run(log + " " + path("x.bag") + " --params " + named.path()), {"no topic /nowhere"});
   expectRefused(run(log + " " + path("x.bag") + " --crank-topic /hammer/crank"), {"no topic /hammer/crank"});
 }
 

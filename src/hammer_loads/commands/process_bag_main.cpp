@@ -27,10 +27,7 @@ void addOptions(CLI::App& app, Arguments& given, BagJob& job) {
       ->expected(2, 1000000);
   app.add_flag("--force", given.force, "replace OUT.bag if it holds outputs of this package and nothing else");
   addParamsOption(app, given.params);
-  app.get_option("--params")
-      ->description(
-          "parameters over the shipped ones, instead of those of a run_info in the bags; may be repeated, the last one "
-          "wins");
+  app.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(app, given.urdf);
   const auto topic = [&](const char* option, std::string& name, const std::string& by_default) {
     app.add_option(option, name)->type_name("TOPIC")->default_str("as in run_info, else " + by_default);

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,16 @@ std::string typeOf() {
   return ros::message_traits::datatype<Message>();
 }
 
-/// Throws rosbag::BagFormatException where it is of another definition.
+/// Throws std::runtime_error where it is damaged or of another definition.
 template <typename Message>
 boost::shared_ptr<Message> messageOf(const rosbag::MessageInstance& item) {
-  const auto message = item.instantiate<Message>();
-  if (!message) throw rosbag::BagFormatException("a message on " + item.getTopic() + " cannot be read");
-  return message;
+  std::string reason = "of another definition";
+  try {
+    if (const auto message = item.instantiate<Message>()) return message;
+  } catch (const rosbag::BagException& error) {
+    reason = error.what();
+  }
+  throw std::runtime_error("a message on " + item.getTopic() + " cannot be read: " + reason);
 }
 
 class BagInputs {

@@ -158,10 +158,7 @@ std::string write(const Work& work, const std::function<void(double)>& progress,
     process(work, output.bag(), progress, report);
     output.close();
     return {};
-  } catch (const rosbag::BagFormatException&) {
-    throw;  // of the input
-  } catch (const rosbag::BagException& error) {
-    if (std::strstr(error.what(), "reading") != nullptr) throw;
+  } catch (const rosbag::BagException& error) {  // what goes wrong with an input is none
     return "cannot be written: " + onOneLine(errno != 0 ? std::strerror(errno) : error.what());
   }
 }

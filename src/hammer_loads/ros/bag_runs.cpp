@@ -3,6 +3,7 @@
 #include <hammer_loads/RunInfo.h>
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/recorded_settings.h"
@@ -52,26 +53,37 @@ RunInfos readRunInfos(const BagInputs& inputs, std::vector<std::string>& warning
   return found;
 }
 
-std::string either(const std::string& first, const std::string& second, const std::string& third) {
-  return !first.empty() ? first : !second.empty() ? second : third;
+/// The first name that is known.
+std::string firstOf(std::initializer_list<std::string> names) {
+  const auto known = std::find_if(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
+  return known == names.end() ? "" : *known;
 }
 
-/// The job's names go over those that the parameters give.
-Settings withTopics(Settings settings, const InputTopics& given) {
+/// The job's names go over those of the parameters, these over the recorded ones.
+Settings withTopics(Settings settings, const InputTopics& given, const InputTopics& recorded = {}) {
   const InputTopics& known = settings.input_topics;
-  const InputTopics topics{either(given.crank, known.crank, kDefaultTopics.crank),
-                           either(given.joint_states, known.joint_states, kDefaultTopics.joint_states),
-                           either(given.hull_imu, known.hull_imu, kDefaultTopics.hull_imu)};
+  const InputTopics topics{
+      firstOf({given.crank, known.crank, recorded.crank, kDefaultTopics.crank}),
+      firstOf({given.joint_states, known.joint_states, recorded.joint_states, kDefaultTopics.joint_states}),
+      firstOf({given.hull_imu, known.hull_imu, recorded.hull_imu, kDefaultTopics.hull_imu})};
   return withInputTopics(std::move(settings), topics);
+}
+
+InputTopics recordedTopics(const RunInfo& info) {
+  std::vector<std::string> ignored;
+  std::optional<ParameterMap> parameters = recordedParameters(info.parameters_yaml, ignored);
+  return parameters ? takeInputTopics(*parameters, ignored) : InputTopics{};
 }
 
 Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, std::vector<std::string>& warnings) {
   Checked<std::vector<BagRun>> result;
   const ParameterMap parameters = job.parameters.value_or(ParameterMap{});
   std::string description = job.robot_description.value_or("");
-  if (!job.robot_description && infos.topics.size() == 1) {
-    description = infos.runs.front().info.robot_description;
-    if (!description.empty())
+  InputTopics topics;
+  if (infos.topics.size() == 1) {
+    topics = recordedTopics(infos.runs.front().info);
+    if (!job.robot_description) description = infos.runs.front().info.robot_description;
+    if (!job.robot_description && !description.empty())
       result.notes.push_back("robot_description of " + *infos.topics.begin() + " is used; --urdf replaces it");
   }
   Checked<Settings> settings = load(configDirectory(), parameters, description);
@@ -80,7 +92,7 @@ Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, 
   if (!hasHammerKey(parameters))
     addOnce(warnings, "no hammer file was given (--params): the masses and lengths of the MO-100 are used");
   result.notes.insert(result.notes.end(), settings.value->notes.begin(), settings.value->notes.end());
-  result.value.emplace().push_back({ros::Time(), withTopics(*std::move(settings.value), job.topics)});
+  result.value.emplace().push_back({ros::Time(), withTopics(*std::move(settings.value), job.topics, topics)});
   return result;
 }
 
