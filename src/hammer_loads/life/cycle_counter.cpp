@@ -11,13 +11,21 @@ CycleCounter::CycleCounter(const LoadGrid& grid)
       classes_(grid.classes()),
       stack_(2 * classes_ + 1),
       // Not a vector: pages without a cycle cost no memory.
-      cells_(static_cast<Cell*>(std::calloc(classes_ * (classes_ - 1) / 2, sizeof(Cell)))),
-      touched_(classes_ * (classes_ - 1) / 2 / kBlock + 1, 0) {
+      cells_(static_cast<Cell*>(std::calloc(row(classes_) + 1, sizeof(Cell)))),
+      touched_(row(classes_) / kBlock + 1, 0) {
   if (!cells_) throw std::bad_alloc();
   overruns_.reserve(kOverruns);
+  waiting_.fill(row(classes_));
+}
+
+void CycleCounter::settle() noexcept {
+  const std::size_t spare = row(classes_);
+  for (std::size_t& cell : waiting_) count(std::exchange(cell, spare));
+  cells_[spare] = 0;
 }
 
 CycleCount CycleCounter::take() {
+  settle();
   CycleCount count(grid_);
   const std::size_t cells = row(classes_);
   std::size_t steps = 1;

@@ -1,9 +1,12 @@
 /// Counts the load cycles of one channel, sample by sample: some ns each, all memory taken at the start.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "hammer_loads/life/cycle_count.h"
@@ -17,8 +20,8 @@ namespace hammer_loads::life {
 ///
 /// Closed cycles lie in a dense range-mean matrix of classes (classes - 1)/2 cells of 2 byte, by range, then by mean:
 /// 17 MB of address space at 4096 classes, of which memory is taken only where cycles fall. Cycles of like range lie
-/// side by side, so that a load that repeats stays in the cache. Small cells keep noise over the whole scale fast,
-/// where each cycle falls on another page; a cell that runs over is noted.
+/// side by side, so that a load that repeats stays in the cache. Noise over the whole scale falls on another page each
+/// time: cells are small, a cell that runs over is noted, and a cycle waits until its cell has come from memory.
 class CycleCounter {
  public:
   /// Throws std::bad_alloc when there is not enough address space.
@@ -63,6 +66,7 @@ class CycleCounter {
   static constexpr std::size_t kBlock = 4096 / sizeof(Cell);  ///< cells of a page
   /// Cells run over before memory is taken: 4e9 cycles, 100 days at 1 kHz without a take().
   static constexpr std::size_t kOverruns = 65536;
+  static constexpr std::size_t kWaiting = 16;  ///< closed cycles that wait: memory takes some hundred ns
 
   struct Free {
     void operator()(void* memory) const { std::free(memory); }
@@ -71,16 +75,32 @@ class CycleCounter {
   void close(std::uint32_t b, std::uint32_t c) noexcept {
     const std::uint32_t low = b < c ? b : c, steps = b < c ? c - b : b - c;
     const std::size_t cell = row(steps) + low;
+    prefetchToWrite(&cells_[cell]);
+    next_ = (next_ + 1) % kWaiting;
+    count(std::exchange(waiting_[next_], cell));
+  }
+  void count(std::size_t cell) noexcept {
     if (++cells_[cell] == 0) overruns_.push_back(static_cast<std::uint32_t>(cell));
     touched_[cell / kBlock] = 1;
   }
+  static void prefetchToWrite(const void* address) noexcept {
+#if defined(__GNUC__)
+    __builtin_prefetch(address, 1);
+#else
+    static_cast<void>(address);
+#endif
+  }
+  /// Counts what waits.
+  void settle() noexcept;
 
   LoadGrid grid_;
   std::size_t classes_;
   FourPointStack<std::uint32_t> stack_;
-  std::unique_ptr<Cell[], Free> cells_;
-  std::vector<std::uint32_t> overruns_;  ///< cells, one entry for each kCellPeriod cycles
-  std::vector<std::uint8_t> touched_;    ///< blocks with a cycle since the last take()
+  std::unique_ptr<Cell[], Free> cells_;          ///< and a spare one, for a place in waiting_ without a cycle
+  std::vector<std::uint32_t> overruns_;          ///< cells, one entry for each kCellPeriod cycles
+  std::array<std::size_t, kWaiting> waiting_{};  ///< cells
+  std::size_t next_{};                           ///< in waiting_
+  std::vector<std::uint8_t> touched_;            ///< blocks with a cycle since the last take()
   SampleTally tally_;
   Extremes extremes_;
 };
