@@ -28,7 +28,7 @@ struct BoomModes {
 
 /// Joint torques of the hammer over one step, signs as in jointTorqueOfTipLoad() [N m].
 struct TorqueStep {
-  JointVector from, to;  ///< at the step's ends; where the load jumps (a blow), end a step there and begin anew
+  JointVector from, to;  ///< at the step's ends; where the load jumps (a blow), end a step there and start the next
   JointVector mean;      ///< over the step; linear between the ends makes it their mean
 };
 

@@ -25,6 +25,11 @@ struct ChamberPressures {
 ChamberPressures chamberPressures(const Cylinder& cylinder, const CylinderPosition& position, double steady_torque,
                                   double total_torque) noexcept;
 
+/// What pressures in both chambers, as measured, push with [N]; positive pushes the anchors apart.
+inline double forceOf(const Cylinder& cylinder, const ChamberPressures& p) noexcept {
+  return p.bore * cylinder.boreArea() - p.rod * cylinder.rodArea();
+}
+
 /// Sum of CylinderFlag. Empty: below absolute zero, 1 bar below gauge zero.
 std::uint16_t cylinderFlags(const Cylinder& cylinder, const CylinderPosition& position, double steady_torque,
                             double total_torque) noexcept;

@@ -71,16 +71,9 @@ ModeIdentifier::ModeIdentifier(double damping_ratio) : damping_ratio_(damping_ra
           square(kCommonDeviation) + (k == l ? square(kOwnDeviation) : 0);
     covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
   }
-}
-
-Mode ModeIdentifier::modeAt(int mode) const noexcept {
-  return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)};
-}
-
-double ModeIdentifier::frequencyRatio(int mode) const noexcept { return std::exp(state_[at(mode, kFrequency)]); }
-
-double ModeIdentifier::damping(int mode) const noexcept {
-  return damping_ratio_ * std::exp(state_[at(mode, kDamping)]);
+  ratio_.fill(1.0);
+  damping_.fill(damping_ratio);
+  slot_.fill(-1);
 }
 
 double ModeIdentifier::frequencyDeviation(int mode) const noexcept {
@@ -140,8 +133,8 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
     }
   };
   apply(state_);
-  for (int i = 0; i < states(); ++i) apply(covariance_.col(i));
-  for (int i = 0; i < states(); ++i) apply(covariance_.row(i));
+  for (int i = begin(); i < begin() + states(); ++i) apply(covariance_.col(i));
+  for (int i = begin(); i < begin() + states(); ++i) apply(covariance_.row(i));
   force_ = (T * force_).eval();
 }
 
@@ -173,7 +166,7 @@ void ModeIdentifier::advance(double step, const TorqueStep& torque) noexcept {
   }
   force_ = to;
   for (double& age : age_) age += step;
-  keepWithinBounds();
+  if (!finite()) keepWithinBounds();
 }
 
 /// One mode's state, and P <- F P F^T + Q for its rows and columns. The derivatives by frequency and damping are
@@ -191,9 +184,10 @@ void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) 
   Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
   F.row(kX) << of_x.x, of_v.x, (stiffer.x - next.x) / e, (damped.x - next.x) / e;
   F.row(kV) << of_x.v, of_v.v, (stiffer.v - next.v) / e, (damped.v - next.v) / e;
-  const int n = states();
-  for (int i = 0; i < n; ++i) covariance_.block<kParts, 1>(x, i) = (F * covariance_.block<kParts, 1>(x, i)).eval();
-  for (int i = 0; i < n; ++i) {
+  const int end = begin() + states();
+  for (int i = begin(); i < end; ++i)
+    covariance_.block<kParts, 1>(x, i) = (F * covariance_.block<kParts, 1>(x, i)).eval();
+  for (int i = begin(); i < end; ++i) {
     covariance_.block<1, kParts>(i, x) = (covariance_.block<1, kParts>(i, x) * F.transpose()).eval();
   }
   state_[x + kX] = next.x, state_[x + kV] = next.v;
@@ -220,13 +214,14 @@ void ModeIdentifier::strike(const JointVector& impulse) noexcept {
 
 void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) noexcept {
   const auto i = static_cast<std::size_t>(channel);
-  double& variance = covariance_(channel, channel);
-  if (!used_[i]) {
-    used_[i] = true;
-    variance = square(reading.offset_deviation);
+  const double first = square(reading.offset_deviation), walk = square(reading.offset_walk);
+  if (slot_[i] < 0) {
+    ++channels_;
+    slot_[i] = begin();
+    covariance_(slot_[i], slot_[i]) = first;
   } else {
-    variance = std::min(variance + square(reading.offset_walk) * age_[i],
-                        square(reading.offset_deviation) + square(reading.offset_walk));
+    double& variance = covariance_(slot_[i], slot_[i]);
+    variance = std::min(variance + walk * age_[i], std::max(variance, first + walk));
   }
   age_[i] = 0.0;
 }
@@ -234,8 +229,8 @@ void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) no
 ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading& reading,
                                             double& predicted) const noexcept {
   State row = State::Zero();
-  row[channel] = 1.0;
-  predicted = state_[channel];
+  row[offsetAt(channel)] = 1.0;
+  predicted = state_[offsetAt(channel)];
   for (int k = 0; k < count_; ++k) {
     double by_x = 0.0, by_v = 0.0, by_a = 0.0;  // per modal displacement, velocity, acceleration
     for (int i = 0; i < count_; ++i) {
@@ -261,31 +256,42 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   useChannel(channel, reading);
   double predicted = 0.0;
   const State row = rowOf(channel, reading, predicted);
-  const int n = states();
+  const int first = begin(), n = states();
   State gain_S;
-  gain_S.head(n).noalias() = covariance_.topLeftCorner(n, n) * row.head(n);
-  double S = row.head(n).dot(gain_S.head(n)) + square(reading.noise);
+  gain_S.head(n).noalias() = covariance_.block(first, first, n, n) * row.segment(first, n);
+  double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise);
   const double difference = reading.value - predicted;
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
   S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
-  state_.head(n) += gain_S.head(n) * (difference / S);
-  for (int i = 0; i < n; ++i) covariance_.col(i).head(n) -= gain_S.head(n) * (gain_S[i] / S);
+  state_.segment(first, n) += gain_S.head(n) * (difference / S);
+  for (int i = 0; i < n; ++i) covariance_.col(first + i).segment(first, n) -= gain_S.head(n) * (gain_S[i] / S);
   keepWithinBounds();
 }
 
+/// What is not finite anywhere reaches the diagonal with the next step.
+bool ModeIdentifier::finite() const noexcept {
+  return state_.segment(begin(), states()).allFinite() && covariance_.diagonal().segment(begin(), states()).allFinite();
+}
+
 void ModeIdentifier::keepWithinBounds() noexcept {
-  const int n = states();
-  if (!state_.head(n).allFinite() || !covariance_.topLeftCorner(n, n).allFinite()) {
+  if (!finite()) {
+    const BoomModes modes = modes_;
     *this = ModeIdentifier(damping_ratio_);
+    setModes(modes);
     return;
   }
   for (int k = 0; k < count_; ++k) {
+    const auto i = static_cast<std::size_t>(k);
     double& frequency = state_[at(k, kFrequency)];
     frequency = std::clamp(frequency, -kMostRatio, kMostRatio);
+    ratio_[i] = std::exp(frequency);
     double& damping = state_[at(k, kDamping)];
-    damping = std::clamp(damping, std::log(kLeastDamping / damping_ratio_), std::log(kMostDamping / damping_ratio_));
+    damping_[i] = damping_ratio_ * std::exp(damping);
+    if (damping_[i] >= kLeastDamping && damping_[i] <= kMostDamping) continue;
+    damping_[i] = std::clamp(damping_[i], kLeastDamping, kMostDamping);
+    damping = std::log(damping_[i] / damping_ratio_);
   }
-  for (int i = 0; i < n; ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
+  for (int i = begin(); i < begin() + states(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
 }
 
 }  // namespace hammer_loads

@@ -57,8 +57,10 @@ class ModeIdentifier {
   void observe(int channel, const VibrationReading& reading) noexcept;
 
   int modes() const noexcept { return count_; }
-  double frequencyRatio(int mode) const noexcept;      ///< over the given frequency [-]
-  double damping(int mode) const noexcept;             ///< ratio of damping [-]
+  /// Over the given frequency [-].
+  double frequencyRatio(int mode) const noexcept { return ratio_[static_cast<std::size_t>(mode)]; }
+  /// Ratio of damping [-].
+  double damping(int mode) const noexcept { return damping_[static_cast<std::size_t>(mode)]; }
   double frequencyDeviation(int mode) const noexcept;  ///< standard deviation of its logarithm [-]
   double dampingDeviation(int mode) const noexcept;    ///< standard deviation of its logarithm [-]
   /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
@@ -73,12 +75,16 @@ class ModeIdentifier {
   enum Part { kX, kV, kFrequency, kDamping, kParts };
 
   static constexpr int at(int mode, Part part) noexcept { return kMaxChannels + kParts * mode + part; }
-  int states() const noexcept { return at(count_, kX); }  ///< in use: offsets, then modes
-  Mode modeAt(int mode) const noexcept;
+  /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
+  int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
+  int begin() const noexcept { return kMaxChannels - channels_; }
+  int states() const noexcept { return channels_ + kParts * count_; }
+
   void advanceMode(int mode, double step, const ModeForce& force) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void useChannel(int channel, const VibrationReading& reading) noexcept;
   State rowOf(int channel, const VibrationReading& reading, double& predicted) const noexcept;
+  bool finite() const noexcept;
   void keepWithinBounds() noexcept;
 
   double damping_ratio_;
@@ -89,8 +95,12 @@ class ModeIdentifier {
   Covariance covariance_ = Covariance::Zero();
   JointVector force_;                             ///< modal, at the present time
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
-  std::array<bool, kMaxChannels> used_{};
-  std::array<double, kMaxChannels> age_{};  ///< since the channel's last reading [s]
+  Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
+
+  std::array<double, kMaxJoints> ratio_{}, damping_{};  ///< of state_
+  int channels_{};                                      ///< in use
+  std::array<int, kMaxChannels> slot_{};                ///< state of each channel's offset; -1: not in use
+  std::array<double, kMaxChannels> age_{};              ///< since the channel's last reading [s]
 };
 
 }  // namespace hammer_loads

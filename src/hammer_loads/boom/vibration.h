@@ -26,7 +26,7 @@ class Vibration {
 
   /// Pose at the end of the step that advance() takes next. Finds new modes when a joint has moved far enough.
   void setPose(const JointVector& position) noexcept;
-  /// At rest without load, as after a gap in the samples; the next setPose() begins anew.
+  /// At rest without load, as after a gap in the samples; the next setPose() finds new modes.
   void rest() noexcept;
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
   /// Where torques are so large that the state would not be finite, the boom comes to rest.
@@ -66,7 +66,7 @@ class Vibration {
   std::optional<ModeIdentifier> identifier_;
   BoomModes modes_;
   JointVector position_;  ///< where the modes belong
-  JointVector last_;      ///< as last told
+  JointVector last_;      ///< as last given
   bool posed_{};
   JointVector x_, v_;   ///< modal displacements and velocities
   JointVector torque_;  ///< of the load at the end of the last step

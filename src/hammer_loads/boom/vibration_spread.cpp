@@ -1,18 +1,8 @@
 #include "hammer_loads/boom/vibration_spread.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hammer_loads {
-
-Mode VibrationSpread::mode(int run, int k) const noexcept {
-  const auto i = static_cast<std::size_t>(k);
-  Mode m = mode_[i];
-  if (run == kStiffer) m.omega *= std::exp(deviation_[i].frequency);
-  if (run == kSofter) m.omega *= std::exp(-deviation_[i].frequency);
-  if (run == kDamped) m.zeta = std::min(0.9, m.zeta * std::exp(deviation_[i].damping));
-  return m;
-}
 
 void VibrationSpread::follow(const Vibration& vibration) noexcept {
   const BoomModes& now = vibration.modes();
@@ -27,11 +17,16 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
   }
   for (int k = 0; k < now.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    mode_[i] = vibration.mode(k);
-    deviation_[i] = given_;
-    if (!vibration.identifier()) continue;
-    deviation_[i].frequency = std::min(given_.frequency, vibration.identifier()->frequencyDeviation(k));
-    deviation_[i].damping = std::min(given_.damping, vibration.identifier()->dampingDeviation(k));
+    OilDeviation deviation = given_;
+    if (vibration.identifier()) {
+      deviation.frequency = std::min(given_.frequency, vibration.identifier()->frequencyDeviation(k));
+      deviation.damping = std::min(given_.damping, vibration.identifier()->dampingDeviation(k));
+    }
+    for (auto& modes : mode_) modes[i] = vibration.mode(k);
+    const double stiffer = std::exp(deviation.frequency);
+    mode_[kStiffer][i].omega *= stiffer;
+    mode_[kSofter][i].omega /= stiffer;
+    mode_[kDamped][i].zeta = std::min(0.9, mode_[kDamped][i].zeta * std::exp(deviation.damping));
   }
 }
 

@@ -1,6 +1,7 @@
 /// How far the vibration may be off: the same hammer on oil that is stiffer, softer, more damped, and its own errors.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "hammer_loads/boom/vibration.h"
@@ -39,13 +40,14 @@ class VibrationSpread {
   JointVector accelerationDifference(int run, const Vibration& vibration) const noexcept;
 
  private:
-  Mode mode(int run, int k) const noexcept;
+  const Mode& mode(int run, int k) const noexcept {
+    return mode_[static_cast<std::size_t>(std::min(run, kLoads))][static_cast<std::size_t>(k)];
+  }
 
   OilDeviation given_;
   BoomModes modes_;
-  std::array<Mode, kMaxJoints> mode_;                ///< as the vibration has them
-  std::array<OilDeviation, kMaxJoints> deviation_;   ///< of each
-  std::array<JointVector, kMaxRuns> x_, v_, force_;  ///< modal, of each run
+  std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
+  std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
   LoadSpread load_;
 };
 
