@@ -135,13 +135,15 @@ const Loads& Pipeline::crankSample(StampNs header, const CrankSample& measured) 
   if (verdict.order == Intake::Order::kFirst) {
     tracker_->start(sample);
     loads_.crank = tracker_->estimate();
+    tellBlow();
     epoch_ = stamp;
     restart();
     speed_measured_ = sample.speed.has_value();
   } else {
     const Tracking tracking = tracker_->update(verdict.step, sample);
     if (tracking == Tracking::kOutlier) return refuse(Refusal::kImplausible);
-    if (tracking == Tracking::kRestarted) restart(), speed_measured_ = false;
+    if (tracking == Tracking::kRestarted) tellBlow(), restart(), speed_measured_ = false;
+    if (tracking == Tracking::kRevised) restart(), speed_measured_ = false;
     loads_.crank = tracker_->estimate();
     if (tracking == Tracking::kContinued) {
       step_.take(*intake_.last(), verdict.step, last_position_);
@@ -151,7 +153,9 @@ const Loads& Pipeline::crankSample(StampNs header, const CrankSample& measured) 
   intake_.accept(stamp, measured);
   intake_.setFrozenTurn(frozenTurn(settings_, tracker_->angleResolution()));
   last_position_ = loads_.crank.position;
-  if (!settled()) {
+  const bool doubtful = tracker_->isDoubtful();
+  if (doubtful) outputs_.forget();
+  if (!settled() || doubtful) {
     boom_follows_ = false;
     return refuse(Refusal::kUnsettled);
   }
@@ -181,8 +185,8 @@ void Pipeline::followBoom(StampNs stamp) noexcept {
     boom_->turnEnded(loads_.ends[i].pulse, loads_.ends[i].mean_press_force);
 }
 
+/// The pending blow stays: whether it was one shows later.
 void Pipeline::restart() noexcept {
-  tellBlow();
   step_.forget(tracker_->estimate().position);
   outputs_.forget();
   boom_follows_ = false;
@@ -244,7 +248,7 @@ void Pipeline::followTurn() noexcept {
   if (loads_.crank.position.blowsPassed() < last_position_.blowsPassed()) turn_.abandon();
   double from = 0.0;
   for (const CrankStep::Passage& passage : step_) {
-    if (!passage.strikes) continue;
+    if (!passage.may_strike) continue;
     recordTo(from, std::max(from, passage.time - kSideOfBlow));
     tellBlow();
     endTurn(passage);
@@ -279,6 +283,13 @@ void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
 /// The pending blow, as it is known by now.
 void Pipeline::tellBlow() noexcept {
   if (!pending_.isWaiting()) return;
+  if (tracker_->estimate().position.isMirrored()) {  // there was no tool
+    pending_.drop();
+    turn_.abandon();
+    last_blow_.reset();
+    --turns_;
+    return;
+  }
   turn_.correctBegin(linkMomentum(hull_model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
   const CrankBlow crank = pending_.take();
   pending_end_.blow = crank.drive_inertia > 0.0 ? measuredBlow(mechanism_, settings_.level, crank)
