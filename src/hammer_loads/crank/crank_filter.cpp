@@ -29,9 +29,18 @@ constexpr double kCertain = 3.0;           // deviations of the stamp within whi
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
+constexpr double kDecided = 12.0;          // logarithm of odds at which the less likely belief is given up
+constexpr double kChange = 3.0;            // likewise at which the other one becomes the estimate
+constexpr double kMostFit = 8.0;           // likewise that one measurement may add: it may be an outlier
 constexpr double kForgetRestarts = 2.0;    // [s]
 
 double square(double x) noexcept { return x * x; }
+
+/// But for a constant.
+template <typename Innovation>
+double logLikelihood(const Innovation& i) noexcept {
+  return -0.5 * (i.ratio() + std::log(i.total));
+}
 
 }  // namespace
 
@@ -75,6 +84,8 @@ void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
   load_ = model_(s.position.angle);
   now_hull_ = model_.hullMotion();
   now_.tool_met = false;
+  mirrored_ = false;
+  rival_.reset();
   now_.factor = settings_.blow_factor;
   ShaftMatrix& p = now_.covariance;
   p.setZero();
@@ -134,6 +145,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
 
 void CrankFilter::correctSpeed(double measured) noexcept {
   const Innovation innovation = speedInnovation(measured);
+  fit_ += logLikelihood(innovation);
   const double squared = std::min(square(innovation.value), kWiden * innovation.total);
   if (square(innovation.value) <= squared)
     now_.correct(Belief::kSpeed, innovation.value, innovation.total - now_.covariance(Belief::kSpeed, Belief::kSpeed));
@@ -145,13 +157,21 @@ void CrankFilter::correctSpeed(double measured) noexcept {
 /// Back over a blow that was predicted within this very step: there was none yet.
 void CrankFilter::settleSide(const CrankBelief& last, double dt, double measured, bool struck) noexcept {
   CrankAngle& angle = now_.state.position.angle;
+  if (mirrored_) {
+    mirrored_ = now_.state.position.isMirrored();
+    return;
+  }
   if (!now_.state.position.isMirrored()) return;
   if (angle.side == Side::kBeforeBlow) {
-    if (now_.state.speed > 0.0) return now_.passLate(step_model_, blows_.prior());
+    if (now_.state.speed > 0.0) {
+      meetRival();
+      return now_.passLate(step_model_, blows_.prior());
+    }
     angle.side = Side::kAfterBlow;
     return;
   }
   if (struck) {
+    rival_.reset();
     now_ = last;
     predict(dt, false, now_);
     const Innovation again = angleInnovation(measured);
@@ -170,17 +190,57 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, double measured
 /// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
 /// exact: the estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
 void CrankFilter::respectCount(double reading) noexcept {
-  if (encoder_.isFiner() || settings_.angle_noise > 0.0) return;
+  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || mirrored_) return;
   const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
   const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
   const double low = CrankAngle::wrapToPi(reading), high = low + count;
   CrankAngle& angle = now_.state.position.angle;
   if (std::abs(low) > kNearCounts * count || std::abs(angle.offset) > kNearCounts * count) return;
   if (low - doubt > -edge_tolerance && angle.side == Side::kBeforeBlow) {
+    meetRival();
     angle.offset = 0.0;
     now_.passLate(step_model_, blows_.prior());
   }
   if (high + doubt < edge_tolerance && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
+}
+
+/// now_ is about to pass the blow with contact; the rival goes on without.
+void CrankFilter::meetRival() noexcept {
+  if (mirrored_ || now_.tool_met) return;
+  rival_ = now_;
+  evidence_ = std::log(turns_without_ / turns_with_);
+}
+
+/// The rival takes the sample too. Its own outliers and jolts count against it.
+void CrankFilter::followRival(double dt, double measured, const CrankSample& sample) noexcept {
+  if (dt > 0.0) predict(dt, mirrored_, *rival_);
+  std::swap(now_, *rival_);
+  Innovation innovation = angleInnovation(measured);
+  double fit = logLikelihood(innovation);
+  innovation.variance = std::max(innovation.variance, square(innovation.value) / kWiden);
+  now_.correct(Belief::kAngle, innovation.value, innovation.variance);
+  if (sample.speed) {
+    const Innovation speed = speedInnovation(*sample.speed);
+    fit += logLikelihood(speed);
+    if (speed.ratio() < kWiden) now_.correct(Belief::kSpeed, speed.value, speed.total - now_.covariance(1, 1));
+  }
+  std::swap(now_, *rival_);
+  evidence_ += std::clamp(fit - fit_, -kMostFit, kMostFit) / consistency_.growth();
+  if (!rival_->isSound(mostSpeed())) rival_.reset();
+}
+
+/// Whether the estimate has changed to the other belief.
+bool CrankFilter::chooseBelief() noexcept {
+  const bool change = evidence_ > kChange;
+  if (change) {
+    std::swap(now_, *rival_);
+    evidence_ = -evidence_;
+    mirrored_ = !mirrored_;
+  }
+  if (evidence_ > -kDecided) return change;
+  (mirrored_ ? turns_without_ : turns_with_) += 1.0;
+  rival_.reset();
+  return change;
 }
 
 /// Once a turn, half a turn after the blow: by then all samples that tell of it have come.
@@ -196,7 +256,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last) noexcept {
 bool CrankFilter::meetsTool(double dt, const Innovation& angle, const CrankSample& sample) noexcept {
   const bool zone =
       std::abs(now_.state.position.angle.offset) < std::max(kToolZone, kToolSteps * now_.state.speed * dt);
-  if (!zone || now_.state.speed < 1.0) return false;
+  if (!zone || now_.state.speed < 1.0 || mirrored_) return false;
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
   const bool by_angle = (angle.value < 0.0 || !before) && angle.ratio() > kToolSeen;
   bool by_speed = false;
@@ -239,6 +299,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
     return begin(measured, sample);
   }
   if (has_speed_) {
+    fit_ = logLikelihood(innovation);
     timing_.learn(innovation.value, innovation.total, now_.state.speed);
     if (std::abs(now_.state.speed) > kLearnSpeed) consistency_.add(innovation.ratio());
     if (meetsTool(dt, innovation, sample)) innovation = angleInnovation(measured);
@@ -262,11 +323,19 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   before_hull_ = now_hull_;
   step_ = dt;
   outlier_ = 0.0;
+  if (struck) {
+    std::swap(now_, before_);
+    meetRival();
+    std::swap(now_, before_);
+  }
+  const bool contested = rival_.has_value();
   if (std::abs(now_.state.speed) < kLearnSpeed) now_.forgetInertiaCoupling();
   correctAngle(innovation);
   settleSide(last, dt, measured, struck);
   respectCount(sample.angle);
   if (sample.speed) correctSpeed(*sample.speed);
+  if (contested && rival_) followRival(dt, measured, sample);
+  const bool revised = rival_ && chooseBelief();
   if (!now_.isSound(mostSpeed())) {
     now_ = last;
     return begin(measured, sample);
@@ -276,7 +345,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   now_hull_ = model_.hullMotion();
   const bool continued = has_speed_;
   has_speed_ = true;
-  return continued ? Tracking::kContinued : Tracking::kRestarted;
+  if (!continued) return Tracking::kRestarted;
+  return revised ? Tracking::kRevised : Tracking::kContinued;
 }
 
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
@@ -305,7 +375,8 @@ CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   ShaftState state = before_.state, back = now_.state;
   ShaftLoad load = step_model_(state.position.angle), back_load = step_model_(back.position.angle);
-  const Passing passing{before_.tool_met ? 1.0 : now_.factor, true};
+  const bool contact = !before_.state.position.isMirrored() && !now_.state.position.isMirrored();
+  const Passing passing{before_.tool_met ? 1.0 : now_.factor, contact};
   advance(step_model_, dt, passing, state, load);
   advance(step_model_, dt - step_, passing, back, back_load);
   const double part = dt / step_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
@@ -40,6 +41,10 @@ struct CrankFilterSettings {
 /// gets less trust. A speed that far off is not used. Where following the angle would change the speed by a third, the
 /// sample is an outlier; a second one in a row that agrees with it is believed, and begins anew without the speed it
 /// tells. Near the blow neither is an outlier: the tool may be met some degrees early or take most of the speed.
+///
+/// At each blow a second belief goes on without contact: a rocker that finds no tool passes the dead centre onto the
+/// mirrored branch and comes back a turn later. Both take the same samples until one is far more likely; the likelier
+/// one is the estimate.
 class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
@@ -61,6 +66,7 @@ class CrankFilter final : public CrankTracker {
   bool hasSpeed() const noexcept override { return has_speed_; }
   bool isPlausible() const noexcept override;
   BlowFactor blowFactor() const noexcept override;
+  bool isDoubtful() const noexcept override { return rival_ && evidence_ > kDoubt; }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
 
   const ShaftState& state() const noexcept { return now_.state; }
@@ -81,6 +87,8 @@ class CrankFilter final : public CrankTracker {
     double ratio() const noexcept { return value * value / total; }
   };
   static constexpr double kLost = 5.0;
+  static constexpr double kTurnsWith = 100.0, kTurnsWithout = 0.5;  // before any was seen
+  static constexpr double kDoubt = -1.0;  // logarithm of odds of the other belief: one in three
 
   Innovation angleInnovation(double measured) const noexcept;
   Innovation speedInnovation(double measured) const noexcept;
@@ -91,6 +99,9 @@ class CrankFilter final : public CrankTracker {
   void settleSide(const CrankBelief& last, double dt, double measured, bool struck) noexcept;
   void respectCount(double reading) noexcept;
   void rememberBlow(const CrankBelief& last) noexcept;
+  void meetRival() noexcept;
+  void followRival(double dt, double measured, const CrankSample& sample) noexcept;
+  bool chooseBelief() noexcept;
   bool meetsTool(double dt, const Innovation& angle, const CrankSample& sample) noexcept;
   bool isContradiction(double dt, const Innovation& innovation) const noexcept;
   Tracking begin(double measured, const CrankSample& sample) noexcept;
@@ -107,11 +118,16 @@ class CrankFilter final : public CrankTracker {
   TimingNoise timing_;
   Consistency consistency_;
   BlowHistory blows_;
-  CrankBelief now_;        ///< at the last sample, corrected by it
-  ShaftLoad load_;         ///< there
-  CrankBelief before_;     ///< at the last but one sample
-  double step_{};          ///< between these two [s]
-  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
+  CrankBelief now_;                   ///< at the last sample, corrected by it
+  ShaftLoad load_;                    ///< there
+  CrankBelief before_;                ///< at the last but one sample
+  double step_{};                     ///< between these two [s]
+  std::optional<CrankBelief> rival_;  ///< the same samples with contact where now_ has none, or the other way round
+  bool mirrored_{};                   ///< now_ had no contact and is on the mirrored branch
+  double evidence_{};                 ///< logarithm of the odds of rival_ against now_
+  double fit_{};                      ///< logarithm of the last sample's likelihood by now_
+  double turns_with_{kTurnsWith}, turns_without_{kTurnsWithout};  ///< contact, so far
+  double speed_variance_;                                         ///< of measured speeds, as identified [rad2/s2]
   double outlier_{};       ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late

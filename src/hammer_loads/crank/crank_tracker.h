@@ -35,6 +35,7 @@ struct BlowFactor {
 enum class Tracking {
   kContinued,  ///< agrees with what came before
   kRestarted,  ///< began anew at this sample: what lies between is not known
+  kRevised,    ///< goes on, but what came before was otherwise than thought: a turn without contact, or with it
   kOutlier,    ///< contradicts what came before and was ignored; a second one like it restarts
 };
 
@@ -66,6 +67,8 @@ class CrankTracker {
   virtual Eigen::Matrix3d motionCovariance(double /*torque_part*/) const noexcept { return Eigen::Matrix3d::Zero(); }
   /// Factor that the last blow put on the crank's speed, by all samples since; of no model: 1, not known.
   virtual BlowFactor blowFactor() const noexcept { return {}; }
+  /// Whether the last blow was one at all is not clear yet: what is estimated may be of the wrong branch.
+  virtual bool isDoubtful() const noexcept { return false; }
   /// One count of the angle sensor [rad], as far as known.
   virtual double angleResolution() const noexcept = 0;
   /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.

@@ -70,10 +70,10 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   }
   const Tracking tracking = tracker_->update(verdict_.step, sample);
   if (tracking == Tracking::kOutlier) return Taken::kRefused;
-  if (tracking == Tracking::kRestarted) {
+  if (tracking != Tracking::kContinued) {
     restart();
     speed_measured_ = false;
-    return Taken::kRestarted;
+    return tracking == Tracking::kRevised ? Taken::kRevised : Taken::kRestarted;
   }
   estimate_ = tracker_->estimate();
   step_.take(*gate_.last(), verdict_.step, last_position_);

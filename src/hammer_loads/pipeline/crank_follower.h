@@ -25,6 +25,7 @@ class CrankFollower {
   enum class Taken {
     kRefused,    ///< not taken: refusal() says why
     kBegan,      ///< taken as the first one after a start, a gap or a time that ran back
+    kRevised,    ///< taken; whether the last passage was a blow has turned out otherwise
     kRestarted,  ///< taken; it contradicts what came before, which does not count any more
     kContinued,  ///< taken; step() is the time since the sample before
   };

@@ -34,7 +34,8 @@ CrankStep::Passage CrankStep::passageOf(std::int64_t blow, bool forward) const n
   p.smooth = before.position.isMirrored() || after.position.isMirrored();
   p.speed_before = before.speed;
   p.speed_after = after.speed;
-  p.strikes = forward && !p.smooth && blow > furthest_blow_ && p.speed_before >= kBlowSpeed;
+  p.may_strike = forward && !before.position.isMirrored() && blow > furthest_blow_ && p.speed_before >= kBlowSpeed;
+  p.strikes = p.may_strike && !p.smooth;
   return p;
 }
 

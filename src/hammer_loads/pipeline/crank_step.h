@@ -26,6 +26,7 @@ class CrankStep {
     double speed_before{};  ///< of the crank there, in the order of time [rad/s]
     double speed_after{};   ///< likewise
     bool smooth{};          ///< onto the mirrored branch or back from it: nothing jumps
+    bool may_strike{};      ///< as strikes, or onto the mirrored branch, which may turn out wrong
     bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 

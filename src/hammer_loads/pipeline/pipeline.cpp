@@ -78,10 +78,11 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (taken == CrankFollower::Taken::kContinued) {
     turn_.follow(hull_.motion().motion, result_);
   } else {
-    restart();
+    restart(taken == CrankFollower::Taken::kRevised);
   }
   crank_.accept();
   if (hull_.pitch().looksLikeDegrees()) return withhold(Refusal::kDegrees);
+  if (crank_.tracker().isDoubtful()) return withhold(Refusal::kUnsettled);
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
 
   followBoom();
@@ -108,8 +109,10 @@ void Pipeline::followBoom() noexcept {
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
 }
 
-void Pipeline::restart() noexcept {
-  turn_.restart(result_);
+/// revised: the blow that is being measured stays; whether it was one shows later.
+void Pipeline::restart(bool revised) noexcept {
+  if (!revised) turn_.finishBlow(result_);
+  turn_.restart();
   sampler_.forget();
   boom_follows_ = false;
   ++counts_.restarts;

@@ -45,7 +45,7 @@ class Pipeline {
  private:
   const SampleResult& refuse(Refusal refusal) noexcept;
   const SampleResult& withhold(Refusal refusal) noexcept;
-  void restart() noexcept;
+  void restart(bool revised) noexcept;
   void followBoom() noexcept;
 
   Mechanism mechanism_;

@@ -12,8 +12,7 @@ constexpr double kSideOfBlow = 1e-7;    // [s] before and after the blow where i
 
 }  // namespace
 
-void TurnFollower::restart(SampleResult& result) noexcept {
-  finishBlow(result);
+void TurnFollower::restart() noexcept {
   turn_.abandon();
   last_blow_.reset();
 }
@@ -44,7 +43,7 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
       turn_.abandon();
       ++backward_;
     }
-    if (!passage.strikes) continue;
+    if (!passage.may_strike) continue;
     recordTo(from, std::max(from, passage.time - kSideOfBlow));
     finishBlow(result);
     endTurn(passage);
@@ -74,9 +73,14 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
 }
 
-/// The pending blow, as it is known by now.
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!pending_.isWaiting()) return;
+  if (tracker_->estimate().position.isMirrored()) {  // there was no tool
+    pending_.drop();
+    restart();
+    --turns_;
+    return;
+  }
   turn_.correctBegin(linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
   pending_end_.blow = measuredBlow(*model_, pending_.take());
   pending_end_.mean_press_force *= pending_end_.blow.tool_impulse_z;

@@ -20,8 +20,10 @@ class TurnFollower {
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
-  /// What came before does not belong to the coming turn; a blow that was being measured is one of `ends`.
-  void restart(SampleResult& result) noexcept;
+  /// What came before does not belong to the coming turn.
+  void restart() noexcept;
+  /// The blow that is being measured, as it is known by now, is one of the `ends`.
+  void finishBlow(SampleResult& result) noexcept;
   /// Follows the step up to the sample of `result`. Turns whose blow is measured by now are its `ends`: some 50 ms
   /// after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
@@ -33,7 +35,6 @@ class TurnFollower {
  private:
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
-  void finishBlow(SampleResult& result) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
 
   const HullModel* model_;
