@@ -1,4 +1,4 @@
-/// Prices of the straight-line grapple: warm step and cold start.
+/// Cost of the straight-line grapple: warm step and cold start.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// States on which the price list judges every way to the loads.
+/// States on which the cost table judges every way to the loads.
 #pragma once
 
 #include <string>

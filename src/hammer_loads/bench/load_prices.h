@@ -1,4 +1,4 @@
-/// Prices of the loads of one state: printed formulas, every level, one by one and in batches.
+/// Cost of the loads of one state: printed formulas, every level, one by one and in batches.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// Price list, first part: what a way to the loads costs and how many digits it keeps.
+/// Cost table, first part: what a way to the loads costs and how many digits it keeps.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-/// Price list, first part, as text.
+/// Cost table, first part, as text.
 #pragma once
 
 #include <string>

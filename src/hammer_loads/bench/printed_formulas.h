@@ -1,4 +1,4 @@
-/// The loads by the formulas that P0 prints, signs mended (model.md 7): what the price list compares with.
+/// The loads by the formulas that P0 prints, signs corrected (model.md 7): what the cost table compares with.
 ///
 /// All of (1) to (14): positions by inverse trigonometry or by the sines and cosines of the same triangles, transfer
 /// functions, pin forces from the group of rod and rocker, hull force as the sum of both pivots' reactions. P0 knows

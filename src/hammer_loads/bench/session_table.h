@@ -1,4 +1,4 @@
-/// Price list, second part: error of a whole session by crank estimator, sample rate and encoder.
+/// Cost table, second part: error of a whole session by crank estimator, sample rate and encoder.
 #pragma once
 
 #include <string>

@@ -61,7 +61,7 @@ std::string printTables(const Settings& settings, const std::string& only) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Price list: cost and error of every way to the loads, errors over simulated working sessions",
+  CLI::App app("Cost table: cost and error of every way to the loads, errors over simulated working sessions",
                "accuracy");
   std::vector<std::string> files;
   std::string json_file, only;

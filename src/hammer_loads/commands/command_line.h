@@ -25,7 +25,7 @@ CLI::Validator numberWithin(double least, double most, const std::string& unit);
 /// Nothing when the command may go on, else the exit code (0 after --help).
 std::optional<int> parse(CLI::App& app, int argc, const char* const* argv);
 
-/// Exit code of a command that has written its result to stdout; tells when that cannot be written.
+/// Exit code of a command that has written its result to stdout; reports when that cannot be written.
 int finishOutput();
 
 /// Adds `--urdf FILE`, the robot description that the boom is made from.

@@ -12,7 +12,7 @@ struct Branches {
   struct Branch {
     double theta2{};       ///< direction of AB, in [-pi, pi] [rad]
     double theta5{};       ///< direction of OD, in [-pi, pi] [rad]
-    double determinant{};  ///< det J [m4]; its sign tells the two branches that meet in a fold apart
+    double determinant{};  ///< det J [m4]; its sign distinguishes the two branches that meet in a fold
   };
   std::array<Branch, 6> branch;
   int count{};

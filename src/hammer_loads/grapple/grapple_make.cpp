@@ -9,9 +9,9 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kReferenceTolerance = 0.05;  ///< of the reference pose's angles [rad]: tells poses apart, no more
+constexpr double kReferenceTolerance = 0.05;  ///< of the reference pose's angles [rad]: distinguishes poses, no more
 constexpr double kClosedTolerance = 1e-9;     ///< by which P may lie beyond the axis when closed [m]
-constexpr double kSameTheta1 = 1e-6;          ///< [rad]: tells the drive's two assemblies apart
+constexpr double kSameTheta1 = 1e-6;          ///< [rad]: distinguishes the drive's two assemblies
 
 struct NumberKey {
   const char* key;

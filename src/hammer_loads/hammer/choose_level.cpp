@@ -38,11 +38,11 @@ double largestError(const HullModel& model, const HullModel& rich, const std::ve
                     Gravity gravity) {
   double force = 0.0, moment = 0.0, force_error = 0.0, moment_error = 0.0;
   for (const CrankMotion& point : turn) {
-    const HullWrench is = hullWrench(model, point, gravity), ought = hullWrench(rich, point, gravity);
-    force = std::max({force, std::abs(ought.force_x), std::abs(ought.force_z)});
-    moment = std::max(moment, std::abs(ought.torque_y));
-    force_error = std::max({force_error, std::abs(is.force_x - ought.force_x), std::abs(is.force_z - ought.force_z)});
-    moment_error = std::max(moment_error, std::abs(is.torque_y - ought.torque_y));
+    const HullWrench actual = hullWrench(model, point, gravity), reference = hullWrench(rich, point, gravity);
+    force = std::max({force, std::abs(reference.force_x), std::abs(reference.force_z)});
+    moment = std::max(moment, std::abs(reference.torque_y));
+    force_error = std::max({force_error, std::abs(actual.force_x - reference.force_x), std::abs(actual.force_z - reference.force_z)});
+    moment_error = std::max(moment_error, std::abs(actual.torque_y - reference.torque_y));
   }
   return std::max(force_error / force, moment_error / moment);
 }

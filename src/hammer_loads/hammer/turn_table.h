@@ -24,7 +24,7 @@ struct TurnRow {
   double crank_angle{};  ///< [deg], 0 just after a blow, 360 just before the next
   double time{};         ///< since the blow [s]
   HullWrench wrench;
-  PinReactions pins;  ///< zero unless asked for; near_blow is not told
+  PinReactions pins;  ///< zero unless asked for; near_blow is not set
 };
 
 /// 0, step, 2 step, ... below 360 deg, and 360 deg.

@@ -116,7 +116,7 @@ std::optional<std::string> LedgerRun::write(bool end) {
   beginAsLedger(database);
   std::optional<RunRow> row = findRun(database, run_);
   if (!database.good()) return problem(database.problem());
-  // A commit that reported an error may be in the file all the same: the number of pieces tells.
+  // A commit that reported an error may be in the file all the same: the number of pieces shows it.
   const bool attempted = attempted_ > 0 || attempted_end_;
   if (row && attempted && row->pieces == pieces_ + 1) {
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(attempted_));

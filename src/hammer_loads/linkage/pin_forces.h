@@ -59,7 +59,7 @@ constexpr PinForce toHull(Planar f) noexcept { return {-f.re, f.im}; }
 
 }  // namespace detail
 
-/// Level rocker: P0 (6)-(14) with the signs mended; crank and rod massless, so R01 = R12 = R23 along the rod.
+/// Level rocker: P0 (6)-(14) with the signs corrected; crank and rod massless, so R01 = R12 = R23 along the rod.
 /// Deviates: P0 (6), (7), (8), (11), (12), see model.md 7. Neglects what hullWrenchRocker neglects.
 HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
                                                  Gravity gravity, const NearBlow& near_blow) noexcept {

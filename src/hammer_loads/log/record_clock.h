@@ -8,13 +8,13 @@
 namespace hammer_loads {
 
 /// Arrival times, made strictly increasing so that a log read back in time order is in the order of arrival. Simulated
-/// time that runs back (a bag that loops, a simulation that starts again) begins anew; a wall clock that is set back
+/// time that runs back (a bag that loops, a simulation that starts again) restarts; a wall clock that is set back
 /// changes nothing, for header stamps are the only time that is computed with.
 class RecordClock {
  public:
   struct Tick {
     ros::Time time;   ///< record time of the input
-    bool ran_back{};  ///< whoever keeps a state by time must forget it
+    bool ran_back{};  ///< a state by time must be forgotten
   };
 
   Tick next(const ros::Time& arrival) {

@@ -23,7 +23,7 @@ struct BoomSample {
 
 /// Why the boom is taken as rigid or compliant.
 struct BoomChoice {
-  bool compliant{};           ///< what is told holds vibration
+  bool compliant{};           ///< published loads include vibration
   bool judged{};              ///< some turn has ended; the figures below are of the last one that did
   double pulse_length{};      ///< pi/mu of its pulse [s]
   double lowest_frequency{};  ///< of the boom at its end [Hz], 0 without modes

@@ -31,7 +31,7 @@ class HullImu {
  public:
   explicit HullImu(const HullImuSettings& settings) : settings_(settings) {}
 
-  /// Takes a reading or says why not. A reading older than the last begins anew if a second such one follows it, as
+  /// Takes a reading or says why not. A reading older than the last restarts if a second such one follows it, as
   /// when a log is played again. No allocation.
   std::optional<ImuRefusal> update(StampNs stamp, const ImuReading& reading) noexcept;
 

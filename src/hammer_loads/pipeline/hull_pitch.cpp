@@ -10,7 +10,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMostAngle = 1e4;  // [rad]: degrees are taken and told, garbage is not
+constexpr double kMostAngle = 1e4;  // [rad]: degrees are taken and recognised, garbage is not
 
 }  // namespace
 

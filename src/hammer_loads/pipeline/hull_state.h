@@ -44,7 +44,7 @@ class HullState {
   void rest() noexcept { vibration_ = {}; }
 
   const Motion& motion() const noexcept { return now_; }
-  /// False where IMU or boom ought to give the hull's motion and do not: weight by pitch then.
+  /// False where IMU or boom should give the hull's motion and do not: weight by pitch then.
   bool motionKnown() const noexcept { return known_; }
   const HullPitch& pitch() const noexcept { return pitch_; }
   const ImuCounts& imuCounts() const noexcept { return imu_counts_; }

@@ -1,4 +1,4 @@
-/// Everything that one crank sample gives, complete: nobody asks the pipeline for more.
+/// Everything that one crank sample gives, complete.
 #pragma once
 
 #include <array>

@@ -20,7 +20,7 @@ class StampOrder {
     double step{};  ///< since the last accepted sample [s], for kNext
   };
 
-  /// stale_after: age of the last sample from which on a new one starts anew [s].
+  /// stale_after: age of the last sample from which on a new one restarts [s].
   explicit StampOrder(double stale_after) : stale_after_(stale_after) {}
 
   /// Time running back is believed from the second sample on: the first may just be late.

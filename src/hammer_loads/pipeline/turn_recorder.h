@@ -1,4 +1,4 @@
-/// Follows a turn from blow to blow, so that its pulse can be told when it ends.
+/// Follows a turn from blow to blow, so that its pulse is known when it ends.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,7 @@ class TurnRecorder {
   void begin(const TurnInstant& after_blow) noexcept;
   /// The momentum just after the blow is better known by now than when the turn began.
   void correctBegin(const LinkMomentum& after_blow) noexcept;
-  /// What follows is not known to belong to the turn: its pulse will not be told.
+  /// What follows is not known to belong to the turn: its pulse is not given.
   void abandon() noexcept { recording_ = false; }
   bool recording() const noexcept { return recording_; }
   void add(const TurnInstant& instant) noexcept;

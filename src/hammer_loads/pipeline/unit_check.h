@@ -1,4 +1,4 @@
-/// Tells a crank or a boom that speaks in degrees, where radians are agreed.
+/// Recognises a crank or a boom that sends degrees where radians are required.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace hammer_loads {
 /// either way is degrees in one of them. Where both would be in degrees, or no speed is measured, it looks for steps
 /// that repeat themselves, each faster than any crank, but not so if they were degrees. Needs the raw samples, those
 /// that are refused as well; judges within some 2 turns and takes nothing back before the samples contradict it.
-/// Degrees of both angle and speed below `max_speed` [deg/s] cannot be told from radians.
+/// Degrees of both angle and speed below `max_speed` [deg/s] look like radians.
 class UnitCheck {
  public:
   /// No crank is faster [rad/s].

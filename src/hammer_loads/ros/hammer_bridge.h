@@ -55,7 +55,7 @@ class HammerBridge {
   void send(const TurnEnd& end, const ros::Time& record_time);
 
   Settings settings_;
-  std::optional<Pipeline> pipeline_;  ///< made anew with each run, in its place
+  std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
   HammerOutputs outputs_;
   std::vector<ChainLink> chain_links_;
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames

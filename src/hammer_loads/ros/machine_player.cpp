@@ -60,7 +60,7 @@ void MachinePlayer::run() {
     std::this_thread::sleep_until(next);
     const double time = std::min(elapsed(), duration);
     if (time < last) {
-      ROS_WARN("time ran back by %.3f s: the machine starts anew", last - time);
+      ROS_WARN("time ran back by %.3f s: the machine restarts", last - time);
       start();
       last = 0.0;
       continue;

@@ -18,7 +18,7 @@ namespace hammer_loads {
 /// sampling. Published in batches a millisecond long, so a sample is at most about that old when it is sent. Time
 /// follows
 /// - the steady clock from the wall time of the start on, without /use_sim_time;
-/// - /clock, with /use_sim_time; when it jumps back the machine starts anew;
+/// - /clock, with /use_sim_time; when it jumps back the machine restarts;
 /// - its own steps, with /use_sim_time and publish_clock: then it publishes /clock, before the samples up to it.
 class MachinePlayer {
  public:

@@ -1,4 +1,4 @@
-/// Ages and rates for reports: by a clock that nobody sets.
+/// Ages and rates for reports: by a clock that is never set.
 #pragma once
 
 #include <chrono>

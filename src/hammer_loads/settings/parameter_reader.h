@@ -55,10 +55,10 @@ class ParameterReader {
     return choices[choiceIndex(key, words)].second;
   }
 
-  /// A line `KEY: ...` found by whoever knows more than one key's rule. Left out when the parameter KEY has a problem
+  /// A line `KEY: ...` found by a reader that knows more than one key's rule. Left out when the parameter KEY has a problem
   /// already; where KEY came from is added.
   void addProblem(const std::string& line);
-  /// Call after every read: each key that nobody asked for, with the nearest known one.
+  /// Call after every read: each key that was not read, with the nearest known one.
   void reportUnknownKeys();
 
   const std::vector<std::string>& problems() const { return problems_; }

@@ -67,7 +67,7 @@ constexpr std::array<std::pair<const char*, BoomAcceleration>, 2> kBoomAccelerat
 /// What is known of the hull's own motion.
 enum class HullMotionSource {
   kFixed,  ///< it is at rest; weight by pitch
-  kImu,    ///< as its IMU tells
+  kImu,    ///< as its IMU reports
   kModel,  ///< it vibrates as the compliant boom does
 };
 
@@ -106,7 +106,7 @@ struct PipelineSettings {
   BoomModel boom{};
   BoomAcceleration boom_acceleration{};
   double joint_max_age{};                      ///< between a crank sample and a joint's nearest state [s], > 0
-  std::vector<std::string> boom_wrench_links;  ///< links and TF frames at which the hull wrench is told as well
+  std::vector<std::string> boom_wrench_links;  ///< links and TF frames at which the hull wrench is published as well
   double tf_max_wait{};                        ///< of a wrench for the transform to its frame [s], > 0
 };
 
