@@ -95,7 +95,7 @@ void CrankFollower::restart() noexcept {
 
 /// Before the first whole turn there is no peak to compare with: then only the speed must be known.
 bool CrankFollower::isSettled(const HullMotion& hull, double peak_force) noexcept {
-  if (!tracker_->isPlausible()) return false;
+  if (!tracker_->isPlausible() || suspectsDegrees()) return false;
   if (!unsettled_) return true;
   if (!tracker_->hasSpeed()) return false;
   if (peak_force > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;

@@ -39,6 +39,8 @@ class CrankFollower {
   /// Ends a step: later steps begin at this sample.
   void accept() noexcept;
 
+  /// Whether angle or speed may be in degrees: not recognised yet.
+  bool suspectsDegrees() const noexcept { return unit_check_.suspectsDegrees(); }
   /// Whether the estimate may be published; peak_force: of the last whole turn [N], 0 before it.
   bool isSettled(const HullMotion& hull, double peak_force) noexcept;
 

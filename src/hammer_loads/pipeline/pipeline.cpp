@@ -1,12 +1,14 @@
 #include "hammer_loads/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hammer_loads/pipeline/step_impulse.h"
 
 namespace hammer_loads {
 namespace {
 
+constexpr double kMostForce = 3.0;  // times the peak of the nominal turn at constant speed, itself above any real one
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
 }  // namespace
@@ -20,6 +22,8 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_(settings_),
       turn_(model_, crank_.step(), crank_.tracker()),
       sampler_(model_, crank_.step(), crank_.tracker(), settings_),
+      most_force_(kMostForce *
+                  pulseAtConstantSpeed(mechanism_, settings_.level, kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings_, mechanism.parameters().striking_distance);
   result_.outputs.reserve(std::min(sampler_.mostOutputs(), kMostOutputs));
@@ -85,6 +89,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (crank_.tracker().isDoubtful()) return withhold(Refusal::kUnsettled);
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
 
+  const HullWrench wrench = hullWrench(model_, motionOf(result_.crank), hull_.motion().motion);
+  if (!(std::hypot(wrench.force_x, wrench.force_z) <= most_force_)) return withhold(Refusal::kImplausible);
   followBoom();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();

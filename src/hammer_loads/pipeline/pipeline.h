@@ -56,6 +56,7 @@ class Pipeline {
   TurnFollower turn_;
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
+  double most_force_;    ///< a larger one is not published: degrees that are not recognised yet, for instance [N]
   bool boom_follows_{};  ///< the boom has had every step since the last restart
   SampleCounts counts_;
   SampleResult result_;

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kDegrees = 360.0 / kTwoPi;  // in a radian
 constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
+constexpr double kLeastStretch = 0.01;       // [rad] of the shorter one: of the speed's noise as well
 constexpr double kStretch = 1.0;             // [rad]: shorter than a turn, so that most stretches see no jump back
 constexpr double kLongestStep = 0.25;        // [s]
 constexpr double kRepeats = 0.2;             // relative change between steps that repeat each other
@@ -42,7 +43,8 @@ void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexce
 void UnitCheck::compareWithSpeed(double step, double predicted) noexcept {
   turned_ += step;
   predicted_ += predicted;
-  if (std::abs(predicted_) < kStretch) return;
+  // In degrees the one of the two turns much further than the other; counts need some ten to be a ratio.
+  if (std::abs(predicted_) < kStretch && (std::abs(turned_) < kStretch || std::abs(predicted_) < kLeastStretch)) return;
   vote(speed_votes_, isDegrees(turned_ / predicted_));
   turned_ = predicted_ = 0.0;
 }
@@ -58,11 +60,11 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
   vote(bound_votes_, too_fast);
 }
 
-/// One judge suffices to tell; to be calmed, both must be.
+/// One judge suffices to recognise degrees; both must agree that it is over.
 void UnitCheck::vote(int& votes, bool degrees) noexcept {
   votes = std::clamp(votes + (degrees ? 1 : -1), 0, kEnough);
-  if (votes == kEnough) told_ = true;
-  if (speed_votes_ == 0 && bound_votes_ == 0) told_ = false;
+  if (votes == kEnough) recognised_ = true;
+  if (speed_votes_ == 0 && bound_votes_ == 0) recognised_ = false;
 }
 
 }  // namespace hammer_loads

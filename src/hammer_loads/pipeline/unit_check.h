@@ -19,9 +19,13 @@ class UnitCheck {
 
   /// Sample dt after the one before it [s]; dt <= 0, a long pause and values that are not finite begin a new stretch.
   void add(double dt, double angle, std::optional<double> speed) noexcept;
-  bool looksLikeDegrees() const noexcept { return told_; }
+  bool looksLikeDegrees() const noexcept { return recognised_; }
+  /// The last stretches speak for degrees, but not enough of them yet.
+  bool suspectsDegrees() const noexcept { return speed_votes_ >= kSuspicious || bound_votes_ >= kSuspicious; }
 
  private:
+  static constexpr int kSuspicious = 2;  ///< votes more for degrees than against
+
   void begin(double angle) noexcept;
   void compareWithSpeed(double step, double predicted) noexcept;
   void compareWithBound(double dt, double rate) noexcept;
@@ -33,7 +37,7 @@ class UnitCheck {
   double turned_{}, predicted_{};  ///< of this stretch, by angles and by speeds [rad]
   double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
   int speed_votes_{}, bound_votes_{};
-  bool told_{};
+  bool recognised_{};
 };
 
 /// A pitch joint beyond a whole turn [rad]: a boom that speaks in degrees, for it cannot reach there.
