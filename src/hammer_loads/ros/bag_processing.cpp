@@ -140,6 +140,7 @@ void process(const Work& work, rosbag::Bag& output, const std::function<void(dou
   }
   warnOfPublishers(work.inputs, topics, report.warnings);
   warnOfDefinitions(work.inputs, report.warnings);
+  warnOfLostMessages(work.inputs, report.warnings);
   if (hammer) {
     hammer->end();
     warnOfMissing(work.inputs, work.runs, heard, report.warnings);

@@ -6,6 +6,7 @@
 
 #include <cstring>
 
+#include "hammer_loads/log/log_gaps.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/settings/yaml_value.h"
@@ -60,6 +61,20 @@ void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& t
     std::string publishers;
     for (const std::string& node : found->second.publishers) publishers += (publishers.empty() ? "" : ", ") + node;
     addOnce(warnings, name + ": several publishers: " + publishers);
+  }
+}
+
+void warnOfLostMessages(const BagInputs& inputs, std::vector<std::string>& warnings) {
+  for (const auto& [name, topic] : inputs.topics()) {
+    if (!isGapTopic(name) || topic.types.count(typeOf<diagnostic_msgs::DiagnosticStatus>()) == 0) continue;
+    std::uint64_t lost = 0;
+    rosbag::View view;
+    inputs.addTo(view, rosbag::TopicQuery(name));
+    for (const rosbag::MessageInstance& item : view)
+      lost += lostMessages(*messageOf<diagnostic_msgs::DiagnosticStatus>(item));
+    if (lost > 0)
+      addOnce(warnings, name + ": the log lost " + std::to_string(lost) +
+                            " messages; where an input is among them, the outputs differ from those of the node");
   }
 }
 

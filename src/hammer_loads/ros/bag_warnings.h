@@ -21,6 +21,9 @@ void warnOfRun(const HammerBridge& bridge, bool joints_came, std::vector<std::st
 void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
                       std::vector<std::string>& warnings);
 
+/// What the log that made the bags could not keep.
+void warnOfLostMessages(const BagInputs& inputs, std::vector<std::string>& warnings);
+
 /// Messages of another version of this package: their definition differs.
 void warnOfDefinitions(const BagInputs& inputs, std::vector<std::string>& warnings);
 

@@ -14,7 +14,7 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
     : log_(std::move(log)),
       bridge_(settings),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
-      config_(configInForce(settings.log.enabled)),
+      config_(configInForce(log_->isRecording())),
       diagnostics_(node, private_node, bridge_, *log_),
       reconfigure_(reconfigure_mutex_, private_node),
       log_services_(
