@@ -147,6 +147,37 @@ TEST(Deviations, ShrinkWithWhatIsIdentified) {
   EXPECT_LT(after.torque.norm(), 0.3 * before.torque.norm());
 }
 
+TEST(Deviations, AtADeadCentreAreThoseOfTheLoadAlone) {
+  BoomParameters parameters = test::shippedBoomParameters();
+  CylinderParameters& p = parameters.cylinders[0];
+  p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0, p.closed_length = 1.5, p.stroke = 0.6;
+  Boom boom = *Boom::make(test::shippedUrdf(), parameters).value;
+  boom.vibration().identify();
+  VibrationSpread spread;
+  const WrenchSpread error{1, {Wrench{{100.0, 0.0, 300.0}, {0.0, 50.0, 0.0}}, {}, {}}};
+  const JointVector push = JointVector::Constant(4, 1e3);
+  for (double angle : {-0.2, 0.0, 0.2}) {  // to the dead centre and away from it
+    for (int i = 0; i < 20; ++i) {
+      boom.moveCompliant(still(test::joints({0.0, angle, 1.0, -1.0})), kLevel);
+      spread.follow(boom.vibration());
+      boom.vibration().advance(kMillisecond, {push, push, push});
+      spread.advance(kMillisecond, {push, push, push}, boom.spreadTorque(error));
+      boom.vibration().observe(0, jointAngleReading(4, 1, 1e-4));
+    }
+    EXPECT_EQ(boom.vibration().known(), angle != 0.0);
+    BoomDeviations deviations;
+    boom.deviations(spread, error, false, deviations);
+    EXPECT_TRUE(deviations.torque.allFinite());
+    if (angle != 0.0) continue;
+    EXPECT_LT((deviations.torque - boom.hammerTorque(error.part[0]).cwiseAbs()).norm(), 1e-9);
+    EXPECT_TRUE(std::isnan(deviations.cylinder[0]));
+    EXPECT_TRUE(std::isfinite(deviations.cylinder[1]));
+    BoomLoads loads;
+    boom.loads({}, false, loads);
+    EXPECT_EQ(boom.flags(0, loads), kDeadCentre);
+  }
+}
+
 TEST(CylinderFlags, PressuresAreThoseOfTrappedOil) {
   const Boom boom = test::shippedBoom();
   const Cylinder& c = boom.cylinders()[0];

@@ -38,7 +38,7 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
     const double weight = VibrationSpread::weight(run);
     const Wrench w =
         run < VibrationSpread::kLoads ? Wrench{} : w_tip.part[static_cast<std::size_t>(run - VibrationSpread::kLoads)];
-    const bool follows = !rigid && run < spread.runs();
+    const bool follows = !rigid && vibration_.known() && run < spread.runs();
     const JointMotion motion{joints_.position, zero, follows ? spread.accelerationDifference(run, vibration_) : zero};
     steel_.find({pose_, motion, weightless, w}, load);
     JointVector torque = hammerTorque(w);
