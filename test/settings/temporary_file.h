@@ -1,13 +1,12 @@
 /// Files that exist as long as a test needs them.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
 #include <string>
-
-#include "support/main.h"
 
 namespace hammer_loads::test {
 
