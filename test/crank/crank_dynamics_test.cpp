@@ -16,9 +16,9 @@ ShaftState stateAt(double angle, double speed, double torque, double inertia = 0
   return {{0, CrankAngle::fromAngle(angle)}, speed, torque, inertia};
 }
 
-ShaftState advanced(const ShaftModel& model, double dt, ShaftState state) {
+ShaftState advanced(const ShaftModel& model, double dt, ShaftState state, const Passing& passing = {}) {
   ShaftLoad load = model(state.position.angle);
-  advance(model, dt, state, load);
+  advance(model, dt, passing, state, load);
   return state;
 }
 
@@ -107,27 +107,39 @@ TEST_F(CrankDynamics, ReversesAndTurnsBackwardsThroughTheBlow) {
   EXPECT_EQ(through.position.blow, 0);
 }
 
-class CrankLinearisation : public CrankDynamics, public testing::WithParamInterface<HullMotion> {};
+class CrankLinearisation : public CrankDynamics, public testing::WithParamInterface<HullMotion> {
+ protected:
+  void follows(double factor);
+};
 
 TEST_P(CrankLinearisation, FollowsFiniteDifferences) {
   linkage_.setHullMotion(GetParam());
+  for (const double factor : {1.0, 0.7, 1.2}) follows(factor);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hulls, CrankLinearisation,
+                         testing::Values(HullMotion(kLeaning), HullMotion{{5.0, -25.0}, 2.0, 80.0}));
+
+void CrankLinearisation::follows(double factor) {
   for (const double angle : {0.5, 2.0, 3.5, 4.8, 5.6, 6.0, 6.2, 6.275}) {
     for (const double dt : {2e-4, 1e-3}) {
       const ShaftState from = stateAt(angle, 18.0, 150.0);
       ShaftState to = from;
       ShaftLoad load = linkage_(from.position.angle);
-      const ShaftTransition f = advance(linkage_, dt, to, load);
-      const double step[] = {1e-5, 1e-4, 1e-2, 1e-4};
-      // Unit changes that matter: 1 mrad, 0.1 rad/s, 100 N m, 10 % of inertia.
-      const double size[] = {1e-3, 0.1, 100.0, 0.1};
-      for (int i = 0; i < 4; ++i) {
+      const Advance result = advance(linkage_, dt, {factor, true}, to, load);
+      const ShaftTransition& f = result.transition;
+      EXPECT_EQ(result.blows, to.position.blowsPassed() - from.position.blowsPassed());
+      const double step[] = {1e-5, 1e-4, 1e-2, 1e-4, 1e-4};
+      // Unit changes that matter: 1 mrad, 0.1 rad/s, 100 N m, 10 % of inertia, 5 % of a blow's factor.
+      const double size[] = {1e-3, 0.1, 100.0, 0.1, 0.05};
+      for (int i = 0; i < 5; ++i) {
         const auto moved = [&](double by) {
           ShaftState s = from;
           if (i == 0) s.position.turn(by);
           if (i == 1) s.speed += by;
           if (i == 2) s.torque += by;
           if (i == 3) s.drive_inertia *= std::exp(by);
-          return advanced(linkage_, dt, s);
+          return advanced(linkage_, dt, s, {factor + (i == 4 ? by : 0.0), true});
         };
         const ShaftState high = moved(step[i]), low = moved(-step[i]);
         const double by_angle = difference(high.position, low.position) / (2 * step[i]);
@@ -139,8 +151,59 @@ TEST_P(CrankLinearisation, FollowsFiniteDifferences) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Hulls, CrankLinearisation,
-                         testing::Values(HullMotion(kLeaning), HullMotion{{5.0, -25.0}, 2.0, 80.0}));
+TEST_F(CrankDynamics, ABlowTakesItsPartOfTheSpeed) {
+  for (const double factor : {0.3, 0.8, 1.2}) {
+    const ShaftState from = stateAt(kTwoPi - 1e-6, 15.0, 0.0);
+    const ShaftState to = advanced(rocker_, 1e-5, from, {factor, true});
+    EXPECT_NEAR(to.speed, factor * 15.0, 2e-3) << factor;
+    const ShaftState back = advanced(rocker_, -1e-5, to, {factor, true});
+    EXPECT_NEAR(back.speed, from.speed, 1e-6) << factor;
+  }
+}
+
+/// A state that a correction pushed beyond the blow stands where it would, had it passed in time.
+TEST_F(CrankDynamics, PassesLateAsInTime) {
+  const Passing blow{0.7, true};
+  const ShaftState from = stateAt(kTwoPi - 0.004, 15.0, 100.0);
+  for (const double late : {1e-5, 5e-5, 2e-4}) {
+    ShaftState s = advanced(rocker_, 0.004 / 15.0 + late, from, {1.0, false});
+    ASSERT_TRUE(s.position.isMirrored());
+    ShaftLoad load;
+    ShaftTransition ignored = ShaftTransition::Identity();
+    passBlow(rocker_, blow.factor, s, load, ignored);
+    const ShaftState in_time = advanced(rocker_, 0.004 / 15.0 + late, from, blow);
+    EXPECT_NEAR(difference(s.position, in_time.position), 0.0, 100.0 * late * late + 1e-9) << late;
+    EXPECT_NEAR(s.speed, in_time.speed, 1e5 * late * late + 1e-4) << late;
+  }
+}
+
+/// Without a tool nothing is lost: the rocker swings through, and comes back a turn later.
+TEST_F(CrankDynamics, ATurnWithoutContactIsSmoothAndMirrored) {
+  ShaftState s = stateAt(5.9, 18.0, 0.0);
+  const double energy = kineticEnergy(rocker_, s);
+  const auto psi = [&] {
+    const Motion m = motion(mechanism_.linkage(), s.position.angle);
+    return std::atan2(m.sin_psi, m.cos_psi);
+  };
+  double last_psi = psi(), lowest = 0.0;
+  bool mirrored = false;
+  for (int i = 0; i < 6000 && difference(s.position, {}) < 1.9 * kTwoPi; ++i) {
+    const double speed = s.speed, u = motion(mechanism_.linkage(), s.position.angle).u;
+    s = advanced(rocker_, 1e-4, s, {0.5, false});
+    const double mean = 0.5 * (u * speed + motion(mechanism_.linkage(), s.position.angle).u * s.speed);
+    ASSERT_NEAR(psi() - last_psi, 1e-4 * mean, 2e-5) << i;
+    ASSERT_NEAR(kineticEnergy(rocker_, s) / energy, 1.0, 1e-6) << i;
+    last_psi = psi();
+    lowest = std::min(lowest, last_psi);
+    const double turned = difference(s.position, {});
+    if (s.position.angle.offset == 0.0) continue;
+    EXPECT_EQ(s.position.isMirrored(), turned > 0.0 && turned < kTwoPi) << turned;
+    mirrored |= s.position.isMirrored();
+  }
+  EXPECT_TRUE(mirrored);
+  EXPECT_FALSE(s.position.isMirrored());
+  EXPECT_LT(lowest, -2.0);
+}
 
 TEST_F(CrankDynamics, AbsurdSpeedsEndInTime) {
   const ShaftState s = advanced(rocker_, 0.1, stateAt(1.0, 1e7, 0.0));

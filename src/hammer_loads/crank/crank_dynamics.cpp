@@ -86,7 +86,7 @@ ShaftTransition transition(const Shaft& shaft, double dt, double speed, const Sh
   const double inertia_h = 0.5 * dt * (p.h_by_inertia + q.h_by_inertia);
   const Scaling from = scaling(load, shaft.drive_inertia, speed),
                 to = scaling(load_end, shaft.drive_inertia, speed_end);
-  ShaftTransition f;
+  ShaftTransition f = ShaftTransition::Zero();
   f(0, 0) = phi00 + phi01 * from.by_angle;
   f(0, 1) = phi01 * from.by_speed;
   f(0, 2) = 0.5 * b * torque_h;
@@ -102,11 +102,14 @@ ShaftTransition transition(const Shaft& shaft, double dt, double speed, const Sh
 /// The transition `first`, then `second`.
 ShaftTransition chained(const ShaftTransition& second, const ShaftTransition& first) noexcept {
   ShaftTransition both = second.leftCols<2>() * first;
-  both.rightCols<2>() += second.rightCols<2>();
+  both.rightCols<3>() += second.rightCols<3>();
   return both;
 }
 
-bool passedBlow(Side side, double offset) noexcept { return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0; }
+bool isBeyond(Side side, double offset) noexcept { return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0; }
+
+/// A state on the mirrored branch is beyond already; there is nothing to pass.
+bool passesBlow(Side side, double from, double to) noexcept { return isBeyond(side, to) && !isBeyond(side, from); }
 
 /// Part of the step dt after which the path is at the blow: safeguarded secant on the smooth continuation.
 double timeToBlow(const Shaft& shaft, const Path& start, const Path& first, const Path& end, double dt) noexcept {
@@ -129,13 +132,14 @@ struct Piece {
 };
 
 /// One smooth piece of the way, ending at dt or at the blow.
-Piece advancePiece(const ShaftModel& model, double dt, ShaftState& state, ShaftLoad& load,
+Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state, ShaftLoad& load,
                    ShaftTransition& total) noexcept {
   const Shaft shaft{model, state.position.angle.side, state.torque, state.drive_inertia};
   const Path start{state.position.angle.offset, std::sqrt(state.drive_inertia + load.inertia) * state.speed};
   const Path first = rate(shaft, start.h, load);
   Path end = rungeKutta(shaft, start, first, dt);
-  Piece piece{dt, passedBlow(shaft.side, end.offset)};
+  const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
+  Piece piece{dt, (contact || !forward) && passesBlow(shaft.side, start.offset, end.offset)};
   if (piece.at_blow) {
     piece.used = timeToBlow(shaft, start, first, end, dt);
     end = rungeKutta(shaft, start, first, piece.used);
@@ -151,17 +155,6 @@ Piece advancePiece(const ShaftModel& model, double dt, ShaftState& state, ShaftL
   return piece;
 }
 
-/// Passes the blow: position and speed are continuous, the acceleration jumps. A path that reaches the blow later by
-/// d(angle)/w keeps the old acceleration for so much longer (saltation).
-void passBlow(const ShaftModel& model, ShaftState& state, ShaftLoad& load, ShaftTransition& total) noexcept {
-  const double before = acceleration(load, state);
-  state.position.angle.side = state.position.angle.side == Side::kBeforeBlow ? Side::kAfterBlow : Side::kBeforeBlow;
-  load = model(state.position.angle);
-  const double after = acceleration(load, state);
-  constexpr double kSlow = 1.0;  // [rad/s]: a crank that creeps over the blow has no defined instant of passing it
-  if (std::abs(state.speed) > kSlow) total.row(1) += ((after - before) / state.speed) * total.row(0);
-}
-
 }  // namespace
 
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept {
@@ -169,17 +162,47 @@ double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept {
          (state.drive_inertia + load.inertia);
 }
 
-ShaftTransition advance(const ShaftModel& model, double dt, ShaftState& state, ShaftLoad& load) noexcept {
-  ShaftTransition total = ShaftTransition::Identity();
+void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLoad& load,
+              ShaftTransition& total) noexcept {
+  const double beyond = state.position.angle.offset, speed = state.speed;
+  const double k = speed > 0.0 ? factor : 1.0;
+  const auto at = [&](Side side) {
+    state.position.angle = {0.0, side};
+    load = model(state.position.angle);
+    return acceleration(load, state);
+  };
+  const Side from = state.position.angle.side;
+  const double before = at(from);
+  state.speed *= k;
+  const double after = at(from == Side::kBeforeBlow ? Side::kAfterBlow : Side::kBeforeBlow);
+  constexpr double kSlow = 1.0;  // [rad/s]: a crank that creeps over the blow has no defined instant of passing it
+  const double jump = std::abs(speed) > kSlow ? (after - k * before) / speed : 0.0;
+  total.row(1) = k * total.row(1) + jump * total.row(0);
+  total.row(0) *= k;
+  total(1, 4) += speed > 0.0 ? speed : 0.0;
+  if (beyond == 0.0) return;
+  total(0, 4) += speed > 0.0 ? beyond : 0.0;
+  state.position.angle.offset = k * beyond;
+  state.speed += jump * beyond;
+  load = model(state.position.angle);
+}
+
+Advance advance(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
+                ShaftLoad& load) noexcept {
+  Advance result{ShaftTransition::Identity()};
+  ShaftTransition& total = result.transition;
   double left = dt;
   for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
     const double steps_needed = std::ceil(std::abs(left * state.speed) / kMaxStepAngle);
     const double steps = std::clamp(steps_needed, 1.0, static_cast<double>(kMaxSteps - i));
-    const Piece piece = advancePiece(model, left / steps, state, load, total);
+    const Piece piece = advancePiece(model, left / steps, passing.contact, state, load, total);
     left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
-    if (piece.at_blow) passBlow(model, state, load, total);
+    if (!piece.at_blow) continue;
+    const bool strikes = state.speed > 0.0;
+    passBlow(model, dt > 0.0 ? passing.factor : 1.0 / passing.factor, state, load, total);
+    result.blows += strikes;
   }
-  return total;
+  return result;
 }
 
 }  // namespace hammer_loads

@@ -34,20 +34,41 @@ struct ShaftState {
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;
 
 /// Order of the shaft's variables in matrices: angle, speed, torque, logarithm of the drive inertia (which keeps it
-/// positive and makes its uncertainty relative).
-using ShaftMatrix = Eigen::Matrix4d;
+/// positive and makes its uncertainty relative), factor of the last blow.
+using ShaftMatrix = Eigen::Matrix<double, 5, 5>;
 
-/// d(angle, speed after)/d(angle, speed, torque, logarithm of drive inertia before); torque and inertia stay.
-using ShaftTransition = Eigen::Matrix<double, 2, 4>;
+/// d(angle, speed after)/d(angle, speed, torque, logarithm of drive inertia, blow factor before); the others stay. The
+/// blow factor counts only where a blow is passed in between.
+using ShaftTransition = Eigen::Matrix<double, 2, 5>;
+
+/// What happens where the crank turns forward through the dead centre.
+struct Passing {
+  double factor{1.0};  ///< crank speed after over before the blow [-], > 0
+  bool contact{true};  ///< false: no tool, the rocker goes on smoothly onto the mirrored branch
+};
+
+/// What a step did beside moving the state.
+struct Advance {
+  ShaftTransition transition;
+  int blows{};  ///< passed forward, with contact; back in time likewise
+};
+
+/// Passes the blow where the state stands on the way before it, at offset 0 or a little past it: what would have
+/// happened had it been passed when it was reached (first order). Position and, but for the factor, speed are
+/// continuous, the acceleration jumps; a path that reaches the blow later by d(angle)/w has the old ones for so much
+/// longer (saltation). Turning backward the factor is 1; back in time it is undone.
+void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLoad& load,
+              ShaftTransition& total) noexcept;
 
 /// Advances the state by dt [s] (negative: back in time) with constant torque and inertia, through the blow if it lies
-/// in between (there the speed is continuous and the acceleration jumps). `load` is the model's at the state's angle,
-/// before and after the call.
+/// in between. `load` is the model's at the state's angle, before and after the call. A state on the mirrored branch
+/// goes on and leaves it smoothly.
 ///
 /// Integrates h = sqrt(Jc + J) w, half the square of which is the kinetic energy: its rate, the torques over
 /// sqrt(Jc + J), has no term with the transfer function's derivative, so its linearisation needs none of third order.
 /// Runge-Kutta of order 4, steps of at most 0.05 rad: error of a free turn below 1e-7 of the energy; linearisation of
 /// order 2 per step, within 1 % of finite differences at 1 kHz (test).
-ShaftTransition advance(const ShaftModel& model, double dt, ShaftState& state, ShaftLoad& load) noexcept;
+Advance advance(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
+                ShaftLoad& load) noexcept;
 
 }  // namespace hammer_loads

@@ -6,24 +6,29 @@
 namespace hammer_loads {
 namespace {
 
-enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia };
+using Belief = CrankBelief;
 
-constexpr double kWiden = 25.0;         // innovation^2 over its variance from which on the model does not explain it
-constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
-constexpr double kJump = 0.5;           // [rad] innovation that no working machine makes between two samples
-constexpr double kKick = 0.35;          // of the speed: what no torque changes between two samples
-constexpr double kNoiseStep = 2e-3;     // [s] step over which the process noise is spread
-constexpr double kMaxInertiaChange =
-    0.3;                                 // of the logarithm by one sample: beyond it the linearisation is worth nothing
-constexpr double kLeastInertia = 0.1;    // of the first guess: no drawing is further off
-constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held at constant speed looks that heavy
-constexpr double kLearnSpeed = 5.0;      // [rad/s]: a slower crank is moved by friction and stopped by the tool
-constexpr double kRelearn = 0.05;        // relative deviation of the inertia after what it cannot explain
-constexpr double kMostTorque = 3.0;      // times its first deviation: more is what a bad sample left behind
-constexpr double kSoundSpeeds = 2.0;     // times the largest plausible speed: more is a diverged filter
+constexpr double kWiden = 25.0;            // innovation^2 over its variance from which on the model does not explain it
+constexpr double kDoubtfulAngle = 0.3;     // [rad] predicted deviation from which on the prediction is worth nothing
+constexpr double kJump = 0.5;              // [rad] innovation that no working machine makes between two samples
+constexpr double kKick = 0.35;             // of the speed: what no torque changes between two samples
+constexpr double kLeastInertia = 0.1;      // of the first guess: no drawing is further off
+constexpr double kMostInertia = 1000.0;    // times the first guess: a crank held at constant speed looks that heavy
+constexpr double kLearnSpeed = 5.0;        // [rad/s]: a slower crank is moved by friction and stopped by the tool
+constexpr double kRelearn = 0.05;          // relative deviation of the inertia after what it cannot explain
+constexpr double kMostTorque = 3.0;        // times its first deviation: more is what a bad sample left behind
+constexpr double kSoundSpeeds = 2.0;       // times the largest plausible speed: more is a diverged filter
 constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
 constexpr double kNearCounts = 4.0;        // counts from the blow within which the encoder decides its side
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
+constexpr double kToolZone = 0.06;         // [rad] around the dead centre where the tool may be met: 3.4 deg
+constexpr double kToolSteps = 1.5;         // steps around it likewise
+constexpr double kToolDeviation = 0.5;     // of the crank's speed: what a tool met there may take
+constexpr double kToolSeen = 16.0;         // innovation^2 over its variance that shows it
+constexpr double kCertain = 3.0;           // deviations of the stamp within which the encoder's edge decides nothing
+constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
+constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
+constexpr double kForgetRestarts = 2.0;    // [s]
 
 double square(double x) noexcept { return x * x; }
 
@@ -33,171 +38,245 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
     : model_(model),
       step_model_(model),
       settings_(settings),
-      first_guess_(drive_inertia),
-      encoder_(settings.angle_resolution),
+      encoder_(settings.angle_resolution, settings.sensor),
+      timing_(settings.timing_noise),
+      blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
-  now_.drive_inertia = drive_inertia;
-  covariance_.setZero();
-  covariance_(kInertia, kInertia) = square(settings.initial_inertia_deviation);
+  now_.state.drive_inertia = drive_inertia;
+  now_.least_inertia = kLeastInertia * drive_inertia;
+  now_.most_inertia = kMostInertia * drive_inertia;
+  now_.factor = settings.blow_factor;
+  now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings.initial_inertia_deviation);
 }
 
-void CrankFilter::start(const CrankSample& sample) noexcept {
-  now_.position = {0, CrankAngle::fromAngle(encoder_.angle(sample.angle))};
-  now_.speed = 0.0;
-  now_.torque = 0.0;
-  anchor(now_.position.angle.offset, sample);
+double CrankFilter::mostSpeed() const noexcept { return kSoundSpeeds * settings_.max_speed; }
+
+/// Angle and speed of the crank from those of its sensor.
+CrankSample CrankFilter::ofCrank(const CrankSample& reading) noexcept {
+  CrankSample sample{encoder_.angle(reading.angle), reading.speed};
+  if (sample.speed) sample.speed = encoder_.speed(sample.angle, *reading.speed);
+  return sample;
+}
+
+void CrankFilter::start(const CrankSample& reading) noexcept {
+  const CrankSample sample = ofCrank(reading);
+  now_.state.position = {0, CrankAngle::fromAngle(sample.angle)};
+  now_.state.speed = 0.0;
+  now_.state.torque = 0.0;
+  anchor(now_.state.position.angle.offset, sample);
 }
 
 /// Takes angle and speed from the sample alone; the torque is in doubt, the inertia stays as identified. The whole
 /// turns are those nearest to now_.
 void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
-  const double inertia_variance = covariance_(kInertia, kInertia);  // NaN-proof by min: never above the first guess
-  now_.position.turn(CrankAngle::wrapToPi(measured - now_.position.angle.offset));
-  now_.speed = sample.speed.value_or(now_.speed);
+  ShaftState& s = now_.state;
+  const double inertia_variance = now_.covariance(Belief::kInertia, Belief::kInertia);
+  s.position.turn(CrankAngle::wrapToPi(measured - s.position.angle.offset));
+  s.speed = sample.speed.value_or(s.speed);
   const double most_torque = kMostTorque * settings_.initial_torque_deviation;
-  now_.torque = std::clamp(now_.torque, -most_torque, most_torque);
+  s.torque = std::clamp(s.torque, -most_torque, most_torque);
   has_speed_ = sample.speed.has_value();
-  outlier_seen_ = false;
-  load_ = model_(now_.position.angle);
+  outlier_ = 0.0;
+  unexplained_ = 0;
+  load_ = model_(s.position.angle);
   now_hull_ = model_.hullMotion();
-  covariance_.setZero();
-  covariance_(kAngle, kAngle) = encoder_.variance() + square(settings_.angle_noise);
-  covariance_(kSpeed, kSpeed) = has_speed_ ? speed_variance_ : square(settings_.max_speed);
-  covariance_(kTorque, kTorque) = square(settings_.initial_torque_deviation);
-  covariance_(kInertia, kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
+  now_.tool_met = false;
+  now_.factor = settings_.blow_factor;
+  ShaftMatrix& p = now_.covariance;
+  p.setZero();
+  p(Belief::kAngle, Belief::kAngle) = angleVariance();
+  p(Belief::kSpeed, Belief::kSpeed) = has_speed_ ? speed_variance_ : square(settings_.max_speed);
+  p(Belief::kTorque, Belief::kTorque) = square(settings_.initial_torque_deviation);
+  // NaN-proof by min: never above the first guess
+  p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
+  p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
 }
 
-/// Advances state and covariance by dt with the process noise of the meantime.
-void CrankFilter::predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept {
-  ShaftLoad load = step_model_(state.position.angle);
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
-  const double h = dt / steps;
-  const double torque = square(settings_.torque_walk) * h, speed = square(settings_.speed_walk) * h;
-  for (int i = 0; i < steps && std::abs(state.speed) < kSoundSpeeds * settings_.max_speed; ++i) {
-    const double b = 1.0 / (state.drive_inertia + load.inertia);
-    const ShaftTransition f = advance(step_model_, h, state, load);
-    const ShaftTransition moved = f * covariance;
-    covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
-    covariance.topRightCorner<2, 2>() = moved.rightCols<2>();
-    covariance(kAngle, kAngle) += speed * h * h / 3.0;
-    covariance(kSpeed, kSpeed) += speed + torque * square(b * h) / 3.0;
-    covariance(kTorque, kTorque) += torque;
-    covariance(kInertia, kInertia) += square(settings_.inertia_walk) * h;
-    covariance(kAngle, kSpeed) += 0.5 * speed * h;
-    covariance(kSpeed, kTorque) += 0.5 * torque * b * h;
-    covariance(kSpeed, kAngle) = covariance(kAngle, kSpeed);
-    covariance.bottomLeftCorner<2, 2>() = covariance.topRightCorner<2, 2>().transpose();
-  }
+int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noexcept {
+  const CrankWalks walks{settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk};
+  return belief.predict(step_model_, walks, blows_.prior(), contact, mostSpeed(), dt);
 }
 
-/// Scalar measurement of one state variable.
-void CrankFilter::correct(Eigen::Index row, double innovation, double variance) noexcept {
-  const double total = covariance_(row, row) + variance;
-  const Eigen::Vector4d column = covariance_.col(row);
-  const Eigen::Vector4d change = column * (innovation / total);
-  now_.position.turn(change[kAngle]);
-  now_.speed += change[kSpeed];
-  now_.torque += change[kTorque];
-  const double inertia =
-      now_.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
-  now_.drive_inertia = std::clamp(inertia, first_guess_ * kLeastInertia, first_guess_ * kMostInertia);
-  covariance_.noalias() -= column * (column.transpose() / total);
+/// Of a measured angle about the angle at its stamp.
+double CrankFilter::angleVariance() const noexcept {
+  return encoder_.variance() + square(settings_.angle_noise) + square(now_.state.speed) * timing_.variance();
 }
 
-/// The coming correction teaches nothing of the inertia.
-void CrankFilter::forgetInertiaCoupling() noexcept {
-  covariance_.topRightCorner<3, 1>().setZero();
-  covariance_.bottomLeftCorner<1, 3>().setZero();
+CrankFilter::Innovation CrankFilter::angleInnovation(double measured) const noexcept {
+  const double variance = angleVariance();
+  return {CrankAngle::wrapToPi(measured - now_.state.position.angle.offset),
+          now_.covariance(Belief::kAngle, Belief::kAngle) + variance, variance};
 }
 
-void CrankFilter::correctAngle(double innovation) noexcept {
-  const double variance = encoder_.variance() + square(settings_.angle_noise);
-  const double squared = innovation * innovation;
-  if (squared > kWiden * (covariance_(kAngle, kAngle) + variance)) {
-    const double factor = (0.25 * squared - variance) / covariance_(kAngle, kAngle);
-    covariance_.topLeftCorner<3, 3>() *= factor;
-    forgetInertiaCoupling();
+/// Of a measured speed about the speed at its stamp.
+CrankFilter::Innovation CrankFilter::speedInnovation(double measured) const noexcept {
+  const double explained =
+      now_.covariance(Belief::kSpeed, Belief::kSpeed) +
+      (timing_.variance() > 0.0
+           ? square(acceleration(model_(now_.state.position.angle), now_.state)) * timing_.variance()
+           : 0.0);
+  return {measured - now_.state.speed, explained + speed_variance_, speed_variance_};
+}
+
+void CrankFilter::correctAngle(Innovation innovation) noexcept {
+  const double squared = square(innovation.value), ratio = innovation.ratio();
+  const int side = ratio > kWiden ? (innovation.value > 0.0 ? 1 : -1) : 0;
+  if (side != 0) unexplained_ = side * unexplained_ < 0 ? side : unexplained_ + side;
+  surprises_ += (side != 0 ? 1.0 : 0.0) - surprises_ / kSurpriseLength;
+  if (side != 0 && ((std::abs(unexplained_) < 3 && surprises_ > kManySurprises) || isLost())) {
+    innovation.variance = squared / kWiden;  // with many like it on both sides: the stamps
+  } else if (side != 0) {
+    ShaftMatrix& p = now_.covariance;
+    const double factor = (0.25 * squared - innovation.variance) / p(Belief::kAngle, Belief::kAngle);
+    if (factor > 1.0) p.topLeftCorner<3, 3>() *= factor, p.bottomLeftCorner<1, 3>() *= std::sqrt(factor);
+    p.topRightCorner<3, 1>() = p.bottomLeftCorner<1, 3>().transpose();
+    now_.forgetInertiaCoupling();
     // What does not fit may be the inertia itself: leave it room to be learned again.
-    covariance_(kInertia, kInertia) = std::max(covariance_(kInertia, kInertia), square(kRelearn));
+    double& inertia = p(Belief::kInertia, Belief::kInertia);
+    inertia = std::max(inertia, square(kRelearn));
   }
-  correct(kAngle, innovation, variance);
+  now_.correct(Belief::kAngle, innovation.value, innovation.variance);
 }
 
 void CrankFilter::correctSpeed(double measured) noexcept {
-  const double innovation = measured - now_.speed;
-  const double explained = covariance_(kSpeed, kSpeed);
-  const double squared = std::min(innovation * innovation, kWiden * (explained + speed_variance_));
-  if (innovation * innovation <= squared) correct(kSpeed, innovation, speed_variance_);
+  const Innovation innovation = speedInnovation(measured);
+  const double squared = std::min(square(innovation.value), kWiden * innovation.total);
+  if (square(innovation.value) <= squared)
+    now_.correct(Belief::kSpeed, innovation.value, innovation.total - now_.covariance(Belief::kSpeed, Belief::kSpeed));
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
-  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - explained - speed_variance_), floor);
+  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
 }
 
-/// A count says for certain on which side of the blow the crank is, if the count's edge is there: the estimate may not
-/// pass the blow before the encoder does. Matters because the wrench jumps at the blow.
+/// The corrected angle may lie on the other side of the blow than the prediction. Forward: it passes the blow late.
+/// Back over a blow that was predicted within this very step: there was none yet.
+void CrankFilter::settleSide(const CrankBelief& last, double dt, double measured, bool struck) noexcept {
+  CrankAngle& angle = now_.state.position.angle;
+  if (!now_.state.position.isMirrored()) return;
+  if (angle.side == Side::kBeforeBlow) {
+    if (now_.state.speed > 0.0) return now_.passLate(step_model_, blows_.prior());
+    angle.side = Side::kAfterBlow;
+    return;
+  }
+  if (struck) {
+    now_ = last;
+    predict(dt, false, now_);
+    const Innovation again = angleInnovation(measured);
+    now_.correct(Belief::kAngle, again.value, again.variance);
+    if (now_.state.position.isMirrored()) now_.state.position.angle.offset = 0.0;
+    return;
+  }
+  const double doubt = kNearCounts * encoder_.resolution() + kCertain * std::sqrt(angleVariance());
+  if (angle.offset > -doubt && now_.state.speed > -1.0) {
+    angle.offset = 0.0;  // it stands or goes on, whatever a count or a stamp says
+  } else {
+    angle.side = Side::kBeforeBlow;
+  }
+}
+
+/// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
+/// exact: the estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
 void CrankFilter::respectCount(double reading) noexcept {
   if (encoder_.isFiner() || settings_.angle_noise > 0.0) return;
-  const double count = settings_.angle_resolution, edge_tolerance = 1e-6 * count;
-  const double low = CrankAngle::wrapToPi(reading), high = low + count;
-  CrankAngle& angle = now_.position.angle;
+  const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
+  const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
+  const auto [low, high] = encoder_.edges(reading);
+  CrankAngle& angle = now_.state.position.angle;
   if (std::abs(low) > kNearCounts * count || std::abs(angle.offset) > kNearCounts * count) return;
-  if (low > -edge_tolerance && angle.side == Side::kBeforeBlow) angle = {0.0, Side::kAfterBlow};
-  if (high < edge_tolerance && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
+  if (low - doubt > -edge_tolerance && angle.side == Side::kBeforeBlow) {
+    angle.offset = 0.0;
+    now_.passLate(step_model_, blows_.prior());
+  }
+  if (high + doubt < edge_tolerance && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
 }
 
-bool CrankFilter::isSound() const noexcept {
-  return std::isfinite(now_.position.angle.offset) && std::abs(now_.speed) < kSoundSpeeds * settings_.max_speed &&
-         std::isfinite(now_.torque) && std::isfinite(now_.drive_inertia) && covariance_.allFinite() &&
-         (covariance_.diagonal().array() >= 0.0).all();
+/// Once a turn, half a turn after the blow: by then all samples that tell of it have come.
+void CrankFilter::rememberBlow(const CrankBelief& last) noexcept {
+  const CrankPosition &from = last.state.position, &to = now_.state.position;
+  if (from.angle.side != Side::kAfterBlow || to.angle.side != Side::kBeforeBlow || to.blow != from.blow + 1) return;
+  if (from.isMirrored() || to.isMirrored()) return;
+  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor));
+}
+
+/// A crank that is suddenly slower near the dead centre, or just after it than any blow makes it: the tool. True where
+/// the belief has taken it up.
+bool CrankFilter::meetsTool(double dt, const Innovation& angle, const CrankSample& sample) noexcept {
+  const bool zone =
+      std::abs(now_.state.position.angle.offset) < std::max(kToolZone, kToolSteps * now_.state.speed * dt);
+  if (!zone || now_.state.speed < 1.0) return false;
+  const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
+  const bool by_angle = (angle.value < 0.0 || !before) && angle.ratio() > kToolSeen;
+  bool by_speed = false;
+  if (sample.speed) {
+    const Innovation speed = speedInnovation(*sample.speed);
+    by_speed = speed.ratio() > kToolSeen && speed.value * angle.value > 0.0 && (angle.value < 0.0 || !before);
+  }
+  if (!by_angle && !by_speed) return false;
+  now_.meetTool(kToolDeviation, dt);
+  now_.tool_met = before;
+  return true;
 }
 
 /// Following it would throw speed and torque far off: 0.3 rad at 1 kHz gave a thousand times the peak force. A crank
 /// at constant speed, which the model takes for a heavy one, stays below a kick of 0.35 from 100 Hz on; a slow one may
 /// be stopped dead.
-bool CrankFilter::isContradiction(double dt, double innovation) const noexcept {
-  const double most = std::max(kKick * std::abs(now_.speed), kLearnSpeed) * dt;
-  const double total = covariance_(kAngle, kAngle) + encoder_.variance() + square(settings_.angle_noise);
-  return std::abs(innovation) > kJump || (std::abs(innovation) > most && square(innovation) > kWiden * total);
+bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const noexcept {
+  const double most = std::max(kKick * std::abs(now_.state.speed), kLearnSpeed) * dt;
+  return std::abs(innovation.value) > kJump || (std::abs(innovation.value) > most && innovation.ratio() > kWiden);
 }
 
-Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
-  const ShaftState last = now_;
-  const ShaftMatrix last_covariance = covariance_;
-  step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
-  predict(dt, now_, covariance_);
+/// What lies before this sample is not known any more.
+Tracking CrankFilter::begin(double measured, const CrankSample& sample) noexcept {
+  restart_load_ += 1.0;
+  anchor(measured, sample);
+  return Tracking::kRestarted;
+}
 
-  const double measured = CrankAngle::fromAngle(encoder_.angle(sample.angle)).offset;
-  const double innovation = CrankAngle::wrapToPi(measured - now_.position.angle.offset);
-  const double deviation = std::sqrt(covariance_(kAngle, kAngle));
+Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
+  const CrankBelief last = now_;
+  restart_load_ *= std::exp(-dt / kForgetRestarts);
+  step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
+  const bool struck = predict(dt, true, now_) > 0;
+
+  const CrankSample sample = ofCrank(reading);
+  const double measured = CrankAngle::fromAngle(sample.angle).offset;
+  Innovation innovation = angleInnovation(measured);
+  const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (!(deviation < kDoubtfulAngle) && has_speed_) {
-    if (!isSound()) now_ = last;
-    anchor(measured, sample);
-    return Tracking::kRestarted;
+    if (!now_.isSound(mostSpeed())) now_ = last;
+    return begin(measured, sample);
   }
-  if (has_speed_ && isContradiction(dt, innovation)) {
-    if (!outlier_seen_) {
-      now_ = last;
-      covariance_ = last_covariance;
-      outlier_seen_ = true;
-      return Tracking::kOutlier;
+  if (has_speed_) {
+    timing_.learn(innovation.value, innovation.total, now_.state.speed);
+    if (std::abs(now_.state.speed) > kLearnSpeed) consistency_.add(innovation.ratio());
+    if (meetsTool(dt, innovation, sample)) innovation = angleInnovation(measured);
+    if (isContradiction(dt, innovation) && !isLost()) {
+      const double most = kKick * std::abs(now_.state.speed) * dt + kKick * std::abs(outlier_);
+      surprises_ += 1.0 - surprises_ / kSurpriseLength;
+      const bool agrees = std::abs(CrankAngle::wrapToPi(innovation.value - outlier_)) < most;
+      const bool confirmed = outlier_ != 0.0 && (agrees || surprises_ < kManySurprises);
+      if (!confirmed) {
+        now_ = last;
+        outlier_ = innovation.value;
+        return Tracking::kOutlier;
+      }
+      return begin(measured, {sample.angle, std::nullopt});
     }
-    anchor(measured, {sample.angle, std::nullopt});
-    return Tracking::kRestarted;
   }
   before_ = last;
   before_hull_ = now_hull_;
-  before_covariance_ = last_covariance;
   step_ = dt;
-  outlier_seen_ = false;
-  if (std::abs(now_.speed) < kLearnSpeed) forgetInertiaCoupling();
+  outlier_ = 0.0;
+  if (std::abs(now_.state.speed) < kLearnSpeed) now_.forgetInertiaCoupling();
   correctAngle(innovation);
+  settleSide(last, dt, measured, struck);
+  respectCount(reading.angle);
   if (sample.speed) correctSpeed(*sample.speed);
-  respectCount(sample.angle);
-  if (!isSound()) {
+  if (!now_.isSound(mostSpeed())) {
     now_ = last;
-    anchor(measured, sample);
-    return Tracking::kRestarted;
+    return begin(measured, sample);
   }
-  load_ = model_(now_.position.angle);
+  rememberBlow(last);
+  load_ = model_(now_.state.position.angle);
   now_hull_ = model_.hullMotion();
   const bool continued = has_speed_;
   has_speed_ = true;
@@ -206,32 +285,51 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
 
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);
-  load_ = model_(now_.position.angle);
+  load_ = model_(now_.state.position.angle);
+}
+
+BlowFactor CrankFilter::blowFactor() const noexcept {
+  const auto deviation = [&](Belief::Row row) { return std::sqrt(consistency_.growth() * now_.covariance(row, row)); };
+  return {now_.factor, deviation(Belief::kFactor), now_.state.drive_inertia, deviation(Belief::kInertia)};
 }
 
 /// Faster or further than any crank gets within the last step.
 bool CrankFilter::hasRunAway(const ShaftState& state) const noexcept {
-  const double most_speed = kSoundSpeeds * settings_.max_speed;
-  return !(std::abs(state.speed) < most_speed &&
-           std::abs(difference(state.position, before_.position)) <= most_speed * step_ + 0.5 * kTwoPi);
+  return !(std::abs(state.speed) < mostSpeed() &&
+           std::abs(difference(state.position, before_.state.position)) <= mostSpeed() * step_ + 0.5 * kTwoPi);
 }
 
 /// The way forward from the earlier sample and the way back from the later one, each trusted near its own end. Between
 /// samples that no machine makes either may run away; it is left out then.
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
-  ShaftState state = before_, back = now_;
+  ShaftState state = before_.state, back = now_.state;
   ShaftLoad load = step_model_(state.position.angle), back_load = step_model_(back.position.angle);
-  advance(step_model_, dt, state, load);
-  advance(step_model_, dt - step_, back, back_load);
+  const Passing passing{before_.tool_met ? 1.0 : now_.factor, true};
+  advance(step_model_, dt, passing, state, load);
+  advance(step_model_, dt - step_, passing, back, back_load);
   const double part = dt / step_;
   if (hasRunAway(state)) {
-    state = before_;
-    state.position.turn(part * difference(now_.position, before_.position));
+    state = before_.state;
+    state.position.turn(part * difference(now_.state.position, before_.state.position));
   }
   if (hasRunAway(back)) back = state;
-  state.position.turn(part * difference(back.position, state.position));
-  state.speed += part * (back.speed - state.speed);
+  const double apart = part * difference(back.position, state.position);
+  const Side forward_side = state.position.angle.side, back_side = back.position.angle.side;
+  const bool smooth = forward_side == back_side || state.position.isMirrored() || back.position.isMirrored();
+  if (smooth) {
+    state.position.slide(apart);
+  } else {
+    state.position.turn(apart);
+  }
+  // Where the two ways pass the blow at different instants, each speed is taken over to the side that counts.
+  const auto speedOn = [&](double speed, Side from) {
+    if (from == state.position.angle.side || std::abs(state.position.angle.offset) > 1.0 || !(speed > 0.0))
+      return speed;
+    return state.position.angle.side == Side::kAfterBlow ? speed * passing.factor : speed / passing.factor;
+  };
+  const double forward_speed = speedOn(state.speed, forward_side), back_speed = speedOn(back.speed, back_side);
+  state.speed = forward_speed + part * (back_speed - forward_speed);
   state.torque += part * (back.torque - state.torque);
   state.drive_inertia += part * (back.drive_inertia - state.drive_inertia);
   ShaftModel there = model_;
@@ -241,28 +339,9 @@ CrankEstimate CrankFilter::between(double dt) const noexcept {
 
 Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) const noexcept {
   if (dt >= step_) return motionCovariance(torque_part);
-  ShaftState state = before_;
-  ShaftMatrix covariance = before_covariance_;
-  predict(dt, state, covariance);
-  return motionCovarianceOf(state, covariance, torque_part);
-}
-
-/// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.
-Eigen::Matrix3d CrankFilter::motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance,
-                                                double torque_part) const noexcept {
-  const ShaftLoad load = model_(state.position.angle);
-  const double inv = 1.0 / (state.drive_inertia + load.inertia);
-  constexpr double kStep = 1e-5;  // [rad]: error 1e-10 by curvature, 1e-11 by rounding, both relative
-  CrankAngle low = state.position.angle, high = low;
-  low.offset -= kStep;
-  high.offset += kStep;
-  Eigen::Matrix<double, 3, 4> jacobian = Eigen::Matrix<double, 3, 4>::Zero();
-  jacobian(0, kAngle) = jacobian(1, kSpeed) = 1.0;
-  jacobian(2, kAngle) = (acceleration(model_(high), state) - acceleration(model_(low), state)) / (2.0 * kStep);
-  jacobian(2, kSpeed) = -2.0 * load.half_inertia_slope * state.speed * inv;
-  jacobian(2, kTorque) = inv * torque_part;
-  jacobian(2, kInertia) = -(acceleration(load, state) + load.hull_acceleration) * state.drive_inertia * inv;
-  return jacobian * covariance * jacobian.transpose();
+  CrankBelief belief = before_;
+  predict(dt, true, belief);
+  return consistency_.growth() * hammer_loads::motionCovariance(model_, belief, torque_part);
 }
 
 }  // namespace hammer_loads

@@ -3,16 +3,21 @@
 
 #include <cmath>
 
-#include "hammer_loads/crank/crank_dynamics.h"
+#include "hammer_loads/crank/blow_history.h"
+#include "hammer_loads/crank/consistency.h"
+#include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
+#include "hammer_loads/crank/timing_noise.h"
 
 namespace hammer_loads {
 
 /// What the filter assumes about sensors and supply.
 struct CrankFilterSettings {
-  double angle_resolution{};           ///< encoder count [rad], > 0
+  CrankSensor sensor;                  ///< where the encoder sits
+  double angle_resolution{};           ///< encoder count [rad], >= 0; 0: read off the readings
   double angle_noise{};                ///< standard deviation beside the count [rad], >= 0
+  double timing_noise{};               ///< standard deviation of a stamp, first guess [s], >= 0
   double speed_noise{};                ///< standard deviation of a measured speed, first guess [rad/s], > 0
   double torque_walk{};                ///< random walk of the net torque [N m/sqrt(s)], > 0
   double speed_walk{};                 ///< random walk of the speed [rad/s/sqrt(s)], > 0
@@ -20,16 +25,22 @@ struct CrankFilterSettings {
   double initial_torque_deviation{};   ///< [N m], > 0
   double initial_inertia_deviation{};  ///< relative [-], >= 0
   double max_speed{};                  ///< bound of an unknown speed [rad/s], > 0
+  double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
+  double blow_deviation{0.25};         ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
 };
 
-/// Extended Kalman filter, state: angle, speed, net torque, drive inertia (model.md 6). The step between samples and
-/// its linearisation are advance()'s, through the blow as well. The inertia identifies itself within a few turns, the
-/// noise of measured speeds within some hundred samples.
+/// Extended Kalman filter, state: angle, speed, net torque, drive inertia (model.md 6), factor of the last blow on the
+/// crank's speed. The step between samples and its linearisation are advance()'s, through the blow as well.
+///
+/// Learned beside the state: drive inertia within a few turns; encoder count, noise of measured speeds and jitter of
+/// the stamps within some hundred samples. An angle's variance is count^2/12 + noise^2 + (w sigma_t)^2.
 ///
 /// An angle that the model cannot explain within 5 standard deviations widens the filter's uncertainty until it can: a
 /// supply that behaves otherwise than a slow random walk is followed with less smoothing, not refused, and teaches
-/// nothing of the inertia. A speed that far off is not used. Where following the angle would change the speed by a
-/// third, the sample is an outlier; a second one in a row is believed, and begins anew without the speed it tells.
+/// nothing of the inertia. Where such angles are frequent, on either side, a single one is rather its stamp's fault and
+/// gets less trust. A speed that far off is not used. Where following the angle would change the speed by a third, the
+/// sample is an outlier; a second one in a row that agrees with it is believed, and begins anew without the speed it
+/// tells. Near the blow neither is an outlier: the tool may be met some degrees early or take most of the speed.
 class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
@@ -40,50 +51,73 @@ class CrankFilter final : public CrankTracker {
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
-  CrankEstimate estimate() const noexcept override { return {now_.position, now_.speed, acceleration(load_, now_)}; }
+  CrankEstimate estimate() const noexcept override {
+    return {now_.state.position, now_.state.speed, acceleration(load_, now_.state)};
+  }
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
-    return motionCovarianceOf(now_, covariance_, torque_part);
+    return consistency_.growth() * hammer_loads::motionCovariance(model_, now_, torque_part);
   }
   bool hasSpeed() const noexcept override { return has_speed_; }
+  BlowFactor blowFactor() const noexcept override;
+  double angleResolution() const noexcept override { return encoder_.resolution(); }
 
-  const ShaftState& state() const noexcept { return now_; }
-  /// Covariance of (angle, speed, torque, logarithm of drive inertia) at the last accepted sample.
-  const ShaftMatrix& covariance() const noexcept { return covariance_; }
+  const ShaftState& state() const noexcept { return now_.state; }
+  /// Covariance of (angle, speed, torque, logarithm of drive inertia, blow factor) at the last accepted sample, as the
+  /// filter computes it; what it publishes is multiplied by the consistency where that is above 1.
+  const ShaftMatrix& covariance() const noexcept { return now_.covariance; }
   const Encoder& encoder() const noexcept { return encoder_; }
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
+  double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
+  /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
+  double consistency() const noexcept { return consistency_.mean(); }
+  /// It began anew so often that the model does not fit: contradictions are then followed with little trust instead.
+  bool isLost() const noexcept { return restart_load_ > kLost; }
 
  private:
-  Eigen::Matrix3d motionCovarianceOf(const ShaftState& state, const ShaftMatrix& covariance,
-                                     double torque_part) const noexcept;
-  void predict(double dt, ShaftState& state, ShaftMatrix& covariance) const noexcept;
-  void forgetInertiaCoupling() noexcept;
-  void correctAngle(double innovation) noexcept;
+  struct Innovation {
+    double value{}, total{}, variance{};  ///< measured less predicted, its variance, the measurement's part of that
+    double ratio() const noexcept { return value * value / total; }
+  };
+  static constexpr double kLost = 5.0;
+
+  Innovation angleInnovation(double measured) const noexcept;
+  Innovation speedInnovation(double measured) const noexcept;
+  double angleVariance() const noexcept;
+  CrankSample ofCrank(const CrankSample& reading) noexcept;
+  int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
+  void correctAngle(Innovation innovation) noexcept;
   void correctSpeed(double measured) noexcept;
-  void correct(Eigen::Index row, double innovation, double variance) noexcept;
+  void settleSide(const CrankBelief& last, double dt, double measured, bool struck) noexcept;
   void respectCount(double reading) noexcept;
-  bool isContradiction(double dt, double innovation) const noexcept;
-  bool isSound() const noexcept;
+  void rememberBlow(const CrankBelief& last) noexcept;
+  bool meetsTool(double dt, const Innovation& angle, const CrankSample& sample) noexcept;
+  bool isContradiction(double dt, const Innovation& innovation) const noexcept;
+  Tracking begin(double measured, const CrankSample& sample) noexcept;
   bool hasRunAway(const ShaftState& state) const noexcept;
   void anchor(double measured, const CrankSample& sample) noexcept;
+  double mostSpeed() const noexcept;
 
   ShaftModel model_;        ///< with the latest motion of the hull
   ShaftModel step_model_;   ///< with its mean over the step between the last two samples
   HullMotion now_hull_;     ///< at the last sample
   HullMotion before_hull_;  ///< at the last but one sample
   CrankFilterSettings settings_;
-  double first_guess_;  ///< of the drive inertia [kg m2]
   Encoder encoder_;
-  ShaftState now_;                 ///< at the last sample, corrected by it
-  ShaftLoad load_;                 ///< there
-  ShaftState before_;              ///< at the last but one sample
-  double step_{};                  ///< between these two [s]
-  ShaftMatrix covariance_;         ///< at the last sample
-  ShaftMatrix before_covariance_;  ///< at the last but one sample
-  double speed_variance_;          ///< of measured speeds, as identified [rad2/s2]
+  TimingNoise timing_;
+  Consistency consistency_;
+  BlowHistory blows_;
+  CrankBelief now_;        ///< at the last sample, corrected by it
+  ShaftLoad load_;         ///< there
+  CrankBelief before_;     ///< at the last but one sample
+  double step_{};          ///< between these two [s]
+  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
+  double outlier_{};       ///< innovation of the outlier just seen [rad], 0: none
+  int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
+  double surprises_{};     ///< such innovations of late
+  double restart_load_{};  ///< beginnings since long, forgotten within some 2 s
   bool has_speed_{};
-  bool outlier_seen_{};
 };
 
 }  // namespace hammer_loads

@@ -34,6 +34,7 @@ class CrankSensor {
   double speed(double angle, double measured) const noexcept;
   /// Crank angle per reading, its mean over the turn [-].
   double gain() const noexcept { return gain_; }
+  const CrankSensorPlace& place() const noexcept { return place_; }
   bool isIdentity() const noexcept { return identity_; }
   /// Reading [rad] at a crank angle [rad].
   double reading(double angle) const noexcept;

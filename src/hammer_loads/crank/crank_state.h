@@ -11,19 +11,28 @@ namespace hammer_loads {
 
 /// Unwound crank position: 2 pi * blow + angle.offset [rad]. Keeping the whole turns apart means that days of work cost
 /// no precision. `blow` counts passages of the blow; the nearest one is at offset 0.
+///
+/// A rocker that meets no tool passes the blow smoothly onto the mirrored branch, psi(phi) = -psi(2 pi - phi), and
+/// comes back a turn later just as smoothly: there the offset has the other sign than its side's.
 struct CrankPosition {
   std::int64_t blow{};
   CrankAngle angle;
 
+  bool isMirrored() const noexcept { return angle.side == Side::kBeforeBlow ? angle.offset > 0.0 : angle.offset < 0.0; }
+
   /// Moves to the neighbouring blow's half turn when the offset leaves [-pi, pi]; never crosses a blow.
   void renormalise() noexcept {
-    if (angle.side == Side::kAfterBlow && angle.offset > 0.5 * kTwoPi) {
-      ++blow;
-      angle = {angle.offset - kTwoPi, Side::kBeforeBlow};
-    } else if (angle.side == Side::kBeforeBlow && angle.offset < -0.5 * kTwoPi) {
-      --blow;
-      angle = {angle.offset + kTwoPi, Side::kAfterBlow};
-    }
+    if (std::abs(angle.offset) <= 0.5 * kTwoPi) return;
+    const bool up = angle.offset > 0.0;
+    blow += up ? 1 : -1;
+    angle.offset += up ? -kTwoPi : kTwoPi;
+    angle.side = angle.side == Side::kAfterBlow ? Side::kBeforeBlow : Side::kAfterBlow;
+  }
+
+  /// Turns by delta [rad], |delta| < pi, on the branch where it stands or its smooth continuation.
+  void slide(double delta) noexcept {
+    angle.offset += delta;
+    renormalise();
   }
 
   /// Turns by delta [rad], passing the blow when the offset changes sign. A delta beyond 1e15 rad, which a diverged
@@ -39,8 +48,12 @@ struct CrankPosition {
     angle = CrankAngle::fromAngle(offset);
   }
 
-  /// Number of blows passed since phi = 0: blow b is passed once the position is at or after it.
-  std::int64_t blowsPassed() const noexcept { return angle.side == Side::kAfterBlow ? blow : blow - 1; }
+  /// Number of blows passed since phi = 0, with or without contact: blow b is passed once the position is at or after
+  /// it.
+  std::int64_t blowsPassed() const noexcept {
+    const bool after = angle.offset == 0.0 ? angle.side == Side::kAfterBlow : angle.offset > 0.0;
+    return after ? blow : blow - 1;
+  }
 };
 
 /// this - other [rad].

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 
 #include "hammer_loads/crank/crank_state.h"
@@ -20,6 +21,14 @@ struct CrankEstimate {
   CrankPosition position;
   double speed{};         ///< [rad/s]
   double acceleration{};  ///< [rad/s2]
+};
+
+/// What a blow did to the crank: its speed after over its speed before.
+struct BlowFactor {
+  double mean{1.0};                                            ///< [-]
+  double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
+  double drive_inertia{};      ///< Jc, with which it tells the restitution [kg m2]; 0: not known
+  double inertia_deviation{};  ///< relative [-]
 };
 
 /// How a sample was taken.
@@ -53,6 +62,10 @@ class CrankTracker {
   }
   /// The same at the last accepted sample.
   virtual Eigen::Matrix3d motionCovariance(double /*torque_part*/) const noexcept { return Eigen::Matrix3d::Zero(); }
+  /// Factor that the last blow put on the crank's speed, by all samples since; of no model: 1, not known.
+  virtual BlowFactor blowFactor() const noexcept { return {}; }
+  /// One count of the angle sensor [rad], as far as known.
+  virtual double angleResolution() const noexcept = 0;
   /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.
   virtual void setHullMotion(const HullMotion& /*hull*/) noexcept {}
 };

@@ -2,30 +2,103 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "hammer_loads/crank/crank_sensor.h"
+#include "hammer_loads/linkage/crank_angle.h"
 
 namespace hammer_loads {
 
-/// An encoder counts down to the last whole count, so a reading means the middle of its count. A reading that is no
-/// multiple of the count comes from a finer sensor: after a few of them all readings are taken as they are.
+/// An encoder counts down to the last whole count, so a reading means the middle of its count. The count is read off
+/// the readings: the largest whole part of a turn of which all their differences are multiples. Until enough of them
+/// have come the given count holds, else 2 pi/4096. Readings finer than 2 pi/65536 come from a sensor without counts:
+/// they are taken as they are, with the variance of the count assumed before, as nobody stated their noise.
 class Encoder {
  public:
-  /// Count [rad], > 0.
-  explicit Encoder(double resolution) noexcept : resolution_(resolution) {}
+  /// given: count [rad]; 0: to be read off.
+  explicit Encoder(double given, const CrankSensor& place = {}) noexcept
+      : place_(place), given_(given > 0.0), assumed_(given > 0.0 ? given : kUsual) {}
 
+  /// Of the crank [rad].
   double angle(double reading) noexcept {
-    const double counts = reading / resolution_;
-    if (std::abs(counts - std::nearbyint(counts)) > kMultipleTolerance && finer_readings_ < kEnough) ++finer_readings_;
-    return finer_readings_ < kEnough ? reading + 0.5 * resolution_ : reading;
+    learn(reading);
+    return place_.angle(reading + 0.5 * (isFiner() ? 0.0 : resolution()));
+  }
+  /// Of the crank [rad/s], at its angle [rad].
+  double speed(double angle, double measured) const noexcept { return place_.speed(angle, measured); }
+  /// Crank angles between which a reading lies; the lower one within half a turn of the blow [rad].
+  struct Edges {
+    double low, high;
+  };
+  Edges edges(double reading) const noexcept {
+    if (place_.isIdentity()) return {CrankAngle::wrapToPi(reading), CrankAngle::wrapToPi(reading) + resolution()};
+    const double one = place_.angle(reading), other = place_.angle(reading + resolution());
+    const double low = CrankAngle::wrapToPi(one < other ? one : other);
+    return {low, low + std::abs(other - one)};
   }
 
-  /// Variance of angle() [rad2]: uniform over the count; kept for a finer sensor, whose noise nobody stated.
-  double variance() const noexcept { return resolution_ * resolution_ / 12.0; }
+  /// Variance of angle() [rad2]: uniform over the count.
+  double variance() const noexcept {
+    const double count = place_.gain() * resolution();
+    return count * count / 12.0;
+  }
+  /// Count in force [rad of the encoder]; with a finer sensor the one assumed.
+  double resolution() const noexcept { return isKnown() && !isFiner() ? count_ : assumed_; }
   bool isFiner() const noexcept { return finer_readings_ >= kEnough; }
+  /// Enough readings have come to know the count.
+  bool isKnown() const noexcept { return agreeing_ >= kEnoughToKnow; }
+  /// The readings show another count than the one given, or none.
+  bool contradictsGiven() const noexcept {
+    return given_ && (isFiner() || (isKnown() && std::abs(count_ / assumed_ - 1.0) > kMultipleTolerance));
+  }
 
  private:
+  static constexpr double kUsual = kTwoPi / 4096.0;
+  static constexpr double kFinest = kTwoPi / 65536.0;
   static constexpr double kMultipleTolerance = 1e-3;  // of a count; single-precision sensors round by 4e-4 of 2 pi/4096
   static constexpr int kEnough = 2;
-  double resolution_;
+  static constexpr int kEnoughToKnow = 24;  // differences: all even or all multiples of three by chance: 1e-7
+
+  static bool isMultiple(double difference, double count) noexcept {
+    const double counts = difference / count, whole = std::nearbyint(counts);
+    return whole >= 1.0 && std::abs(counts - whole) <= kMultipleTolerance;
+  }
+
+  void learn(double reading) noexcept {
+    if (isFiner()) return;
+    const double difference = last_ ? std::abs(CrankAngle::wrapToPi(reading - *last_)) : 0.0;
+    if (last_ && difference < kMultipleTolerance * kFinest) return;  // the same reading
+    last_ = reading;
+    if (difference == 0.0) return;
+    if (isMultiple(difference, count_)) {
+      if (agreeing_ < kEnoughToKnow) ++agreeing_;
+      return;
+    }
+    agreeing_ = 0;
+    if (!reduceTo(difference)) ++finer_readings_;
+  }
+
+  /// The largest whole part of a turn that divides both the count so far and the difference (Euclid). False: none.
+  bool reduceTo(double difference) noexcept {
+    double large = count_, small = difference;
+    for (int i = 0; i < 64 && small > 0.5 * kFinest; ++i) {
+      const double rest = std::abs(large - small * std::nearbyint(large / small));
+      large = small;
+      small = rest < kMultipleTolerance * small ? 0.0 : rest;
+    }
+    const double whole = kTwoPi / std::nearbyint(kTwoPi / large);
+    if (small > 0.0 || large < (1.0 - kMultipleTolerance) * kFinest || !isMultiple(difference, whole)) return false;
+    count_ = whole;
+    return true;
+  }
+
+  CrankSensor place_;
+  bool given_;
+  double assumed_;
+  double count_{kTwoPi};  ///< largest that all differences so far allow [rad]
+  std::optional<double> last_;
+  int agreeing_{};  ///< differences in a row that fit the count
   int finer_readings_{};
 };
 

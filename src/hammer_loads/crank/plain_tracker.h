@@ -13,8 +13,8 @@ class PlainTracker final : public CrankTracker {
  public:
   enum class Acceleration { kZero, kDifference };
 
-  PlainTracker(Acceleration acceleration, double angle_resolution)
-      : acceleration_(acceleration), encoder_(angle_resolution) {}
+  PlainTracker(Acceleration acceleration, double angle_resolution, const CrankSensor& sensor = {})
+      : acceleration_(acceleration), encoder_(angle_resolution, sensor) {}
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
@@ -22,8 +22,11 @@ class PlainTracker final : public CrankTracker {
   /// Angle by the cubic through both angles and speeds, speed and acceleration linear.
   CrankEstimate between(double dt) const noexcept override;
   bool hasSpeed() const noexcept override { return has_speed_; }
+  double angleResolution() const noexcept override { return encoder_.resolution(); }
 
  private:
+  CrankSample ofCrank(const CrankSample& reading) noexcept;
+
   Acceleration acceleration_;
   Encoder encoder_;
   CrankEstimate now_;

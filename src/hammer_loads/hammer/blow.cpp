@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/linkage/motion.h"
 
 namespace hammer_loads {
@@ -68,10 +70,45 @@ HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) n
           (per_speed_x - rocker.reduced_rod_mass * rocker.rod_joint.z) / rocker.mass};
 }
 
+RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept {
+  const Level links = level == Level::kLinkage ? level : Level::kRocker;
+  const BlowInertia inertia = blowInertia(mechanism, links, crank.drive_inertia);
+  const StrikingRocker rocker = strikingRocker(mechanism, links);
+  const auto blowOf = [&](double speed, double restitution) {
+    const double before = inertia.u_before * speed;
+    return blowInSupport(rocker, before, -restitution * before);
+  };
+  const double restitution = inertia.restitution(crank.factor);
+  RockerBlow blow = blowOf(crank.speed, restitution);
+  const double after = crank.factor * crank.speed;
+  const LinkMomentum from = linkMomentum(mechanism, links, {0.0, Side::kBeforeBlow}, crank.speed);
+  const LinkMomentum to = linkMomentum(mechanism, links, {0.0, Side::kAfterBlow}, after);
+  const HullPoint k = rocker.striking_point;
+  const double tool_moment = k.z * blow.tool_impulse_x - k.x * blow.tool_impulse_z;
+  blow.support_impulse_x = blow.tool_impulse_x - (to.x - from.x);
+  blow.support_impulse_z = blow.tool_impulse_z - (to.z - from.z);
+  blow.support_impulse_y = tool_moment - (to.about_d - from.about_d);
+  blow.drive_impulse_y = -crank.drive_inertia * crank.reaction_ratio * (after - crank.speed);
+  // Deviations, each cause by a difference at its own size.
+  const BlowInertia heavier = blowInertia(mechanism, links, crank.drive_inertia * (1.0 + crank.inertia_deviation));
+  const double by_factor = inertia.restitutionPerFactor() * crank.factor_deviation;
+  const double by_inertia = heavier.restitution(crank.factor) - restitution;
+  blow.restitution_deviation = std::hypot(by_factor, by_inertia);
+  const double energy_by_speed = blowOf(crank.speed + crank.speed_deviation, restitution).energy - blow.energy;
+  const double energy_by_rebound = blowOf(crank.speed, restitution + blow.restitution_deviation).energy -
+                                   blowOf(crank.speed, restitution - blow.restitution_deviation).energy;
+  blow.energy_deviation = std::hypot(energy_by_speed, 0.5 * energy_by_rebound);
+  return blow;
+}
+
+RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept {
+  const double rocker_before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * before;
+  const double rocker_after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * after;
+  return blowInSupport(strikingRocker(mechanism, level), rocker_before, rocker_after);
+}
+
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept {
-  const double before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * crank_speed;
-  const double after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * crank_speed;
-  return blowInSupport(strikingRocker(mechanism, level), before, after);
+  return blowAtCrankSpeeds(mechanism, level, crank_speed, crank_speed);
 }
 
 }  // namespace hammer_loads

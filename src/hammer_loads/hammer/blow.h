@@ -1,6 +1,8 @@
 /// The blow: what the rocker gives to the tool and to its support within no time.
 #pragma once
 
+#include <limits>
+
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/mechanism.h"
 
@@ -15,8 +17,23 @@ struct RockerBlow {
   double friction_work{};        ///< of the sliding at the striking face [J]
   double tool_impulse_x{};       ///< BY the tool ON the rocker [N s]
   double tool_impulse_z{};       ///< BY the tool ON the rocker [N s], > 0 for a real blow
-  double support_impulse_x{};    ///< BY the rocker ON the hull at D [N s]
-  double support_impulse_z{};    ///< BY the rocker ON the hull at D [N s]
+  double support_impulse_x{};    ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
+  double support_impulse_z{};    ///< likewise [N s]
+  double support_impulse_y{};    ///< likewise, about D [N m s]; 0 of blowInSupport
+  double drive_impulse_y{};      ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
+  double restitution_deviation{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
+  double energy_deviation{std::numeric_limits<double>::quiet_NaN()};       ///< likewise [J]
+};
+
+/// A blow as the crank felt it.
+struct CrankBlow {
+  double speed{};               ///< of the crank just before, > 0 [rad/s]
+  double speed_deviation{};     ///< standard [rad/s]
+  double factor{1.0};           ///< k: crank speed after over before [-]
+  double factor_deviation{};    ///< standard [-]
+  double drive_inertia{};       ///< Jc [kg m2], > 0
+  double inertia_deviation{};   ///< standard, relative [-]
+  double reaction_ratio{1.0};   ///< r: what of the rotor's turning the hull feels [-]
 };
 
 /// A point in hammer_hull axes, from the pivot D [m].
@@ -54,6 +71,14 @@ HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) n
 /// Blow of a crank that passes the blow forward at a speed w > 0 [rad/s]: the crank keeps its speed, the rocker's jumps
 /// from u(2 pi -) w to u(0 +) w (model.md 1).
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept;
+
+/// The blow that a factor on the crank's speed tells of. Restitution, speeds of the rocker, tool impulse and energy are
+/// those of rocker and tool, before the linkage takes the rocker up (BlowInertia); the support's impulse is that of the
+/// links' whole change of momentum, to u+ k w-. Level pulse: as rocker.
+RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept;
+
+/// Blow of a crank that does not keep its speed: [rad/s] before, > 0, and after.
+RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept;
 
 /// The same at level rocker: massless rod.
 inline RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {

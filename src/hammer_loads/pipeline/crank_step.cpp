@@ -5,6 +5,7 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kAside = 1e-7;     // [s] before and after the blow, where its two sides are looked at
 constexpr double kBlowSpeed = 1.0;  // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
 
 }  // namespace
@@ -19,11 +20,22 @@ void CrankStep::take(StampNs start, double length, const CrankPosition& from) no
   for (; passed != passed_now && passages_ < passage_.size(); ++passages_) {
     const bool forward = passed < passed_now;
     const std::int64_t blow = forward ? ++passed : passed--;
-    const double time = timeOfBlow(blow);
-    const double speed = at(time).speed;
-    passage_[passages_] = {time, blow, forward, speed, forward && blow > furthest_blow_ && speed >= kBlowSpeed};
+    passage_[passages_] = passageOf(blow, forward);
     furthest_blow_ = std::max(furthest_blow_, passed);
   }
+}
+
+CrankStep::Passage CrankStep::passageOf(std::int64_t blow, bool forward) const noexcept {
+  Passage p;
+  p.time = timeOfBlow(blow);
+  p.blow = blow;
+  p.forward = forward;
+  const CrankEstimate before = at(std::max(0.0, p.time - kAside)), after = at(std::min(length_, p.time + kAside));
+  p.smooth = before.position.isMirrored() || after.position.isMirrored();
+  p.speed_before = before.speed;
+  p.speed_after = after.speed;
+  p.strikes = forward && !p.smooth && blow > furthest_blow_ && p.speed_before >= kBlowSpeed;
+  return p;
 }
 
 /// Root of the position by bracketing false position (Illinois).
@@ -52,11 +64,10 @@ double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
 }
 
 CrankEstimate CrankStep::besides(const Passage& passage, Side side) const noexcept {
-  constexpr double kAside = 1e-7;  // [s] before and after the blow, where its two accelerations are looked at
   const bool earlier = (side == Side::kBeforeBlow) == passage.forward;
   CrankEstimate estimate = at(earlier ? (passage.time > kAside ? passage.time - kAside : 0.0) : passage.time + kAside);
   estimate.position = {passage.blow, {0.0, side}};
-  estimate.speed = passage.speed;
+  estimate.speed = earlier ? passage.speed_before : passage.speed_after;
   return estimate;
 }
 

@@ -23,8 +23,10 @@ class CrankStep {
     double time{};
     std::int64_t blow{};  ///< index as in CrankPosition
     bool forward{};
-    double speed{};  ///< of the crank there [rad/s]
-    bool strikes{};  ///< forward, for the first time, and not creeping: the rocker hits the tool
+    double speed_before{};  ///< of the crank there, in the order of time [rad/s]
+    double speed_after{};   ///< likewise
+    bool smooth{};          ///< onto the mirrored branch or back from it: nothing jumps
+    bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 
   explicit CrankStep(const CrankTracker& tracker) : tracker_(&tracker) {}
@@ -42,10 +44,12 @@ class CrankStep {
   const Passage* begin() const noexcept { return passage_.data(); }
   const Passage* end() const noexcept { return passage_.data() + passages_; }
 
-  /// Estimate on one side of a passage: exactly at the blow, so that nothing is lost to rounding there.
+  /// Estimate on one side of a passage that is not smooth: exactly at the blow, so that nothing is lost to rounding
+  /// there.
   CrankEstimate besides(const Passage& passage, Side side) const noexcept;
 
  private:
+  Passage passageOf(std::int64_t blow, bool forward) const noexcept;
   double timeOfBlow(std::int64_t blow) const noexcept;
 
   const CrankTracker* tracker_;

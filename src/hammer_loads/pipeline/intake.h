@@ -49,6 +49,7 @@ class Intake {
     stamps_.accept(stamp);
     accepted_ = sample;
   }
+  void setFrozenTurn(double turn) noexcept { limits_.frozen_turn = turn; }  ///< [rad], as Limits
   const std::optional<StampNs>& last() const noexcept { return stamps_.last(); }
   bool angleIsFrozen() const noexcept { return frozen_; }  ///< the last sample was refused for that
 

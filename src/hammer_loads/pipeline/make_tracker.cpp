@@ -2,6 +2,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/plain_tracker.h"
+#include "hammer_loads/linkage/blow_inertia.h"
 
 namespace hammer_loads {
 
@@ -9,12 +10,14 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
   if (s.crank_estimator != CrankEstimator::kMechanism) {
     const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
                                                                          : PlainTracker::Acceleration::kDifference;
-    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution);
+    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, s.crank_sensor);
   }
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   CrankFilterSettings filter;
+  filter.sensor = s.crank_sensor;
   filter.angle_resolution = s.crank_angle_resolution;
   filter.angle_noise = s.crank_angle_noise;
+  filter.timing_noise = s.crank_timing_noise;
   filter.speed_noise = s.crank_speed_noise;
   filter.torque_walk = s.torque_walk * inertia;
   filter.speed_walk = s.speed_walk;
@@ -22,6 +25,7 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
   filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
   filter.initial_inertia_deviation = s.initial_inertia_deviation;
   filter.max_speed = s.max_crank_speed;
+  filter.blow_factor = blowInertia(mechanism, s.level, mechanism.parameters().drive_inertia).smoothFactor();
   return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia, filter);
 }
 

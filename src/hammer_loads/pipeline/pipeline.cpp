@@ -25,11 +25,15 @@ HullMotion withVibration(Gravity weight, const BoomState* boom) noexcept {
   return {{weight.x - a[0], weight.z - a[2]}, boom->tip.velocity[4], a[4]};
 }
 
-Intake::Limits limitsOf(const PipelineSettings& s) noexcept {
-  double frozen_turn = kFrozenCounts * s.crank_angle_resolution + kFrozenDeviations * s.crank_angle_noise;
+/// resolution: of the angle sensor [rad].
+double frozenTurn(const PipelineSettings& s, double resolution) noexcept {
   // The trackers for comparison take every reading as it is.
-  if (s.crank_estimator != CrankEstimator::kMechanism) frozen_turn = std::numeric_limits<double>::infinity();
-  return {s.max_crank_speed, s.stale_after, frozen_turn, kFrozenDeviations * s.crank_speed_noise};
+  if (s.crank_estimator != CrankEstimator::kMechanism) return std::numeric_limits<double>::infinity();
+  return kFrozenCounts * resolution + kFrozenDeviations * s.crank_angle_noise;
+}
+
+Intake::Limits limitsOf(const PipelineSettings& s, double resolution) noexcept {
+  return {s.max_crank_speed, s.stale_after, frozenTurn(s, resolution), kFrozenDeviations * s.crank_speed_noise};
 }
 
 double seconds(StampNs stamp) noexcept { return static_cast<double>(stamp) * kSecondsPerNs; }
@@ -45,7 +49,8 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_pitch_(settings.pitch_joints, settings.hull_pitch),
       imu_(settings.imu),
       unit_check_(settings.max_crank_speed),
-      intake_(limitsOf(settings)),
+      latency_(static_cast<StampNs>(std::llround(settings.crank_latency / kSecondsPerNs))),
+      intake_(limitsOf(settings, tracker_->angleResolution())),
       step_(*tracker_),
       outputs_(hull_model_, step_, settings),
       counts_(counts) {
@@ -110,7 +115,8 @@ const Loads& Pipeline::refuse(Refusal refusal) noexcept {
   return loads_;
 }
 
-const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& measured) noexcept {
+const Loads& Pipeline::crankSample(StampNs header_stamp, const CrankSample& measured) noexcept {
+  const StampNs stamp = header_stamp - latency_;
   loads_.stamp = stamp;
   loads_.turn_ends = 0;
   loads_.refusal.reset();
@@ -138,6 +144,7 @@ const Loads& Pipeline::crankSample(StampNs stamp, const CrankSample& measured) n
     }
   }
   intake_.accept(stamp, measured);
+  intake_.setFrozenTurn(frozenTurn(settings_, tracker_->angleResolution()));
   last_position_ = loads_.crank.position;
   if (!settled()) {
     boom_follows_ = false;
@@ -170,6 +177,7 @@ void Pipeline::followBoom(StampNs stamp) noexcept {
 }
 
 void Pipeline::restart() noexcept {
+  tellBlow();
   step_.forget(tracker_->estimate().position);
   outputs_.forget();
   boom_follows_ = false;
@@ -233,12 +241,17 @@ void Pipeline::followTurn() noexcept {
   for (const CrankStep::Passage& passage : step_) {
     if (!passage.strikes) continue;
     recordTo(from, std::max(from, passage.time - kSideOfBlow));
+    tellBlow();
     endTurn(passage);
     from = passage.time + kSideOfBlow;
   }
   recordTo(from, step_.length());
+  if (pending_.isWaiting()) pending_.follow(tracker_->blowFactor());
+  const double now = seconds(step_.start() - epoch_) + step_.length();
+  if (pending_.isMeasured(now, loads_.crank.position)) tellBlow();
 }
 
+/// The turn ends now; what the blow was shows later.
 void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
   const StampNs stamp = step_.start() + static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
   const double time = seconds(step_.start() - epoch_) + passage.time;
@@ -246,14 +259,27 @@ void Pipeline::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd end;
   end.stamp = stamp;
   end.turn = turns_;
-  end.blow = blowAtCrankSpeed(mechanism_, settings_.level, passage.speed);
   end.pulse = turn_.end(instant(time, step_.besides(passage, Side::kBeforeBlow)));
   if (end.pulse) peak_force_ = end.pulse->amplitude;
   end.mean_press_force =
-      last_blow_ ? end.blow.tool_impulse_z / seconds(stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
-  if (loads_.turn_ends < loads_.ends.size()) loads_.ends[loads_.turn_ends++] = end;
+      last_blow_ ? 1.0 / seconds(stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();  // times the impulse
+  const double deviation = std::sqrt(tracker_->covarianceBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0)(1, 1));
+  pending_end_ = end;
+  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, deviation);
+  pending_.follow(tracker_->blowFactor());
   last_blow_ = stamp;
   turn_.begin(instant(time, step_.besides(passage, Side::kAfterBlow)));
+}
+
+/// The pending blow, as it is known by now.
+void Pipeline::tellBlow() noexcept {
+  if (!pending_.isWaiting()) return;
+  turn_.correctBegin(linkMomentum(hull_model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
+  const CrankBlow crank = pending_.take();
+  pending_end_.blow = crank.drive_inertia > 0.0 ? measuredBlow(mechanism_, settings_.level, crank)
+                                                : blowAtCrankSpeed(mechanism_, settings_.level, crank.speed);
+  pending_end_.mean_press_force *= pending_end_.blow.tool_impulse_z;
+  if (loads_.turn_ends < loads_.ends.size()) loads_.ends[loads_.turn_ends++] = pending_end_;
 }
 
 }  // namespace hammer_loads

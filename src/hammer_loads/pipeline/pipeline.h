@@ -19,6 +19,7 @@
 #include "hammer_loads/pipeline/hull_outputs.h"
 #include "hammer_loads/pipeline/hull_pitch.h"
 #include "hammer_loads/pipeline/intake.h"
+#include "hammer_loads/pipeline/pending_blow.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
 #include "hammer_loads/pipeline/unit_check.h"
 #include "hammer_loads/settings/pipeline_settings.h"
@@ -111,6 +112,7 @@ class Pipeline {
   void followTurn() noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
+  void tellBlow() noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
 
   Mechanism mechanism_;
@@ -125,6 +127,7 @@ class Pipeline {
   bool hull_known_{true};
   UnitCheck unit_check_;
   std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
+  StampNs latency_;  ///< of the crank's header stamps
   Intake intake_;
   CrankStep step_;
   HullOutputs outputs_;
@@ -134,6 +137,8 @@ class Pipeline {
   IntakeCounts counts_;
   Loads loads_;
   TurnRecorder turn_;
+  PendingBlow pending_;
+  TurnEnd pending_end_;  ///< of the pending blow
   StampNs epoch_{};                   ///< first sample since the last beginning
   CrankPosition last_position_;       ///< at the last accepted sample
   std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole

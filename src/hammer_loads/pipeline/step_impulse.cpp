@@ -16,19 +16,28 @@ HullWrench change(const LinkMomentum& from, const LinkMomentum& to) noexcept {
   return {from.x - to.x, from.z - to.z, from.about_d - to.about_d};
 }
 
-/// Calls visit(from, to) for each part of [from, to] between passages of the blow.
+/// Calls visit(from, to) for each part of [from, to] between passages of the blow. A passage belongs to the part that
+/// it ends; one at the very start of the step, where the estimate stood exactly at the blow, ends a part of no length.
 template <typename Visit>
 void forEachSmoothPart(const CrankStep& step, double from, double to, const Visit& visit) {
+  const auto first = [](const CrankStep::Passage& p) { return p.forward ? Side::kBeforeBlow : Side::kAfterBlow; };
+  const auto second = [](const CrankStep::Passage& p) { return p.forward ? Side::kAfterBlow : Side::kBeforeBlow; };
   CrankEstimate start = step.at(from);
   double start_time = from;
+  bool passed_at_end = false;
   for (const CrankStep::Passage& passage : step) {
-    if (passage.time <= from || passage.time > to) continue;
-    visit(start_time, start, passage.time,
-          step.besides(passage, passage.forward ? Side::kBeforeBlow : Side::kAfterBlow));
-    start = step.besides(passage, passage.forward ? Side::kAfterBlow : Side::kBeforeBlow);
+    if (passage.smooth || passage.time < from || passage.time > to) continue;
+    if (passage.time == from && from > 0.0) {
+      start = step.besides(passage, second(passage));
+      continue;
+    }
+    const CrankEstimate end = step.besides(passage, first(passage));
+    visit(start_time, passage.time == start_time ? end : start, passage.time, end);
+    start = step.besides(passage, second(passage));
     start_time = passage.time;
+    passed_at_end = passage.time == to;
   }
-  visit(start_time, start, to, step.at(to));
+  visit(start_time, start, to, passed_at_end ? start : step.at(to));
 }
 
 /// From motion of the links relative to the hull.
@@ -73,6 +82,7 @@ LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept {
   const CrankStep::Passage* passage = step.begin();
   forEachSmoothPart(
       step, 0.0, step.length(), [&](double from, const CrankEstimate& a, double to, const CrankEstimate& b) {
+        while (passage != step.end() && passage->smooth) ++passage;
         const CrankStep::Passage* ends_at = passage == step.end() ? nullptr : passage++;
         if (result.count == result.pieces.size()) return;
         LoadPiece& piece = result.pieces[result.count++];
@@ -82,7 +92,8 @@ LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept {
         const HullWrench impulse = change(momentum(model, a), momentum(model, b));
         piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
         if (ends_at == nullptr || !ends_at->strikes) return;
-        const RockerBlow blow = blowAtCrankSpeed(model.mechanism(), model.level(), ends_at->speed);
+        const RockerBlow blow =
+            blowAtCrankSpeeds(model.mechanism(), model.level(), ends_at->speed_before, ends_at->speed_after);
         piece.ends_in_blow = true;
         piece.blow_x = blow.support_impulse_x;
         piece.blow_z = blow.support_impulse_z;

@@ -21,6 +21,16 @@ void TurnRecorder::begin(const TurnInstant& after_blow) noexcept {
   points_.push_back({0.0, after_blow.wrench.force_z, 0.0, 0.0});
 }
 
+void TurnRecorder::correctBegin(const LinkMomentum& after_blow) noexcept {
+  if (!recording_) return;
+  for (TurnPoint& p : points_) {
+    if (!(p.time > 0.0)) continue;
+    p.impulse_x += after_blow.x - first_.momentum.x;
+    p.impulse_z += after_blow.z - first_.momentum.z;
+  }
+  first_.momentum = after_blow;
+}
+
 void TurnRecorder::add(const TurnInstant& instant) noexcept {
   if (!recording_) return;
   const double step = instant.time - last_.time;

@@ -25,6 +25,8 @@ class TurnRecorder {
 
   /// A turn begins just after a blow.
   void begin(const TurnInstant& after_blow) noexcept;
+  /// The momentum just after the blow is better known by now than when the turn began.
+  void correctBegin(const LinkMomentum& after_blow) noexcept;
   /// What follows is not known to belong to the turn: its pulse will not be told.
   void abandon() noexcept { recording_ = false; }
   bool recording() const noexcept { return recording_; }

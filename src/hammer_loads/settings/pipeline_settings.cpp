@@ -79,8 +79,9 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
   s.crank_sensor = readCrankSensor(reader);
   s.crank_latency = reader.number("crank_latency_s", "s", NumberRule::within(0.0, 1.0));
-  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kPositive);
+  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kNotNegative);
   s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", kNotNegative);
+  s.crank_timing_noise = reader.number("crank_timing_noise_s", "s", kNotNegative);
   s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kPositive);
   s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", kPositive);
   s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", kNotNegative);

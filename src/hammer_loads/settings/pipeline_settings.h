@@ -87,8 +87,9 @@ struct PipelineSettings {
   double gravity{};                    ///< [m/s2], >= 0
   CrankSensor crank_sensor;            ///< where it sits
   double crank_latency{};              ///< header stamp less the instant of the measurement [s], >= 0
-  double crank_angle_resolution{};     ///< encoder count [rad], > 0
+  double crank_angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings
   double crank_angle_noise{};          ///< standard deviation beside the count [rad], >= 0
+  double crank_timing_noise{};         ///< standard deviation of a sample's stamp, first guess [s], >= 0
   double crank_speed_noise{};          ///< standard deviation of a measured speed [rad/s], > 0
   double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
   double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0

@@ -1,0 +1,137 @@
+#include "hammer_loads/crank/crank_belief.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kNoiseStep = 2e-3;  // [s] step over which the process noise is spread
+constexpr double kMaxInertiaChange =
+    0.3;                               // of the logarithm by one sample: beyond it the linearisation is worth nothing
+constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
+constexpr double kMostFactor = 4.0;
+constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
+
+double square(double x) noexcept { return x * x; }
+
+}  // namespace
+
+void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
+  factor = prior.mean;
+  covariance.row(kFactor).setZero();
+  covariance.col(kFactor).setZero();
+  covariance(kFactor, kFactor) = square(prior.deviation);
+}
+
+int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
+                         double most_speed, double dt) noexcept {
+  ShaftLoad load = model(state.position.angle);
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
+  const double h = dt / steps;
+  const double torque = square(walks.torque) * h, speed = square(walks.speed) * h;
+  int blows = 0;
+  for (int i = 0; i < steps && std::abs(state.speed) < most_speed; ++i) {
+    const double b = 1.0 / (state.drive_inertia + load.inertia);
+    const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
+    const Advance step = advance(model, h, {prior.mean, contact}, state, load);
+    if (step.blows > 0) {
+      if (!tool_met) drawFactor(prior);
+      blows += !tool_met;
+      tool_met = false;
+    }
+    const ShaftTransition& f = step.transition;
+    const ShaftTransition moved = f * covariance;
+    covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
+    covariance.topRightCorner<2, 3>() = moved.rightCols<3>();
+    covariance(kAngle, kAngle) += speed * h * h / 3.0;
+    covariance(kSpeed, kSpeed) += speed + torque * square(b * h) / 3.0;
+    covariance(kTorque, kTorque) += torque;
+    covariance(kInertia, kInertia) += square(walks.inertia) * h;
+    covariance(kAngle, kSpeed) += 0.5 * speed * h;
+    covariance(kSpeed, kTorque) += 0.5 * torque * b * h;
+    covariance(kSpeed, kAngle) = covariance(kAngle, kSpeed);
+    covariance.bottomLeftCorner<3, 2>() = covariance.topRightCorner<2, 3>().transpose();
+  }
+  return blows;
+}
+
+void CrankBelief::correct(Row row, double innovation, double variance) noexcept {
+  const double total = covariance(row, row) + variance;
+  using Vector = Eigen::Matrix<double, 5, 1>;
+  const Vector gain = covariance.col(row) / total;
+  const Vector change = gain * innovation;
+  state.position.slide(change[kAngle]);
+  state.speed += change[kSpeed];
+  state.torque += change[kTorque];
+  const double inertia =
+      state.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
+  state.drive_inertia = std::clamp(inertia, least_inertia, most_inertia);
+  factor = std::clamp(factor + change[kFactor], kLeastFactor, kMostFactor);
+  // (1 - K H) P (1 - K H)' + K R K' with H one row of the identity
+  const ShaftMatrix left = covariance - gain * covariance.row(row);
+  covariance = left - left.col(row) * gain.transpose() + gain * (variance * gain.transpose());
+}
+
+void CrankBelief::forgetInertiaCoupling() noexcept {
+  const double variance = covariance(kInertia, kInertia);
+  covariance.row(kInertia).setZero();
+  covariance.col(kInertia).setZero();
+  covariance(kInertia, kInertia) = variance;
+}
+
+void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn) noexcept {
+  const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
+  if (!tool_met && state.speed > 0.0) drawFactor(prior);
+  tool_met = false;
+  ShaftTransition f = ShaftTransition::Identity();
+  ShaftLoad load;
+  passBlow(model, prior.mean, state, load, f);
+  const ShaftTransition moved = f * covariance;
+  covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
+  covariance.topRightCorner<2, 3>() = moved.rightCols<3>();
+  covariance.bottomLeftCorner<3, 2>() = covariance.topRightCorner<2, 3>().transpose();
+}
+
+void CrankBelief::meetTool(double deviation, double dt) noexcept {
+  drawFactor({1.0, deviation});
+  // The speed changed by (factor - 1) w at an instant that may be any of dt: the angle by half of it times dt.
+  const double w = state.speed, variance = square(deviation);
+  const double by_angle = 0.5 * w * dt;
+  covariance(kAngle, kAngle) += square(w * dt) * variance / 3.0;
+  covariance(kAngle, kSpeed) += by_angle * w * variance;
+  covariance(kSpeed, kSpeed) += square(w) * variance;
+  covariance(kAngle, kFactor) = by_angle * variance;
+  covariance(kSpeed, kFactor) = w * variance;
+  covariance(kSpeed, kAngle) = covariance(kAngle, kSpeed);
+  covariance(kFactor, kAngle) = covariance(kAngle, kFactor);
+  covariance(kFactor, kSpeed) = covariance(kSpeed, kFactor);
+}
+
+bool CrankBelief::isSound(double most_speed) const noexcept {
+  return std::abs(state.position.angle.offset) <= 0.5 * kTwoPi && std::abs(state.speed) < most_speed &&
+         std::isfinite(state.torque) && std::isfinite(state.drive_inertia) && std::isfinite(factor) &&
+         covariance.allFinite() && (covariance.diagonal().array() >= 0.0).all();
+}
+
+/// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.
+Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, double torque_part) noexcept {
+  const ShaftState& state = belief.state;
+  const ShaftLoad load = model(state.position.angle);
+  const double inv = 1.0 / (state.drive_inertia + load.inertia);
+  constexpr double kStep = 1e-5;  // [rad]: error 1e-10 by curvature, 1e-11 by rounding, both relative
+  CrankAngle low = state.position.angle, high = low;
+  low.offset -= kStep;
+  high.offset += kStep;
+  Eigen::Matrix<double, 3, 4> jacobian = Eigen::Matrix<double, 3, 4>::Zero();
+  jacobian(0, CrankBelief::kAngle) = jacobian(1, CrankBelief::kSpeed) = 1.0;
+  jacobian(2, CrankBelief::kAngle) =
+      (acceleration(model(high), state) - acceleration(model(low), state)) / (2.0 * kStep);
+  jacobian(2, CrankBelief::kSpeed) = -2.0 * load.half_inertia_slope * state.speed * inv;
+  jacobian(2, CrankBelief::kTorque) = inv * torque_part;
+  jacobian(2, CrankBelief::kInertia) =
+      -(acceleration(load, state) + load.hull_acceleration) * state.drive_inertia * inv;
+  return jacobian * belief.covariance.topLeftCorner<4, 4>() * jacobian.transpose();
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,52 @@
+/// State and covariance of the crank filter: what a prediction, a measurement and a blow do to them.
+#pragma once
+
+#include "hammer_loads/crank/crank_dynamics.h"
+
+namespace hammer_loads {
+
+/// What nobody measures, as random walks.
+struct CrankWalks {
+  double torque{};   ///< of the net torque [N m/sqrt(s)]
+  double speed{};    ///< of the speed [rad/s/sqrt(s)]
+  double inertia{};  ///< of the drive inertia, relative [1/sqrt(s)]
+};
+
+/// What is known of a blow before it comes: the factor on the crank's speed is drawn anew each time.
+struct BlowPrior {
+  double mean{1.0};    ///< [-], > 0
+  double deviation{};  ///< [-]
+};
+
+/// Gaussian belief: angle, speed, torque, logarithm of drive inertia, factor of the last blow.
+struct CrankBelief {
+  enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia, kFactor };
+
+  ShaftState state;
+  ShaftMatrix covariance{ShaftMatrix::Zero()};
+  double factor{1.0};      ///< of the last blow
+  double least_inertia{};  ///< bounds of the drive inertia [kg m2]
+  double most_inertia{};   ///< likewise
+  bool tool_met{};         ///< before the dead centre: nothing strikes there any more
+
+  /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
+  int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
+              double dt) noexcept;
+  /// Scalar measurement of one variable, Joseph form. Slides the position; it may end beyond the blow.
+  void correct(Row row, double innovation, double variance) noexcept;
+  /// The coming correction teaches nothing of the inertia.
+  void forgetInertiaCoupling() noexcept;
+  /// The position stands beyond the blow that it should have passed: passes it now.
+  void passLate(const ShaftModel& model, const BlowPrior& prior) noexcept;
+  /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
+  void meetTool(double deviation, double dt) noexcept;
+  bool isSound(double most_speed) const noexcept;
+
+ private:
+  void drawFactor(const BlowPrior& prior) noexcept;
+};
+
+/// Covariance of (angle, speed, acceleration); torque_part of the torque's deviation counts.
+Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, double torque_part) noexcept;
+
+}  // namespace hammer_loads

@@ -1,0 +1,51 @@
+/// How much the samples' stamps jitter, learned from what the angles leave unexplained.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+
+/// A stamp off by d shows an angle off by w d: the innovation's variance has a part w^2 sigma_t^2. Its maximum of
+/// likelihood is followed sample by sample (score over information, both by the normal distribution), within some 200
+/// samples that turn. Jitter has no memory, what a model lacks has: innovations are seen by the half square of their
+/// differences. What could as well be the encoder's count alone counts as zero: exact stamps stay exact.
+class TimingNoise {
+ public:
+  /// first_guess: standard deviation [s], >= 0.
+  explicit TimingNoise(double first_guess) noexcept : variance_(first_guess * first_guess) {}
+
+  /// innovation [rad] of variance `total`, the jitter's part included; speed w [rad/s].
+  void learn(double innovation, double total, double speed) noexcept {
+    const double change = innovation - last_;
+    last_ = innovation;
+    const double squared_speed = speed * speed, lever = squared_speed / total;
+    if (!(squared_speed * kTellable > total - squared_speed * variance())) return;  // too slow to tell
+    if (samples_++ == 0) information_ = lever * lever;
+    const double gain = std::max(kGain, 1.0 / (samples_ + 50.0));
+    information_ += gain * (lever * lever - information_);
+    const double clipped = std::min(0.5 * change * change / total, kMost);
+    variance_ = std::max(0.0, variance_ + gain * (clipped - 1.0) * lever / information_);
+    variance_ = std::min(variance_, kLargest * kLargest);
+  }
+
+  /// Variance of a stamp [s2]; exactly zero where no jitter is seen.
+  double variance() const noexcept {
+    return square(variance_) * information_ > kSeen * kSeen * kGain ? variance_ : 0.0;
+  }
+  double deviation() const noexcept { return std::sqrt(variance()); }  ///< [s]
+
+ private:
+  static double square(double x) noexcept { return x * x; }
+  static constexpr double kGain = 0.005;
+  static constexpr double kMost = 25.0;      // of innovation^2 over its variance
+  static constexpr double kSeen = 3.0;       // standard deviations of the estimate above zero
+  static constexpr double kTellable = 1e-6;  // [s2]: a sample that could not see 1 ms is not asked
+  static constexpr double kLargest = 0.02;   // [s]: more is no jitter
+  double variance_;
+  double last_{};  ///< innovation [rad]
+  double information_{};
+  int samples_{};
+};
+
+}  // namespace hammer_loads

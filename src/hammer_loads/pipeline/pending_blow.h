@@ -1,0 +1,54 @@
+/// A blow that has been struck and is being measured.
+#pragma once
+
+#include <optional>
+
+#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/hammer/blow.h"
+
+namespace hammer_loads {
+
+/// What a blow did to the crank shows in the samples after it: its factor is taken when the crank has turned on by a
+/// radian, or what is known of it when the crank stops before, begins anew or strikes again.
+class PendingBlow {
+ public:
+  /// time: of the blow [s]; speed of the crank just before and its standard deviation [rad/s].
+  void begin(double time, const CrankPosition& at, double speed, double speed_deviation) noexcept {
+    waiting_ = true;
+    time_ = time;
+    position_ = at;
+    blow_ = {};
+    blow_.speed = speed;
+    blow_.speed_deviation = speed_deviation;
+  }
+  bool isWaiting() const noexcept { return waiting_; }
+  /// It was none.
+  void drop() noexcept { waiting_ = false; }
+  /// The estimate at the latest sample; call after begin() and then at each sample that continues.
+  void follow(const BlowFactor& factor) noexcept {
+    blow_.factor = factor.mean;
+    blow_.factor_deviation = factor.deviation;
+    blow_.drive_inertia = factor.drive_inertia;
+    blow_.inertia_deviation = factor.inertia_deviation;
+  }
+  /// The crank has gone on far enough, or long enough.
+  bool isMeasured(double time, const CrankPosition& now) const noexcept {
+    return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > kLongEnough);
+  }
+  double time() const noexcept { return time_; }  ///< of the blow [s]
+  double crankSpeedAfter() const noexcept { return blow_.factor * blow_.speed; }  ///< [rad/s]
+  const CrankBlow& take() noexcept {
+    waiting_ = false;
+    return blow_;
+  }
+
+ private:
+  static constexpr double kFarEnough = 1.0;   // [rad]: some 50 ms
+  static constexpr double kLongEnough = 0.2;  // [s]
+  bool waiting_{};
+  double time_{};
+  CrankPosition position_;
+  CrankBlow blow_;
+};
+
+}  // namespace hammer_loads
