@@ -38,7 +38,7 @@ TEST(Load, ShippedFilesAreValid) {
   EXPECT_EQ(p.crank_joint, "hammer_crank_joint");
   EXPECT_EQ(p.pitch_joints, (Lines{"boom_joint", "arm_joint", "hammer_joint"}));
   EXPECT_EQ(p.gravity, 9.80665);
-  EXPECT_EQ(p.crank_angle_resolution, 2.0 * std::acos(-1.0) / 4096.0);
+  EXPECT_EQ(p.crank_angle_resolution, 0.0);
   EXPECT_EQ(p.stale_after, 0.25);
   EXPECT_EQ(p.withhold_above, 0.1);
   const LogSettings& log = settings.value->log;
@@ -336,6 +336,25 @@ TEST_F(LoadBoom, FaultsOfOneDescriptionComeTogether) {
 TEST(Load, ConfigDirectoryHoldsTheShippedFiles) {
   for (const char* name : {"hammer_mo100.yaml", "pipeline.yaml", "log.yaml"})
     EXPECT_TRUE(std::filesystem::is_regular_file(configDirectory() + "/" + name)) << name;
+}
+
+TEST(Load, CrankSensorsPlaceIsRead) {
+  const TemporaryFile file(
+      "crank_zero_rad: 0.4\ncrank_direction: -1\ncrank_eccentricity_1_rad: 0.02\ncrank_latency_s: 0.003\n");
+  const Checked<Settings> settings = loadShippedWith({file.path()});
+  ASSERT_EQ(settings.problems, Lines{});
+  EXPECT_NEAR(settings.value->pipeline.crank_sensor.reading(0.0), 0.4, 1e-15);
+  EXPECT_LT(settings.value->pipeline.crank_sensor.gain(), 0.0);
+  EXPECT_EQ(settings.value->pipeline.crank_latency, 0.003);
+  EXPECT_TRUE(loadShippedWith({}).value->pipeline.crank_sensor.isIdentity());
+}
+
+TEST(Load, ImpossibleCrankSensorIsRefusedByItsKeys) {
+  EXPECT_EQ(problemsOf("crank_direction: 0\n"), (Lines{"crank_direction: 0, must be 1 or -1 (FILE:1)"}));
+  EXPECT_EQ(problemsOf("crank_ratio: 2.0\ncrank_eccentricity_1_rad: 0.02\n"),
+            (Lines{"crank_ratio: 2, must be 1 with crank_eccentricity_1_rad or crank_eccentricity_2_rad (FILE:1)"}));
+  EXPECT_EQ(problemsOf("crank_eccentricity_1_rad: 0.6\ncrank_eccentricity_2_rad: 0.2\n").size(), 1U);
+  EXPECT_EQ(problemsOf("crank_ratio: 0.0\n").size(), 1U);
 }
 
 }  // namespace

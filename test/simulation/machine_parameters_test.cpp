@@ -41,6 +41,26 @@ void expectSameDrive(const DriveSettings& a, const DriveSettings& b) {
   EXPECT_EQ(a.stop_time, b.stop_time);
   EXPECT_EQ(a.stop_ramp, b.stop_ramp);
   EXPECT_EQ(a.bypass, b.bypass);
+  EXPECT_EQ(a.coupling_frequency, b.coupling_frequency);
+  EXPECT_EQ(a.motor_share, b.motor_share);
+}
+
+/// As shipped there are none.
+void expectSameFlaws(const MachineSettings& a, const MachineSettings& b) {
+  EXPECT_EQ(a.blow.restitution_drawn, b.blow.restitution_drawn);
+  EXPECT_EQ(a.blow.crank_loss, b.blow.crank_loss);
+  EXPECT_EQ(a.blow.tool_early, b.blow.tool_early);
+  EXPECT_EQ(a.blow.early_tool_mass, b.blow.early_tool_mass);
+  EXPECT_EQ(a.blow.blank_share, b.blow.blank_share);
+  EXPECT_EQ(a.crank.stamps_late, b.crank.stamps_late);
+  EXPECT_EQ(a.crank.stamp_step, b.crank.stamp_step);
+  EXPECT_EQ(a.crank.latency, b.crank.latency);
+  EXPECT_EQ(a.crank.burst, b.crank.burst);
+  EXPECT_EQ(a.crank.duplicate_share, b.crank.duplicate_share);
+  EXPECT_EQ(a.crank.zero, b.crank.zero);
+  EXPECT_EQ(a.crank.direction, b.crank.direction);
+  EXPECT_EQ(a.crank.ratio, b.crank.ratio);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(a.crank.eccentricity[i].amount, b.crank.eccentricity[i].amount);
 }
 
 TEST(MachineParameters, ShippedFileIsTheWorkingMachine) {
@@ -57,6 +77,7 @@ TEST(MachineParameters, ShippedFileIsTheWorkingMachine) {
   EXPECT_EQ(file.crank.speed, code.crank.speed);
   EXPECT_EQ(file.crank.speed_noise, code.crank.speed_noise);
   EXPECT_TRUE(file.crank.drop_outs.empty());
+  expectSameFlaws(file, code);
   for (std::size_t i = 0; i < file.boom.size(); ++i) {
     EXPECT_EQ(file.boom[i].mean, code.boom[i].mean);
     EXPECT_EQ(file.boom[i].amplitude, code.boom[i].amplitude);
@@ -109,6 +130,28 @@ TEST(MachineParameters, EveryProblemIsReportedAtOnce) {
     EXPECT_TRUE(mentions(loaded.problems, key)) << key;
   }
   EXPECT_EQ(loaded.problems.size(), 6U);
+}
+
+TEST(MachineParameters, FlawsAreRead) {
+  const Checked<SimulatorSettings> loaded = loadSimulator(
+      configDirectory(), given("{restitution_drawn: true, restitution_low: 0.1, restitution_high: 0.25, stamp_burst: 4,"
+                               " encoder_direction: -1, encoder_eccentricity_2_rad: 0.01, coupling_frequency_Hz: 50,"
+                               " stamp_step_s: 0.001, stamps_only_late: true, blank_share: 0.1}"));
+  ASSERT_TRUE(loaded.value) << loaded.problems.front();
+  const MachineSettings& machine = loaded.value->machine;
+  EXPECT_TRUE(machine.blow.restitution_drawn);
+  EXPECT_EQ(machine.blow.restitution_high, 0.25);
+  EXPECT_EQ(machine.blow.blank_share, 0.1);
+  EXPECT_EQ(machine.crank.burst, 4);
+  EXPECT_EQ(machine.crank.direction, -1);
+  EXPECT_EQ(machine.crank.eccentricity[1].amount, 0.01);
+  EXPECT_EQ(machine.crank.stamp_step, 0.001);
+  EXPECT_TRUE(machine.crank.stamps_late);
+  EXPECT_EQ(machine.drive.coupling_frequency, 50.0);
+  const Checked<SimulatorSettings> wrong =
+      loadSimulator(configDirectory(), given("{restitution_low: 0.4, encoder_direction: 0}"));
+  EXPECT_TRUE(mentions(wrong.problems, "restitution_high: 0.3, must be >= restitution_low = 0.4"));
+  EXPECT_TRUE(mentions(wrong.problems, "encoder_direction: 0"));
 }
 
 TEST(MachineParameters, OneHammerKeyNeedsThemAll) {

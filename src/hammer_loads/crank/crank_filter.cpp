@@ -48,7 +48,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
     : model_(model),
       step_model_(model),
       settings_(settings),
-      encoder_(settings.angle_resolution),
+      encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
@@ -61,9 +61,16 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
 
 double CrankFilter::mostSpeed() const noexcept { return kSoundSpeeds * settings_.max_speed; }
 
-void CrankFilter::start(const CrankSample& sample) noexcept {
-  const double measured = encoder_.angle(sample.angle);
-  now_.state.position = {0, CrankAngle::fromAngle(measured)};
+/// Angle and speed of the crank from those of its sensor.
+CrankSample CrankFilter::ofCrank(const CrankSample& reading) noexcept {
+  CrankSample sample{encoder_.angle(reading.angle), reading.speed};
+  if (sample.speed) sample.speed = encoder_.speed(sample.angle, *reading.speed);
+  return sample;
+}
+
+void CrankFilter::start(const CrankSample& reading) noexcept {
+  const CrankSample sample = ofCrank(reading);
+  now_.state.position = {0, CrankAngle::fromAngle(sample.angle)};
   now_.state.speed = 0.0;
   now_.state.torque = 0.0;
   anchor(now_.state.position.angle.offset, sample);
@@ -193,7 +200,7 @@ void CrankFilter::respectCount(double reading) noexcept {
   if (encoder_.isFiner() || settings_.angle_noise > 0.0 || mirrored_) return;
   const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
   const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
-  const double low = CrankAngle::wrapToPi(reading), high = low + count;
+  const auto [low, high] = encoder_.edges(reading);
   CrankAngle& angle = now_.state.position.angle;
   if (std::abs(low) > kNearCounts * count || std::abs(angle.offset) > kNearCounts * count) return;
   if (low - doubt > -edge_tolerance && angle.side == Side::kBeforeBlow) {
@@ -285,13 +292,14 @@ Tracking CrankFilter::begin(double measured, const CrankSample& sample) noexcept
   return Tracking::kRestarted;
 }
 
-Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
+Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   const CrankBelief last = now_;
   restart_load_ *= std::exp(-dt / kForgetRestarts);
   step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
   const bool struck = predict(dt, true, now_) > 0;
 
-  const double measured = CrankAngle::fromAngle(encoder_.angle(sample.angle)).offset;
+  const CrankSample sample = ofCrank(reading);
+  const double measured = CrankAngle::fromAngle(sample.angle).offset;
   Innovation innovation = angleInnovation(measured);
   const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (!(deviation < kDoubtfulAngle) && has_speed_) {
@@ -332,7 +340,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
   if (std::abs(now_.state.speed) < kLearnSpeed) now_.forgetInertiaCoupling();
   correctAngle(innovation);
   settleSide(last, dt, measured, struck);
-  respectCount(sample.angle);
+  respectCount(reading.angle);
   if (sample.speed) correctSpeed(*sample.speed);
   if (contested && rival_) followRival(dt, measured, sample);
   const bool revised = rival_ && chooseBelief();

@@ -15,6 +15,7 @@ namespace hammer_loads {
 
 /// What the filter assumes about sensors and supply.
 struct CrankFilterSettings {
+  CrankSensor sensor;                  ///< where the encoder sits
   double angle_resolution{};           ///< encoder count [rad], >= 0; 0: read off the readings
   double angle_noise{};                ///< standard deviation beside the count [rad], >= 0
   double timing_noise{};               ///< standard deviation of a stamp, first guess [s], >= 0
@@ -93,6 +94,7 @@ class CrankFilter final : public CrankTracker {
   Innovation angleInnovation(double measured) const noexcept;
   Innovation speedInnovation(double measured) const noexcept;
   double angleVariance() const noexcept;
+  CrankSample ofCrank(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
   void correctAngle(Innovation innovation) noexcept;
   void correctSpeed(double measured) noexcept;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "hammer_loads/crank/crank_sensor.h"
 #include "hammer_loads/linkage/crank_angle.h"
 
 namespace hammer_loads {
@@ -16,16 +17,33 @@ namespace hammer_loads {
 class Encoder {
  public:
   /// given: count [rad]; 0: to be read off.
-  explicit Encoder(double given) noexcept : given_(given > 0.0), assumed_(given > 0.0 ? given : kUsual) {}
+  explicit Encoder(double given, const CrankSensor& place = {}) noexcept
+      : place_(place), given_(given > 0.0), assumed_(given > 0.0 ? given : kUsual) {}
 
+  /// Of the crank [rad].
   double angle(double reading) noexcept {
     learn(reading);
-    return reading + 0.5 * (isFiner() ? 0.0 : resolution());
+    return place_.angle(reading + 0.5 * (isFiner() ? 0.0 : resolution()));
+  }
+  /// Of the crank [rad/s], at its angle [rad].
+  double speed(double angle, double measured) const noexcept { return place_.speed(angle, measured); }
+  /// Crank angles between which a reading lies; the lower one within half a turn of the blow [rad].
+  struct Edges {
+    double low, high;
+  };
+  Edges edges(double reading) const noexcept {
+    if (place_.isIdentity()) return {CrankAngle::wrapToPi(reading), CrankAngle::wrapToPi(reading) + resolution()};
+    const double one = place_.angle(reading), other = place_.angle(reading + resolution());
+    const double low = CrankAngle::wrapToPi(one < other ? one : other);
+    return {low, low + std::abs(other - one)};
   }
 
   /// Variance of angle() [rad2]: uniform over the count.
-  double variance() const noexcept { return resolution() * resolution() / 12.0; }
-  /// Count in force [rad]; with a finer sensor the one assumed.
+  double variance() const noexcept {
+    const double count = place_.gain() * resolution();
+    return count * count / 12.0;
+  }
+  /// Count in force [rad of the encoder]; with a finer sensor the one assumed.
   double resolution() const noexcept { return isKnown() && !isFiner() ? count_ : assumed_; }
   bool isFiner() const noexcept { return finer_readings_ >= kEnough; }
   /// Enough readings have come to know the count.
@@ -75,6 +93,7 @@ class Encoder {
     return true;
   }
 
+  CrankSensor place_;
   bool given_;
   double assumed_;
   double count_{kTwoPi};  ///< largest that all differences so far allow [rad]

@@ -9,15 +9,24 @@ constexpr double kFurthest = 200.0;  // [rad] between two samples: some 30 turns
 
 }  // namespace
 
-void PlainTracker::start(const CrankSample& sample) noexcept {
-  now_ = {{0, CrankAngle::fromAngle(encoder_.angle(sample.angle))}, sample.speed.value_or(0.0), 0.0};
+/// Angle and speed of the crank from those of its sensor.
+CrankSample PlainTracker::ofCrank(const CrankSample& reading) noexcept {
+  CrankSample sample{encoder_.angle(reading.angle), reading.speed};
+  if (sample.speed) sample.speed = encoder_.speed(sample.angle, *reading.speed);
+  return sample;
+}
+
+void PlainTracker::start(const CrankSample& reading) noexcept {
+  const CrankSample sample = ofCrank(reading);
+  now_ = {{0, CrankAngle::fromAngle(sample.angle)}, sample.speed.value_or(0.0), 0.0};
   has_speed_ = sample.speed.has_value();
 }
 
-Tracking PlainTracker::update(double dt, const CrankSample& sample) noexcept {
+Tracking PlainTracker::update(double dt, const CrankSample& reading) noexcept {
+  const CrankSample sample = ofCrank(reading);
   before_ = now_;
   step_ = dt;
-  const double measured = CrankAngle::fromAngle(encoder_.angle(sample.angle)).offset;
+  const double measured = CrankAngle::fromAngle(sample.angle).offset;
   // The turn between two samples is the one nearest to what the earlier speed predicts.
   const double predicted = now_.speed * dt;
   const double turned =

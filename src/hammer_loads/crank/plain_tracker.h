@@ -13,8 +13,8 @@ class PlainTracker final : public CrankTracker {
  public:
   enum class Acceleration { kZero, kDifference };
 
-  PlainTracker(Acceleration acceleration, double angle_resolution)
-      : acceleration_(acceleration), encoder_(angle_resolution) {}
+  PlainTracker(Acceleration acceleration, double angle_resolution, const CrankSensor& sensor = {})
+      : acceleration_(acceleration), encoder_(angle_resolution, sensor) {}
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
@@ -25,6 +25,8 @@ class PlainTracker final : public CrankTracker {
   double angleResolution() const noexcept override { return encoder_.resolution(); }
 
  private:
+  CrankSample ofCrank(const CrankSample& reading) noexcept;
+
   Acceleration acceleration_;
   Encoder encoder_;
   CrankEstimate now_;

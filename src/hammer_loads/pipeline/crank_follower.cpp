@@ -1,5 +1,6 @@
 #include "hammer_loads/pipeline/crank_follower.h"
 
+#include <cmath>
 #include <limits>
 
 #include "hammer_loads/pipeline/hull_deviation.h"
@@ -30,6 +31,7 @@ CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& set
     : model_(&model),
       settings_(settings),
       unit_check_(settings.max_crank_speed),
+      latency_(static_cast<StampNs>(std::llround(settings.crank_latency / kSecondsPerNs))),
       sequence_(settings.crank_stamps, settings.stale_after),
       tracker_(makeTracker(model.mechanism(), settings)),
       gate_(limitsOf(settings, tracker_->angleResolution())),
@@ -41,7 +43,7 @@ std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& m
   if (header < 0 || header > kLastStamp) return Refusal::kBadStamp;
   const bool repeats = measured.angle == last_raw_.angle && measured.speed == last_raw_.speed;
   last_raw_ = measured;
-  const StampSequence::Place place = sequence_.place(header, repeats);
+  const StampSequence::Place place = sequence_.place(header - latency_, repeats);
   stamp_ = place.stamp;
   if (place.kind == StampSequence::Kind::kDuplicate) return Refusal::kDuplicate;
   if (place.kind == StampSequence::Kind::kOutOfOrder) return Refusal::kOutOfOrder;

@@ -32,7 +32,7 @@ class CrankFollower {
 
   /// Judges a sample by itself: header stamp and reading. Only if there is no refusal, take() must follow.
   std::optional<Refusal> judge(StampNs header, const CrankSample& measured) noexcept;
-  /// Instant of the judged sample: its header stamp, or that refitted by sequence.
+  /// Instant of the judged sample: its header stamp less crank_latency_s, or that refitted by sequence.
   StampNs stamp() const noexcept { return stamp_; }
   /// Takes the judged sample. hull: motion at it.
   Taken take(const HullMotion& hull) noexcept;
@@ -59,6 +59,7 @@ class CrankFollower {
   UnitCheck unit_check_;
   std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
   CrankSample last_raw_;                   ///< likewise
+  StampNs latency_;                        ///< of header stamps
   StampSequence sequence_;
   std::unique_ptr<CrankTracker> tracker_;
   CrankSampleGate gate_;

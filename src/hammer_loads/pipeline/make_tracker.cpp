@@ -10,10 +10,11 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
   if (s.crank_estimator != CrankEstimator::kMechanism) {
     const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
                                                                          : PlainTracker::Acceleration::kDifference;
-    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution);
+    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, s.crank_sensor);
   }
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   CrankFilterSettings filter;
+  filter.sensor = s.crank_sensor;
   filter.angle_resolution = s.crank_angle_resolution;
   filter.angle_noise = s.crank_angle_noise;
   filter.timing_noise = s.crank_timing_noise;

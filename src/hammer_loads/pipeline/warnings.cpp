@@ -38,7 +38,7 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
   if (counts.backward_passes >= kBackward && counts.backward_passes > counts.blows)
     warnings.push_back({"backward",
                         "crank: turns backward, " + count(counts.backward_passes) + " passages of the blow backward, " +
-                            count(counts.blows) + " blows; the sign of the sensor must be the other one",
+                            count(counts.blows) + " blows; crank_direction must have the other sign",
                         true});
 }
 

@@ -93,7 +93,7 @@ void NodeDiagnostics::describeCrank(Status& status) {
   } else if (age > pipeline.settings().stale_after) {
     status.summaryf(DiagnosticStatus::ERROR, "stale: no crank sample for %.1f s, nothing is published", age);
   } else if (counts.backward_passes - last_counts_.backward_passes > counts.blows - last_counts_.blows) {
-    status.summary(DiagnosticStatus::ERROR, "turns backward: the sign of the sensor must be the other one");
+    status.summary(DiagnosticStatus::ERROR, "turns backward: crank_direction must have the other sign");
   } else if (refused > 0) {
     status.summaryf(DiagnosticStatus::WARN, "%llu of %llu crank samples gave no wrench",
                     static_cast<unsigned long long>(refused), static_cast<unsigned long long>(refused + accepted));

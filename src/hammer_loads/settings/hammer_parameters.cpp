@@ -60,9 +60,11 @@ std::vector<std::string> hammerKeys() {
   return keys;
 }
 
+/// The drive's inertia is a first guess, which a calibration replaces in any hammer.
 bool hasHammerKey(const ParameterMap& parameters) {
-  return std::any_of(std::begin(kHammerKeys), std::end(kHammerKeys),
-                     [&](const HammerKey& key) { return parameters.count(key.key) != 0; });
+  return std::any_of(std::begin(kHammerKeys), std::end(kHammerKeys), [&](const HammerKey& key) {
+    return std::string(key.key) != "drive_inertia_kg_m2" && parameters.count(key.key) != 0;
+  });
 }
 
 }  // namespace hammer_loads

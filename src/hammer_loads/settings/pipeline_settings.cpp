@@ -40,6 +40,24 @@ void readHullMotion(ParameterReader& reader, PipelineSettings& s) {
   s.imu.max_age = reader.number("imu_max_age_s", "s", NumberRule::positive());
 }
 
+CrankSensor readCrankSensor(ParameterReader& reader) {
+  constexpr NumberRule kAny = NumberRule::any();
+  constexpr NumberRule kNotNegative = NumberRule::notNegative();
+  const std::size_t problems_before = reader.problems().size();
+  CrankSensorPlace place;
+  place.zero = reader.number("crank_zero_rad", "rad", kAny);
+  place.direction = static_cast<int>(reader.integer("crank_direction", "", -1, 1));
+  place.ratio = reader.number("crank_ratio", "", NumberRule::positive());
+  place.eccentricity[0] = reader.number("crank_eccentricity_1_rad", "rad", kNotNegative);
+  place.eccentricity_phase[0] = reader.number("crank_eccentricity_1_phase_rad", "rad", kAny);
+  place.eccentricity[1] = reader.number("crank_eccentricity_2_rad", "rad", kNotNegative);
+  place.eccentricity_phase[1] = reader.number("crank_eccentricity_2_phase_rad", "rad", kAny);
+  if (reader.problems().size() != problems_before) return {};
+  const Checked<CrankSensor> sensor = CrankSensor::make(place);
+  for (const std::string& problem : sensor.problems) reader.addProblem(problem);
+  return sensor.value.value_or(CrankSensor());
+}
+
 }  // namespace
 
 PipelineSettings readPipelineSettings(ParameterReader& reader) {
@@ -59,6 +77,8 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.pitch_joints = reader.names("pitch_joints");
   s.hull_pitch = reader.number("hull_pitch_rad", "rad", kAny);
   s.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
+  s.crank_sensor = readCrankSensor(reader);
+  s.crank_latency = reader.number("crank_latency_s", "s", NumberRule::within(0.0, 1.0));
   s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kNotNegative);
   s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", kNotNegative);
   s.crank_stamps = reader.choice("crank_stamps", kCrankStampsNames);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hammer_loads/crank/crank_sensor.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
@@ -88,6 +89,8 @@ struct PipelineSettings {
   HullMotionSource hull_motion{};
   HullImuSettings imu;                 ///< where the IMU sits
   double gravity{};                    ///< [m/s2], >= 0
+  CrankSensor crank_sensor;            ///< where it sits
+  double crank_latency{};              ///< header stamp less the instant of the measurement [s], >= 0
   double crank_angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings
   double crank_angle_noise{};          ///< standard deviation beside the count [rad], >= 0
   CrankStamps crank_stamps{};          ///< which instants the samples get

@@ -17,6 +17,7 @@ constexpr NumberRule kNotNegative = NumberRule::notNegative();
 constexpr double kTwoPi = 6.283185307179586232;
 constexpr std::int64_t kLargestSeed = std::int64_t{1} << 53;  // exact in every reader of YAML
 constexpr std::int64_t kMostCounts = 1 << 24;
+constexpr std::int64_t kMostBurst = 10000;
 
 DriveSettings readDrive(ParameterReader& reader) {
   DriveSettings d;
@@ -38,7 +39,38 @@ DriveSettings readDrive(ParameterReader& reader) {
   d.start_ramp = reader.number("start_ramp_s", "s", kPositive);
   d.stop_ramp = reader.number("stop_ramp_s", "s", kPositive);
   d.bypass = reader.number("bypass_m3_s_Pa", "m3/(s Pa)", kNotNegative);
+  d.coupling_frequency = reader.number("coupling_frequency_Hz", "Hz", kNotNegative);
+  d.motor_share = reader.number("coupling_motor_share", "", NumberRule::within(1e-3, 1.0 - 1e-3));
+  d.coupling_damping = reader.number("coupling_damping", "", kNotNegative);
   return d;
+}
+
+BlowSettings readBlow(ParameterReader& reader) {
+  BlowSettings b;
+  b.restitution_drawn = reader.boolean("restitution_drawn");
+  b.restitution_low = reader.number("restitution_low", "", NumberRule::within(-1.0, 1.0));
+  b.restitution_high = reader.number("restitution_high", "", NumberRule::within(-1.0, 1.0));
+  if (b.restitution_high < b.restitution_low) {
+    reader.addProblem(
+        format("restitution_high: %.9g, must be >= restitution_low = %.9g", b.restitution_high, b.restitution_low));
+  }
+  b.crank_loss = reader.number("blow_crank_loss", "", NumberRule::within(0.0, 0.99));
+  b.tool_early = reader.number("tool_early_rad", "rad", NumberRule::within(0.0, 1.0));
+  b.early_tool_mass = reader.number("early_tool_mass_kg", "kg", kPositive);
+  b.blank_share = reader.number("blank_share", "", NumberRule::within(0.0, 1.0));
+  return b;
+}
+
+/// Where the encoder sits on the crank.
+void readEncoder(ParameterReader& reader, CrankSensorSettings& s) {
+  s.zero = reader.number("encoder_zero_rad", "rad", kAny);
+  s.direction = static_cast<int>(reader.integer("encoder_direction", "", -1, 1));
+  if (s.direction == 0) reader.addProblem("encoder_direction: 0, must be 1 or -1");
+  s.ratio = reader.number("encoder_ratio", "", kPositive);
+  s.eccentricity[0].amount = reader.number("encoder_eccentricity_1_rad", "rad", NumberRule::within(0.0, 0.4));
+  s.eccentricity[0].phase = reader.number("encoder_eccentricity_1_phase_rad", "rad", kAny);
+  s.eccentricity[1].amount = reader.number("encoder_eccentricity_2_rad", "rad", NumberRule::within(0.0, 0.2));
+  s.eccentricity[1].phase = reader.number("encoder_eccentricity_2_phase_rad", "rad", kAny);
 }
 
 CrankSensorSettings readCrankSensor(ParameterReader& reader) {
@@ -46,6 +78,12 @@ CrankSensorSettings readCrankSensor(ParameterReader& reader) {
   s.rate = reader.number("crank_rate_Hz", "Hz", kPositive);
   s.jitter = reader.number("crank_jitter_s", "s", kNotNegative);
   s.stamp_noise = reader.number("stamp_noise_s", "s", kNotNegative);
+  s.stamps_late = reader.boolean("stamps_only_late");
+  s.stamp_step = reader.number("stamp_step_s", "s", NumberRule::within(0.0, 1.0));
+  s.latency = reader.number("stamp_latency_s", "s", NumberRule::within(0.0, 1.0));
+  s.burst = static_cast<int>(reader.integer("stamp_burst", "", 1, kMostBurst));
+  s.duplicate_share = reader.number("duplicate_share", "", NumberRule::within(0.0, 1.0));
+  readEncoder(reader, s);
   s.counts = static_cast<int>(reader.integer("encoder_counts", "", 0, kMostCounts));
   s.unwound = reader.boolean("unwound");
   s.speed = reader.boolean("measure_speed");
@@ -81,6 +119,7 @@ MachineSettings readMachine(ParameterReader& reader) {
   MachineSettings machine;
   machine.level = reader.choice("level", kLevelNames);
   machine.drive = readDrive(reader);
+  machine.blow = readBlow(reader);
   machine.crank = readCrankSensor(reader);
   machine.boom = {readJoint(reader, "swing"), readJoint(reader, "boom"), readJoint(reader, "arm"),
                   readJoint(reader, "hammer")};

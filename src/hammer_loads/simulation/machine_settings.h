@@ -32,17 +32,46 @@ struct DriveSettings {
   double stop_time{};              ///< flow begins to fall and a bypass opens [s]; after the end: never
   double stop_ramp{};              ///< [s], > 0
   double bypass{};                 ///< open bypass: flow per pressure [m3/(s Pa)]
+
+  double coupling_frequency{};  ///< of the flexible coupling between motor and crank, both free [Hz]; 0: rigid
+  double motor_share{0.5};      ///< of the inertia, on the motor's side of the coupling [-], in (0, 1)
+  double coupling_damping{};    ///< of critical, of the same mode [-]
+};
+
+/// How the rocker meets the tool. As constructed: at the dead centre, and the crank keeps its speed.
+struct BlowSettings {
+  bool restitution_drawn{};      ///< else the one at which the crank keeps its speed
+  double restitution_low{};      ///< drawn anew for each blow, uniform between these [-]
+  double restitution_high{};     ///< [-]
+  double crank_loss{};           ///< part of the crank's speed lost beside that at each blow [-], in [0, 1)
+  double tool_early{};           ///< the tool is met so much before the dead centre [rad], in [0, 1]
+  double early_tool_mass{50.0};  ///< that the rocker then takes along, at the striking point [kg], > 0
+  double blank_share{};          ///< of the blows that find no tool [-], in [0, 1]
+};
+
+/// amount [sin(n angle + phase) - sin(phase)] is added to the encoder's angle [rad].
+struct Eccentricity {
+  double amount{}, phase{};  ///< [rad]
 };
 
 /// Crank encoder and the message that carries it.
 struct CrankSensorSettings {
-  double rate{};         ///< [Hz], > 0
-  double jitter{};       ///< standard deviation of the instants of sampling [s]; at most 0.45 periods each
-  double stamp_noise{};  ///< standard deviation of stamp against instant [s]; order may break if large
-  int counts{};          ///< per turn; angle = whole counts passed; 0: continuous
-  bool unwound{};        ///< angle grows over the turns instead of staying in [0, 2 pi)
-  bool speed{true};      ///< speed is measured too
-  double speed_noise{};  ///< standard deviation [rad/s]
+  double rate{};                 ///< [Hz], > 0
+  double jitter{};               ///< standard deviation of the instants of sampling [s]; at most 0.45 periods each
+  double stamp_noise{};          ///< standard deviation of stamp against instant [s]; order may break if large
+  bool stamps_late{};            ///< that noise only ever delays: its size counts
+  double stamp_step{};           ///< stamps are whole multiples of it, rounded down [s]; 0: nanoseconds
+  double latency{};              ///< constant part of stamp less instant [s]
+  int burst{1};                  ///< so many samples carry the stamp of their last one, >= 1
+  double duplicate_share{};      ///< of the messages that come twice [-], in [0, 1]
+  int counts{};                  ///< per turn; angle = whole counts passed; 0: continuous
+  bool unwound{};                ///< angle grows over the turns instead of staying in [0, 2 pi)
+  bool speed{true};              ///< speed is measured too
+  double speed_noise{};          ///< standard deviation [rad/s]
+  double zero{};                 ///< reading at the blow [rad]
+  int direction{1};              ///< 1 or -1
+  double ratio{1.0};             ///< encoder turns per crank turn [-], > 0
+  Eccentricity eccentricity[2];  ///< once and twice a turn
   struct Interval {
     double from{}, to{};  ///< [s]
   };
@@ -64,6 +93,7 @@ struct MachineSettings {
   HammerParameters hammer;      ///< drive_inertia in it is not used: see drive.inertia
   Level level{Level::kRocker};  ///< which links have mass
   DriveSettings drive;
+  BlowSettings blow;
   CrankSensorSettings crank;
   std::array<JointMotion, 4> boom;
   double joint_rate{};         ///< of the boom joints' samples [Hz], > 0

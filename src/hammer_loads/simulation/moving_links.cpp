@@ -21,7 +21,7 @@ MovingLinks::MovingLinks(const Mechanism& mechanism, Level level)
 
 /// psi = 2 delta - alpha: alpha turns DA into DB, pi - 2 delta is the angle B-D-C of a triangle with sides
 /// c = DB, l3, l2, and sin^2 delta = ((l3 + c)^2 - l2^2)/(4 l3 c), where c - (l2 - l3) = 4 l0 l1 s^2/(c + l0 - l1).
-Jet MovingLinks::rockerAngle(TurnAngle angle) const noexcept {
+Jet MovingLinks::rockerAngleUp(TurnAngle angle) const noexcept {
   const double l0 = p_.lengths.pivot_distance, l1 = p_.lengths.crank, l2 = p_.lengths.rod, l3 = p_.lengths.rocker;
   const Jet phi{angle.offset, 1.0, 0.0};
   const Jet s = sinHalf(angle);
@@ -29,6 +29,13 @@ Jet MovingLinks::rockerAngle(TurnAngle angle) const noexcept {
   const Jet delta = asin(s * sqrt((l0 * l1 / l3) * (c + (l2 + l3)) / (c * (c + (l0 - l1)))));
   const Jet alpha = atan(l1 * sin(phi) / (l0 - l1 * cos(phi)));  // |alpha| < pi/2 since l1 < l0
   return 2.0 * delta - alpha;
+}
+
+/// The mirrored branch is the image of this one in the line A-D: psi(phi) = -psi(-phi).
+Jet MovingLinks::rockerAngle(TurnAngle angle) const noexcept {
+  if (!angle.mirrored) return rockerAngleUp(angle);
+  const Jet image = rockerAngleUp({-angle.offset, !angle.before_blow, false});
+  return {-image.value, image.first, -image.second};
 }
 
 LinkBodies MovingLinks::at(TurnAngle angle) const noexcept {
@@ -103,6 +110,50 @@ Strike MovingLinks::strike(double crank_speed) const noexcept {
     inertia += rod_about_b * ratio * ratio;
   }
   strike.tool_impulse = inertia * (u_after - u_before) * crank_speed / p_.striking_distance;
+  strike.crank_speed_after = crank_speed;
+  return strike;
+}
+
+/// At the dead centre crank and rocker turn independently: kinetic energy (M11 w^2 + 2 M12 w p + M22 p^2)/2 of crank
+/// speed w and rocker speed p. The tool's impulse works on p alone; then the loop, p = u w, closes without work, which
+/// keeps the momentum along (1, u).
+Strike MovingLinks::strike(double crank_speed, double restitution, double drive_inertia) const noexcept {
+  const TurnAngle before{0.0, true}, after{0.0, false};
+  const double u_before = rockerAngle(before).first, u = rockerAngle(after).first;
+  double m12 = 0.0, m22 = p_.rocker_inertia_about_pivot;
+  if (level_ == Level::kLinkage) {
+    const double to_com = p_.rod_com_along / p_.lengths.rod, across = p_.rod_com_across / p_.lengths.rod;
+    const double about_com =
+        p_.rod_inertia_about_com / (p_.lengths.rod * p_.lengths.rod) + p_.rod_mass * across * across;
+    // Pins B and C move at l1 w and l3 p; the rod's centre of mass is in between.
+    m12 = p_.lengths.crank * p_.lengths.rocker * (p_.rod_mass * to_com * (1.0 - to_com) - about_com);
+    m22 += p_.lengths.rocker * p_.lengths.rocker * (p_.rod_mass * to_com * to_com + about_com);
+  }
+  const double total = drive_inertia + shaft(at(after), {}).inertia;
+  const double m11 = total - 2.0 * u * m12 - u * u * m22;
+  const auto energy = [&](double w, double p) { return 0.5 * (m11 * w * w + 2.0 * m12 * w * p + m22 * p * p); };
+  Strike strike;
+  const double p0 = strike.rocker_speed_before = u_before * crank_speed;
+  const double p1 = strike.rocker_speed_after = -restitution * p0;
+  const double w1 = crank_speed + m12 / m11 * (p0 - p1);
+  strike.crank_speed_after = (m11 * w1 + m12 * p1 + u * (m12 * w1 + m22 * p1)) / total;
+  strike.energy = energy(crank_speed, p0) - energy(w1, p1);
+  strike.linkage_loss = energy(w1, p1) - 0.5 * total * strike.crank_speed_after * strike.crank_speed_after;
+  strike.tool_impulse = (m12 * (w1 - crank_speed) + m22 * (p1 - p0)) / p_.striking_distance;
+  return strike;
+}
+
+Strike MovingLinks::strikeTool(TurnAngle angle, double crank_speed, double tool_mass,
+                               double drive_inertia) const noexcept {
+  const LinkBodies links = at(angle);
+  const double u = rockerAngle(angle).first, arm = u * p_.striking_distance;
+  const double before = drive_inertia + shaft(links, {}).inertia, after = before + tool_mass * arm * arm;
+  Strike strike;
+  strike.crank_speed_after = crank_speed * before / after;
+  strike.rocker_speed_before = u * crank_speed;
+  strike.rocker_speed_after = u * strike.crank_speed_after;
+  strike.energy = 0.5 * before * (crank_speed * crank_speed - strike.crank_speed_after * strike.crank_speed_after);
+  strike.tool_impulse = -tool_mass * arm * strike.crank_speed_after;
   return strike;
 }
 

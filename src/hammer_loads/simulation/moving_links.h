@@ -8,10 +8,11 @@
 
 namespace hammer_loads::simulation {
 
-/// Crank angle as the signed distance from the nearest blow [rad] and the side of the blow that it belongs to.
+/// Crank angle as the signed distance from the nearest dead centre [rad] and the side of it that it belongs to.
 struct TurnAngle {
   double offset{};
   bool before_blow{};
+  bool mirrored{};  ///< rocker on the other side of the line A-D: it passed the dead centre without meeting a tool
 };
 
 /// What the links are to the crank's shaft at one angle.
@@ -32,8 +33,10 @@ struct Load {
 struct Strike {
   double rocker_speed_before{};  ///< psi' [rad/s]
   double rocker_speed_after{};   ///< psi' [rad/s]
-  double energy{};               ///< kinetic energy that the links lose [J]
+  double energy{};               ///< kinetic energy that the links give to the tool [J]
   double tool_impulse{};         ///< along +z BY the tool ON the rocker [N s]
+  double crank_speed_after{};    ///< once the linkage has taken up the rocker's speed [rad/s]
+  double linkage_loss{};         ///< kinetic energy lost within linkage and crank meanwhile [J]
 };
 
 /// Rigid links in the mechanism frame (model.md 1), as functions of the crank angle.
@@ -59,11 +62,17 @@ class MovingLinks {
   ShaftView shaft(const LinkBodies& links, Gravity gravity) const noexcept;
   /// At crank speed w [rad/s] and acceleration e [rad/s2]. Newton-Euler in the mechanism frame.
   Load load(const LinkBodies& links, double speed, double acceleration, Gravity gravity) const noexcept;
+  /// The crank keeps its speed.
   Strike strike(double crank_speed) const noexcept;
+  /// The rocker leaves the tool with a given restitution; drive_inertia [kg m2] is what turns with the crank.
+  Strike strike(double crank_speed, double restitution, double drive_inertia) const noexcept;
+  /// Away from the dead centre, without restitution: the rocker takes along a tool of a mass [kg] that was at rest.
+  Strike strikeTool(TurnAngle angle, double crank_speed, double tool_mass, double drive_inertia) const noexcept;
   /// psi [rad] with its derivatives by the crank angle.
   Jet rockerAngle(TurnAngle angle) const noexcept;
 
  private:
+  Jet rockerAngleUp(TurnAngle angle) const noexcept;
   HammerParameters p_;
   Level level_;
   double cos_a_{}, sin_a_{};

@@ -1,4 +1,4 @@
-/// Seeded Gaussian noise that is the same with every standard library.
+/// Seeded noise that is the same with every standard library.
 #pragma once
 
 #include <cmath>
@@ -20,9 +20,10 @@ class NormalNoise {
     return std::sqrt(-2.0 * std::log(u)) * std::cos(kFullTurn * v);
   }
 
- private:
-  double uniform() noexcept { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  // [0, 1)
+  /// In [0, 1).
+  double uniform() noexcept { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
+ private:
   std::mt19937_64 engine_;
 };
 

@@ -27,13 +27,15 @@ struct JointReading {
 };
 
 struct Session {
-  std::vector<CrankReading> crank;
-  std::vector<CrankTruth> truth;  ///< of the crank readings, one each
+  std::vector<CrankReading> crank;  ///< in the order of arrival
+  std::vector<CrankTruth> truth;    ///< one per crank reading; at which instant: see who made it
+  std::vector<double> taken;        ///< instants of the crank readings [s since start]
   std::vector<JointReading> joints;
   std::vector<BlowTruth> blows;
 };
 
-/// Runs the machine and reads its sensors. Same settings, same readings, however the time is cut into pieces.
+/// Runs the machine and reads its sensors. Same settings, same readings, however the time is cut into pieces. The truth
+/// is that of the instants at which readings are taken.
 class SessionStream {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
@@ -44,18 +46,32 @@ class SessionStream {
   const WorkingMachine& machine() const noexcept { return machine_; }
 
  private:
+  /// A sample that waits for the last one of its burst.
+  struct Taken {
+    CrankReading reading;
+    CrankTruth truth;
+    bool twice{};
+  };
+
   void planSample() noexcept;
+  void take(Session& session);
   CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) const noexcept;
   JointReading readJoints(double time) const noexcept;
   std::int64_t stampAt(double time) const noexcept;
 
   WorkingMachine machine_;
   NormalNoise noise_;
+  NormalNoise message_draws_;
+  std::vector<Taken> burst_;
   std::int64_t samples_{}, joint_samples_{};
   double next_sample_{}, stamp_error_{}, speed_error_{};
 };
 
-/// The whole session of settings.duration.
+/// The machine's state at any instants [s since start, >= 0], in their order.
+std::vector<CrankTruth> truthAt(const MachineSettings& settings, const std::vector<double>& times);
+
+/// The whole session of settings.duration. The truth is that of the header stamps less the sensor's latency: the
+/// instants that a user of the stamps believes in.
 Session recordSession(const MachineSettings& settings);
 
 }  // namespace hammer_loads::simulation

@@ -10,6 +10,7 @@ namespace hammer_loads::simulation {
 namespace {
 
 constexpr double kPi = 3.141592653589793238;
+constexpr std::uint64_t kBlowSeed = 0x9e3779b97f4a7c15;  // draws of the blows leave the sensors' noise as it is
 
 Mechanism checked(const HammerParameters& parameters) {
   const Checked<Mechanism> made = Mechanism::make(parameters);
@@ -37,7 +38,20 @@ double parabolaPeak(const double* t, const double* f, double t2, double f2) noex
 }  // namespace
 
 WorkingMachine::WorkingMachine(const MachineSettings& settings)
-    : settings_(settings), links_(checked(settings.hammer), settings.level) {
+    : settings_(settings),
+      links_(checked(settings.hammer), settings.level),
+      crank_side_inertia_(settings.drive.inertia),
+      draws_(settings.seed ^ kBlowSeed) {
+  const DriveSettings& d = settings_.drive;
+  if (flexible()) {
+    motor_inertia_ = d.motor_share * d.inertia;
+    crank_side_inertia_ = d.inertia - motor_inertia_;
+    const double rate = 2.0 * kPi * d.coupling_frequency;
+    const double both = motor_inertia_ * crank_side_inertia_ / d.inertia;
+    stiffness_ = rate * rate * both;
+    damping_ = 2.0 * d.coupling_damping * rate * both;
+  }
+  drawBlow();
   now_.before_blow = settings_.start_angle > kPi;
   now_.y[kOffset] = now_.before_blow ? settings_.start_angle - 2.0 * kPi : settings_.start_angle;
   rate_ = rate(now_);
@@ -73,36 +87,50 @@ double WorkingMachine::valveFlow(double time, double pressure) const noexcept {
   return (d.leakage + bypass) * pressure + d.relief_slope * std::max(0.0, pressure - d.relief_pressure);
 }
 
+/// Motor less friction.
 double WorkingMachine::netTorque(const State& state) const noexcept {
   const DriveSettings& d = settings_.drive;
-  const double w = state.y[kSpeed];
+  const double w = flexible() ? state.y[kMotorSpeed] : state.y[kSpeed];
   return d.motor_displacement * state.y[kPressure] - d.coulomb_friction * std::tanh(w / d.friction_speed) -
          d.viscous_friction * w;
+}
+
+/// What reaches the crank.
+double WorkingMachine::shaftTorque(const State& state) const noexcept {
+  if (!flexible()) return netTorque(state);
+  return stiffness_ * state.y[kTwist] + damping_ * (state.y[kMotorSpeed] - state.y[kSpeed]);
 }
 
 WorkingMachine::Vector WorkingMachine::rate(const State& state) const noexcept {
   const DriveSettings& d = settings_.drive;
   const double w = state.y[kSpeed], p = state.y[kPressure];
-  const LinkBodies links = links_.at({state.y[kOffset], state.before_blow});
+  const LinkBodies links = links_.at(state.angle());
   const Gravity gravity = gravityAt(state.time);
   const ShaftView shaft = links_.shaft(links, gravity);
-  const double torque = netTorque(state);
+  const double motor_torque = netTorque(state), torque = shaftTorque(state);
+  const double motor_speed = flexible() ? state.y[kMotorSpeed] : w;
   double acceleration =
-      (torque + shaft.weight_torque - 0.5 * shaft.inertia_slope * w * w) / (d.inertia + shaft.inertia);
+      (torque + shaft.weight_torque - 0.5 * shaft.inertia_slope * w * w) / (crank_side_inertia_ + shaft.inertia);
   if (state.resting) acceleration = 0.0;
   const Load load = links_.load(links, w, acceleration, gravity);
   const double flow = supplyFlow(state.time), valves = valveFlow(state.time, p);
   Vector r{};
   r[kOffset] = w;
   r[kSpeed] = acceleration;
-  r[kPressure] = (flow - d.motor_displacement * w - valves) / d.compliance;
+  r[kPressure] = (flow - d.motor_displacement * motor_speed - valves) / d.compliance;
   r[kImpulseX] = load.force_x;
   r[kImpulseZ] = load.force_z;
-  r[kMotor] = d.motor_displacement * p * w;
-  r[kFriction] = r[kMotor] - torque * w;
+  r[kMotor] = d.motor_displacement * p * motor_speed;
+  r[kFriction] = r[kMotor] - motor_torque * motor_speed;
   r[kWeight] = shaft.weight_torque * w;
   r[kSupply] = flow * p;
   r[kValves] = valves * p;
+  if (flexible()) {
+    const double twisting = motor_speed - w;
+    r[kTwist] = twisting;
+    r[kMotorSpeed] = (motor_torque - torque) / motor_inertia_;
+    r[kFriction] += damping_ * twisting * twisting;
+  }
   return r;
 }
 
@@ -122,14 +150,21 @@ WorkingMachine::State WorkingMachine::step(double dt) const noexcept {
   return moved(dt, mean);
 }
 
-/// Part of the step dt, which passes the blow, until the offset is zero: bisection with false position (Illinois).
-double WorkingMachine::timeToBlow(double dt) const noexcept {
-  double low = 0.0, high = dt, f_low = now_.y[kOffset], f_high = step(dt).y[kOffset];
+/// Where the step in hand must end: at the dead centre, or at a tool before it.
+double WorkingMachine::eventOffset() const noexcept {
+  const double early = -settings_.blow.tool_early;
+  const bool awaited = now_.before_blow && !now_.mirrored && !now_.met && !next_blow_.blank;
+  return awaited && early < 0.0 && now_.y[kOffset] < early ? early : 0.0;
+}
+
+/// Part of the step dt, which passes `offset`, until it is there: bisection with false position (Illinois).
+double WorkingMachine::timeTo(double offset, double dt) const noexcept {
+  double low = 0.0, high = dt, f_low = now_.y[kOffset] - offset, f_high = step(dt).y[kOffset] - offset;
   if (f_low == 0.0) return 0.0;
   double t = dt;
   for (int i = 0; i < 60 && high - low > 1e-16; ++i) {
     t = low - f_low * (high - low) / (f_high - f_low);
-    const double f = step(t).y[kOffset];
+    const double f = step(t).y[kOffset] - offset;
     if (std::abs(f) < 1e-15) break;
     if (std::signbit(f) == std::signbit(f_high)) {
       high = t;
@@ -146,23 +181,27 @@ double WorkingMachine::timeToBlow(double dt) const noexcept {
 
 void WorkingMachine::advanceTo(double time) noexcept {
   while (now_.time < time) {
-    if (now_.resting &&
-        netTorque(now_) + links_.shaft(links_.at({0.0, false}), gravityAt(now_.time)).weight_torque > 0.0) {
+    // Once per instant: a torque that falls through zero lets go of the crank and stops it at once.
+    if (now_.resting && released_ < now_.time &&
+        shaftTorque(now_) + links_.shaft(links_.at({0.0, false}), gravityAt(now_.time)).weight_torque > 0.0) {
       now_.resting = false;
+      released_ = now_.time;
       rate_ = rate(now_);
     }
     const double left = time - now_.time;
     double dt = std::min(settings_.step, left);
     State next = step(dt);
-    const bool meets = now_.before_blow ? next.y[kOffset] > 0.0 : next.y[kOffset] < 0.0;
+    const double event = eventOffset();
+    const bool meets = now_.before_blow ? next.y[kOffset] > event : next.y[kOffset] < 0.0;
     if (meets) {
-      dt = timeToBlow(dt);
+      dt = timeTo(event, dt);
       next = step(dt);
-      next.y[kOffset] = 0.0;
+      next.y[kOffset] = event;
     }
     if (dt == left) next.time = time;
     accept(next);
-    if (meets) meetTool();
+    if (meets && event < 0.0) meetEarlyTool();
+    if (meets && event == 0.0) passDeadCentre();
   }
 }
 
@@ -184,6 +223,7 @@ void WorkingMachine::accept(const State& next) {
   } else if (now_.before_blow && now_.y[kOffset] < -kPi) {
     now_.y[kOffset] += 2.0 * kPi;
     now_.before_blow = false;
+    now_.met = false;
   }
 }
 
@@ -212,27 +252,44 @@ void WorkingMachine::beginTurn(bool whole) noexcept {
   current_.points = 1;
 }
 
-/// now_ is at offset 0: forward it is a blow, backward a stop.
-void WorkingMachine::meetTool() {
-  if (now_.before_blow) {
-    BlowTruth blow;
-    blow.time = now_.time;
-    blow.crank_speed = now_.y[kSpeed];
-    blow.strike = links_.strike(blow.crank_speed);
-    blow.turn_period = now_.time - current_.start_time;
-    blow.turn_peak_force_z = current_.peak;
-    blow.turn_impulse_x = now_.y[kImpulseX] - current_.impulse_x;
-    blow.turn_impulse_z = now_.y[kImpulseZ] - current_.impulse_z;
-    blow.last_lobe_impulse_z = now_.y[kImpulseZ] - current_.lobe_impulse_z;
-    blow.whole_turn = current_.whole;
-    blows_.push_back(blow);
-    blow_energy_ += blow.strike.energy;
+void WorkingMachine::drawBlow() noexcept {
+  const BlowSettings& b = settings_.blow;
+  const double part = draws_.uniform(), contact = draws_.uniform();
+  next_blow_ = {b.restitution_low + part * (b.restitution_high - b.restitution_low), contact < b.blank_share};
+}
+
+/// The rocker takes the tool along; what is left of its speed it gives at the dead centre.
+void WorkingMachine::meetEarlyTool() {
+  early_crank_speed_ = now_.y[kSpeed];
+  early_ = links_.strikeTool(now_.angle(), early_crank_speed_, settings_.blow.early_tool_mass, crank_side_inertia_);
+  early_time_ = now_.time;
+  blow_energy_ += early_->energy;
+  now_.met = true;
+  now_.y[kSpeed] = early_->crank_speed_after;
+  rate_ = rate(now_);
+}
+
+/// now_ is at offset 0: forward it is a blow or, without a tool, the way to the mirrored branch or back from it;
+/// backward a stop on the tool unless the rocker is beyond it.
+void WorkingMachine::passDeadCentre() {
+  const bool forward = now_.before_blow;
+  const bool strikes = forward && !now_.mirrored && !next_blow_.blank;
+  if (strikes) {
+    blow();
     ++turn_;
-    now_.before_blow = false;
+    now_.before_blow = now_.met = false;
+    drawBlow();
     rate_ = rate(now_);
     beginTurn(true);
+  } else if (forward || now_.mirrored) {
+    turn_ += forward ? 1 : -1;
+    if (forward && !now_.mirrored) drawBlow();
+    now_.before_blow = !forward;
+    now_.mirrored = forward != now_.mirrored;
+    rate_ = rate(now_);
+    beginTurn(false);
   } else {
-    const double total = settings_.drive.inertia + links_.shaft(links_.at({0.0, false}), {}).inertia;
+    const double total = crank_side_inertia_ + links_.shaft(links_.at({0.0, false}), {}).inertia;
     stop_energy_ += 0.5 * total * now_.y[kSpeed] * now_.y[kSpeed];
     now_.y[kSpeed] = 0.0;
     now_.resting = true;
@@ -241,28 +298,73 @@ void WorkingMachine::meetTool() {
   }
 }
 
+/// Ends the turn; the crank's speed is that after the blow from here on.
+void WorkingMachine::blow() {
+  const BlowSettings& b = settings_.blow;
+  const double speed = now_.y[kSpeed];
+  Strike strike =
+      b.restitution_drawn ? links_.strike(speed, next_blow_.restitution, crank_side_inertia_) : links_.strike(speed);
+  if (b.crank_loss > 0.0) {
+    const double total = crank_side_inertia_ + links_.shaft(links_.at({0.0, false}), {}).inertia;
+    const double w = strike.crank_speed_after, kept = (1.0 - b.crank_loss) * w;
+    strike.linkage_loss += 0.5 * total * (w * w - kept * kept);
+    strike.crank_speed_after = kept;
+  }
+  now_.y[kSpeed] = strike.crank_speed_after;
+  blow_energy_ += strike.energy;
+  loss_energy_ += strike.linkage_loss;
+  BlowTruth truth;
+  truth.time = early_ ? early_time_ : now_.time;
+  truth.crank_speed = early_ ? early_crank_speed_ : speed;
+  truth.strike = early_.value_or(strike);
+  if (early_) {
+    truth.strike.energy += strike.energy;  // its second meeting with the tool
+    truth.strike.crank_speed_after = now_.y[kSpeed];
+    early_.reset();
+  }
+  truth.turn_period = now_.time - current_.start_time;
+  truth.turn_peak_force_z = current_.peak;
+  truth.turn_impulse_x = now_.y[kImpulseX] - current_.impulse_x;
+  truth.turn_impulse_z = now_.y[kImpulseZ] - current_.impulse_z;
+  truth.last_lobe_impulse_z = now_.y[kImpulseZ] - current_.lobe_impulse_z;
+  truth.whole_turn = current_.whole;
+  blows_.push_back(truth);
+}
+
 CrankTruth WorkingMachine::truth() const noexcept {
   CrankTruth truth;
   truth.time = now_.time;
   truth.turn = turn_;
   truth.angle = now_.before_blow ? 2.0 * kPi + now_.y[kOffset] : now_.y[kOffset];
   truth.speed = now_.y[kSpeed];
+  truth.twist = now_.y[kTwist];
+  truth.motor_speed = flexible() ? now_.y[kMotorSpeed] : truth.speed;
+  truth.mirrored = now_.mirrored;
   truth.acceleration = rate_[kSpeed];
   truth.net_torque = netTorque(now_);
   truth.pressure = now_.y[kPressure];
   truth.hull_pitch = hullPitch(now_.time);
-  truth.load = links_.load(links_.at({now_.y[kOffset], now_.before_blow}), truth.speed, truth.acceleration,
-                           gravityAt(now_.time));
+  truth.load = links_.load(links_.at(now_.angle()), truth.speed, truth.acceleration, gravityAt(now_.time));
   return truth;
 }
 
 EnergyAccount WorkingMachine::energy() const noexcept {
-  const double inertia =
-      settings_.drive.inertia + links_.shaft(links_.at({now_.y[kOffset], now_.before_blow}), {}).inertia;
+  const double inertia = crank_side_inertia_ + links_.shaft(links_.at(now_.angle()), {}).inertia;
   const double w = now_.y[kSpeed], p = now_.y[kPressure];
-  return {now_.y[kMotor],  now_.y[kFriction],     now_.y[kWeight],
-          now_.y[kSupply], now_.y[kValves],       blow_energy_,
-          stop_energy_,    0.5 * inertia * w * w, 0.5 * settings_.drive.compliance * p * p};
+  const double motor = motor_inertia_ * now_.y[kMotorSpeed] * now_.y[kMotorSpeed];
+  const double twist = stiffness_ * now_.y[kTwist] * now_.y[kTwist];
+  EnergyAccount e;
+  e.motor = now_.y[kMotor];
+  e.friction = now_.y[kFriction];
+  e.weight = now_.y[kWeight];
+  e.supply = now_.y[kSupply];
+  e.valves = now_.y[kValves];
+  e.blows = blow_energy_;
+  e.losses = loss_energy_;
+  e.stops = stop_energy_;
+  e.kinetic = 0.5 * inertia * w * w + 0.5 * motor + 0.5 * twist;
+  e.stored = 0.5 * settings_.drive.compliance * p * p;
+  return e;
 }
 
 std::vector<BlowTruth> WorkingMachine::takeBlows() { return std::exchange(blows_, {}); }

@@ -3,19 +3,24 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/simulation/moving_links.h"
+#include "hammer_loads/simulation/normal_noise.h"
 
 namespace hammer_loads::simulation {
 
 /// Machine at one instant. Load BY the links ON the hull about D, axes of hammer_hull, weight included.
 struct CrankTruth {
   double time{};          ///< since start [s]
-  std::int64_t turn{};    ///< blows passed
+  std::int64_t turn{};    ///< dead centres passed
   double angle{};         ///< in [0, 2 pi) [rad]
   double speed{};         ///< [rad/s]
+  double twist{};         ///< angle of the motor, where the encoder sits, less the crank's [rad]
+  double motor_speed{};   ///< [rad/s]
+  bool mirrored{};        ///< the rocker passed the dead centre without a blow and has not come back
   double acceleration{};  ///< [rad/s2]
   double net_torque{};    ///< motor less friction, on the shaft [N m]
   double pressure{};      ///< at the motor [Pa]
@@ -37,7 +42,7 @@ struct BlowTruth {
 };
 
 /// Where the energy went since the start [J]. Balances are tested:
-/// kinetic + blows + stops = motor - friction + weight;  stored = supply - motor - valves.
+/// kinetic + blows + losses + stops = motor - friction + weight;  stored = supply - motor - valves.
 struct EnergyAccount {
   double motor{};     ///< work of the pressure on the shaft
   double friction{};  ///< lost in it, >= 0
@@ -45,15 +50,17 @@ struct EnergyAccount {
   double supply{};    ///< hydraulic work of the pump flow
   double valves{};    ///< lost in leakage, relief and bypass
   double blows{};     ///< given to the tool
+  double losses{};    ///< in linkage and crank at the blows
   double stops{};     ///< lost when the crank, turning back, comes to rest on the tool
-  double kinetic{};   ///< of links and drive now
+  double kinetic{};   ///< of links and drive now, with what twists the coupling
   double stored{};    ///< in the compliance now
 };
 
 /// State crank angle, speed, pressure: w' = (tau + weight - J'/2 w^2)/(Jc + J), p' = (flow - D w - losses)/C.
-/// The blow is located within a step to rounding; crank speed is continuous there. Turning back onto the tool would
-/// need a restitution above 1 to go on: the crank stops there until the torque is positive again.
-/// Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links and shaft.
+/// The blow is located within a step to rounding; crank speed is continuous there unless settings.blow says otherwise.
+/// Turning back onto the tool would need a restitution above 1 to go on: the crank stops there until the torque is
+/// positive again. Without a tool the rocker goes through onto the mirrored branch and comes back a turn later.
+/// Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links.
 /// Runge-Kutta of order 4, steps of at most settings.step.
 class WorkingMachine {
  public:
@@ -71,24 +78,52 @@ class WorkingMachine {
   const MachineSettings& settings() const noexcept { return settings_; }
 
  private:
-  enum Index { kOffset, kSpeed, kPressure, kImpulseX, kImpulseZ, kMotor, kFriction, kWeight, kSupply, kValves, kSize };
+  enum Index {
+    kOffset,
+    kSpeed,
+    kPressure,
+    kImpulseX,
+    kImpulseZ,
+    kMotor,
+    kFriction,
+    kWeight,
+    kSupply,
+    kValves,
+    kTwist,       // of the coupling
+    kMotorSpeed,  // stays 0 with a rigid coupling
+    kSize
+  };
   using Vector = std::array<double, kSize>;
   struct State {
     double time{};
     bool before_blow{};
-    bool resting{};  ///< on the tool, turned back
+    bool resting{};   ///< on the tool, turned back
+    bool mirrored{};  ///< rocker beyond the tool's place
+    bool met{};       ///< the early tool, in this turn
     Vector y{};
+    TurnAngle angle() const noexcept { return {y[kOffset], before_blow, mirrored}; }
+  };
+  /// How the next blow will be.
+  struct NextBlow {
+    double restitution{};
+    bool blank{};
   };
 
   double supplyFlow(double time) const noexcept;
   double valveFlow(double time, double pressure) const noexcept;
+  bool flexible() const noexcept { return settings_.drive.coupling_frequency > 0.0; }
   double netTorque(const State& state) const noexcept;
+  double shaftTorque(const State& state) const noexcept;
+  double eventOffset() const noexcept;
   Gravity gravityAt(double time) const noexcept;
   Vector rate(const State& state) const noexcept;
   State step(double dt) const noexcept;
-  double timeToBlow(double dt) const noexcept;
+  double timeTo(double offset, double dt) const noexcept;
   void accept(const State& next);
-  void meetTool();
+  void meetEarlyTool();
+  void passDeadCentre();
+  void blow();
+  void drawBlow() noexcept;
   void followForce(const State& next, double force_z) noexcept;
   void beginTurn(bool whole) noexcept;
 
@@ -97,8 +132,14 @@ class WorkingMachine {
   State now_;
   Vector rate_{};  ///< at now_
   std::int64_t turn_{};
-  double blow_energy_{}, stop_energy_{};
+  double blow_energy_{}, loss_energy_{}, stop_energy_{};
+  double released_{-1.0};  ///< from the tool, last time [s]
   std::vector<BlowTruth> blows_;
+  double crank_side_inertia_, motor_inertia_{}, stiffness_{}, damping_{};  ///< about the coupling
+  NormalNoise draws_;
+  NextBlow next_blow_;
+  std::optional<Strike> early_;  ///< of this turn, at early_time_
+  double early_time_{}, early_crank_speed_{};
 
   struct Turn {
     double start_time{}, impulse_x{}, impulse_z{};  ///< impulses at its beginning

@@ -1,0 +1,385 @@
+// The simulated machine's flaws: each does what its key says, and nothing else changes.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586232;
+
+MachineSettings shortRun() {
+  MachineSettings s = workingMo100();
+  s.duration = 8.0;
+  s.drive.start_time = 0.7;
+  s.drive.stop_time = 20.0;
+  return s;
+}
+
+MachineSettings heavyLinks() {
+  MachineSettings s = shortRun();
+  s.level = Level::kLinkage;
+  s.hammer.rod_mass = 9.0;
+  s.hammer.rod_com_along = 0.07;
+  s.hammer.rod_com_across = -0.004;
+  s.hammer.rod_inertia_about_com = 0.03;
+  s.hammer.crank_mass = 6.0;
+  s.hammer.crank_com_along = 0.02;
+  return s;
+}
+
+/// Within the integration's error, 1e-10 of the energy that went through.
+void expectBalanced(const EnergyAccount& e) {
+  EXPECT_NEAR(e.kinetic + e.blows + e.losses + e.stops, e.motor - e.friction + e.weight, 1e-6 + 1e-10 * e.motor);
+  EXPECT_NEAR(e.stored, e.supply - e.motor - e.valves, 1e-6 + 1e-10 * e.motor);
+}
+
+double since(const MachineSettings& s, const CrankReading& reading) {
+  return 1e-9 * static_cast<double>(reading.stamp - s.start_stamp);
+}
+
+// --- The blow ---------------------------------------------------------------------------------------------------
+
+TEST(Blows, EveryWayOfMeetingTheToolBalancesItsEnergy) {
+  for (int way = 0; way < 6; ++way) {
+    for (MachineSettings s : {shortRun(), heavyLinks()}) {
+      if (way == 0 || way == 5) s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
+      if (way == 1) s.blow.crank_loss = 0.2;
+      if (way == 2) s.blow.tool_early = 0.3 * kTwoPi / 360.0;
+      if (way == 3) s.blow.blank_share = 0.2;
+      if (way == 4) s.drive.coupling_frequency = 50.0;
+      if (way == 5) s.blow.crank_loss = 0.1, s.blow.blank_share = 0.1, s.drive.coupling_frequency = 80.0;
+      WorkingMachine machine(s);
+      machine.advanceTo(s.duration);
+      expectBalanced(machine.energy());
+      double energy = 0.0;
+      const std::vector<BlowTruth> blows = machine.takeBlows();
+      for (const BlowTruth& blow : blows) energy += blow.strike.energy;
+      EXPECT_NEAR(machine.energy().blows, energy, 1e-6) << way;
+      EXPECT_GT(blows.size(), 15U) << way;
+    }
+  }
+}
+
+/// Rocker and rod as particles on massless bars: positions and velocities from pins, momenta by sums, no mass matrix.
+TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
+  const MachineSettings s = heavyLinks();
+  const HammerParameters& p = s.hammer;
+  const MovingLinks links(*Mechanism::make(p).value, s.level);
+  const double w = 14.0, restitution = 0.22, drive = 0.6;
+  const Strike strike = links.strike(w, restitution, drive);
+  EXPECT_NEAR(strike.rocker_speed_after, -restitution * strike.rocker_speed_before, 1e-12);
+
+  // Transverse velocities along the line; the rod as two masses with its inertia, its mass off the line moves along.
+  struct Speeds {
+    double b, c;
+  };
+  const double l1 = p.lengths.crank, l2 = Mechanism::make(p).value->linkage().lengths().rod, l3 = p.lengths.rocker;
+  const double about = p.rod_inertia_about_com + p.rod_mass * p.rod_com_across * p.rod_com_across;
+  const double arm = std::sqrt(about / p.rod_mass);  // two half masses at com +- arm
+  const double crank = drive + p.crank_inertia_about_com + p.crank_mass * p.crank_com_along * p.crank_com_along;
+  // Moment on crank (about A) and on rocker (about D) that bring it to these speeds from rest.
+  const auto moments = [&](Speeds v) {
+    double at_b = 0.0, at_c = 0.0;
+    for (const double place : {p.rod_com_along - arm, p.rod_com_along + arm}) {
+      const double impulse = 0.5 * p.rod_mass * (v.b + (v.c - v.b) * place / l2);
+      at_c += impulse * place / l2;
+      at_b += impulse * (1.0 - place / l2);
+    }
+    return Eigen::Vector2d{crank * v.b / l1 + l1 * at_b, p.rocker_inertia_about_pivot * v.c / l3 + l3 * at_c};
+  };
+  // Speeds of the pins from moments, by the columns that unit speeds need.
+  Eigen::Matrix2d columns;
+  columns << moments({1.0, 0.0}), moments({0.0, 1.0});
+  const auto speeds = [&](const Eigen::Vector2d& m) { return Eigen::Vector2d(columns.inverse() * m); };
+
+  const Eigen::Vector2d before = moments({l1 * w, l3 * strike.rocker_speed_before});
+  const Eigen::Vector2d free = speeds(before + Eigen::Vector2d{0.0, strike.tool_impulse * p.striking_distance});
+  EXPECT_NEAR(free[1] / l3, strike.rocker_speed_after, 1e-9 * w);
+  // The loop closes: some moments (-u, 1) of the pins' forces, which do no work, give rocker = u crank.
+  const double u = links.rockerAngle({0.0, false}).first;
+  const Eigen::Vector2d pull = speeds({-u, 1.0});
+  const double size = (u * free[0] / l1 - free[1] / l3) / (pull[1] / l3 - u * pull[0] / l1);
+  EXPECT_NEAR((free[0] + size * pull[0]) / l1, strike.crank_speed_after, 1e-9 * w);
+
+  const auto energy = [&](const Eigen::Vector2d& m) {
+    const Eigen::Vector2d v = speeds(m);
+    return 0.5 * (m[0] * v[0] / l1 + m[1] * v[1] / l3);
+  };
+  EXPECT_NEAR(strike.energy, energy(before) - energy(moments({free[0], free[1]})), 1e-9 * strike.energy);
+  EXPECT_GT(strike.linkage_loss, 0.0);
+}
+
+TEST(Blows, RestitutionThatKeepsTheSpeedIsThePlainBlow) {
+  const MachineSettings s = shortRun();
+  const MovingLinks links(*Mechanism::make(s.hammer).value, s.level);
+  const Strike plain = links.strike(13.6);
+  const Strike drawn = links.strike(13.6, -plain.rocker_speed_after / plain.rocker_speed_before, 0.6);
+  EXPECT_NEAR(drawn.crank_speed_after, 13.6, 1e-13);
+  EXPECT_NEAR(drawn.energy, plain.energy, 1e-9);
+  EXPECT_NEAR(drawn.tool_impulse, plain.tool_impulse, 1e-9);
+  EXPECT_NEAR(drawn.linkage_loss, 0.0, 1e-9);
+}
+
+TEST(Blows, RestitutionIsDrawnAnewBetweenItsBounds) {
+  MachineSettings s = shortRun();
+  s.duration = 20.0;
+  s.blow.restitution_drawn = true;
+  s.blow.restitution_high = 0.3;
+  const std::vector<BlowTruth> blows = recordSession(s).blows;
+  double sum = 0.0, least = 1.0, most = 0.0;
+  for (const BlowTruth& b : blows) {
+    const double r = -b.strike.rocker_speed_after / b.strike.rocker_speed_before;
+    sum += r;
+    least = std::min(least, r);
+    most = std::max(most, r);
+  }
+  const double n = static_cast<double>(blows.size());
+  EXPECT_NEAR(sum / n, 0.15, 4.0 * 0.3 / std::sqrt(12.0 * n));
+  EXPECT_GE(least, 0.0);
+  EXPECT_LE(most, 0.3);
+  EXPECT_GT(most - least, 0.25);
+}
+
+TEST(Blows, SpeedAfterIsWhatTheCrankGoesOnWith) {
+  for (int way = 0; way < 2; ++way) {
+    MachineSettings s = shortRun();
+    if (way == 0) s.blow.crank_loss = 0.35;
+    if (way == 1) s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
+    const std::vector<BlowTruth> blows = recordSession(s).blows;
+    std::vector<double> times;
+    for (const BlowTruth& b : blows) times.insert(times.end(), {b.time - 1e-6, b.time + 1e-6});
+    const std::vector<CrankTruth> beside = truthAt(s, times);
+    for (std::size_t i = 0; i < blows.size(); ++i) {
+      EXPECT_NEAR(beside[2 * i].speed, blows[i].crank_speed, 1e-3);
+      EXPECT_NEAR(beside[2 * i + 1].speed, blows[i].strike.crank_speed_after, 1e-3);
+      if (way == 0) {
+        EXPECT_NEAR(beside[2 * i + 1].speed / beside[2 * i].speed, 0.65, 1e-4);
+      }
+    }
+  }
+}
+
+TEST(Blows, EarlyToolSlowsTheCrankBeforeTheDeadCentre) {
+  MachineSettings s = shortRun();
+  s.blow.tool_early = 0.3 * kTwoPi / 360.0;
+  const std::vector<BlowTruth> blows = recordSession(s).blows;
+  std::vector<double> times;
+  for (const BlowTruth& b : blows) times.insert(times.end(), {b.time - 1e-6, b.time + 1e-6});
+  const std::vector<CrankTruth> beside = truthAt(s, times);
+  for (std::size_t i = 3; i < blows.size(); ++i) {
+    EXPECT_NEAR(beside[2 * i].angle, kTwoPi - s.blow.tool_early, 1e-4);
+    // Momentum about the crank's shaft of drive, rocker and tool, u = -3.88 (model.md 1).
+    const double rocker = 0.737 * 3.88 * 3.88, tool = 50.0 * std::pow(3.88 * s.hammer.striking_distance, 2);
+    EXPECT_NEAR(beside[2 * i + 1].speed / beside[2 * i].speed, (0.6 + rocker) / (0.6 + rocker + tool), 2e-3);
+  }
+}
+
+/// Without a tool and friction nothing tells one branch from the other: the energy stays, turn after turn.
+TEST(Blows, BlankTurnGoesThroughTheMirroredBranchSmoothly) {
+  MachineSettings s = shortRun();
+  s.blow.blank_share = 1.0;
+  s.drive.coulomb_friction = s.drive.viscous_friction = s.drive.leakage = 0.0;
+  s.gravity = 0.0;
+  WorkingMachine machine(s);
+  double psi_before = 0.0;
+  const MovingLinks links(*Mechanism::make(s.hammer).value, s.level);
+  int mirrored = 0, upright = 0;
+  for (double t = 0.0; t < 4.0; t += 2e-4) {
+    machine.advanceTo(t);
+    const CrankTruth truth = machine.truth();
+    const bool before = truth.angle > 0.5 * kTwoPi;
+    const Jet psi = links.rockerAngle({before ? truth.angle - kTwoPi : truth.angle, before, truth.mirrored});
+    if (t > 0.0) {
+      ASSERT_NEAR(psi.value, psi_before, 2e-4 * std::abs(psi.first * truth.speed) + 2e-3) << t;
+    }
+    psi_before = psi.value;
+    (truth.mirrored ? mirrored : upright) += 1;
+    ASSERT_TRUE(truth.mirrored ? psi.value <= 1e-9 : psi.value >= -1e-9);
+  }
+  EXPECT_GT(mirrored, 4000);
+  EXPECT_GT(upright, 4000);
+  EXPECT_TRUE(machine.takeBlows().empty());
+  expectBalanced(machine.energy());
+}
+
+TEST(Blows, BlankShareIsThatOfTheBlows) {
+  MachineSettings s = shortRun();
+  s.duration = 60.0;
+  s.drive.stop_time = 60.0;
+  s.blow.blank_share = 0.1;
+  const Session session = recordSession(s);
+  const double passed = static_cast<double>(session.truth.back().turn);
+  const double blows = static_cast<double>(session.blows.size());
+  const double blank = 0.5 * (passed - blows);  // each is two dead centres
+  EXPECT_NEAR(blank / (blank + blows), 0.1, 4.0 * std::sqrt(0.09 / (blank + blows)));
+}
+
+TEST(Coupling, MotorSwingsAgainstTheCrankAtItsFrequency) {
+  MachineSettings s = shortRun();
+  s.drive.coupling_frequency = 60.0;
+  s.drive.coupling_damping = 0.0;
+  s.drive.motor_share = 0.3;
+  // A rocker of next to no inertia leaves two discs on a spring.
+  s.hammer.rocker_mass = 1e-3;
+  s.hammer.rocker_inertia_about_pivot = 1.2e-5;
+  s.gravity = 0.0;
+  s.drive.coulomb_friction = s.drive.ripple = 0.0;
+  s.drive.start_time = 0.1;
+  s.drive.start_ramp = 1e-3;
+  WorkingMachine machine(s);
+  std::vector<double> rising;
+  double last = 0.0, last_slope = 0.0;
+  for (int i = 2000; i < 6000; ++i) {  // least twisting speeds: its slow part falls out of the slope
+    machine.advanceTo(1e-4 * i);
+    const double twisting = machine.truth().motor_speed - machine.truth().speed, slope = twisting - last;
+    if (i > 2001 && last_slope < 0.0 && slope >= 0.0) rising.push_back(1e-4 * (i - slope / (slope - last_slope)));
+    last = twisting;
+    last_slope = slope;
+  }
+  ASSERT_GT(rising.size(), 10U);
+  EXPECT_NEAR(static_cast<double>(rising.size() - 1) / (rising.back() - rising.front()), 60.0, 0.5);
+}
+
+// --- The sensor -------------------------------------------------------------------------------------------------
+
+TEST(Stamps, FlawsOfTheMessagesLeaveMachineAndReadingsAsTheyAre) {
+  MachineSettings flawed = shortRun();
+  flawed.crank.stamp_noise = 3e-4;
+  flawed.crank.stamps_late = true;
+  flawed.crank.stamp_step = 1e-3;
+  flawed.crank.latency = 2e-3;
+  const Session plain = recordSession(shortRun()), other = recordSession(flawed);
+  ASSERT_EQ(plain.crank.size(), other.crank.size());
+  for (std::size_t i = 0; i < plain.crank.size(); ++i) {
+    ASSERT_EQ(plain.crank[i].angle, other.crank[i].angle);
+    ASSERT_EQ(plain.crank[i].speed, other.crank[i].speed);
+    ASSERT_EQ(plain.taken[i], other.taken[i]);
+  }
+}
+
+TEST(Stamps, NoiseHasItsDeviationOrOnlyDelays) {
+  for (const bool late : {false, true}) {
+    MachineSettings s = shortRun();
+    s.crank.stamp_noise = 2e-4;
+    s.crank.stamps_late = late;
+    const Session session = recordSession(s);
+    double sum = 0.0, squares = 0.0, least = 1.0;
+    for (std::size_t i = 0; i < session.crank.size(); ++i) {
+      const double error = since(s, session.crank[i]) - session.taken[i];
+      sum += error, squares += error * error, least = std::min(least, error);
+    }
+    const double n = static_cast<double>(session.crank.size());
+    EXPECT_NEAR(std::sqrt(squares / n), 2e-4, 2e-4 * 4.0 / std::sqrt(2.0 * n));
+    EXPECT_NEAR(sum / n, late ? 2e-4 * std::sqrt(2.0 / 3.14159265) : 0.0, 4.0 * 2e-4 / std::sqrt(n));
+    if (late) {
+      EXPECT_GE(least, -1e-9);
+    }
+  }
+}
+
+TEST(Stamps, WholeMillisecondsRepeat) {
+  MachineSettings s = shortRun();
+  s.crank.stamp_step = 1e-3;
+  const Session session = recordSession(s);
+  std::size_t repeated = 0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    ASSERT_EQ(session.crank[i].stamp % 1000000, 0);
+    const double late = session.taken[i] - since(s, session.crank[i]);
+    ASSERT_TRUE(late > -1e-9 && late < 1e-3 + 1e-9);
+    repeated += i > 0 && session.crank[i].stamp == session.crank[i - 1].stamp;
+  }
+  EXPECT_GT(repeated, 100U);
+}
+
+TEST(Stamps, BurstsCarryTheLastStamp) {
+  MachineSettings s = shortRun();
+  s.crank.burst = 10;
+  const Session session = recordSession(s);
+  ASSERT_GT(session.crank.size(), 7900U);
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const std::size_t last = i / 10 * 10 + 9;
+    ASSERT_LT(last, session.crank.size());
+    ASSERT_NEAR(since(s, session.crank[i]), session.taken[last], 1e-9);
+  }
+}
+
+TEST(Stamps, DuplicatesComeTwice) {
+  MachineSettings s = shortRun();
+  s.crank.duplicate_share = 0.05;
+  const Session session = recordSession(s);
+  std::set<std::int64_t> stamps;
+  for (const CrankReading& reading : session.crank) stamps.insert(reading.stamp);
+  const double share = static_cast<double>(session.crank.size() - stamps.size()) / static_cast<double>(stamps.size());
+  EXPECT_NEAR(share, 0.05, 4.0 * std::sqrt(0.05 / 8000.0));
+  EXPECT_EQ(session.crank.size(), session.truth.size());
+}
+
+/// The truth of a header stamp is that of a reading really taken then.
+TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
+  MachineSettings s = shortRun();
+  s.crank.stamp_noise = 3e-4;
+  s.crank.latency = 4e-3;
+  s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
+  const Session session = recordSession(s);
+  MachineSettings exact = s;
+  exact.crank.stamp_noise = exact.crank.latency = 0.0;
+  const Session taken = recordSession(exact);
+  double largest = 0.0;
+  for (std::size_t i = 3000; i < session.crank.size(); ++i) {
+    const double t = since(s, session.crank[i]) - s.crank.latency;
+    ASSERT_NEAR(session.truth[i].time, t, 2e-9);
+    // From the reading's own truth by its speed and acceleration, away from the blow.
+    const CrankTruth& at = taken.truth[i];
+    const double dt = t - at.time;
+    if (session.truth[i].turn != at.turn || std::abs(std::remainder(at.angle, kTwoPi)) < 0.1) continue;
+    const double moved = at.angle + dt * (at.speed + 0.5 * dt * at.acceleration);
+    largest = std::max(largest, std::abs(session.truth[i].angle - moved));
+  }
+  EXPECT_LT(largest, 1e-4);
+}
+
+TEST(Encoder, ReadingIsTheContractsFormula) {
+  MachineSettings s = shortRun();
+  s.crank.counts = 0;
+  s.crank.unwound = true;
+  s.crank.speed_noise = 0.0;
+  s.crank.zero = 0.7;
+  s.crank.direction = -1;
+  s.crank.eccentricity[0] = {0.03, 0.4};
+  s.crank.eccentricity[1] = {0.01, -1.1};
+  const Session session = recordSession(s);
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const CrankTruth& t = session.truth[i];
+    const double phi = t.angle + kTwoPi * static_cast<double>(t.turn);
+    const auto reading = [](double a) {
+      return 0.7 - (a + 0.03 * (std::sin(a + 0.4) - std::sin(0.4)) + 0.01 * (std::sin(2 * a - 1.1) - std::sin(-1.1)));
+    };
+    ASSERT_NEAR(session.crank[i].angle, reading(phi), 1e-12);
+    ASSERT_NEAR(*session.crank[i].speed, t.speed * (reading(phi + 1e-5) - reading(phi - 1e-5)) / 2e-5, 1e-6);
+  }
+}
+
+TEST(Encoder, GearedOneCountsItsOwnTurns) {
+  MachineSettings s = shortRun();
+  s.crank.ratio = 2.5;
+  s.crank.counts = 1024;
+  const Session session = recordSession(s);
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const CrankTruth& t = session.truth[i];
+    const double turned = 2.5 * (t.angle + kTwoPi * static_cast<double>(t.turn));
+    const double behind = std::remainder(turned - session.crank[i].angle, kTwoPi);
+    ASSERT_GE(behind, -1e-9);
+    ASSERT_LE(behind, kTwoPi / 1024 + 1e-9);
+    ASSERT_GE(session.crank[i].angle, 0.0);
+    ASSERT_LT(session.crank[i].angle, kTwoPi);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads::simulation
