@@ -113,6 +113,7 @@ struct WrongOil {
   double given_over_true;
   Sensor sensor;
   const char* name;
+  friend std::ostream& operator<<(std::ostream& out, const WrongOil& oil) { return out << oil.name; }
 };
 class Oil : public testing::TestWithParam<WrongOil> {};
 
