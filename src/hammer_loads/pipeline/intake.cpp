@@ -11,10 +11,15 @@ constexpr double kLargestAngle = 1e9;  // [rad]: beyond it a double resolves les
 
 }  // namespace
 
-Intake::Verdict Intake::judge(StampNs stamp, const CrankSample& sample) noexcept {
+std::optional<Refusal> Intake::refusalOf(const CrankSample& sample) const noexcept {
   const double speed = sample.speed.value_or(0.0);
-  if (!std::isfinite(sample.angle) || !std::isfinite(speed)) return {Refusal::kNotFinite};
-  if (std::abs(sample.angle) > kLargestAngle || std::abs(speed) > limits_.max_speed) return {Refusal::kImplausible};
+  if (!std::isfinite(sample.angle) || !std::isfinite(speed)) return Refusal::kNotFinite;
+  if (std::abs(sample.angle) > kLargestAngle || std::abs(speed) > limits_.max_speed) return Refusal::kImplausible;
+  return std::nullopt;
+}
+
+Intake::Verdict Intake::judge(StampNs stamp, const CrankSample& sample) noexcept {
+  if (const std::optional<Refusal> refusal = refusalOf(sample)) return {refusal};
   const auto [place, step] = stamps_.judge(stamp);
   switch (place) {
     case StampOrder::Place::kDuplicate:

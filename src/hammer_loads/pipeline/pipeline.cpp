@@ -118,7 +118,12 @@ const Loads& Pipeline::refuse(Refusal refusal) noexcept {
 const Loads& Pipeline::crankSample(StampNs header, const CrankSample& measured) noexcept {
   loads_.turn_ends = 0;
   loads_.refusal.reset();
-  loads_.sample_stamp = header;
+  loads_.stamp = loads_.sample_stamp = header;
+  if (const std::optional<Refusal> refusal = intake_.refusalOf(measured)) {
+    unit_check_.add(last_raw_stamp_ ? seconds(header - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
+    last_raw_stamp_ = header;
+    return refuse(*refusal);
+  }
   const bool repeats = measured.angle == last_raw_.angle && measured.speed == last_raw_.speed;
   last_raw_ = measured;
   const StampSequence::Place place = sequence_.place(header, repeats);
