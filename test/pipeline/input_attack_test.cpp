@@ -192,12 +192,14 @@ std::vector<Attack> shapeAttacks() {
   return attacks;
 }
 
-std::vector<Attack> timeAttacks() {
+/// Equal stamps are duplicates where header stamps hold, else a burst, whose angles must then fit.
+std::vector<Attack> timeAttacks(CrankStamps stamps) {
   std::vector<Attack> attacks;
+  const Refusal same_stamp = stamps == CrankStamps::kHeader ? Refusal::kDuplicate : Refusal::kImplausible;
   const auto add = [&](const char* name, std::optional<Refusal> refusal, auto strike) {
     attacks.push_back({name, refusal, strike});
   };
-  add("same stamp", Refusal::kDuplicate, [](Victim& v, const CrankReading& r) {
+  add("same stamp", same_stamp, [](Victim& v, const CrankReading& r) {
     v.good(r);
     v.crank(r.stamp, kCrank, {r.angle + 1.0}, {*r.speed});
   });
@@ -225,7 +227,7 @@ std::vector<Attack> timeAttacks() {
   add("0.5 Hz", std::nullopt, [n = 0](Victim& v, const CrankReading& r) mutable {
     v.crank(1600000000000000000 + 2000000000LL * ++n, kCrank, {r.angle}, {*r.speed});
   });
-  add("two publishers, same stamps", Refusal::kDuplicate, [](Victim& v, const CrankReading& r) {
+  add("two publishers, same stamps", same_stamp, [](Victim& v, const CrankReading& r) {
     v.good(r);
     v.crank(r.stamp, kCrank, {r.angle + 2.0}, {*r.speed});
   });
@@ -298,8 +300,11 @@ TEST(InputAttack, ShapesOfTheCrankMessage) {
 }
 
 TEST(InputAttack, StampsAndPublishersOfTheCrank) {
-  for (const PipelineSettings& settings : allSettings()) {
-    for (const Attack& attack : timeAttacks()) expectSurvival(attack, settings);
+  for (PipelineSettings settings : allSettings()) {
+    for (const CrankStamps stamps : {CrankStamps::kAuto, CrankStamps::kHeader}) {
+      settings.crank_stamps = stamps;
+      for (const Attack& attack : timeAttacks(stamps)) expectSurvival(attack, settings);
+    }
   }
 }
 

@@ -139,7 +139,7 @@ TEST(Pipeline, CountsEveryRefusalByItsReason) {
   EXPECT_EQ(refusal(2000000, kCrank, {}, {10.0}), Refusal::kShortArray);
   EXPECT_EQ(refusal(2000000, {"wheel", "hammer_crank_joint"}, {1.0, 1.0}, {1.0}), Refusal::kShortArray);
   EXPECT_EQ(refusal(2000000, kCrank, {std::nan("")}, {10.0}), Refusal::kNotFinite);
-  EXPECT_EQ(refusal(1000000, kCrank, {1.01}, {10.0}), Refusal::kDuplicate);
+  EXPECT_EQ(refusal(1000000, kCrank, {1.0}, {10.0}), Refusal::kDuplicate);
   EXPECT_EQ(refusal(2000000, kCrank, {3.0}, {10.0}), Refusal::kImplausible);
   EXPECT_FALSE(refusal(2000000, {"wheel", "hammer_crank_joint"}, {1.0, 1.01}, {}));
   for (std::size_t i = 0; i < kRefusalNames.size(); ++i) {

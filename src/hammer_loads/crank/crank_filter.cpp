@@ -30,8 +30,11 @@ constexpr double kSurpriseLength = 50.0;   // samples over which innovations bey
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
 constexpr double kDecided = 12.0;          // logarithm of odds at which the less likely belief is given up
-constexpr double kChange = 3.0;            // likewise at which the other one becomes the estimate
+constexpr double kChange = 4.5;            // likewise at which the other one becomes the estimate
 constexpr double kMostFit = 8.0;           // likewise that one measurement may add: it may be an outlier
+constexpr double kFewSurprises = 1.2;      // of them
+constexpr double kUnexplained = 3.0;       // mean innovation^2 over its variance
+constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
 
 double square(double x) noexcept { return x * x; }
@@ -48,6 +51,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
     : model_(model),
       step_model_(model),
       settings_(settings),
+      first_guess_(drive_inertia),
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       blows_({settings.blow_factor, settings.blow_deviation}),
@@ -147,7 +151,20 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
     double& inertia = p(Belief::kInertia, Belief::kInertia);
     inertia = std::max(inertia, square(kRelearn));
   }
+  if (surprises_ > kFewSurprises) now_.forgetInertiaCoupling();  // they would teach it nonsense
   now_.correct(Belief::kAngle, innovation.value, innovation.variance);
+}
+
+/// A machine that is not explained for seconds may have been learned wrong while the stamps' jitter was not known.
+void CrankFilter::doubtInertia(double dt) noexcept {
+  unlearn_after_ -= dt;
+  if (!(consistency_.growth() > kUnexplained) || unlearn_after_ > 0.0) return;
+  unlearn_after_ = kUnlearnEvery;
+  now_.state.drive_inertia = first_guess_;
+  now_.forgetInertiaCoupling();
+  now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
+  now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
+  consistency_ = {};
 }
 
 void CrankFilter::correctSpeed(double measured) noexcept {
@@ -349,6 +366,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     return begin(measured, sample);
   }
   rememberBlow(last);
+  doubtInertia(dt);
   load_ = model_(now_.state.position.angle);
   now_hull_ = model_.hullMotion();
   const bool continued = has_speed_;

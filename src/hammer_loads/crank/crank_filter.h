@@ -89,7 +89,7 @@ class CrankFilter final : public CrankTracker {
   };
   static constexpr double kLost = 5.0;
   static constexpr double kTurnsWith = 100.0, kTurnsWithout = 0.5;  // before any was seen
-  static constexpr double kDoubt = -1.0;  // logarithm of odds of the other belief: one in three
+  static constexpr double kDoubt = 0.0;                             // logarithm of odds of the other belief
 
   Innovation angleInnovation(double measured) const noexcept;
   Innovation speedInnovation(double measured) const noexcept;
@@ -97,6 +97,7 @@ class CrankFilter final : public CrankTracker {
   CrankSample ofCrank(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
   void correctAngle(Innovation innovation) noexcept;
+  void doubtInertia(double dt) noexcept;
   void correctSpeed(double measured) noexcept;
   void settleSide(const CrankBelief& last, double dt, double measured, bool struck) noexcept;
   void respectCount(double reading) noexcept;
@@ -116,6 +117,8 @@ class CrankFilter final : public CrankTracker {
   HullMotion now_hull_;     ///< at the last sample
   HullMotion before_hull_;  ///< at the last but one sample
   CrankFilterSettings settings_;
+  double first_guess_;      ///< of the drive inertia [kg m2]
+  double unlearn_after_{};  ///< time until it may be taken up again [s]
   Encoder encoder_;
   TimingNoise timing_;
   Consistency consistency_;

@@ -37,10 +37,19 @@ CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& set
       gate_(limitsOf(settings, tracker_->angleResolution())),
       step_(*tracker_) {}
 
+void CrankFollower::checkUnit(StampNs stamp, const CrankSample& measured) noexcept {
+  unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
+  last_raw_stamp_ = stamp;
+}
+
 /// Its instant, by its place in the sequence of arrival.
 std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& measured) noexcept {
   stamp_ = header;
   if (header < 0 || header > kLastStamp) return Refusal::kBadStamp;
+  if (const auto refusal = gate_.refusalOf(measured)) {
+    checkUnit(header, measured);
+    return refusal;
+  }
   const bool repeats = measured.angle == last_raw_.angle && measured.speed == last_raw_.speed;
   last_raw_ = measured;
   const StampSequence::Place place = sequence_.place(header - latency_, repeats);
@@ -53,8 +62,7 @@ std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& m
 std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& measured) noexcept {
   if (const auto refusal = place(header, measured)) return refusal;
   measured_ = measured;
-  unit_check_.add(last_raw_stamp_ ? seconds(stamp_ - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);
-  last_raw_stamp_ = stamp_;
+  checkUnit(stamp_, measured);
   verdict_ = gate_.judge(stamp_, measured);
   if (verdict_.refusal) return verdict_.refusal;
   if (unit_check_.looksLikeDegrees()) return Refusal::kDegrees;

@@ -52,6 +52,7 @@ class CrankFollower {
 
  private:
   std::optional<Refusal> place(StampNs header, const CrankSample& measured) noexcept;
+  void checkUnit(StampNs stamp, const CrankSample& measured) noexcept;
   void restart() noexcept;
 
   const HullModel* model_;

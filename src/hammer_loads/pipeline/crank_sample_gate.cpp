@@ -11,11 +11,16 @@ constexpr double kLargestAngle = 1e9;  // [rad]: beyond it a double resolves les
 
 }  // namespace
 
+std::optional<Refusal> CrankSampleGate::refusalOf(const CrankSample& sample) const noexcept {
+  const double speed = sample.speed.value_or(0.0);
+  if (!std::isfinite(sample.angle) || !std::isfinite(speed)) return Refusal::kNotFinite;
+  if (std::abs(sample.angle) > kLargestAngle || std::abs(speed) > limits_.max_speed) return Refusal::kImplausible;
+  return std::nullopt;
+}
+
 CrankSampleGate::Verdict CrankSampleGate::judge(StampNs stamp, const CrankSample& sample) noexcept {
   if (stamp < 0 || stamp > kLastStamp) return {Refusal::kBadStamp};
-  const double speed = sample.speed.value_or(0.0);
-  if (!std::isfinite(sample.angle) || !std::isfinite(speed)) return {Refusal::kNotFinite};
-  if (std::abs(sample.angle) > kLargestAngle || std::abs(speed) > limits_.max_speed) return {Refusal::kImplausible};
+  if (const std::optional<Refusal> refusal = refusalOf(sample)) return {refusal};
   const auto [place, step] = stamps_.judge(stamp);
   switch (place) {
     case StampOrder::Place::kDuplicate:

@@ -28,6 +28,8 @@ class CrankSampleGate {
     bool speed_is_dead{};  ///< nothing but zeros while the angle moves: many drivers fill in what they do not measure
   };
 
+  /// Why a sample's own values cannot be taken, whatever its stamp.
+  std::optional<Refusal> refusalOf(const CrankSample& sample) const noexcept;
   Verdict judge(StampNs stamp, const CrankSample& sample) noexcept;
   void accept(StampNs stamp, const CrankSample& sample) noexcept {
     stamps_.accept(stamp);

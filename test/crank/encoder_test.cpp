@@ -1,0 +1,62 @@
+#include "hammer_loads/crank/encoder.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace hammer_loads {
+namespace {
+
+/// Readings of an encoder of so many counts on a crank that turns a little unevenly.
+template <typename Reading>
+void turn(Encoder& encoder, int counts, double per_sample, const Reading& reading, int samples = 3000) {
+  std::mt19937 random(counts);
+  std::uniform_real_distribution<> uneven(0.7, 1.3);
+  double angle = 0.3;
+  for (int i = 0; i < samples; ++i, angle += per_sample * uneven(random)) {
+    const double count = kTwoPi / counts;
+    encoder.angle(reading(std::floor(angle / count) * count));
+  }
+}
+
+TEST(EncoderCount, IsReadOffTheReadings) {
+  for (const int counts : {90, 360, 1000, 1024, 2500, 4096, 10000, 16384, 65536}) {
+    for (const double per_sample : {0.003, 0.04, 0.4}) {
+      Encoder encoder(0.0);
+      turn(encoder, counts, per_sample, [](double r) { return CrankAngle::wrapToPi(r) + 3.0; });
+      EXPECT_TRUE(encoder.isKnown()) << counts;
+      EXPECT_NEAR(kTwoPi / encoder.resolution(), counts, 1e-6 * counts) << per_sample;
+    }
+  }
+}
+
+TEST(EncoderCount, SurvivesSinglePrecisionAndAZeroOfItsOwn) {
+  Encoder encoder(0.0);
+  turn(encoder, 4096, 0.04,
+       [](double r) { return static_cast<double>(static_cast<float>(std::fmod(r, kTwoPi) + 0.0123)); });
+  EXPECT_NEAR(kTwoPi / encoder.resolution(), 4096, 1e-6);
+}
+
+TEST(EncoderCount, IsTheUsualOneWhileNothingIsKnown) {
+  Encoder encoder(0.0);
+  encoder.angle(1.0);
+  encoder.angle(1.0);
+  EXPECT_FALSE(encoder.isKnown());
+  EXPECT_DOUBLE_EQ(encoder.resolution(), kTwoPi / 4096);
+}
+
+TEST(EncoderCount, ThatIsGivenWrongIsContradicted) {
+  for (const int counts : {360, 1024, 4096}) {
+    Encoder given(kTwoPi / 1024);
+    EXPECT_FALSE(given.contradictsGiven());
+    turn(given, counts, 0.04, [](double r) { return r; });
+    EXPECT_EQ(given.contradictsGiven(), counts != 1024) << counts;
+  }
+  Encoder of_none(kTwoPi / 1024);
+  for (int i = 0; i < 50; ++i) of_none.angle(std::sqrt(2.0 + i));
+  EXPECT_TRUE(of_none.isFiner());
+  EXPECT_TRUE(of_none.contradictsGiven());
+}
+
+}  // namespace
+}  // namespace hammer_loads

@@ -1,0 +1,167 @@
+// The crank filter on what a real sensor and real blows do to it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "hammer_loads/crank/crank_filter.h"
+#include "support/mo100.h"
+#include "support/striking_crank.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kCount = kTwoPi / 4096;
+using Blow = test::StrikingCrank::Blow;
+
+struct Told {
+  double factor{}, deviation{}, truth{};
+};
+
+struct Record {
+  double rms{}, peak{}, worst{};  ///< of the crank's acceleration [rad/s2]
+  double timing{}, consistency{};
+  int restarts{}, outliers{}, doubtful{}, samples{}, mirrored{};
+  std::vector<Told> blows;
+};
+
+struct Machine {
+  std::function<Blow(int)> blow = [](int) { return Blow{}; };
+  double jitter{};  ///< of stamps [s]
+  double rate{1000.0};
+  bool speeds{true};
+  unsigned seed{1};
+};
+
+CrankFilterSettings settings() {
+  CrankFilterSettings s;
+  s.speed_noise = 0.3;
+  s.torque_walk = 74.0;
+  s.speed_walk = 0.3;
+  s.inertia_walk = 5e-4;
+  s.initial_torque_deviation = 300.0;
+  s.initial_inertia_deviation = 0.3;
+  s.max_speed = 300.0;
+  return s;
+}
+
+/// Eight seconds, judged from the third on. The truth is that at the stamp.
+Record follow(const Machine& machine) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  test::StrikingCrank at_stamp(mechanism.linkage(), 0.737, 0.6), taken(mechanism.linkage(), 0.737, 0.6);
+  at_stamp.blow = taken.blow = machine.blow;
+  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings());
+  std::mt19937 random(machine.seed);
+  std::normal_distribution<> normal;
+  Record run;
+  double last = 0.0, squares = 0.0;
+  int judged = 0;
+  bool measured = true;
+  for (int i = 1; i < static_cast<int>(8.0 * machine.rate); ++i) {
+    const double time = i / machine.rate;
+    const double stamp = std::max(last + 1e-6, time + machine.jitter * normal(random));
+    taken.advanceTo(time);
+    at_stamp.advanceTo(stamp);
+    CrankSample sample{std::floor(taken.angle() / kCount) * kCount, std::nullopt};
+    const double speed = taken.speed() + 0.15 * normal(random);
+    if (machine.speeds) sample.speed = speed;
+    const Tracking tracking =
+        i == 1 ? (filter.start(sample), Tracking::kRestarted) : filter.update(stamp - last, sample);
+    if (tracking != Tracking::kOutlier) last = stamp;
+    if (stamp < 2.0) continue;
+    ++run.samples;
+    run.restarts += tracking == Tracking::kRestarted;
+    run.outliers += tracking == Tracking::kOutlier;
+    run.doubtful += filter.isDoubtful();
+    run.mirrored += filter.estimate().position.isMirrored();
+    if (taken.blows() > 0 && stamp < taken.blowTime() + 0.02) measured = false;
+    if (!measured && stamp > taken.blowTime() + 0.06) {
+      measured = true;
+      const BlowFactor factor = filter.blowFactor();
+      run.blows.push_back({factor.mean, factor.deviation, machine.blow(taken.blows() - 1).factor});
+    }
+    const double truth = at_stamp.acceleration();
+    run.peak = std::max(run.peak, std::abs(truth));
+    if (tracking == Tracking::kOutlier || filter.isDoubtful()) continue;
+    const double error = filter.estimate().acceleration - truth;
+    if (std::abs(stamp - taken.blowTime()) > 5e-4) run.worst = std::max(run.worst, std::abs(error));
+    squares += error * error;
+    ++judged;
+  }
+  run.rms = std::sqrt(squares / judged);
+  run.timing = filter.timingNoise();
+  run.consistency = filter.consistency();
+  return run;
+}
+
+TEST(FieldCrank, AllThatIsExactStaysExact) {
+  const Record run = follow({});
+  EXPECT_EQ(run.timing, 0.0);
+  EXPECT_LT(run.rms, 0.004 * run.peak);
+  EXPECT_NEAR(run.consistency, 1.0, 0.25);
+  EXPECT_EQ(run.restarts + run.outliers + run.mirrored, 0);
+  EXPECT_LT(run.doubtful, 5);
+}
+
+TEST(FieldCrank, LearnsHowMuchTheStampsJitter) {
+  for (const double jitter : {1e-4, 2e-4, 5e-4}) {
+    for (const bool speeds : {true, false}) {
+      Machine machine;
+      machine.jitter = jitter;
+      machine.speeds = speeds;
+      const Record run = follow(machine);
+      EXPECT_NEAR(run.timing / jitter, 1.0, 0.15) << jitter << ' ' << speeds;
+      EXPECT_EQ(run.restarts, 0) << jitter << ' ' << speeds;
+      EXPECT_LT(run.outliers, 3);
+      EXPECT_NEAR(run.consistency, 1.0, 0.25);
+    }
+  }
+}
+
+TEST(FieldCrank, MeasuresEachBlowsFactor) {
+  for (const double rate : {1000.0, 100.0}) {
+    Machine machine;
+    machine.rate = rate;
+    machine.blow = [](int number) {
+      std::mt19937 random(static_cast<unsigned>(100 + number));
+      return Blow{std::uniform_real_distribution<>(0.64, 1.26)(random), true, 0.0};
+    };
+    const Record run = follow(machine);
+    ASSERT_GT(run.blows.size(), 20u);
+    int within = 0;
+    for (const Told& told : run.blows) {
+      EXPECT_NEAR(told.factor, told.truth, 0.02) << rate;
+      within += std::abs(told.factor - told.truth) < 2.0 * told.deviation;
+    }
+    EXPECT_GT(within, static_cast<int>(0.85 * static_cast<double>(run.blows.size())));
+    EXPECT_EQ(run.restarts, 0);
+    EXPECT_EQ(run.mirrored, 0);
+  }
+}
+
+TEST(FieldCrank, ABlowThatTakesHalfTheSpeedIsNoRestart) {
+  for (const double early : {0.0, 0.005}) {
+    Machine machine;
+    machine.blow = [early](int number) { return Blow{number % 3 == 0 ? 0.5 : 0.9, true, early}; };
+    const Record run = follow(machine);
+    EXPECT_EQ(run.restarts, 0) << early;
+    EXPECT_LT(run.rms, 0.02 * run.peak) << early;
+  }
+}
+
+TEST(FieldCrank, ATurnWithoutContactIsFollowedOntoTheMirroredBranch) {
+  for (const bool speeds : {true, false}) {
+    Machine machine;
+    machine.speeds = speeds;
+    machine.blow = [](int number) { return Blow{1.0, number % 9 != 7, 0.0}; };
+    const Record run = follow(machine);
+    EXPECT_GT(run.mirrored, 200);
+    EXPECT_LT(run.doubtful, run.samples / 100);
+    EXPECT_EQ(run.restarts, 0);
+    EXPECT_LT(run.rms, 0.03 * run.peak);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads

@@ -1,0 +1,146 @@
+#include "hammer_loads/crank/stamp_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace hammer_loads {
+namespace {
+
+using Kind = StampSequence::Kind;
+constexpr std::int64_t kStart = 1700000000000000000;
+constexpr std::int64_t kMs = 1000000;
+
+/// Samples every millisecond, some of them lost; stamps as the way to the computer makes them.
+struct Stream {
+  std::vector<std::int64_t> taken, stamp;
+};
+
+Stream stream(int samples, double lost, const std::function<std::int64_t(std::int64_t, std::mt19937&)>& way) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<> any(0.0, 1.0);
+  Stream s;
+  for (int i = 0; i < samples; ++i) {
+    if (any(random) < lost) continue;
+    s.taken.push_back(kStart + i * kMs);
+    s.stamp.push_back(way(s.taken.back(), random));
+  }
+  return s;
+}
+
+/// Root mean square of instant less taken about its mean, from a second on [s]; expects that instants increase.
+double scatterOf(StampSequence& sequence, const Stream& s) {
+  double sum = 0.0, squares = 0.0;
+  int count = 0;
+  std::int64_t last = 0;
+  for (std::size_t i = 0; i < s.stamp.size(); ++i) {
+    const StampSequence::Place place = sequence.place(s.stamp[i], false);
+    EXPECT_TRUE(place.kind == Kind::kPlaced || i == 0);
+    EXPECT_GT(place.stamp, last);
+    last = place.stamp;
+    if (i < 1000) continue;
+    const double error = 1e-9 * static_cast<double>(place.stamp - s.taken[i]);
+    sum += error;
+    squares += error * error;
+    ++count;
+  }
+  return std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count)));
+}
+
+TEST(StampSequence, ExactStampsStayAsTheyAreAtAnyInterval) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  std::mt19937 random(1);
+  std::exponential_distribution<> interval(500.0);
+  std::int64_t stamp = kStart;
+  for (int i = 0; i < 20000; ++i) {
+    const StampSequence::Place place = sequence.place(stamp, false);
+    ASSERT_EQ(place.stamp, stamp);
+    ASSERT_FALSE(place.refitted);
+    stamp += 1 + static_cast<std::int64_t>(1e9 * interval(random));
+  }
+  EXPECT_FALSE(sequence.isSteady());
+}
+
+TEST(StampSequence, WholeMillisecondsAndBurstsGetTheirInstantsBack) {
+  const auto whole = [](std::int64_t t, std::mt19937& random) {
+    const auto jitter = static_cast<std::int64_t>(6e4 * std::normal_distribution<>()(random));
+    return (t + jitter) / kMs * kMs;
+  };
+  StampSequence whole_milliseconds(CrankStamps::kAuto, 0.25);
+  EXPECT_LT(scatterOf(whole_milliseconds, stream(15000, 0.002, whole)), 2.5e-4);
+  for (const int length : {4, 10}) {
+    Stream bursts = stream(15000, 0.002, [](std::int64_t t, std::mt19937&) { return t + 20000; });
+    const auto n = static_cast<std::size_t>(length);
+    for (std::size_t i = 0; i < bursts.stamp.size(); ++i)
+      bursts.stamp[i] = bursts.stamp[std::min(bursts.stamp.size() - 1, i / n * n + n - 1)];
+    StampSequence sequence(CrankStamps::kAuto, 0.25);
+    EXPECT_LT(scatterOf(sequence, bursts), 2.5e-4) << length;
+    EXPECT_TRUE(sequence.isSteady());
+  }
+}
+
+TEST(StampSequence, WhereManyChangePlacesTheLineCounts) {
+  const auto jitter = [](std::int64_t t, std::mt19937& random) {
+    return t + static_cast<std::int64_t>(1e6 * std::normal_distribution<>()(random));
+  };
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  EXPECT_LT(scatterOf(sequence, stream(15000, 0.0, jitter)), 2e-4);
+  EXPECT_TRUE(sequence.isSteady());
+}
+
+TEST(StampSequence, AGapGoesOnByWholeIntervals) {
+  Stream s = stream(8000, 0.0, [](std::int64_t t, std::mt19937&) { return t / (10 * kMs) * 10 * kMs; });
+  const auto from = static_cast<std::ptrdiff_t>(5000), to = from + 100;
+  s.taken.erase(s.taken.begin() + from, s.taken.begin() + to);
+  s.stamp.erase(s.stamp.begin() + from, s.stamp.begin() + to);
+  StampSequence sequence(CrankStamps::kSteady, 0.25);
+  EXPECT_LT(scatterOf(sequence, s), 1e-4);
+}
+
+TEST(StampSequence, EqualStampsOfIrregularSamplesOnlyStepOn) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<> any(0.0, 1.0);
+  std::int64_t stamp = kStart, last = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const std::int64_t instant = sequence.place(stamp, false).stamp;
+    ASSERT_GT(instant, last);
+    ASSERT_LT(std::abs(instant - stamp), 20 * kMs);
+    last = instant;
+    if (any(random) > 0.1) stamp += static_cast<std::int64_t>(1e9 * 0.02 * any(random) * any(random));
+  }
+  EXPECT_FALSE(sequence.isSteady());
+}
+
+TEST(StampSequence, KnowsDuplicatesLateOnesAndTimeThatRanBack) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  EXPECT_EQ(sequence.place(kStart, false).kind, Kind::kRestart);
+  for (int i = 1; i < 200; ++i) EXPECT_EQ(sequence.place(kStart + i * kMs, false).kind, Kind::kPlaced);
+  const std::int64_t last = kStart + 199 * kMs;
+  EXPECT_EQ(sequence.place(last, true).kind, Kind::kDuplicate);
+  const StampSequence::Place late = sequence.place(last - 3 * kMs, false);
+  EXPECT_EQ(late.kind, Kind::kPlaced);
+  EXPECT_TRUE(late.refitted);
+  EXPECT_GT(late.stamp, last);
+  EXPECT_LE(late.stamp, last + kMs);
+  EXPECT_EQ(sequence.place(last + 2 * kMs, false).stamp, last + 2 * kMs);
+  EXPECT_EQ(sequence.place(last - 400 * kMs, false).kind, Kind::kOutOfOrder);
+  EXPECT_EQ(sequence.place(last + 3 * kMs, false).stamp, last + 3 * kMs) << "a single one was only late";
+  EXPECT_EQ(sequence.place(last - 900 * kMs, false).kind, Kind::kOutOfOrder);
+  EXPECT_EQ(sequence.place(last - 899 * kMs, false).kind, Kind::kRestart);
+  EXPECT_EQ(sequence.place(last, false).kind, Kind::kRestart) << "a gap";
+}
+
+TEST(StampSequence, HeaderStampsAreHeldToTheirOrder) {
+  StampSequence sequence(CrankStamps::kHeader, 0.25);
+  sequence.place(kStart, false);
+  EXPECT_EQ(sequence.place(kStart, false).kind, Kind::kDuplicate);
+  EXPECT_EQ(sequence.place(kStart + kMs, false).stamp, kStart + kMs);
+  EXPECT_EQ(sequence.place(kStart + kMs - 1, false).kind, Kind::kOutOfOrder);
+}
+
+}  // namespace
+}  // namespace hammer_loads
