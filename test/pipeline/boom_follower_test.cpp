@@ -25,8 +25,8 @@ PipelineSettings settings(BoomModel model) {
 }
 
 /// A step without blows under a steady load.
-LoadStep steadyStep(double duration, const HullWrench& w) {
-  LoadStep step;
+WrenchHistory steadyStep(double duration, const HullWrench& w) {
+  WrenchHistory step;
   step.count = 1;
   step.pieces[0].duration = duration;
   step.pieces[0].from = step.pieces[0].to = step.pieces[0].mean = w;
@@ -48,7 +48,7 @@ class Follower {
   explicit Follower(BoomModel model, Boom boom = test::shippedBoom())
       : follower(std::move(boom), settings(model), kStrikingDistance) {}
 
-  const BoomState& sample(const HullWrench& w, const LoadStep& step, int ms = 1) {
+  const BoomState& sample(const HullWrench& w, const WrenchHistory& step, int ms = 1) {
     now += ms * kMs;
     follower.jointStates(now, kFour, kWorking, {});
     return follower.sample({now, w, kGravity}, step);
@@ -104,7 +104,7 @@ TEST(BoomFollower, ALoadThatStaysIsCarriedAsOnARigidBoom) {
 TEST(BoomFollower, AShortStepGivesItsMeanAsMomentumToTheReducedMass) {
   Follower compliant(BoomModel::kCompliant);
   compliant.sample({});
-  LoadStep step = steadyStep(1e-5, {});
+  WrenchHistory step = steadyStep(1e-5, {});
   step.pieces[0].mean.force_z = 8000.0;  // a bump: nothing at the ends
   const BoomState& state = compliant.sample({}, step);
   const double speed = 8000.0 * 1e-5 / state.reduced.mass;
@@ -115,7 +115,7 @@ TEST(BoomFollower, AShortStepGivesItsMeanAsMomentumToTheReducedMass) {
 TEST(BoomFollower, ABlowBetweenPiecesIsAnImpulse) {
   Follower compliant(BoomModel::kCompliant);
   compliant.sample({});
-  LoadStep step;
+  WrenchHistory step;
   step.count = 2;
   step.pieces[0].duration = step.pieces[1].duration = 1e-9;
   step.pieces[0].ends_in_blow = true;
@@ -297,7 +297,7 @@ class Session {
     }
     const double phase = std::fmod(time * 5.0, 1.0);
     const double pulse = phase > 0.9 ? 8e3 * std::sin(31.4 * (phase - 0.9)) : 0.0;
-    LoadPiece& piece = step_.pieces[0];
+    SmoothPiece& piece = step_.pieces[0];
     piece.from = piece.to;
     piece.to = {0.3 * pulse, pulse, -0.1 * pulse};
     piece.mean = {0.5 * (piece.from.force_x + piece.to.force_x), 0.5 * (piece.from.force_z + piece.to.force_z),
@@ -312,7 +312,7 @@ class Session {
 
  private:
   BoomFollower follower_;
-  LoadStep step_;
+  WrenchHistory step_;
   std::vector<double> position_ = std::vector<double>(4), velocity_ = std::vector<double>(4);
   std::int64_t count_{};
   double sum_{};

@@ -30,7 +30,7 @@ HalfSinePulse pulse() {
 class Messages : public testing::Test {
  protected:
   void sample(StampNs stamp) {
-    LoadStep step;
+    WrenchHistory step;
     step.count = 1;
     step.pieces[0] = {1e-3, kLoad, kLoad, kLoad, false, 0.0, 0.0};
     follower_.jointStates(stamp, kFour, position_, {});

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-namespace hammer_loads {
+#include "hammer_loads/util/constants.h"
 
-constexpr double kTwoPi = 6.283185307179586232;  ///< 2.4e-16 less than 2 pi
+namespace hammer_loads {
 
 /// Which side of the blow (crank angle 0 mod 2 pi) a position belongs to. The linkage has a change point there:
 /// its transfer functions jump, so the blow itself has two states.

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -47,7 +47,7 @@ bool BoomFollower::takesCompliant() const noexcept {
   return model_ == BoomModel::kCompliant || !choice.judged || choice.rigid_error > choice.rigid_tolerance;
 }
 
-const BoomState& BoomFollower::sample(const BoomSample& sample, const LoadStep& step) noexcept {
+const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHistory& step) noexcept {
   state_.stamp = sample.stamp;
   state_.fault = joints_.at(sample.stamp, motion_);
   if (state_.fault) {
@@ -72,9 +72,9 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const LoadStep& 
   return state_;
 }
 
-void BoomFollower::vibrate(const LoadStep& step) noexcept {
+void BoomFollower::vibrate(const WrenchHistory& step) noexcept {
   for (std::size_t i = 0; i < step.count; ++i) {
-    const LoadPiece& piece = step.pieces[i];
+    const SmoothPiece& piece = step.pieces[i];
     torque_.from = boom_.hammerTorque(onTip(piece.from));
     torque_.to = boom_.hammerTorque(onTip(piece.to));
     torque_.mean = boom_.hammerTorque(onTip(piece.mean));

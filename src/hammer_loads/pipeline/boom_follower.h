@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "hammer_loads/boom/boom.h"
-#include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
-#include "hammer_loads/pipeline/load_step.h"
+#include "hammer_loads/pipeline/wrench_history.h"
 
 namespace hammer_loads {
 
@@ -59,7 +59,7 @@ class BoomFollower {
   }
   /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
   /// until the next call.
-  const BoomState& sample(const BoomSample& sample, const LoadStep& step) noexcept;
+  const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
   /// 0.1 ms.
   void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept;
@@ -80,7 +80,7 @@ class BoomFollower {
  private:
   static Wrench onTip(const HullWrench& w) noexcept;
   bool takesCompliant() const noexcept;
-  void vibrate(const LoadStep& step) noexcept;
+  void vibrate(const WrenchHistory& step) noexcept;
   void tellVibration() noexcept;
 
   Boom boom_;

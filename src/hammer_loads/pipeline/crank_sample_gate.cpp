@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/hammer/hammer_model.h"
 
 namespace hammer_loads {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "hammer_loads/crank/crank_tracker.h"
-#include "hammer_loads/linkage/crank_motion.h"
+#include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {

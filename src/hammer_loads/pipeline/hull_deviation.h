@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "hammer_loads/crank/crank_tracker.h"
-#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/hammer/hammer_model.h"
 
 namespace hammer_loads {
 

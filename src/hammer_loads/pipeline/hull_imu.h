@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
 #include "hammer_loads/util/stamp.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "hammer_loads/crank/crank_tracker.h"
-#include "hammer_loads/hammer/blow.h"
+#include "hammer_loads/hammer/hammer_model.h"
 
 namespace hammer_loads {
 

@@ -108,7 +108,7 @@ void Pipeline::followBoom() noexcept {
   result_.boom = nullptr;
   if (!boom_) return;
   const HullWrench motion = motionWrench(model_, motionOf(result_.crank));
-  const LoadStep step = boom_follows_ ? loadStep(model_, crank_.step()) : LoadStep{};
+  const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity}, step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/hammer/blow.h"
+#include "hammer_loads/hammer/hammer_model.h"
 
 namespace hammer_loads {
 namespace {
@@ -76,8 +76,8 @@ HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const Hul
   return impulse;
 }
 
-LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept {
-  LoadStep result;
+WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept {
+  WrenchHistory result;
   if (!step.known()) return result;
   const CrankStep::Passage* passage = step.begin();
   forEachSmoothPart(
@@ -85,7 +85,7 @@ LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept {
         while (passage != step.end() && passage->smooth) ++passage;
         const CrankStep::Passage* ends_at = passage == step.end() ? nullptr : passage++;
         if (result.count == result.pieces.size()) return;
-        LoadPiece& piece = result.pieces[result.count++];
+        SmoothPiece& piece = result.pieces[result.count++];
         piece.duration = to - from;
         piece.from = motionWrench(model, a);
         piece.to = motionWrench(model, b);

@@ -1,9 +1,9 @@
 /// Impulse of the hull wrench over a step or a part of it: exact where momentum gives it, at any output rate.
 #pragma once
 
-#include "hammer_loads/hammer/hull_model.h"
+#include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/crank_step.h"
-#include "hammer_loads/pipeline/load_step.h"
+#include "hammer_loads/pipeline/wrench_history.h"
 
 namespace hammer_loads {
 
@@ -17,9 +17,9 @@ HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double f
 HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
                         double to) noexcept;
 
-/// The load over the whole step as the boom takes it, blows included; pieces beyond those that a LoadStep holds are
-/// left out (a step of several turns).
-LoadStep loadStep(const HullModel& model, const CrankStep& step) noexcept;
+/// The load over the whole step as the boom takes it, blows included; pieces beyond those that a WrenchHistory holds
+/// are left out (a step of several turns).
+WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept;
 
 inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {
   return {a.force_x + b.force_x, a.force_z + b.force_z, a.torque_y + b.torque_y};

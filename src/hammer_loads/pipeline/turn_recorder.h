@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/hammer/hammer_model.h"
 
 namespace hammer_loads {
 

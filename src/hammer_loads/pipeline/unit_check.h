@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 

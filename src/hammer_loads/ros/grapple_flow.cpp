@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
 

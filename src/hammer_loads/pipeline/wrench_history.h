@@ -4,13 +4,13 @@
 #include <array>
 #include <cstddef>
 
-#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/hammer/hammer_model.h"
 
 namespace hammer_loads {
 
 /// A part of the step in which no blow lies. Wrenches come from motion of the links relative to the hull: without their
 /// weight, without what the hull's own motion does to them.
-struct LoadPiece {
+struct SmoothPiece {
   double duration{};    ///< [s] >= 0
   HullWrench from, to;  ///< at its ends
   HullWrench mean;      ///< over it, exact by the momentum difference
@@ -20,9 +20,9 @@ struct LoadPiece {
 };
 
 /// The pieces of one step in order of time; none after a restart, when the step before the sample is not known.
-struct LoadStep {
+struct WrenchHistory {
   std::size_t count{};
-  std::array<LoadPiece, 5> pieces;
+  std::array<SmoothPiece, 5> pieces;
 };
 
 }  // namespace hammer_loads
