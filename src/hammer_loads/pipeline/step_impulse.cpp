@@ -40,11 +40,6 @@ void forEachSmoothPart(const CrankStep& step, double from, double to, const Visi
   visit(start_time, start, to, passed_at_end ? start : step.at(to));
 }
 
-/// From motion of the links relative to the hull.
-HullWrench motionWrench(const HullModel& model, const CrankEstimate& crank) noexcept {
-  return hullWrench(model, motionOf(crank), Gravity{});
-}
-
 }  // namespace
 
 HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept {
@@ -87,8 +82,8 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexc
         if (result.count == result.pieces.size()) return;
         SmoothPiece& piece = result.pieces[result.count++];
         piece.duration = to - from;
-        piece.from = motionWrench(model, a);
-        piece.to = motionWrench(model, b);
+        piece.from = motionWrench(model, motionOf(a));
+        piece.to = motionWrench(model, motionOf(b));
         const HullWrench impulse = change(momentum(model, a), momentum(model, b));
         piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
         if (ends_at == nullptr || !ends_at->strikes) return;
