@@ -315,10 +315,10 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
     if (!now_.isSound(mostSpeed())) now_ = last;
     return begin(measured, sample);
   }
+  const double ratio = innovation.ratio();
   if (has_speed_) {
     fit_ = logLikelihood(innovation);
     timing_.learn(innovation.value, innovation.total, now_.state.speed);
-    if (std::abs(now_.state.speed) > kLearnSpeed) consistency_.add(innovation.ratio());
     if (meetsTool(dt, innovation, sample)) innovation = angleInnovation(measured);
     if (isContradiction(dt, innovation) && !isLost()) {
       const double most = kKick * std::abs(now_.state.speed) * dt + kKick * std::abs(outlier_);
@@ -336,6 +336,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& sample) noexcept {
       innovation = angleInnovation(measured);
     }
   }
+  if (has_speed_ && std::abs(now_.state.speed) > kLearnSpeed) consistency_.add(ratio);
   before_ = last;
   before_hull_ = now_hull_;
   step_ = dt;
