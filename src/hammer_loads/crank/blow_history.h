@@ -31,8 +31,8 @@ class BlowHistory {
  private:
   static constexpr int kLength = 10;
   static constexpr double kFirstCounts =
-      0.1;  // blows: the first guess; a wrong conclusion from the first few shows at once
-  static constexpr double kLeast = 0.005;  // deviation
+      0.1;                                // blows: the first guess; a wrong conclusion from the first few shows at once
+  static constexpr double kLeast = 0.01;  // deviation
   static constexpr double kMost = 0.3;
   BlowPrior first_;
   double mean_, variance_;

@@ -30,9 +30,8 @@ constexpr double kSurpriseLength = 50.0;   // samples over which innovations bey
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
 constexpr double kDecided = 12.0;          // logarithm of odds at which the less likely belief is given up
-constexpr double kChange = 4.5;            // likewise at which the other one becomes the estimate
+constexpr double kChange = 9.0;            // likewise at which the other one becomes the estimate
 constexpr double kMostFit = 8.0;           // likewise that one measurement may add: it may be an outlier
-constexpr double kFewSurprises = 1.2;      // of them
 constexpr double kUnexplained = 3.0;       // mean innovation^2 over its variance
 constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
@@ -151,7 +150,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
     double& inertia = p(Belief::kInertia, Belief::kInertia);
     inertia = std::max(inertia, square(kRelearn));
   }
-  if (surprises_ > kFewSurprises) now_.forgetInertiaCoupling();  // they would teach it nonsense
+  if (surprises_ > kManySurprises) now_.forgetInertiaCoupling();  // they would teach it nonsense
   now_.correct(Belief::kAngle, innovation.value, innovation.variance);
 }
 
@@ -323,10 +322,10 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     if (!now_.isSound(mostSpeed())) now_ = last;
     return begin(measured, sample);
   }
+  const double ratio = innovation.ratio();
   if (has_speed_) {
     fit_ = logLikelihood(innovation);
     timing_.learn(innovation.value, innovation.total, now_.state.speed);
-    if (std::abs(now_.state.speed) > kLearnSpeed) consistency_.add(innovation.ratio());
     if (meetsTool(dt, innovation, sample)) innovation = angleInnovation(measured);
     if (isContradiction(dt, innovation) && !isLost()) {
       const double most = kKick * std::abs(now_.state.speed) * dt + kKick * std::abs(outlier_);
@@ -344,6 +343,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
       innovation = angleInnovation(measured);
     }
   }
+  if (has_speed_ && std::abs(now_.state.speed) > kLearnSpeed) consistency_.add(ratio);
   before_ = last;
   before_hull_ = now_hull_;
   step_ = dt;
@@ -359,6 +359,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   settleSide(last, dt, measured, struck);
   respectCount(reading.angle);
   if (sample.speed) correctSpeed(*sample.speed);
+  if (!mirrored_ && now_.state.position.isMirrored()) now_.state.position.angle.offset = 0.0;  // pushed by the speed
   if (contested && rival_) followRival(dt, measured, sample);
   const bool revised = rival_ && chooseBelief();
   if (!now_.isSound(mostSpeed())) {

@@ -88,8 +88,8 @@ class CrankFilter final : public CrankTracker {
     double ratio() const noexcept { return value * value / total; }
   };
   static constexpr double kLost = 5.0;
-  static constexpr double kTurnsWith = 100.0, kTurnsWithout = 0.5;  // before any was seen
-  static constexpr double kDoubt = 0.0;                             // logarithm of odds of the other belief
+  static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
+  static constexpr double kDoubt = 6.0;                             // logarithm of odds of the other belief
 
   Innovation angleInnovation(double measured) const noexcept;
   Innovation speedInnovation(double measured) const noexcept;

@@ -40,7 +40,7 @@ class TimingNoise {
   static constexpr double kGain = 0.005;
   static constexpr double kMost = 25.0;      // of innovation^2 over its variance
   static constexpr double kSeen = 3.0;       // standard deviations of the estimate above zero
-  static constexpr double kTellable = 1e-6;  // [s2]: a sample that could not see 1 ms is not asked
+  static constexpr double kTellable = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
   static constexpr double kLargest = 0.02;   // [s]: more is no jitter
   double variance_;
   double last_{};  ///< innovation [rad]
