@@ -1,0 +1,51 @@
+/// The crank's motion around one blow, by the shaft's equation of motion.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "hammer_loads/crank/crank_dynamics.h"
+
+namespace hammer_loads::calibration {
+
+constexpr int kNodesBeside = 4;  ///< of the torque, on either side of the blow
+constexpr int kLocals = 4 + 2 * kNodesBeside;
+
+/// What belongs to one blow alone: instant [s], speeds before and after [rad/s], net torque [N m] in nodes at the blow
+/// and at equal steps before (odd ones) and after it (even ones), linear in between.
+using Locals = Eigen::Matrix<double, kLocals, 1>;
+enum LocalIndex : Eigen::Index { kInstant, kSpeedBefore, kSpeedAfter, kTorqueAtBlow, kTorques };
+
+/// Place of a node in Locals; node 0 is at the blow, 1.. further away.
+constexpr Eigen::Index torqueIndex(bool before, int node) {
+  return node == 0 ? static_cast<Eigen::Index>(kTorqueAtBlow)
+                   : static_cast<Eigen::Index>(kTorques) + (before ? 0 : kNodesBeside) + node - 1;
+}
+
+/// How the drive's torque follows the crank, alike at every blow.
+struct DriveLaw {
+  double mean_speed{};  ///< [rad/s]
+  double stiffness{};   ///< torque lost per angle that the crank is ahead of the mean speed: oil in the line [N m/rad]
+  double drag{};        ///< torque lost per speed above the mean: friction, a motor's slip [N m s/rad]
+};
+
+/// One side of the blow, as seen from it.
+struct HalfShot {
+  bool before{};
+  double speed{};                     ///< at the blow [rad/s]
+  double torque[kNodesBeside + 1]{};  ///< in the nodes [N m]
+  double node_step{};                 ///< [s], > 0
+  double drive_inertia{};             ///< [kg m2]
+  DriveLaw law;
+};
+
+struct ShotPoint {
+  double offset{}, speed{}, acceleration{};
+};
+
+/// The crank at times away from the blow, ascending, >= 0 [s] (before it: how long before). Runge-Kutta of order 4 in
+/// angle and sqrt(inertia) speed, steps of at most 0.06 rad.
+void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
+           std::vector<ShotPoint>& points);
+
+}  // namespace hammer_loads::calibration

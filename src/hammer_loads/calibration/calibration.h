@@ -1,0 +1,60 @@
+/// Where the crank's sensor sits and what the drive weighs, from a recording at work.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/calibration/joint_fit.h"
+
+namespace hammer_loads::calibration {
+
+/// What is taken as given.
+struct CalibrationBasis {
+  const Mechanism& mechanism;
+  Level level;
+  double ratio{1.0};                      ///< encoder turns per crank turn [-]
+  double rocker_inertia_deviation{0.02};  ///< relative, of the given rocker inertia [-]
+  double torque_walk{};                   ///< random walk of the net torque [N m/sqrt(s)]
+  double torque_deviation{};              ///< of the net torque [N m]
+  Globals in_force{Globals::Zero()};      ///< to compare with: zero and eccentricities of the parameters in force
+};
+
+/// One key of the file that the other commands read.
+struct Estimate {
+  std::string key, unit;
+  double value{}, deviation{};
+  double limit{};  ///< a larger deviation costs more than some 0.6 % of the wrench's peak, or of what the key is for
+  std::string meaning;
+  bool determined() const { return deviation <= limit; }
+};
+
+/// Two parameters that the recording hardly tells apart.
+struct Correlation {
+  std::string first, second;
+  double value{};
+};
+
+/// Mean residual over the crank angle, in equal parts of the turn from -pi to pi.
+struct ResidualCurve {
+  std::vector<double> mean, deviation;  ///< [rad]; deviation of the mean, NaN where there is none
+};
+
+struct Calibration {
+  std::string problem;  ///< why there is nothing; then only `facts`, seconds and blows hold
+  SensorFacts facts;
+  int direction{1};
+  double seconds{};
+  std::size_t blows{}, left_out{};
+  std::vector<Estimate> estimates;
+  std::vector<Correlation> correlations;  ///< beyond 0.9
+  std::vector<std::string> remarks;
+  Noise noise;
+  double fitted{},
+      held_out{};  ///< mean square over variance: of the first three quarters, of the last with their values
+  ResidualCurve before, after;  ///< with the parameters in force, with those found
+  double more_blows{};          ///< needed for every key that is not determined
+};
+
+Calibration calibrate(const std::vector<RecordedSample>& samples, const CalibrationBasis& basis);
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,20 @@
+/// Where the blow is and what the drive weighs, roughly: from the crank's energy over the turn.
+#pragma once
+
+#include <optional>
+
+#include "hammer_loads/calibration/crank_recording.h"
+#include "hammer_loads/calibration/segment_fit.h"
+
+namespace hammer_loads::calibration {
+
+struct FirstGuess {
+  double zero{};           ///< in `seen`, within some 3 deg [rad]
+  double drive_inertia{};  ///< [kg m2]
+};
+
+/// Tries zeros around the turn and inertias around the given one: with the right ones the energy (Jc + J) w^2/2 grows
+/// steadily from blow to blow. Nothing where the crank hardly turns.
+std::optional<FirstGuess> firstGuess(const CrankTrack& track, const SegmentModel& model, double drive_inertia);
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,48 @@
+/// All blows of a recording together: the parameters they share, with an honest covariance.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "hammer_loads/calibration/segment_fit.h"
+
+namespace hammer_loads::calibration {
+
+using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals>;
+
+using Free = Eigen::Matrix<bool, kGlobals, 1>;  ///< which parameters are to be found
+
+struct JointFit {
+  Globals globals;
+  GlobalMatrix covariance;        ///< of globals, by how much the blows differ from each other
+  GlobalMatrix plain_covariance;  ///< as it were if nothing but the noise disturbed
+  Noise noise;                    ///< as found
+  std::vector<SegmentFit> fits;   ///< of the blows in use
+  std::size_t left_out{};         ///< blows that the model does not explain (no tool, a stop)
+  double mean_square{};           ///< residuals over their deviations, squared, per degree of freedom
+  bool converged{};
+};
+
+/// Before anything is known of them: deviations of zero [rad], both eccentricities' parts [rad], logarithm of inertia.
+Globals priorDeviations();
+
+/// Gauss-Newton over the shared parameters, those of each blow eliminated (Schur); timing and speed noise from the
+/// residuals meanwhile. Parameters with `free` false stay. The covariance is the sandwich over blows with what
+/// neighbours have in common (Newey-West), at least the plain one.
+JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
+                    const Noise& noise, const Free& free);
+
+/// With noise, what each blow has of its own is bent the same way at every blow, and the shared parameters with it: no
+/// number of blows averages that out. So recordings are made up from the fit, with its noise and the counts, and fitted
+/// again; what they are off on the mean is taken off. count: of the encoder, in `seen` [rad]; 0: none.
+void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count);
+
+/// What belongs to each blow alone, the shared parameters given.
+std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
+                                    const Globals& globals, const Noise& noise);
+
+/// The same; mean square as above, without the blows that are far off the others.
+double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
+                    const Noise& noise);
+
+}  // namespace hammer_loads::calibration

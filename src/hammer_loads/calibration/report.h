@@ -1,0 +1,17 @@
+/// A calibration in words, as a parameter file and as a picture.
+#pragma once
+
+#include <string>
+
+#include "hammer_loads/calibration/calibration.h"
+
+namespace hammer_loads::calibration {
+
+/// Some ten lines for a terminal.
+std::string textOf(const Calibration& calibration);
+/// Keys that are determined, each with its deviation; for `--params`.
+std::string yamlOf(const Calibration& calibration, const std::string& source);
+/// Mean residual over the crank angle, before and after.
+std::string svgOf(const Calibration& calibration);
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,119 @@
+/// calibrate: a recording of the hammer at work in, the crank sensor's place and the drive's inertia out.
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "hammer_loads/calibration/report.h"
+#include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/ros/crank_recording_bag.h"
+
+namespace hammer_loads {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// With another ending in place of the last one.
+std::string pictureBeside(const std::string& file) { return fs::path(file).replace_extension(".svg").string(); }
+
+/// Empty, or one line why a file may not be written.
+std::string refusal(const std::string& file, const std::vector<std::string>& inputs, bool force) {
+  std::error_code error;
+  for (const std::string& input : inputs) {
+    if (fs::equivalent(file, input, error)) return file + ": is an input, must be another file";
+  }
+  const fs::file_status status = fs::symlink_status(file, error);
+  if (!fs::exists(status)) return {};
+  if (!fs::is_regular_file(status)) return file + ": is no regular file, must be one or not exist";
+  return force ? std::string{} : file + ": exists, must not (--force replaces it)";
+}
+
+/// Complete or not at all.
+bool write(const std::string& file, const std::string& text) {
+  const std::string part = file + ".part";
+  {
+    std::ofstream stream(part, std::ios::binary);
+    stream << text;
+    if (!stream.flush()) {
+      std::cerr << file << ": cannot be written\n";
+      std::remove(part.c_str());
+      return false;
+    }
+  }
+  std::error_code error;
+  fs::rename(part, file, error);
+  if (error) std::cerr << file << ": cannot be written: " << error.message() << '\n';
+  return !error;
+}
+
+calibration::Globals inForce(const CrankSensor& sensor) {
+  const CrankSensorPlace& p = sensor.place();
+  calibration::Globals g = calibration::Globals::Zero();
+  g[calibration::kZero] = p.zero * sensor.gain();
+  g.segment<2>(calibration::kSine1) << p.eccentricity[0] * std::cos(p.eccentricity_phase[0]),
+      p.eccentricity[0] * std::sin(p.eccentricity_phase[0]);
+  g.segment<2>(calibration::kSine2) << p.eccentricity[1] * std::cos(p.eccentricity_phase[1]),
+      p.eccentricity[1] * std::sin(p.eccentricity_phase[1]);
+  return g;
+}
+
+int run(int argc, const char* const* argv) {
+  CLI::App app("Crank sensor's place and drive's inertia from a recording of the hammer at work", "calibrate");
+  std::vector<std::string> bags, params;
+  std::string output, crank_topic = "/hammer/crank", joint_topic = "/joint_states";
+  bool force = false;
+  double rocker_deviation = 0.02;
+  app.add_option("input", bags, "bags to read, splits of one recording in their order")
+      ->required()
+      ->type_name("IN.bag");
+  app.add_option("--write", output, "parameters found, for --params; the picture goes beside it as .svg")
+      ->required()
+      ->type_name("FILE.yaml");
+  addParamsOption(app, params);
+  app.add_option("--crank-topic", crank_topic)->capture_default_str();
+  app.add_option("--joint-states-topic", joint_topic, "for the hull's pitch")->capture_default_str();
+  app.add_option("--rocker-inertia-deviation", rocker_deviation, "of the given rocker inertia, relative")
+      ->check(numberWithin(1e-6, 1.0, ""))
+      ->capture_default_str();
+  app.add_flag("--force", force, "replaces files that exist");
+  if (const auto code = parse(app, argc, argv)) return *code;
+  const std::string picture = pictureBeside(output);
+  std::vector<std::string> inputs = bags;
+  inputs.insert(inputs.end(), params.begin(), params.end());
+  for (const std::string& file : {output, picture}) {
+    const std::string problem = refusal(file, inputs, force);
+    if (problem.empty() && file != output) continue;
+    if (problem.empty() && picture != output) continue;
+    std::cerr << (problem.empty() ? output + ": ends in .svg, must be a name for YAML" : problem) << '\n';
+    return kExitFailure;
+  }
+  const std::optional<Settings> settings = loadOrReport(params);
+  if (!settings) return kExitFailure;
+  const PipelineSettings& pipeline = settings->pipeline;
+  const CrankBag bag = readCrankBag(bags, crank_topic, joint_topic, pipeline);
+  if (!bag.problem.empty()) {
+    std::cerr << bag.problem << '\n';
+    return kExitFailure;
+  }
+  if (!bag.pitch_known && !pipeline.pitch_joints.empty())
+    std::cerr << "note: not every pitch joint is on " << joint_topic
+              << ": the hull's pitch is taken as hull_pitch_rad\n";
+  const double inertia = settings->mechanism.parameters().rocker_inertia_about_pivot;
+  const CrankSensor& sensor = pipeline.crank_sensor;
+  const calibration::CalibrationBasis basis{settings->mechanism,
+                                            pipeline.level,
+                                            sensor.place().ratio,
+                                            rocker_deviation,
+                                            pipeline.torque_walk * inertia,
+                                            pipeline.initial_torque_deviation * inertia,
+                                            inForce(sensor)};
+  const calibration::Calibration found = calibration::calibrate(bag.samples, basis);
+  const std::string yaml = found.problem.empty() ? yamlOf(found, fs::path(bags.front()).filename().string()) : "";
+  (yaml.empty() ? std::cerr : std::cout) << (found.problem.empty() ? "" : bags.front() + ": ") << textOf(found);
+  if (yaml.empty() || !write(output, yaml) || !write(picture, svgOf(found))) return kExitFailure;
+  return finishOutput();
+}
+
+}  // namespace
+}  // namespace hammer_loads
+
+int main(int argc, char** argv) { return hammer_loads::run(argc, argv); }

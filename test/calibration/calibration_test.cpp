@@ -1,0 +1,123 @@
+#include "hammer_loads/calibration/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "calibration/recorded.h"
+#include "hammer_loads/calibration/report.h"
+#include "hammer_loads/settings/parameter_map.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+using test::atWork;
+using test::basisOf;
+using test::find;
+using test::kDegree;
+using test::mechanismOf;
+using test::recorded;
+
+Calibration calibrated(const simulation::MachineSettings& s, double guess = 1.0) {
+  const Mechanism mechanism = mechanismOf(s, guess);
+  return calibrate(recorded(s), basisOf(mechanism));
+}
+
+double errorOf(const Calibration& c, const char* key, double truth) {
+  const Estimate* e = find(c, key);
+  return e ? CrankAngle::wrapToPi(e->value - truth) : std::nan("");
+}
+
+TEST(Calibration, FindsTheZeroAmongBlowsThatDiffer) {
+  simulation::MachineSettings s = atWork(20.0, 500.0);
+  s.crank.zero = 1.0 * kDegree;
+  s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
+  const Calibration c = calibrated(s);
+  ASSERT_EQ(c.problem, "");
+  EXPECT_LT(std::abs(errorOf(c, "crank_zero_rad", s.crank.zero)), 0.1 * kDegree);
+  EXPECT_TRUE(find(c, "crank_zero_rad")->determined());
+  EXPECT_EQ(find(c, "crank_direction")->value, 1.0);
+  EXPECT_NEAR(find(c, "crank_angle_resolution_rad")->value, kTwoPi / 4096, 1e-9);
+  EXPECT_NEAR(find(c, "drive_inertia_kg_m2")->value, s.drive.inertia, 0.03 * s.drive.inertia);
+  EXPECT_GE(find(c, "drive_inertia_kg_m2")->deviation, 0.02 * s.drive.inertia);  // the rocker's own
+  EXPECT_NEAR(std::sqrt(c.held_out), 1.0, 0.1);
+}
+
+TEST(Calibration, FindsAnEccentricEncoderThatTurnsTheOtherWay) {
+  simulation::MachineSettings s = atWork(20.0, 500.0);
+  s.crank.zero = -2.5;
+  s.crank.direction = -1;
+  s.crank.eccentricity[0] = {1.0 * kDegree, 0.8};
+  const Calibration c = calibrated(s, 1.3);
+  ASSERT_EQ(c.problem, "");
+  EXPECT_EQ(find(c, "crank_direction")->value, -1.0);
+  EXPECT_LT(std::abs(errorOf(c, "crank_zero_rad", s.crank.zero)), 0.12 * kDegree);
+  EXPECT_NEAR(find(c, "crank_eccentricity_1_rad")->value, 1.0 * kDegree, 0.2 * kDegree);
+  EXPECT_NEAR(find(c, "crank_eccentricity_1_phase_rad")->value, 0.8, 0.3);
+}
+
+/// Machines drawn at random, coarse counts and jitter included: errors within two deviations.
+TEST(Calibration, DeviationsAreHonest) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  int within = 0, all = 0;
+  for (int i = 0; i < 8; ++i) {
+    simulation::MachineSettings s = atWork(20.0, i % 2 == 0 ? 100.0 : 250.0);
+    s.seed = 100 + static_cast<std::uint64_t>(i);
+    const int counts[] = {512, 1024, 2048, 4096};
+    s.crank.counts = counts[static_cast<int>(3.99 * part(random))];
+    s.crank.zero = 6.0 * (part(random) - 0.5);
+    s.crank.eccentricity[0] = {1.0 * kDegree * part(random), 6.0 * part(random)};
+    s.crank.stamp_noise = 3e-4 * part(random);
+    s.crank.speed = part(random) < 0.5;
+    s.blow = {true, 0.1 * part(random), 0.1 + 0.2 * part(random), 0.0, 0.0, 50.0, 0.0};
+    s.drive.inertia = 0.4 + 0.5 * part(random);
+    const Calibration c = calibrated(s, 0.7 + 0.6 * part(random));
+    ASSERT_EQ(c.problem, "");
+    const Estimate *zero = find(c, "crank_zero_rad"), *inertia = find(c, "drive_inertia_kg_m2");
+    within += std::abs(errorOf(c, "crank_zero_rad", s.crank.zero)) <= 2.0 * zero->deviation;
+    within += std::abs(inertia->value - s.drive.inertia) <= 2.0 * inertia->deviation;
+    all += 2;
+  }
+  EXPECT_GE(within, all * 9 / 10 - 1) << "of " << all;
+}
+
+TEST(Calibration, JitterIsMeasured) {
+  simulation::MachineSettings s = atWork(12.0, 400.0);
+  s.crank.stamp_noise = 3e-4;
+  const Calibration c = calibrated(s);
+  const Estimate* timing = find(c, "crank_timing_noise_s");
+  ASSERT_NE(timing, nullptr);
+  EXPECT_NEAR(timing->value, 3e-4, 0.1 * 3e-4);
+}
+
+TEST(Calibration, TooLittleSaysWhatItNeeds) {
+  const Calibration short_one = calibrated(atWork(3.0, 500.0));
+  EXPECT_NE(short_one.problem, "");
+  EXPECT_NE(textOf(short_one).find("blows"), std::string::npos);
+  EXPECT_NE(textOf(short_one).find(" s of such work"), std::string::npos);
+  simulation::MachineSettings idle = atWork(10.0, 200.0);
+  idle.drive.start_time = 100.0;
+  EXPECT_NE(calibrated(idle).problem, "");
+  const Mechanism mechanism = mechanismOf(idle);
+  EXPECT_NE(calibrate({}, basisOf(mechanism)).problem, "");
+}
+
+TEST(Report, WhatIsNotDeterminedIsNoKey) {
+  Calibration c;
+  c.blows = 20, c.seconds = 5.0, c.more_blows = 80.0, c.facts.period = 1e-3;
+  c.estimates = {{"crank_zero_rad", "rad", 0.01, 0.001, 0.003, "m"},
+                 {"drive_inertia_kg_m2", "kg m2", 0.6, 0.2, 0.05, "m"}};
+  const std::string yaml = yamlOf(c, "a.bag");
+  std::vector<std::string> problems;
+  const ParameterMap keys = *parameterMap(YAML::Load(yaml), "x", problems);
+  EXPECT_EQ(keys.size(), 1U);
+  EXPECT_EQ(keys.at("crank_zero_rad").value.as<double>(), 0.01);
+  EXPECT_NE(yaml.find("# drive_inertia_kg_m2 is not determined"), std::string::npos);
+  EXPECT_NE(textOf(c).find("80 blows, 20 s"), std::string::npos);
+  c.estimates.erase(c.estimates.begin());
+  EXPECT_EQ(yamlOf(c, "a.bag"), "");
+}
+
+}  // namespace
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,58 @@
+/// Simulated machines as the calibration sees them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::test {
+
+constexpr double kDegree = kTwoPi / 360.0;
+
+inline simulation::MachineSettings atWork(double seconds, double rate) {
+  simulation::MachineSettings s = simulation::workingMo100();
+  s.duration = seconds + 2.0;
+  s.drive.stop_time = seconds + 10.0;
+  s.crank.rate = rate;
+  return s;
+}
+
+inline std::vector<calibration::RecordedSample> recorded(const simulation::MachineSettings& s) {
+  const simulation::Session session = simulation::recordSession(s);
+  const simulation::WorkingMachine machine(s);
+  std::vector<calibration::RecordedSample> samples;
+  for (const simulation::CrankReading& reading : session.crank) {
+    const double time = 1e-9 * static_cast<double>(reading.stamp - s.start_stamp);
+    const double pitch = machine.hullPitch(std::max(time, 0.0));
+    samples.push_back(
+        {time, reading.angle, reading.speed, {s.gravity * std::sin(pitch), -s.gravity * std::cos(pitch)}});
+  }
+  return samples;
+}
+
+/// As pipeline.yaml has it: walk 100 and deviation 400 rad/s2 per rocker inertia.
+inline calibration::CalibrationBasis basisOf(const Mechanism& mechanism) {
+  const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
+  calibration::CalibrationBasis basis{mechanism, Level::kRocker};
+  basis.torque_walk = 100.0 * inertia;
+  basis.torque_deviation = 400.0 * inertia;
+  return basis;
+}
+
+inline Mechanism mechanismOf(const simulation::MachineSettings& s, double guess = 1.0) {
+  HammerParameters p = s.hammer;
+  p.drive_inertia = guess * s.drive.inertia;
+  return *Mechanism::make(p).value;
+}
+
+/// Null where there is none.
+inline const calibration::Estimate* find(const calibration::Calibration& c, const std::string& key) {
+  const auto at = std::find_if(c.estimates.begin(), c.estimates.end(),
+                               [&](const calibration::Estimate& e) { return e.key == key; });
+  return at == c.estimates.end() ? nullptr : &*at;
+}
+
+}  // namespace hammer_loads::test

@@ -1,0 +1,101 @@
+#include "hammer_loads/calibration/segment_fit.h"
+
+#include <gtest/gtest.h>
+
+#include "calibration/recorded.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+/// The filter's own integration, another form of the equation with steps of its own.
+TEST(BlowShot, GoesWhereTheFiltersIntegrationGoes) {
+  const Mechanism mechanism = test::mechanismOf(simulation::workingMo100());
+  ShaftModel model(mechanism, Level::kRocker);
+  model.setHullMotion(Gravity{0.7, -9.7});
+  for (const bool before : {true, false}) {
+    HalfShot half{before, 13.5, {150, 150, 150, 150, 150}, 0.03, 0.6, {}};
+    std::vector<ShotPoint> points;
+    std::vector<double> times;
+    for (int i = 0; i < 90; ++i) times.push_back(1e-3 * i + 4e-4);
+    shoot(model, half, times, points);
+    ShaftState state{{0, {0.0, before ? Side::kBeforeBlow : Side::kAfterBlow}}, 13.5, 150.0, 0.6};
+    ShaftLoad load = model(state.position.angle);
+    double now = 0.0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      advance(model, (before ? -1.0 : 1.0) * (times[i] - now), state, load);
+      now = times[i];
+      const double offset = static_cast<double>(state.position.blow) * kTwoPi + state.position.angle.offset;
+      ASSERT_NEAR(points[i].offset, offset, 2e-6) << before << i;
+      ASSERT_NEAR(points[i].speed, state.speed, 1e-4);
+      ASSERT_NEAR(points[i].acceleration, acceleration(load, state), 0.02);
+    }
+  }
+}
+
+/// Work of the torque, with drag and stiffness in it, is the gain of energy.
+TEST(BlowShot, TorquesWorkIsTheGainOfEnergy) {
+  const Mechanism mechanism = test::mechanismOf(simulation::workingMo100());
+  const ShaftModel model(mechanism, Level::kRocker);
+  const HalfShot half{false, 14.0, {150, 160, 140, 170, 150}, 0.025, 0.6, {30.0, 14.0, 0.3}};
+  std::vector<ShotPoint> points;
+  std::vector<double> times;
+  for (int i = 0; i <= 8000; ++i) times.push_back(1e-5 * i);
+  shoot(model, half, times, points);
+  const auto energy = [&](const ShotPoint& p) {
+    return 0.5 * (0.6 + model({p.offset, Side::kAfterBlow}).inertia) * p.speed * p.speed;
+  };
+  const auto torque = [&](std::size_t i) {
+    const double place = times[i] / 0.025, part = place - std::floor(place);
+    const auto node = std::min(static_cast<int>(place), 3);
+    const double walk = half.torque[node] +
+                        (node == static_cast<int>(place) ? part : 1.0) * (half.torque[node + 1] - half.torque[node]);
+    return walk + 14.0 * (30.0 * times[i] - points[i].offset) - 0.3 * (points[i].speed - 30.0);
+  };
+  double work = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    work += 0.5 * (torque(i) + torque(i - 1)) * (points[i].offset - points[i - 1].offset);
+  EXPECT_NEAR(energy(points.back()) - energy(points.front()), work, 1e-4 * std::abs(work));
+}
+
+/// Right-hand sides against differences of the cost, which is computed apart.
+TEST(SegmentFit, RightHandSidesAreTheCostsSlopes) {
+  simulation::MachineSettings s = test::atWork(3.0, 500.0);
+  const CrankTrack track = trackOf(test::recorded(s), 1.0);
+  const std::vector<BlowSegment> segments = cutAtBlows(track, 0.0);
+  ASSERT_GT(segments.size(), 3U);
+  const Mechanism mechanism = test::mechanismOf(s);
+  const SegmentModel model{mechanism, Level::kRocker};
+  Globals globals;
+  globals << 0.01, 0.01, -0.02, 0.005, 0.003, std::log(0.55), 5.0, 0.1;
+  const Noise noise{0.02, true, 0.0, 2.0, 74.0, 295.0};  // wide: no residual is cut off, no deviation moves
+  SegmentFit fit(segments[2], globals);
+  const NormalEquations e = fit.linearise(model, globals, noise);
+  EXPECT_NEAR(e.cost, fit.cost(model, globals, noise), 1e-9 * e.cost);
+  const auto numeric = [&](auto move) {
+    double sides[2];
+    for (const int side : {0, 1}) {
+      SegmentFit moved = fit;
+      Globals at = globals;
+      Locals locals = fit.locals();
+      move(at, locals, side == 0 ? -1.0 : 1.0);
+      moved.setLocals(locals);
+      sides[side] = moved.cost(model, at, noise);
+    }
+    return 0.5 * (sides[1] - sides[0]);
+  };
+  const double local_steps[] = {1e-5, 1e-3, 1e-3, 0.3};
+  for (Eigen::Index k = 0; k < kLocals; ++k) {
+    const double step = local_steps[std::min<Eigen::Index>(k, 3)];
+    const double slope = numeric([&](Globals&, Locals& l, double side) { l[k] += side * step; }) / step;
+    EXPECT_NEAR(-e.l[k], slope, 2e-3 * std::abs(slope) + 2e-3 * std::sqrt(e.ll(k, k))) << k;
+  }
+  const double global_steps[] = {1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-3, 0.1, 0.01};
+  for (Eigen::Index k = 0; k < kGlobals; ++k) {
+    const double step = global_steps[k];
+    const double slope = numeric([&](Globals& g, Locals&, double side) { g[k] += side * step; }) / step;
+    EXPECT_NEAR(-e.g[k], slope, 2e-3 * std::abs(slope) + 2e-3 * std::sqrt(e.gg(k, k))) << k;
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads::calibration
