@@ -38,7 +38,7 @@ TEST(Load, ShippedFilesAreValid) {
   EXPECT_EQ(p.crank_joint, "hammer_crank_joint");
   EXPECT_EQ(p.pitch_joints, (Lines{"boom_joint", "arm_joint", "hammer_joint"}));
   EXPECT_EQ(p.gravity, 9.80665);
-  EXPECT_EQ(p.crank_angle_resolution, 2.0 * std::acos(-1.0) / 4096.0);
+  EXPECT_EQ(p.crank_angle_resolution, 0.0);
   EXPECT_EQ(p.stale_after, 0.25);
   EXPECT_EQ(p.withhold_above, 0.1);
   const LogSettings& log = settings.value->log;
