@@ -93,7 +93,7 @@ class Session {
 
   void plausibleSample() {
     stamp_ += std::uint64_t{1000} * bytes_.take<std::uint16_t>();
-    const double angle = bytes_.take<std::uint16_t>() * shipped().pipeline.crank_angle_resolution;
+    const double angle = bytes_.take<std::uint16_t>() * kTwoPi / 4096.0;
     crank({"hammer_crank_joint"}, {angle}, {0.01 * bytes_.take<std::int16_t>()});
   }
 
