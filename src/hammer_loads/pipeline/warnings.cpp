@@ -1,5 +1,6 @@
 #include "hammer_loads/pipeline/warnings.h"
 
+#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -42,6 +43,34 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
                         true});
 }
 
+/// What the filter's innovations look like.
+void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
+  constexpr double kJitter = 1e-4;       // [s]: from there on the wrench is some 0.2 % worse
+  constexpr double kInconsistent = 3.0;  // times the variance; a clean machine has 0.9
+  const auto* filter = dynamic_cast<const CrankFilter*>(&pipeline.crank().tracker());
+  if (filter == nullptr) return;
+  if (filter->isLost())
+    warnings.push_back(
+        {"lost", "crank: the estimate restarts again and again; readings and hammer file contradict each other", true});
+  if (filter->encoder().contradictsGiven())
+    warnings.push_back(
+        {"count",
+         format("crank_angle_resolution_rad: %.9g rad is given, the readings have %.9g rad; 0 reads it off",
+                pipeline.settings().crank_angle_resolution, filter->encoder().resolution()),
+         true});
+  if (filter->timingNoise() > kJitter)
+    warnings.push_back({"jitter",
+                        format("crank stamps jitter by %.2g ms; stamps of the measurement's instant would be better",
+                               1e3 * filter->timingNoise()),
+                        true});
+  if (filter->consistency() > kInconsistent)
+    warnings.push_back({"inconsistent",
+                        format("crank: readings differ from the model by %.2g times the expected variance; zero, "
+                               "eccentricity or a soft coupling: run calibrate",
+                               filter->consistency()),
+                        true});
+}
+
 void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
   if (counts.accepted == 0) return;
   const HullState& hull = pipeline.hull();
@@ -70,6 +99,7 @@ std::vector<Warning> warningsOf(const Pipeline& pipeline) {
   const SampleCounts counts = pipeline.counts();
   warnOfDegrees(pipeline, counts, warnings);
   warnOfCrank(pipeline, counts, warnings);
+  warnOfSensor(pipeline, warnings);
   warnOfHull(pipeline, counts, warnings);
   warnOfBoom(pipeline, warnings);
   return warnings;

@@ -113,7 +113,9 @@ void NodeDiagnostics::describeCrank(Status& status) {
     status.add("drive inertia, identified [kg m2]", filter->state().drive_inertia);
     status.add("net torque [N m]", filter->state().torque);
     status.add("speed noise, identified [rad/s]", filter->speedNoise());
-    status.add("angle finer than crank_angle_resolution_rad", filter->encoder().isFiner());
+    status.add("jitter of the stamps, identified [s]", filter->timingNoise());
+    status.add("encoder count in use [rad]", filter->encoder().resolution());
+    status.add("consistency: mean of innovation^2 over its variance [-]", filter->consistency());
   }
   last_counts_ = counts;
   last_report_ = now;
