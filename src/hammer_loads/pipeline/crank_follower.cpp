@@ -62,7 +62,7 @@ std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& m
 std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& measured) noexcept {
   if (const auto refusal = place(header, measured)) return refusal;
   measured_ = measured;
-  checkUnit(stamp_, measured);
+  checkUnit(header, measured);
   verdict_ = gate_.judge(stamp_, measured);
   if (verdict_.refusal) return verdict_.refusal;
   if (unit_check_.looksLikeDegrees()) return Refusal::kDegrees;
