@@ -1,6 +1,7 @@
 // The command calibrate as its user meets it: files, errors and exit codes.
 #include <filesystem>
 
+#include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/settings/load.h"
 #include "support/command.h"
 
