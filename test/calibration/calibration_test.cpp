@@ -62,7 +62,7 @@ TEST(Calibration, DeviationsAreHonest) {
   std::uniform_real_distribution<double> part(0.0, 1.0);
   int within = 0, all = 0;
   for (int i = 0; i < 8; ++i) {
-    simulation::MachineSettings s = atWork(20.0, i % 2 == 0 ? 100.0 : 250.0);
+    simulation::MachineSettings s = atWork(16.0, i % 2 == 0 ? 100.0 : 200.0);
     s.seed = 100 + static_cast<std::uint64_t>(i);
     const int counts[] = {512, 1024, 2048, 4096};
     s.crank.counts = counts[static_cast<int>(3.99 * part(random))];
@@ -92,7 +92,7 @@ TEST(Calibration, JitterIsMeasured) {
 }
 
 TEST(Calibration, TooLittleSaysWhatItNeeds) {
-  const Calibration short_one = calibrated(atWork(3.0, 500.0));
+  const Calibration short_one = calibrated(atWork(1.0, 500.0));
   EXPECT_NE(short_one.problem, "");
   EXPECT_NE(textOf(short_one).find("blows"), std::string::npos);
   EXPECT_NE(textOf(short_one).find(" s of such work"), std::string::npos);

@@ -22,7 +22,7 @@ TEST(BlowShot, GoesWhereTheFiltersIntegrationGoes) {
     ShaftLoad load = model(state.position.angle);
     double now = 0.0;
     for (std::size_t i = 0; i < times.size(); ++i) {
-      advance(model, (before ? -1.0 : 1.0) * (times[i] - now), state, load);
+      advance(model, (before ? -1.0 : 1.0) * (times[i] - now), Passing{}, state, load);
       now = times[i];
       const double offset = static_cast<double>(state.position.blow) * kTwoPi + state.position.angle.offset;
       ASSERT_NEAR(points[i].offset, offset, 2e-6) << before << i;

@@ -19,7 +19,7 @@ constexpr double kUnknownAngleNoise = 5e-4;  // [rad] of a sensor without counts
 
 // Limits, by what a wrong value does to the wrench (rms of Fz over the peak): 2.8 % per degree of zero, 1.6 % per
 // degree once a turn, some 3 % per degree twice a turn, 1.5 % for 20 % of drive inertia.
-constexpr double kZeroLimit = 0.2 * kDegree;
+constexpr double kZeroLimit = 0.3 * kDegree;  // an encoder is usually mounted half a degree off
 constexpr double kEccentricity1Limit = 0.4 * kDegree;
 constexpr double kEccentricity2Limit = 0.2 * kDegree;
 constexpr double kInertiaLimit = 0.08;  // relative
@@ -139,10 +139,11 @@ void addCorrelations(Calibration& result, const JointFit& fit) {
 void addRemarks(Calibration& result, double curve_square) {
   auto& say = result.remarks;
   say.push_back(
-      "zero and the parts of the eccentricity once a turn move together: their sum at the blow is better known than "
-      "each of them, so use them together or not at all");
+      "zero against the eccentricity's first cosine: an encoder turned on its shaft and one off its centre look much "
+      "alike, only their sum at the blow is known well; so use these keys together or not at all");
   say.push_back(
-      "of rocker and drive inertia only the ratio shows: a rocker given 2 % too heavy makes the drive 2 % too heavy; "
+      "rocker against drive inertia: only their ratio shows; a rocker given 2 % too heavy makes the drive 2 % too "
+      "heavy; "
       "friction in the pins passes for inertia; masses and centres of mass do not show at all");
   say.push_back("a constant latency of the stamps does not show: crank_latency_s stays as it is");
   if (result.facts.retimed) {

@@ -23,7 +23,7 @@ struct CalibrationBasis {
 struct Estimate {
   std::string key, unit;
   double value{}, deviation{};
-  double limit{};  ///< a larger deviation costs more than some 0.6 % of the wrench's peak, or of what the key is for
+  double limit{};  ///< a larger deviation costs more than some 0.8 % of the wrench's peak, or of what the key is for
   std::string meaning;
   bool determined() const { return deviation <= limit; }
 };

@@ -9,6 +9,7 @@ namespace hammer_loads::calibration {
 namespace {
 
 constexpr double kFinest = kTwoPi / 65536.0;    // [rad]; a finer sensor has no counts
+constexpr double kRounding = 2e-6;              // [rad] of a step between readings in single precision
 constexpr double kMultipleTolerance = 1e-3;     // of a count: single-precision sensors round
 constexpr double kGap = 4.5;                    // periods without a sample: what lies between is not known
 constexpr double kDisorder = 0.005;             // of the stamps that repeat or change places: then they are re-timed
@@ -18,27 +19,33 @@ constexpr double kLeastSpeed = 3.0;             // [rad/s] at the blow: a slower
 constexpr std::size_t kLeastPoints = 5;         // on either side of the blow
 constexpr double kLargestStep = 0.35 * kTwoPi;  // [rad] between samples
 
-bool isMultiple(double difference, double count) {
-  const double counts = difference / count;
-  return std::abs(counts - std::nearbyint(counts)) <= kMultipleTolerance;
+/// Largest number of which both are multiples (Euclid, with nearest remainders).
+double commonPart(double a, double b) {
+  double large = std::max(a, b), small = std::min(a, b);
+  while (small > 0.0) {
+    const double rest = std::abs(large - small * std::nearbyint(large / small));
+    large = small;
+    small = rest < std::max(kRounding, kMultipleTolerance * small) ? 0.0 : rest;
+  }
+  return large;
 }
 
-/// Greatest common part of a turn (Euclid); 0 when there is none above the finest.
+/// Of all steps between readings, as a whole part of the turn; 0 when there is none above the finest.
 double commonCount(const std::vector<RecordedSample>& samples) {
-  double count = kTwoPi;
+  double common = 0.0, most = 1.0;  // multiples: the more of them a step has, the better it tells the count
   for (std::size_t i = 1; i < samples.size(); ++i) {
-    const double difference = std::abs(CrankAngle::wrapToPi(samples[i].reading - samples[i - 1].reading));
-    if (difference < kMultipleTolerance * kFinest || isMultiple(difference, count)) continue;
-    double large = count, small = difference;
-    while (small > 0.5 * kFinest) {
-      const double rest = std::abs(large - small * std::nearbyint(large / small));
-      large = small;
-      small = rest < kMultipleTolerance * small ? 0.0 : rest;
-    }
-    if (small > 0.0 || large < (1.0 - kMultipleTolerance) * kFinest) return 0.0;
-    count = kTwoPi / std::nearbyint(kTwoPi / large);
+    const double step = std::abs(CrankAngle::wrapToPi(samples[i].reading - samples[i - 1].reading));
+    if (step < 0.1 * kFinest) continue;
+    const double multiples = common > 0.0 ? std::nearbyint(step / common) : 0.0;
+    const bool fits =
+        multiples >= 1.0 && std::abs(step - multiples * common) < std::min(0.1 * common, kRounding * (multiples + 1.0));
+    if (fits && multiples > most) common = step / multiples, most = multiples;
+    if (fits) continue;
+    common = common == 0.0 ? step : commonPart(common, step);
+    most = 1.0;
+    if (common < (1.0 - kMultipleTolerance) * kFinest) return 0.0;
   }
-  return count < 0.5 * kTwoPi ? count : 0.0;
+  return common > 0.0 && common < 0.25 * kTwoPi ? kTwoPi / std::nearbyint(kTwoPi / common) : 0.0;
 }
 
 double median(std::vector<double> values) {

@@ -24,8 +24,11 @@ std::string needOf(const Calibration& c) {
   return format("some %.0f blows, %.0f s of such work", std::ceil(c.more_blows), std::ceil(seconds));
 }
 
+/// Direction, counts and jitter any turning crank shows: they alone are no calibration.
 bool anyDetermined(const Calibration& c) {
-  return std::any_of(c.estimates.begin(), c.estimates.end(), [](const Estimate& e) { return e.determined(); });
+  return std::any_of(c.estimates.begin(), c.estimates.end(), [](const Estimate& e) {
+    return e.determined() && e.deviation > 0.0 && e.key != "crank_timing_noise_s";
+  });
 }
 
 }  // namespace
