@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(AngleSpeedOrBoth, CrankInDegrees,
                                          Units{kDegrees, kDegrees, true}, Units{kDegrees, 1.0, false}));
 
 TEST(BoomInDegrees, IsWithheldUntilItIsOver) {
-  const Settings settings = settingsWith("");
+  const Settings settings = settingsWith("boom: auto\n");
   const auto each = [](Pipeline& pipeline, const auto& r, auto& wrenches) {
     keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}), wrenches);
   };

@@ -141,12 +141,15 @@ TEST(Pipeline, CountsEveryRefusalByItsReason) {
   EXPECT_EQ(refusal(2000000, kCrank, {std::nan("")}, {10.0}), Refusal::kNotFinite);
   EXPECT_EQ(refusal(1000000, kCrank, {1.0}, {10.0}), Refusal::kDuplicate);
   EXPECT_EQ(refusal(2000000, kCrank, {3.0}, {10.0}), Refusal::kImplausible);
+  EXPECT_EQ(refusal(kLastStamp + 1, kCrank, {1.01}, {10.0}), Refusal::kBadStamp);
   EXPECT_FALSE(refusal(2000000, {"wheel", "hammer_crank_joint"}, {1.0, 1.01}, {}));
   for (std::size_t i = 0; i < kRefusalNames.size(); ++i) {
-    const std::uint64_t expected =
-        i == static_cast<std::size_t>(Refusal::kShortArray)                                                         ? 2
-        : i == static_cast<std::size_t>(Refusal::kOutOfOrder) || i == static_cast<std::size_t>(Refusal::kUnsettled) ? 0
-                                                                                                                    : 1;
+    const std::uint64_t expected = i == static_cast<std::size_t>(Refusal::kShortArray) ? 2
+                                   : i == static_cast<std::size_t>(Refusal::kOutOfOrder) ||
+                                           i == static_cast<std::size_t>(Refusal::kUnsettled) ||
+                                           i == static_cast<std::size_t>(Refusal::kDegrees)
+                                       ? 0
+                                       : 1;
     EXPECT_EQ(pipeline.counts().refused[i], expected) << kRefusalNames[i];
   }
   EXPECT_EQ(pipeline.counts().accepted, 2u);

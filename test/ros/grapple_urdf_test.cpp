@@ -58,8 +58,8 @@ void expectPinsMeet(const std::string& parameter_file) {
     flow.jointStates(test::sliderMessage(ros::Time(1.0 + 0.01 * i), slider, 0.1), ros::Time(1.0));
     ASSERT_EQ(kept.mechanisms.size(), static_cast<std::size_t>(i + 1));
     const sensor_msgs::JointState& joints = kept.mechanisms.back().second;
-    for (const Jaw jaw : kJaws) {
-      const std::string side = jaw == Jaw::kLeft ? "left" : "right";
+    for (const std::size_t jaw : {0U, 1U}) {
+      const std::string side = jaw == 0 ? "left" : "right";
       SCOPED_TRACE(side + " at " + std::to_string(slider));
       const auto X = [&](const char* link) { return description.frame("grapple_" + side + "_" + link, joints); };
       const KDL::Frame rocker = X("rocker"), lever = X("lever"), main_rocker = X("main_rocker");
@@ -70,7 +70,7 @@ void expectPinsMeet(const std::string& parameter_file) {
       EXPECT_TRUE(meet(lever * polar(k.ac, k.bac), X("tie_rod").p)) << "C";
       EXPECT_TRUE(meet(X("jaw") * polar(k.bd, 0.0), main_rocker * polar(k.od, 0.0))) << "D";
       EXPECT_TRUE(meet(X("tie_rod") * polar(k.ce, 0.0), main_rocker * polar(k.oe, k.doe))) << "E";
-      const geometry_msgs::Point& p = kept.edges[static_cast<std::size_t>(jaw)].back().second.point;
+      const geometry_msgs::Point& p = kept.edges[jaw].back().second.point;
       EXPECT_TRUE(meet(X("jaw") * polar(k.bp, k.dbp), {p.x, p.y, p.z})) << "P";
     }
   }

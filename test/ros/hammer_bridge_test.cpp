@@ -116,7 +116,7 @@ TEST(WhoListens, AndComesBackGetsWhatTheOthersGot) {
 }
 
 TEST(Stamps, BeyondEveryClockAreCountedAndTheNextGoodOneWorks) {
-  HammerBridge bridge(test::settingsWith(""));
+  HammerBridge bridge(test::settingsWith("boom: auto\n"));
   Messages m;
   m.crank.velocity = {0.0};
   const auto send = [&](std::uint32_t sec, std::uint32_t nsec) {

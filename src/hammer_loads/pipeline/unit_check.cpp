@@ -14,6 +14,7 @@ constexpr double kLongestStep = 0.25;        // [s]
 constexpr double kRepeats = 0.2;             // relative change between steps that repeat each other
 constexpr double kMoves = 1.0;               // [rad/s]: a slower angle says nothing of its unit
 constexpr double kSlowTime = 2.0;            // [s] of motion within the bound that calms who was too fast
+constexpr double kLeastTime = 0.2;           // [s] of suspicion: some bad samples are no unit
 constexpr int kEnough = 8;                   // votes more for degrees than against
 
 bool isDegrees(double ratio) noexcept {
@@ -38,6 +39,7 @@ void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexce
   last_angle_ = angle;
   compareWithBound(dt, step / dt);
   if (speed) compareWithSpeed(step, *speed * dt);
+  suspected_for_ = suspectsDegrees() ? suspected_for_ + dt : 0.0;
 }
 
 void UnitCheck::compareWithSpeed(double step, double predicted) noexcept {
@@ -56,14 +58,14 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
   const bool too_fast = std::abs(rate) > max_speed_;
   if (too_fast && std::abs(rate) > kDegrees * max_speed_) return;  // no crank in degrees either
   slow_time_ = too_fast ? 0.0 : slow_time_ + dt;
-  if (bound_votes_ == kEnough && !too_fast && slow_time_ < kSlowTime) return;  // a hammer that stops is slow, too
+  if (recognised_ && !too_fast && slow_time_ < kSlowTime) return;  // a hammer that stops is slow, too
   vote(bound_votes_, too_fast);
 }
 
 /// One judge suffices to recognise degrees; both must agree that it is over.
 void UnitCheck::vote(int& votes, bool degrees) noexcept {
   votes = std::clamp(votes + (degrees ? 1 : -1), 0, kEnough);
-  if (votes == kEnough) recognised_ = true;
+  if (votes == kEnough && suspected_for_ >= kLeastTime) recognised_ = true;
   if (speed_votes_ == 0 && bound_votes_ == 0) recognised_ = false;
 }
 

@@ -35,6 +35,7 @@ class UnitCheck {
   std::optional<double> last_angle_;
   double last_rate_{};             ///< of the angle over the last step [rad/s]
   double turned_{}, predicted_{};  ///< of this stretch, by angles and by speeds [rad]
+  double suspected_for_{};         ///< time since the votes became suspicious [s]
   double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
   int speed_votes_{}, bound_votes_{};
   bool recognised_{};
