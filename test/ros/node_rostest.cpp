@@ -57,7 +57,8 @@ class NodeTest : public testing::Test {
 
   void publishGoodSamples(int n) {
     for (int i = 0; i < n; ++i) {
-      crank_.publish(crankMessage(start_ + ros::Duration(time_), 5.0 * time_, 5.0));
+      last_good_ = crankMessage(start_ + ros::Duration(time_), 5.0 * time_, 5.0);
+      crank_.publish(last_good_);
       time_ += 1e-3;
     }
   }
@@ -113,6 +114,7 @@ class NodeTest : public testing::Test {
   std::map<std::string, diagnostic_msgs::DiagnosticStatus> statuses_;
   ros::Time start_;
   double time_{};
+  sensor_msgs::JointState last_good_;
 };
 
 TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
@@ -168,8 +170,8 @@ TEST_F(NodeTest, RefusesEachBadSampleCountsItAndTakesTheNextGoodOne) {
   const std::vector<std::pair<std::string, std::function<sensor_msgs::JointState()>>> bad{
       {"not finite", [&] { return crankMessage(at(time_), kNan, 5.0); }},
       {"implausible", [&] { return crankMessage(at(time_), 5.0 * time_, 1e6); }},
-      {"out of order", [&] { return crankMessage(at(time_ - 0.05), 5.0 * time_, 5.0); }},
-      {"duplicate", [&] { return crankMessage(at(time_ - 1e-3), 5.0 * time_, 5.0); }},
+      {"out of order", [&] { return crankMessage(at(time_ - 0.5), 5.0 * time_, 5.0); }},  // beyond stale_after_s
+      {"duplicate", [&] { return last_good_; }},
       {"missing joint", [&] { return foreign; }},
       {"short array", [&] { return bare; }}};
   settle();

@@ -103,8 +103,9 @@ TEST(Replay, LosesNoSampleAndEqualsProcessBagButForTheOrderOfJointAngles) {
   ASSERT_EQ(live.size(), expected.size());
   ASSERT_EQ(live.size(), again.size());
   // Weight times what the pitch was off by at the sample, and as much again for the filter's memory of what it was off
-  // by before: gravity turns the crank as well.
-  constexpr double kWeight = 35.2 * 9.80665;
+  // by before: gravity turns the crank as well. After a blow, whose factor on the crank's speed is measured anew each
+  // time, the speed hangs on few samples: what the pitch was off by then shows with some 5e-4 of the peak.
+  constexpr double kWeight = 35.2 * 9.80665, kAfterBlow = 5e-4 * 10e3;
   double worst_pitch = 0.0, worst_force = 0.0;
   std::size_t i = 0, other_order = 0;
   for (std::size_t n = 0; n < live.size(); ++n) {
@@ -117,7 +118,7 @@ TEST(Replay, LosesNoSampleAndEqualsProcessBagButForTheOrderOfJointAngles) {
     other_order += pitch_off > 0.0;
     const auto &a = live[n].wrench.force, &b = expected[n].wrench.force;
     const double off = std::max(std::abs(a.x - b.x), std::abs(a.z - b.z));
-    ASSERT_LE(off, kWeight * (pitch_off + worst_pitch)) << n;
+    ASSERT_LE(off, kWeight * (pitch_off + worst_pitch) + (worst_pitch > 0.0 ? kAfterBlow : 0.0)) << n;
     worst_force = std::max(worst_force, off);
   }
   std::printf("%zu of %zu samples met other joint angles, off by %.2g rad and %.2g N at most\n", other_order,

@@ -98,10 +98,13 @@ class RestartTest(unittest.TestCase):
         self.assertTrue(outputs(path) == outputs(process_again(path, self.a)))
 
     def test_3_a_log_directory_that_cannot_be_written(self):
-        code, _, err = NodeProcess('unwritable', {'log_directory': '/proc', 'log_min_free_mb': 0}).wait()
-        self.assertEqual(code, 1, err)
-        self.assertEqual(len(err.strip().splitlines()), 1, err)
+        """It costs the log, not the node, and the console says so."""
+        node = NodeProcess('unwritable', {'log_directory': '/proc', 'log_min_free_mb': 0})
+        self.assertTrue(eventually(lambda: '/unwritable/hull_wrench' in dict(rosgraph.Master('/t').getTopicTypes())))
+        code, _, err = node.end()
+        self.assertEqual(code, 0, err)
         self.assertIn("log_directory: '/proc', must be writable", err)
+        self.assertIn('the node runs without a log', err)
 
 
 if __name__ == '__main__':

@@ -159,7 +159,7 @@ TEST_F(SimulatedTime, EachLoopBeginsAnewAndGivesTheSame) {
     play(loop);
     expectWrenchesOf(loop);
   }
-  expectDiagnostic("beginnings", "4");
+  expectDiagnostic("restarts", "4");
 }
 
 TEST_F(SimulatedTime, BeforeTheFirstClockHeaderStampsAreEnough) {
@@ -167,7 +167,7 @@ TEST_F(SimulatedTime, BeforeTheFirstClockHeaderStampsAreEnough) {
   for (std::size_t i = 0; i < half; ++i) send(inputs_[i]);
   play({inputs_.begin() + static_cast<std::ptrdiff_t>(half), inputs_.end()});
   expectWrenchesOf(inputs_);
-  expectDiagnostic("beginnings", "1");  // the clock's is none of the machine's
+  expectDiagnostic("restarts", "1");  // the clock's is none of the machine's
 }
 
 TEST_F(SimulatedTime, WithoutClockALoopIsSeenFromItsStamps) {
@@ -177,7 +177,7 @@ TEST_F(SimulatedTime, WithoutClockALoopIsSeenFromItsStamps) {
   const auto again = takeWrenches(inputs_.back().header.stamp);
   EXPECT_LT(stampOf(again.front().header), kStart + static_cast<StampNs>(1e9 * kTurn));
   for (std::size_t i = 1; i < again.size(); ++i) ASSERT_GT(again[i].header.stamp, again[i - 1].header.stamp);
-  expectDiagnostic("beginnings", "2");
+  expectDiagnostic("restarts", "2");
 }
 
 TEST_F(SimulatedTime, SamplesOfTheNextLoopMayOvertakeTheClock) {
@@ -212,7 +212,7 @@ TEST_F(SimulatedTime, FarForwardItBeginsAnewAndALateStampIsRefused) {
   const auto rest = takeWrenches(later.back().header.stamp);
   EXPECT_EQ(rest.size(), static_cast<std::size_t>(std::count_if(middle, later.end(), isCrank))) << "nothing of it";
   expectDiagnostic("refused: out of order", "1");
-  expectDiagnostic("beginnings", "2");
+  expectDiagnostic("restarts", "2");
 }
 
 }  // namespace

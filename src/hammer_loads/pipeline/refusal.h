@@ -32,7 +32,7 @@ struct SampleCounts {
   std::array<std::uint64_t, static_cast<std::size_t>(Refusal::kCount)> refused{};
   std::uint64_t restarts{};         ///< drop-outs, jumps and time running back
   std::uint64_t blows{};            ///< forward, for the first time, not creeping
-  std::uint64_t backward_passes{};  ///< passages of the blow backward
+  std::uint64_t backward_passes{};  ///< passages of the blow backward, less those forward again
 
   std::uint64_t refusedFor(Refusal reason) const noexcept { return refused[static_cast<std::size_t>(reason)]; }
   std::uint64_t refusedTotal() const noexcept {

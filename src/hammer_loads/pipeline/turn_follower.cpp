@@ -35,14 +35,18 @@ void TurnFollower::recordTo(double from, double to) noexcept {
   }
 }
 
+/// A crank that swings at the dead centre passes it as often forward.
+void TurnFollower::countBackward(const CrankStep::Passage& passage) noexcept {
+  if (!passage.forward) ++backward_;
+  if (passage.forward && !passage.may_strike && backward_ > 0) --backward_;
+}
+
 void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept {
   hull_ = hull;
   double from = 0.0;
   for (const CrankStep::Passage& passage : *step_) {
-    if (!passage.forward) {
-      turn_.abandon();
-      ++backward_;
-    }
+    if (!passage.forward) turn_.abandon();
+    countBackward(passage);
     if (!passage.may_strike) continue;
     recordTo(from, std::max(from, passage.time - kSideOfBlow));
     finishBlow(result);

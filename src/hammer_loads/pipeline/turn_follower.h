@@ -30,9 +30,10 @@ class TurnFollower {
 
   double peakForce() const noexcept { return peak_force_; }            ///< of the last whole turn [N], 0 before it
   std::uint64_t blows() const noexcept { return turns_; }              ///< since the start
-  std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, since the start
+  std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again
 
  private:
+  void countBackward(const CrankStep::Passage& passage) noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;

@@ -45,10 +45,11 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
 
 /// What the filter's innovations look like.
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
-  constexpr double kJitter = 1e-4;       // [s]: from there on the wrench is some 0.2 % worse
-  constexpr double kInconsistent = 3.0;  // times the variance; a clean machine has 0.9
+  constexpr double kJitter = 1e-4;        // [s]: from there on the wrench is some 0.2 % worse
+  constexpr double kInconsistent = 3.0;   // times the variance; a clean machine has 0.9
+  constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   const auto* filter = dynamic_cast<const CrankFilter*>(&pipeline.crank().tracker());
-  if (filter == nullptr) return;
+  if (filter == nullptr || pipeline.counts().blows < kLearned) return;
   if (filter->isLost())
     warnings.push_back(
         {"lost", "crank: the estimate restarts again and again; readings and hammer file contradict each other", true});
@@ -77,7 +78,7 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   const std::vector<std::string> unheard = hull.pitch().unheard();
   if (!unheard.empty())
     warnings.push_back(
-        {"pitch joints", "pitch joints never came: " + joined(unheard) + "; weight by hull_pitch_rad", true});
+        {"pitch joints", "no angle of " + joined(unheard) + " (pitch_joints): weight by hull_pitch_rad", true});
   const bool imu = pipeline.settings().hull_motion == HullMotionSource::kImu;
   if (imu && hull.imuCounts().accepted == 0)
     warnings.push_back({"imu", "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead", true});

@@ -48,7 +48,9 @@ std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
 void warnOfRun(const HammerBridge& bridge, bool joints_came, std::vector<std::string>& warnings) {
   for (const Warning& warning : warningsOf(bridge.pipeline())) {
     const bool of_joints = std::strcmp(warning.key, "pitch joints") == 0;
-    if (!of_joints || joints_came) addOnce(warnings, warning.text);  // else the whole topic is missing: warnOfMissing
+    const std::string& topic = bridge.settings().input_topics.joint_states;
+    if (!of_joints) addOnce(warnings, warning.text);
+    if (of_joints && joints_came) addOnce(warnings, topic + ": " + warning.text);  // else warnOfMissing
   }
 }
 
@@ -114,6 +116,7 @@ std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport
   if (report.crank.refused[static_cast<std::size_t>(Refusal::kMissingJoint)] > 0)
     text += "joint " + run.settings.pipeline.crank_joint +
             " (crank_joint) is required, joints there: " + jointsOn(inputs, topic) + "; ";
+  if (report.crank.refusedFor(Refusal::kDegrees) > 0) text += "angles or speeds are in degrees, must be in radians; ";
   std::string counts;
   for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
     if (report.crank.refused[i] == 0) continue;

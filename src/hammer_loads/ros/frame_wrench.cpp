@@ -64,15 +64,30 @@ FrameWrenches::FrameWrenches(std::vector<std::string> frames, std::string hull, 
 
 void FrameWrenches::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-    if (!isSound(transform) || !transforms_.setTransform(transform, "tf", is_static)) ++refused_transforms_;
+    if (!isSound(transform)) {
+      ++refused_transforms_;
+      continue;
+    }
+    guarded([&] { refused_transforms_ += !transforms_.setTransform(transform, "tf", is_static); });
   }
-  for (std::size_t i = 0; i < frames_.size(); ++i) release(i, record_time);
+  for (std::size_t i = 0; i < frames_.size(); ++i) guarded([&] { release(i, record_time); });
+}
+
+/// tf2 subtracts stamps and throws where they lie more than 2^31 s apart: then nothing it holds belongs together.
+template <typename Action>
+void FrameWrenches::guarded(const Action& action) {
+  try {
+    action();
+  } catch (const std::exception&) {
+    ++refused_transforms_;
+    reset();
+  }
 }
 
 void FrameWrenches::wrench(const geometry_msgs::WrenchStamped& load, const ros::Time& record_time) {
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     queues_[i].push({load.header.stamp, record_time, load.wrench});
-    release(i, record_time);
+    guarded([&] { release(i, record_time); });
   }
 }
 
@@ -128,7 +143,12 @@ std::string FrameWrenches::complaint(std::size_t frame) const {
   const Queue& queue = queues_[frame];
   if (queue.unknown.isZero()) return {};
   std::string why;
-  const bool late = transforms_.canTransform(frames_[frame], hull_, queue.unknown, &why);
+  bool late = false;
+  try {
+    late = transforms_.canTransform(frames_[frame], hull_, queue.unknown, &why);
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
   return frames_[frame] + ": no transform from " + hull_ + format(" within %.3g s", max_wait_) +
          (late || why.empty() ? "" : ": " + onOneLine(why));
 }

@@ -64,6 +64,8 @@ class FrameWrenches {
     void drop(std::uint64_t& count);
   };
 
+  template <typename Action>
+  void guarded(const Action& action);
   bool known(std::size_t frame, const ros::Time& stamp) const;
   bool past(std::size_t frame, const ros::Time& stamp) const;
   void release(std::size_t frame, const ros::Time& record_time);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/util/constants.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {

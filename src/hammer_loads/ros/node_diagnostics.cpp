@@ -61,10 +61,6 @@ std::vector<Warning> NodeDiagnostics::warnings() const {
   return warnings;
 }
 
-bool NodeDiagnostics::crankIsStale() const {
-  return secondsBetween(last_crank_, Clock::now()) > bridge_.settings().pipeline.stale_after;
-}
-
 void NodeDiagnostics::describeInputs(Status& status) {
   const std::vector<Warning> all = warnings();
   status.summary(DiagnosticStatus::OK, "as they should be");
@@ -92,7 +88,7 @@ void NodeDiagnostics::describeCrank(Status& status) {
     status.summary(DiagnosticStatus::ERROR, "implausible: the angle stands still while the speed goes on");
   } else if (age > pipeline.settings().stale_after) {
     status.summaryf(DiagnosticStatus::ERROR, "stale: no crank sample for %.1f s, nothing is published", age);
-  } else if (counts.backward_passes - last_counts_.backward_passes > counts.blows - last_counts_.blows) {
+  } else if (counts.backward_passes > last_counts_.backward_passes + (counts.blows - last_counts_.blows)) {
     status.summary(DiagnosticStatus::ERROR, "turns backward: crank_direction must have the other sign");
   } else if (refused > 0) {
     status.summaryf(DiagnosticStatus::WARN, "%llu of %llu crank samples gave no wrench",
@@ -163,9 +159,10 @@ void NodeDiagnostics::describeModel(Status& status) {
 void NodeDiagnostics::describeBoom(Status& status) {
   const BoomFollower& boom = *bridge_.pipeline().boom();
   const BoomState& state = boom.state();
-  const bool waits = last_crank_ == Clock::time_point{} || crankIsStale();
-  const auto complaints = waits ? std::vector<std::string>{} : boom.joints().complaints(state.stamp);
-  if (waits) {
+  // Joints are judged at the last crank sample: a crank that has stopped is no fault of theirs.
+  const bool none_yet = last_crank_ == Clock::time_point{};
+  const auto complaints = state.fault ? boom.joints().complaints(state.stamp) : std::vector<std::string>{};
+  if (none_yet) {
     status.summary(DiagnosticStatus::WARN, "waits for crank samples");
   } else if (!complaints.empty()) {
     std::string text;

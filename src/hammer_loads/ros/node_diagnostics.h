@@ -36,7 +36,6 @@ class NodeDiagnostics {
 
   void report();
   std::vector<Warning> warnings() const;
-  bool crankIsStale() const;
   void describeInputs(Status& status);
   void describeCrank(Status& status);
   void describePitch(Status& status);
