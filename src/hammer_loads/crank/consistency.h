@@ -18,13 +18,10 @@ class Consistency {
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
   /// What variances are to be multiplied with: never below 1.
-  /// Before the mean is known, the filter is still learning and says too little.
-  double growth() const noexcept { return samples_ < kEnough ? kUnknown : std::max(1.0, mean_); }
+  double growth() const noexcept { return samples_ < kEnough ? 1.0 : std::max(1.0, mean_); }
 
  private:
   static constexpr int kLength = 500, kEnough = 200;
-  static constexpr double kUnknown =
-      1.3;  // of variances: a filter that learns inertia, noise and count from few samples
   static constexpr double kMost = 100.0;  // of one sample: a single outlier is no alarm
   int samples_{};
   double mean_{};
