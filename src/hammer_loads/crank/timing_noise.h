@@ -24,8 +24,7 @@ class TimingNoise {
     if (samples_++ == 0) information_ = lever * lever;
     const double gain = std::max(kGain, 1.0 / (samples_ + 50.0));
     information_ += gain * (lever * lever - information_);
-    if (samples_ < kFirst) return;
-    const double clipped = std::min(0.5 * change * change / total, kMost);
+    const double clipped = std::min(0.5 * change * change / total, samples_ < kLearning ? kMostAtFirst : kMost);
     variance_ = std::max(0.0, variance_ + gain * (clipped - 1.0) * lever / information_);
     variance_ = std::min(variance_, kLargest * kLargest);
   }
@@ -39,11 +38,12 @@ class TimingNoise {
  private:
   static double square(double x) noexcept { return x * x; }
   static constexpr double kGain = 0.005;
-  static constexpr int kFirst = 50;      // samples: before them a wrong first guess of the inertia passes for jitter
-  static constexpr double kMost = 25.0;  // of innovation^2 over its variance
-  static constexpr double kSeen = 3.0;   // standard deviations of the estimate above zero
-  static constexpr double kTellable = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
-  static constexpr double kLargest = 0.02;   // [s]: more is no jitter
+  static constexpr int kLearning = 200;        // samples: a wrong first guess of the inertia passes for jitter
+  static constexpr double kMostAtFirst = 4.0;  // so that a single surprise among them counts little
+  static constexpr double kMost = 25.0;        // of innovation^2 over its variance
+  static constexpr double kSeen = 3.0;         // standard deviations of the estimate above zero
+  static constexpr double kTellable = 9e-8;    // [s2]: a sample that could not see 0.3 ms is not asked
+  static constexpr double kLargest = 0.02;     // [s]: more is no jitter
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};
