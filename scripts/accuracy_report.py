@@ -71,7 +71,7 @@ def middle(group, distance):
 
 def draw(figures, path):
     points = sorted((math.log10(row["ns"]), math.log10(picture_error(row, figures["sessions"])), row)
-                    for row in figures["prices"] if row["errors"] or row["group"] != "grapple")
+                    for row in figures["prices"] if row["errors"] or row["group"] in ("crank", "pipeline"))
     figure, axes = plt.subplots(figsize=(9.5, 6.5), dpi=110)
     for x, y, row in points:
         axes.plot(10**x, 10**y, "o", color=COLORS[row["group"]], markersize=7)

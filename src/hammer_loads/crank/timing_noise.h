@@ -38,7 +38,7 @@ class TimingNoise {
  private:
   static double square(double x) noexcept { return x * x; }
   static constexpr double kGain = 0.005;
-  static constexpr int kLearning = 200;        // samples: a wrong first guess of the inertia passes for jitter
+  static constexpr int kLearning = 60;         // samples: a wrong first guess of the inertia passes for jitter
   static constexpr double kMostAtFirst = 4.0;  // so that a single surprise among them counts little
   static constexpr double kMost = 25.0;        // of innovation^2 over its variance
   static constexpr double kSeen = 3.0;         // standard deviations of the estimate above zero
