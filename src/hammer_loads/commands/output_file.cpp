@@ -12,6 +12,8 @@
 #include <cstring>
 #include <utility>
 
+#include "hammer_loads/util/rename_to_new.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -50,16 +52,6 @@ std::string problemOf(const OutputRequest& request, const struct stat& found) {
   if (!request.force) return "exists already, must be a new file; --force replaces one that this command wrote";
   const std::string reason = request.keep(request.name);
   return reason.empty() ? reason : "--force does not replace it: " + reason;
-}
-
-/// 0 or errno. The target is not replaced if it exists (EEXIST).
-int renameToNew(const std::string& from, const std::string& to) {
-  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return errno;
-  // A file system that cannot do it in one step: look first.
-  struct stat found {};
-  if (lstat(to.c_str(), &found) == 0) return EEXIST;
-  return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
 }  // namespace
@@ -141,7 +133,7 @@ std::string OutputFile::publish() {
   if (is_there && !(replaces_ && found.st_dev == device_ && found.st_ino == inode_))
     return name_ + ": has appeared meanwhile, is not replaced";
   const int error =
-      is_there ? (std::rename(part_->c_str(), name_.c_str()) == 0 ? 0 : errno) : renameToNew(*part_, name_);
+      is_there ? (std::rename(part_->c_str(), name_.c_str()) == 0 ? 0 : errno) : renameToNew(AT_FDCWD, *part_, name_);
   if (error != 0) return name_ + ": the file cannot be given this name: " + std::strerror(error);
   setRemoval(nullptr);
   part_.reset();

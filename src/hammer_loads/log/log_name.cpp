@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "hammer_loads/util/rename_to_new.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -27,15 +29,6 @@ std::string localTime() {
 }
 
 std::string baseName(const std::string& path) { return path.substr(path.rfind('/') + 1); }
-
-/// 0 or errno. The target is not replaced if it exists (EEXIST).
-int renameToNew(int directory, const std::string& from, const std::string& to) {
-  if (renameat2(directory, from.c_str(), directory, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return errno;
-  // A file system that cannot do it in one step: look first.
-  if (faccessat(directory, to.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) return EEXIST;
-  return renameat(directory, from.c_str(), directory, to.c_str()) == 0 ? 0 : errno;
-}
 
 }  // namespace
 
