@@ -78,7 +78,7 @@ class CrankFilter final : public CrankTracker {
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
   double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
-  double consistency() const noexcept { return consistency_.mean(); }
+  double consistency() const noexcept override { return consistency_.mean(); }
   /// It began anew so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
 

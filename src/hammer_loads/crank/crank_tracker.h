@@ -69,6 +69,9 @@ class CrankTracker {
   virtual BlowFactor blowFactor() const noexcept { return {}; }
   /// Whether the last blow was one at all is not clear yet: what is estimated may be of the wrong branch.
   virtual bool isDoubtful() const noexcept { return false; }
+  /// Mean of innovation^2 over its variance: near 1 where readings and model agree; NaN before enough samples and of no
+  /// model.
+  virtual double consistency() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
   /// One count of the angle sensor [rad], as far as known.
   virtual double angleResolution() const noexcept = 0;
   /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.

@@ -81,6 +81,8 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
   const double restitution = inertia.restitution(crank.factor);
   RockerBlow blow = blowOf(crank.speed, restitution);
   const double after = crank.factor * crank.speed;
+  blow.crank_speed_before = crank.speed;
+  blow.crank_speed_after = after;
   const LinkMomentum from = linkMomentum(mechanism, links, {0.0, Side::kBeforeBlow}, crank.speed);
   const LinkMomentum to = linkMomentum(mechanism, links, {0.0, Side::kAfterBlow}, after);
   const HullPoint k = rocker.striking_point;
@@ -104,7 +106,10 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
 RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept {
   const double rocker_before = motion(mechanism.linkage(), {0.0, Side::kBeforeBlow}).u * before;
   const double rocker_after = motion(mechanism.linkage(), {0.0, Side::kAfterBlow}).u * after;
-  return blowInSupport(strikingRocker(mechanism, level), rocker_before, rocker_after);
+  RockerBlow blow = blowInSupport(strikingRocker(mechanism, level), rocker_before, rocker_after);
+  blow.crank_speed_before = before;
+  blow.crank_speed_after = after;
+  return blow;
 }
 
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept {

@@ -10,6 +10,8 @@ namespace hammer_loads {
 
 /// Angular speeds are psi' (positive about hull +y); axes of hammer_hull.
 struct RockerBlow {
+  double crank_speed_before{};   ///< [rad/s]; 0 of blowInSupport
+  double crank_speed_after{};    ///< likewise [rad/s]
   double rocker_speed_before{};  ///< [rad/s], < 0 for a real blow
   double rocker_speed_after{};   ///< [rad/s]
   double restitution{};          ///< R = -after/before [-]

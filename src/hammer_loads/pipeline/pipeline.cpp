@@ -78,6 +78,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   const CrankFollower::Taken taken = crank_.take(hull_.predict(stamp));
   if (taken == CrankFollower::Taken::kRefused) return refuse(Refusal::kImplausible);
   result_.crank = crank_.estimate();
+  result_.consistency = crank_.tracker().consistency();
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(stamp);
   if (taken == CrankFollower::Taken::kContinued) {
     turn_.follow(hull_.motion().motion, result_);

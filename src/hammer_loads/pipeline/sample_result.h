@@ -40,6 +40,7 @@ struct SampleResult {
   StampNs sample_stamp{};          ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
   CrankEstimate crank;
+  double consistency{};  ///< CrankTracker::consistency()
   LinkState links;
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad

@@ -27,7 +27,11 @@ void prepareJointLoads(const Boom& boom, JointLoads& message) {
                                       &message.vibration_torque_Nm, &message.total_torque_Nm})
     torque->resize(joints);
   for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
+  message.contact_torque_Nm.resize(joints);
+  message.total_torque_deviation_Nm.resize(joints, kNaN);
   message.cylinder_force_N.resize(boom.cylinders().size());
+  message.cylinder_force_deviation_N.resize(boom.cylinders().size(), kNaN);
+  message.cylinder_flags.resize(boom.cylinders().size());
   message.cylinder_pressure_Pa.resize(boom.cylinders().size());
 }
 

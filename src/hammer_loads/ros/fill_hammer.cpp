@@ -25,6 +25,7 @@ void fillWrench(StampNs stamp, const HullWrench& wrench, geometry_msgs::WrenchSt
 void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullLoads& message) {
   const HullDeviation& deviation = output.deviation;
   message.header.stamp = timeOf(output.stamp);
+  message.sample_stamp = timeOf(result.sample_stamp);
   message.force_x_N = output.wrench.force_x;
   message.force_z_N = output.wrench.force_z;
   message.torque_y_Nm = output.wrench.torque_y;
@@ -38,6 +39,7 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
   message.crank_speed_deviation_rad_s = deviation.speed;
   message.crank_acceleration_deviation_rad_s2 = deviation.acceleration;
   message.interval_s = output.interval;
+  message.consistency = result.consistency;
   message.flags = 0;
   if (output.interval > 0.0) message.flags |= HullLoads::FLAG_MEAN;
   if (!result.pitch_known) message.flags |= HullLoads::FLAG_PITCH_UNKNOWN;
@@ -75,14 +77,20 @@ void fillBlow(const TurnEnd& end, Blow& message) {
   const RockerBlow& blow = end.blow;
   message.header.stamp = timeOf(end.stamp);
   message.turn = end.turn;
+  message.crank_speed_before_rad_s = blow.crank_speed_before;
+  message.crank_speed_after_rad_s = blow.crank_speed_after;
   message.rocker_speed_before_rad_s = blow.rocker_speed_before;
   message.rocker_speed_after_rad_s = blow.rocker_speed_after;
   message.restitution = blow.restitution;
+  message.restitution_deviation = blow.restitution_deviation;
   message.energy_J = blow.energy;
+  message.energy_deviation_J = blow.energy_deviation;
   message.tool_impulse_x_Ns = blow.tool_impulse_x;
   message.tool_impulse_z_Ns = blow.tool_impulse_z;
   message.support_impulse_x_Ns = blow.support_impulse_x;
   message.support_impulse_z_Ns = blow.support_impulse_z;
+  message.support_impulse_y_Nms = blow.support_impulse_y;
+  message.drive_impulse_y_Nms = blow.drive_impulse_y;
   message.mean_press_force_N = end.mean_press_force;
 }
 
