@@ -81,7 +81,8 @@ configure() {
   local log generator=()
   [ -e "$build_dir/CMakeCache.txt" ] || generator=(-G Ninja)
   log=$(mktemp)
-  cmake -S "$root_dir" -B "$build_dir" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "${cmake_options[@]}" > "$log" 2>&1 || {
+  cmake -S "$root_dir" -B "$build_dir" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release \
+    -DHAMMER_LOADS_PRECOMPILE=ON "${cmake_options[@]}" > "$log" 2>&1 || {
     cat "$log" >&2
     rm -f "$log"
     fail "cmake cannot configure $root_dir"
