@@ -119,7 +119,7 @@ TEST(BoomFollower, ABlowBetweenPiecesIsAnImpulse) {
   step.count = 2;
   step.pieces[0].duration = step.pieces[1].duration = 1e-9;
   step.pieces[0].ends_in_blow = true;
-  step.pieces[0].blow_z = 60.0;
+  step.pieces[0].blow.force_z = 60.0;
   const BoomState& state = compliant.sample({}, step);
   EXPECT_NEAR(state.tip.velocity.z(), 60.0 / state.reduced.mass, 1e-6 * 60.0 / state.reduced.mass);
   // The energy is that of the reduced mass.

@@ -42,7 +42,7 @@ Coverage coverage(const MachineSettings& machine) {
       const HullDeviation& deviation = output.deviation;
       const std::array<double, 6> error{output.wrench.force_x - truth->load.force_x,
                                         output.wrench.force_z - truth->load.force_z,
-                                        output.wrench.torque_y - truth->load.torque_y,
+                                        output.wrench.torque_y - truth->load.torque_y - truth->drive_reaction_y,
                                         CrankAngle::wrapToPi(output.crank.position.angle.offset - truth->angle),
                                         output.crank.speed - truth->speed,
                                         output.crank.acceleration - truth->acceleration};
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(RatesAndSeeds, Deviations,
 TEST(Deviations, AreUnknownWithoutAFilter) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const HullModel model(mechanism, Level::kRocker);
-  const HullDeviation deviation = hullDeviation(model, {}, {}, Eigen::Matrix3d::Zero());
+  const HullDeviation deviation = hullDeviation(model, {}, {}, {}, Eigen::Matrix3d::Zero());
   EXPECT_TRUE(std::isnan(deviation.wrench.force_z));
   EXPECT_TRUE(std::isnan(deviation.speed));
 }
@@ -95,7 +95,7 @@ TEST(Deviations, OfAKnownCovarianceAreThoseOfManyDraws) {
   crank.acceleration = -500.0;
   Eigen::Matrix3d root;
   root << 1e-4, 0, 0, 2e-3, 1e-2, 0, -0.5, 0.3, 2.0;
-  const HullDeviation deviation = hullDeviation(model, crank, {}, root * root.transpose());
+  const HullDeviation deviation = hullDeviation(model, {}, crank, {}, root * root.transpose());
   std::mt19937 random(1);
   std::normal_distribution<> normal;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();

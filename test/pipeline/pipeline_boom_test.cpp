@@ -105,7 +105,8 @@ TEST(PipelineWithBoom, JointsCarryTheLinksMotionAndTheirWeightOnce) {
   player.playTo(kSessionEnd, [&](double time, const SampleResult& loads) {
     ASSERT_TRUE(loads.boom != nullptr && !loads.boom->fault) << time;
     const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
-    const HullWrench w = hullWrench(HullModel(settings.mechanism, settings.pipeline.level), crank, Gravity{});
+    HullWrench w = hullWrench(HullModel(settings.mechanism, settings.pipeline.level), crank, Gravity{});
+    w.torque_y -= player.pipeline.crank().tracker().driveInertia() * crank.acceleration;
     const BoomLoads& told = loads.boom->loads;
     // By hand about hammer_joint, from which D is (0.10, -0.55) m away in the hull's axes; bracket 50 kg, hull 350 kg.
     const double hammer = w.torque_y - 0.55 * w.force_x - 0.10 * w.force_z;

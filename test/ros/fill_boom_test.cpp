@@ -32,7 +32,7 @@ class Messages : public testing::Test {
   void sample(StampNs stamp) {
     WrenchHistory step;
     step.count = 1;
-    step.pieces[0] = {1e-3, kLoad, kLoad, kLoad, false, 0.0, 0.0};
+    step.pieces[0] = {1e-3, kLoad, kLoad, kLoad, false, {}};
     follower_.jointStates(stamp, kFour, position_, {});
     ASSERT_FALSE(follower_.sample({stamp, kLoad, 9.80665}, step).fault);
   }

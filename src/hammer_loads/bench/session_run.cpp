@@ -38,7 +38,7 @@ SessionErrors judge(const SessionRun& run, const simulation::Session& session,
                     const simulation::MachineSettings& machine) {
   std::vector<WrenchAt> truth;
   for (const simulation::CrankTruth& t : session.truth)
-    truth.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y});
+    truth.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y});
   std::vector<BlowAt> blows;
   for (const simulation::BlowTruth& b : session.blows)
     blows.push_back({b.time, b.strike.energy, b.strike.tool_impulse, b.turn_peak_force_z, b.turn_impulse_z});

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "hammer_loads/crank/crank_state.h"
+#include "hammer_loads/linkage/drive_reaction.h"
 #include "hammer_loads/linkage/shaft_load.h"
 
 namespace hammer_loads {
@@ -11,14 +12,22 @@ namespace hammer_loads {
 /// Links, weight and motion of the hull as the shaft feels them; refers to the mechanism, which must outlive it.
 class ShaftModel {
  public:
-  ShaftModel(const Mechanism& mechanism, Level level) : mechanism_(&mechanism), level_(level) {}
+  ShaftModel(const Mechanism& mechanism, Level level)
+      : mechanism_(&mechanism), level_(level), own_(crankWithinDrive(mechanism, level)) {}
   void setHullMotion(const HullMotion& hull) noexcept { hull_ = hull; }
   const HullMotion& hullMotion() const noexcept { return hull_; }
-  ShaftLoad operator()(CrankAngle angle) const noexcept { return shaftLoad(*mechanism_, level_, angle, hull_); }
+  ShaftLoad operator()(CrankAngle angle) const noexcept {
+    ShaftLoad load = shaftLoad(*mechanism_, level_, angle, hull_);
+    const double r = mechanism_->parameters().drive_reaction_ratio;
+    load.weight_torque -= (1.0 - r) * own_ * load.hull_acceleration;
+    load.hull_acceleration *= r;
+    return load;
+  }
 
  private:
   const Mechanism* mechanism_;
   Level level_;
+  double own_;  ///< crankWithinDrive()
   HullMotion hull_;
 };
 
@@ -30,7 +39,7 @@ struct ShaftState {
   double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
 };
 
-/// w' = (tau + weight - Jc alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).
+/// w' = (tau + weight - Jc r alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;
 
 /// Order of the shaft's variables in matrices: angle, speed, torque, logarithm of the drive inertia (which keeps it

@@ -69,6 +69,7 @@ class CrankFilter final : public CrankTracker {
   BlowFactor blowFactor() const noexcept override;
   bool isDoubtful() const noexcept override { return rival_ && evidence_ > kDoubt; }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
+  double driveInertia() const noexcept override { return now_.state.drive_inertia; }
 
   const ShaftState& state() const noexcept { return now_.state; }
   /// Covariance of (angle, speed, torque, logarithm of drive inertia, blow factor) at the last accepted sample, as the

@@ -67,6 +67,8 @@ class CrankTracker {
   virtual Eigen::Matrix3d motionCovariance(double /*torque_part*/) const noexcept { return Eigen::Matrix3d::Zero(); }
   /// Factor that the last blow put on the crank's speed, by all samples since; of no model: 1, not known.
   virtual BlowFactor blowFactor() const noexcept { return {}; }
+  /// Jc: what turns with the crank beside the links, as far as known [kg m2].
+  virtual double driveInertia() const noexcept = 0;
   /// Whether the last blow was one at all is not clear yet: what is estimated may be of the wrong branch.
   virtual bool isDoubtful() const noexcept { return false; }
   /// Mean of innovation^2 over its variance: near 1 where readings and model agree; NaN before enough samples and of no

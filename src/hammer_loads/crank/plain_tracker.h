@@ -13,8 +13,9 @@ class PlainTracker final : public CrankTracker {
  public:
   enum class Acceleration { kZero, kDifference };
 
-  PlainTracker(Acceleration acceleration, double angle_resolution, const CrankSensor& sensor = {})
-      : acceleration_(acceleration), encoder_(angle_resolution, sensor) {}
+  /// drive_inertia: as given [kg m2].
+  PlainTracker(Acceleration acceleration, double angle_resolution, double drive_inertia, const CrankSensor& sensor)
+      : acceleration_(acceleration), drive_inertia_(drive_inertia), encoder_(angle_resolution, sensor) {}
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
@@ -23,11 +24,13 @@ class PlainTracker final : public CrankTracker {
   CrankEstimate between(double dt) const noexcept override;
   bool hasSpeed() const noexcept override { return has_speed_; }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
+  double driveInertia() const noexcept override { return drive_inertia_; }
 
  private:
   CrankSample ofCrank(const CrankSample& reading) noexcept;
 
   Acceleration acceleration_;
+  double drive_inertia_;
   Encoder encoder_;
   CrankEstimate now_;
   CrankEstimate before_;

@@ -4,6 +4,7 @@
 
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
+#include "hammer_loads/linkage/drive_reaction.h"
 #include "hammer_loads/linkage/motion.h"
 
 namespace hammer_loads {
@@ -90,7 +91,7 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
   blow.support_impulse_x = blow.tool_impulse_x - (to.x - from.x);
   blow.support_impulse_z = blow.tool_impulse_z - (to.z - from.z);
   blow.support_impulse_y = tool_moment - (to.about_d - from.about_d);
-  blow.drive_impulse_y = -crank.drive_inertia * crank.reaction_ratio * (after - crank.speed);
+  blow.drive_impulse_y = driveReaction(mechanism, links, crank.drive_inertia).torque(after - crank.speed, 0.0);
   // Deviations, each cause by a difference at its own size.
   const BlowInertia heavier = blowInertia(mechanism, links, crank.drive_inertia * (1.0 + crank.inertia_deviation));
   const double by_factor = inertia.restitutionPerFactor() * crank.factor_deviation;

@@ -29,13 +29,12 @@ struct RockerBlow {
 
 /// A blow as the crank felt it.
 struct CrankBlow {
-  double speed{};               ///< of the crank just before, > 0 [rad/s]
-  double speed_deviation{};     ///< standard [rad/s]
-  double factor{1.0};           ///< k: crank speed after over before [-]
-  double factor_deviation{};    ///< standard [-]
-  double drive_inertia{};       ///< Jc [kg m2], > 0
-  double inertia_deviation{};   ///< standard, relative [-]
-  double reaction_ratio{1.0};   ///< r: what of the rotor's turning the hull feels [-]
+  double speed{};              ///< of the crank just before, > 0 [rad/s]
+  double speed_deviation{};    ///< standard [rad/s]
+  double factor{1.0};          ///< k: crank speed after over before [-]
+  double factor_deviation{};   ///< standard [-]
+  double drive_inertia{};      ///< Jc [kg m2], > 0
+  double inertia_deviation{};  ///< standard, relative [-]
 };
 
 /// A point in hammer_hull axes, from the pivot D [m].

@@ -5,6 +5,7 @@
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/linkage/drive_reaction.h"
 #include "hammer_loads/linkage/pin_forces.h"
 
 namespace hammer_loads {
@@ -45,9 +46,22 @@ inline RockerBlow measuredBlow(const HullModel& model, const CrankBlow& crank) n
   return measuredBlow(model.mechanism(), model.level(), crank);
 }
 
-/// Wrench from motion of the links relative to the hull alone: without weight, in a hull at rest.
-inline HullWrench motionWrench(const HullModel& model, const CrankMotion& crank) noexcept {
-  return hullWrench(model, crank, Gravity{});
+/// The drive as the hull feels it at the model's level; Jc [kg m2].
+inline DriveReaction driveReaction(const HullModel& model, double drive_inertia) noexcept {
+  return driveReaction(model.mechanism(), model.level(), drive_inertia);
+}
+
+/// BY everything that moves in the hammer, links and drive, ON the hull.
+inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive, const CrankMotion& crank,
+                             const HullMotion& hull) noexcept {
+  HullWrench wrench = hullWrench(model, crank, hull);
+  wrench.torque_y += drive.torque(crank.acceleration, hull.acceleration);
+  return wrench;
+}
+
+/// The same from motion relative to the hull alone: without weight, in a hull at rest.
+inline HullWrench motionWrench(const HullModel& model, const DriveReaction& drive, const CrankMotion& crank) noexcept {
+  return hullWrench(model, drive, crank, Gravity{});
 }
 
 }  // namespace hammer_loads

@@ -24,6 +24,7 @@ struct HammerParameters {
   double rod_com_across{};              ///< along turned by +90 deg in (xi, eta) [m]
   double rod_inertia_about_com{};       ///< [kg m2], >= 0
   double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
+  double drive_reaction_ratio{1.0};     ///< r of DriveReaction [-], finite
 };
 
 /// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism

@@ -17,7 +17,7 @@ struct ShaftLoad {
   double half_inertia_slope{};   ///< half its derivative by the crank angle [kg m2/rad]
   double weight_torque{};        ///< torque of the links' weight and of the hull's motion on the crank [N m]
   double weight_torque_slope{};  ///< its derivative by the crank angle [N m/rad]
-  double hull_acceleration{};    ///< alpha, which all that turns with the crank must follow as well [rad/s2]
+  double hull_acceleration{};    ///< alpha; of a ShaftModel r alpha: what the drive must follow as well [rad/s2]
 };
 
 /// Level rocker: I u^2 and the rocker's weight. Neglects mass and inertia of crank and rod (a constant part of them

@@ -14,6 +14,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+BoomDeviations unknownDeviations(int joints) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Wrench unknown{Eigen::Vector3d::Constant(kNaN), Eigen::Vector3d::Constant(kNaN)};
+  BoomDeviations deviations;
+  deviations.torque = JointVector::Constant(joints, kNaN);
+  deviations.cylinder.fill(kNaN);
+  deviations.section.fill(unknown);
+  deviations.joint.fill(unknown);
+  return deviations;
+}
+
 }  // namespace
 
 BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double striking_distance)
@@ -27,6 +38,7 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
   motion_ = {zero, zero, zero};
   torque_ = {zero, zero, zero};
   state_.frequency.resize(0);
+  state_.deviations = unknownDeviations(boom_.chain().joints());
   state_.reduced = {kInfinity, kInfinity};
   state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
   state_.choice.rigid_tolerance = boom_.parameters().rigid_tolerance;
@@ -58,28 +70,43 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   const Eigen::Vector3d g_B(0.0, 0.0, -sample.gravity);
   if (follow_vibration_) {
     const bool continued = known_ && step.count > 0;
-    if (!continued) boom_.vibration().rest();
+    if (!continued) boom_.vibration().rest(), spread_.rest();
     boom_.moveCompliant(motion_, g_B);
-    if (continued) vibrate(step);
+    spread_.follow(boom_.vibration());
+    if (continued) vibrate(step, sample.spread);
   } else {
     boom_.move(motion_, g_B);
   }
   known_ = true;
   state_.gravity_tip = boom_.gravityAtTip();
   state_.choice.compliant = takesCompliant();
-  boom_.loads(onTip(sample.motion_wrench), !state_.choice.compliant, state_.loads);
+  findLoads(sample);
   if (follow_vibration_) tellVibration();
   return state_;
 }
 
-void BoomFollower::vibrate(const WrenchHistory& step) noexcept {
+void BoomFollower::findLoads(const BoomSample& sample) noexcept {
+  const Wrench w_tip = onTip(sample.motion_wrench);
+  const bool rigid = !state_.choice.compliant;
+  boom_.loads(w_tip, rigid, state_.loads);
+  boom_.steelLoads(w_tip, rigid, state_.steel);
+  if (sample.spread.count > 0) boom_.deviations(spread_, sample.spread, rigid, state_.deviations);
+  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
+}
+
+void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept {
+  const LoadSpread errors = boom_.spreadTorque(spread);
   for (std::size_t i = 0; i < step.count; ++i) {
     const SmoothPiece& piece = step.pieces[i];
     torque_.from = boom_.hammerTorque(onTip(piece.from));
     torque_.to = boom_.hammerTorque(onTip(piece.to));
     torque_.mean = boom_.hammerTorque(onTip(piece.mean));
     boom_.vibration().advance(piece.duration, torque_);
-    if (piece.ends_in_blow) boom_.vibration().strike(boom_.hammerTorque(onTip({piece.blow_x, piece.blow_z, 0.0})));
+    spread_.advance(piece.duration, torque_, errors);
+    if (!piece.ends_in_blow) continue;
+    const JointVector impulse = boom_.hammerTorque(onTip(piece.blow));
+    boom_.vibration().strike(impulse);
+    spread_.strike(impulse);
   }
 }
 

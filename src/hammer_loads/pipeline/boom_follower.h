@@ -1,6 +1,7 @@
 /// The boom under the hammer, sample by sample: where it is, what its joints and cylinders carry, how it vibrates.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@ struct BoomSample {
   HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
                              ///< weight, no hull motion
   double gravity{};          ///< [m/s2], along -z of the chain's root: a level base
+  WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
 };
 
 /// Why the boom is taken as rigid or compliant.
@@ -36,7 +38,10 @@ struct BoomState {
   StampNs stamp{};
   std::optional<JointFault> fault;
   BoomLoads loads;
-  Eigen::Vector3d gravity_tip = Eigen::Vector3d::Zero();  ///< in the hull's axes [m/s2]
+  SteelLoads steel;           ///< sections and joints as Boom orders them
+  BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
+  std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
+  Eigen::Vector3d gravity_tip = Eigen::Vector3d::Zero();   ///< in the hull's axes [m/s2]
   bool dead_centre{};      ///< a cylinder does not hold its joint: no modes, taken as rigid
   JointVector frequency;   ///< natural frequencies, per mode [Hz]; none when vibration is not followed
   ReducedHull reduced;     ///< along hull z; infinite without modes
@@ -80,10 +85,12 @@ class BoomFollower {
  private:
   static Wrench onTip(const HullWrench& w) noexcept;
   bool takesCompliant() const noexcept;
-  void vibrate(const WrenchHistory& step) noexcept;
+  void vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept;
+  void findLoads(const BoomSample& sample) noexcept;
   void tellVibration() noexcept;
 
   Boom boom_;
+  VibrationSpread spread_;
   JointBuffer joints_;
   BoomModel model_;
   double striking_distance_;

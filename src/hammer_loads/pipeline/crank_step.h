@@ -41,6 +41,7 @@ class CrankStep {
   StampNs start() const noexcept { return start_; }
   double length() const noexcept { return length_; }
   CrankEstimate at(double time) const noexcept { return tracker_->between(time); }
+  double driveInertia() const noexcept { return tracker_->driveInertia(); }  ///< at its end [kg m2]
   /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
   const Passage* begin() const noexcept { return passage_.data(); }
   const Passage* end() const noexcept { return passage_.data() + passages_; }

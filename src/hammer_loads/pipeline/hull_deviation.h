@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "hammer_loads/boom/boom.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/hammer/hammer_model.h"
 
@@ -17,12 +18,17 @@ struct HullDeviation {
 };
 
 /// covariance of (angle, speed, acceleration), linearised at the estimate (central differences; exact in speed and
-/// acceleration). What the model leaves out is not in it. Some 0.3 us.
-HullDeviation hullDeviation(const HullModel& model, const CrankEstimate& crank, const HullMotion& hull,
-                            const Eigen::Matrix3d& covariance) noexcept;
+/// acceleration), the drive's reaction included. What the model leaves out is not in it. Some 0.3 us.
+HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
+                            const HullMotion& hull, const Eigen::Matrix3d& covariance) noexcept;
 
-/// Standard deviation of the momentum: of an impulse's one end [N s, N s, N m s].
-HullWrench momentumDeviation(const HullModel& model, const CrankEstimate& crank,
+/// Standard deviation of the momentum, the drive's included: of an impulse's one end [N s, N s, N m s].
+HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                              const Eigen::Matrix3d& covariance) noexcept;
+
+/// The covariance as three errors of the load that are independent of each other, from motion of the links relative to
+/// the hull; none where there is no covariance.
+WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
+                          const Eigen::Matrix3d& covariance) noexcept;
 
 }  // namespace hammer_loads

@@ -10,7 +10,8 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
   if (s.crank_estimator != CrankEstimator::kMechanism) {
     const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
                                                                          : PlainTracker::Acceleration::kDifference;
-    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, s.crank_sensor);
+    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, mechanism.parameters().drive_inertia,
+                                          s.crank_sensor);
   }
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   CrankFilterSettings filter;

@@ -98,7 +98,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.pitch_known = hull_.pitch().known();
   const CrankMotion motion = motionOf(result_.crank);
   result_.links = linkState(model_, motion);
-  result_.wrench = hullWrench(model_, motion, result_.hull.motion);
+  result_.wrench =
+      hullWrench(model_, driveReaction(model_, crank_.tracker().driveInertia()), motion, result_.hull.motion);
   result_.pins = pinForces(model_, motion, result_.hull.motion, settings_.near_blow);
   sampler_.sample(result_);
   ++counts_.accepted;
@@ -108,9 +109,12 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
 void Pipeline::followBoom() noexcept {
   result_.boom = nullptr;
   if (!boom_) return;
-  const HullWrench motion = motionWrench(model_, motionOf(result_.crank));
+  const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
+  const HullWrench motion = motionWrench(model_, drive, motionOf(result_.crank));
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
-  result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity}, step);
+  const Eigen::Matrix3d covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
+  const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, covariance);
+  result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity, spread}, step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i)
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);

@@ -28,11 +28,12 @@ struct TurnEnd {
 /// One publication of the hull wrench.
 struct WrenchOutput {
   StampNs stamp{};
-  double interval{};    ///< the wrench is the mean over it, before the stamp [s]; 0: at the stamp
-  CrankEstimate crank;  ///< at the stamp
-  HullWrench wrench;
-  HullDeviation deviation;  ///< for a mean that of its end or, if less, what the momentum's at both ends allows
-  bool near_blow{};         ///< transmission angle below near_blow_deg
+  double interval{};          ///< the wrench is the mean over it, before the stamp [s]; 0: at the stamp
+  CrankEstimate crank;        ///< at the stamp
+  HullWrench wrench;          ///< of links and drive
+  double drive_reaction_y{};  ///< part of its moment [N m]
+  HullDeviation deviation;    ///< for a mean that of its end or, if less, what the momentum's at both ends allows
+  bool near_blow{};           ///< transmission angle below near_blow_deg
 };
 
 struct SampleResult {
@@ -44,7 +45,7 @@ struct SampleResult {
   LinkState links;
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad
-  HullWrench wrench;   ///< at the sample
+  HullWrench wrench;   ///< at the sample, of links and drive
   PinReactions pins;
   const BoomState* boom{};            ///< null: no boom; with a fault in it void but for stamp and fault
   std::vector<WrenchOutput> outputs;  ///< one at the sample, or those on the grid of output_rate since the one before

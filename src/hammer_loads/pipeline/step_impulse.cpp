@@ -12,8 +12,21 @@ LinkMomentum momentum(const HullModel& model, const CrankEstimate& crank) noexce
   return linkMomentum(model, crank.position.angle, crank.speed);
 }
 
-HullWrench change(const LinkMomentum& from, const LinkMomentum& to) noexcept {
-  return {from.x - to.x, from.z - to.z, from.about_d - to.about_d};
+/// What a change of momentum has given to the hull.
+LoadImpulse change(const HullModel& model, const DriveReaction& drive, const CrankEstimate& a,
+                   const CrankEstimate& b) noexcept {
+  const LinkMomentum from = momentum(model, a), to = momentum(model, b);
+  const double drive_y = drive.by_crank * (a.speed - b.speed);
+  return {{from.x - to.x, from.z - to.z, from.about_d - to.about_d + drive_y}, drive_y};
+}
+
+/// Of the passage, by the crank's speeds at it.
+RockerBlow blowAt(const HullModel& model, double drive_inertia, const CrankStep::Passage& passage) noexcept {
+  CrankBlow crank;
+  crank.speed = passage.speed_before;
+  crank.factor = passage.speed_after / passage.speed_before;
+  crank.drive_inertia = drive_inertia;
+  return measuredBlow(model, crank);
 }
 
 /// Calls visit(from, to) for each part of [from, to] between passages of the blow. A passage belongs to the part that
@@ -42,10 +55,12 @@ void forEachSmoothPart(const CrankStep& step, double from, double to, const Visi
 
 }  // namespace
 
-HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept {
-  HullWrench impulse;
+LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step, double from,
+                          double to) noexcept {
+  LoadImpulse impulse;
   forEachSmoothPart(step, from, to, [&](double, const CrankEstimate& a, double, const CrankEstimate& b) {
-    impulse = impulse + change(momentum(model, a), momentum(model, b));
+    const LoadImpulse part = change(model, drive, a, b);
+    impulse = {impulse.all + part.all, impulse.drive_y + part.drive_y};
   });
   return impulse;
 }
@@ -74,6 +89,7 @@ HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const Hul
 WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept {
   WrenchHistory result;
   if (!step.known()) return result;
+  const DriveReaction drive = driveReaction(model, step.driveInertia());
   const CrankStep::Passage* passage = step.begin();
   forEachSmoothPart(
       step, 0.0, step.length(), [&](double from, const CrankEstimate& a, double to, const CrankEstimate& b) {
@@ -82,16 +98,14 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexc
         if (result.count == result.pieces.size()) return;
         SmoothPiece& piece = result.pieces[result.count++];
         piece.duration = to - from;
-        piece.from = motionWrench(model, motionOf(a));
-        piece.to = motionWrench(model, motionOf(b));
-        const HullWrench impulse = change(momentum(model, a), momentum(model, b));
+        piece.from = motionWrench(model, drive, motionOf(a));
+        piece.to = motionWrench(model, drive, motionOf(b));
+        const HullWrench impulse = change(model, drive, a, b).all;
         piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
         if (ends_at == nullptr || !ends_at->strikes) return;
-        const RockerBlow blow =
-            blowAtCrankSpeeds(model.mechanism(), model.level(), ends_at->speed_before, ends_at->speed_after);
+        const RockerBlow blow = blowAt(model, step.driveInertia(), *ends_at);
         piece.ends_in_blow = true;
-        piece.blow_x = blow.support_impulse_x;
-        piece.blow_z = blow.support_impulse_z;
+        piece.blow = {blow.support_impulse_x, blow.support_impulse_z, blow.support_impulse_y + blow.drive_impulse_y};
       });
   return result;
 }

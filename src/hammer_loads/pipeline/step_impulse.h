@@ -7,18 +7,25 @@
 
 namespace hammer_loads {
 
-/// Impulse [N s, N s, N m s] over [from, to] of the part from the links' motion relative to the hull: minus the change
-/// of their momentum, the jumps at the blow left out (they are the blow's own, in RockerBlow). No quadrature, so the
-/// sum over any division of a time is the same.
-HullWrench motionImpulse(const HullModel& model, const CrankStep& step, double from, double to) noexcept;
+/// An impulse and the drive's part of its moment.
+struct LoadImpulse {
+  HullWrench all;    ///< [N s, N s, N m s]
+  double drive_y{};  ///< [N m s]
+};
+
+/// Over [from, to], by motion relative to the hull: minus the change of the momentum of links and drive, the jumps at
+/// the blow left out (they are the blow's own, in RockerBlow). No quadrature, so the sum over any division of a time is
+/// the same.
+LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step, double from,
+                          double to) noexcept;
 
 /// Impulse over [from, to] of what weight and motion of the hull add (frameWrench). Gauss-Legendre of order 6 on pieces
 /// of at most 1.25 ms that end at the blow: forces of a hull at rest exact, moments to some 1e-11 of their size.
 HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
                         double to) noexcept;
 
-/// The load over the whole step as the boom takes it, blows included; pieces beyond those that a WrenchHistory holds
-/// are left out (a step of several turns).
+/// The load of links and drive over the whole step as the boom takes it, blows included; pieces beyond those that a
+/// WrenchHistory holds are left out (a step of several turns).
 WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept;
 
 inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {

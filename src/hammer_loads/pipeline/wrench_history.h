@@ -8,15 +8,14 @@
 
 namespace hammer_loads {
 
-/// A part of the step in which no blow lies. Wrenches come from motion of the links relative to the hull: without their
+/// A part of the step in which no blow lies. Wrenches come from motion of links and drive relative to the hull: without
 /// weight, without what the hull's own motion does to them.
 struct SmoothPiece {
   double duration{};    ///< [s] >= 0
   HullWrench from, to;  ///< at its ends
   HullWrench mean;      ///< over it, exact by the momentum difference
   bool ends_in_blow{};
-  double blow_x{};  ///< impulse of that blow BY the rocker ON the hull at D [N s]
-  double blow_z{};  ///< likewise [N s]
+  HullWrench blow;  ///< impulse of that blow BY links and drive ON the hull about D [N s, N s, N m s]
 };
 
 /// The pieces of one step in order of time; none after a restart, when the step before the sample is not known.

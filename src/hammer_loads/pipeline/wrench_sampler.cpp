@@ -33,6 +33,7 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
 
 void WrenchSampler::sample(SampleResult& result) noexcept {
   added_up_to_ = 0.0;
+  drive_ = driveReaction(*model_, tracker_->driveInertia());
   if (!begun_ && !begin(result)) return;
   StampNs stamp{};
   while (isDue(result.stamp, stamp)) {
@@ -51,8 +52,11 @@ bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
 
 void WrenchSampler::addUpTo(double time, const HullMotion& hull) noexcept {
   if (!(time > added_up_to_)) return;
-  impulse_ = impulse_ + motionImpulse(*model_, *step_, added_up_to_, time) +
-             addedImpulse(*model_, *step_, hull, added_up_to_, time);
+  const LoadImpulse motion = motionImpulse(*model_, drive_, *step_, added_up_to_, time);
+  const double drive_y = drive_.torque(0.0, hull.acceleration) * (time - added_up_to_);
+  impulse_.all =
+      impulse_.all + motion.all + addedImpulse(*model_, *step_, hull, added_up_to_, time) + HullWrench{0, 0, drive_y};
+  impulse_.drive_y += motion.drive_y + drive_y;
   added_up_to_ = time;
 }
 
@@ -67,10 +71,12 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const SampleResult& result) no
   if (kind_ == OutputKind::kMean) {
     addUpTo(time, hull);
     output.interval = seconds(stamp - last_output_);
-    output.wrench = (1.0 / output.interval) * impulse_;
+    output.wrench = (1.0 / output.interval) * impulse_.all;
+    output.drive_reaction_y = impulse_.drive_y / output.interval;
     impulse_ = {};
   } else {
-    output.wrench = at_sample ? result.wrench : hullWrench(*model_, motionOf(output.crank), hull);
+    output.wrench = at_sample ? result.wrench : hullWrench(*model_, drive_, motionOf(output.crank), hull);
+    output.drive_reaction_y = drive_.torque(output.crank.acceleration, hull.acceleration);
   }
   last_output_ = stamp;
   output.near_blow = linkState(*model_, motionOf(output.crank)).transmission_angle < near_blow_;
@@ -82,9 +88,9 @@ void WrenchSampler::addDeviation(const HullMotion& hull, bool at_sample, WrenchO
   const Eigen::Matrix3d covariance =
       at_sample ? tracker_->motionCovariance(torque_part_)
                 : tracker_->covarianceBetween(seconds(output.stamp - step_->start()), torque_part_);
-  output.deviation = hullDeviation(*model_, output.crank, hull, covariance);
+  output.deviation = hullDeviation(*model_, drive_, output.crank, hull, covariance);
   if (kind_ != OutputKind::kMean) return;
-  const HullWrench momentum = momentumDeviation(*model_, output.crank, covariance);
+  const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, covariance);
   const HullWrench allowed = (1.0 / output.interval) * (momentum_deviation_ + momentum);
   momentum_deviation_ = momentum;
   HullWrench& wrench = output.deviation.wrench;

@@ -7,6 +7,7 @@
 
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/sample_result.h"
+#include "hammer_loads/pipeline/step_impulse.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
 namespace hammer_loads {
@@ -47,7 +48,8 @@ class WrenchSampler {
   std::uint64_t index_{};  ///< of the next output on the grid
   StampNs last_output_{};
   double added_up_to_{};           ///< part of the step whose impulse is in impulse_ [s]
-  HullWrench impulse_;             ///< since the last output
+  DriveReaction drive_;            ///< at the sample
+  LoadImpulse impulse_;            ///< since the last output
   HullWrench momentum_deviation_;  ///< at the last output
 };
 

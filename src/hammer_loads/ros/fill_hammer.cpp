@@ -29,6 +29,7 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
   message.force_x_N = output.wrench.force_x;
   message.force_z_N = output.wrench.force_z;
   message.torque_y_Nm = output.wrench.torque_y;
+  message.drive_reaction_y_Nm = output.drive_reaction_y;
   message.force_x_deviation_N = deviation.wrench.force_x;
   message.force_z_deviation_N = deviation.wrench.force_z;
   message.torque_y_deviation_Nm = deviation.wrench.torque_y;

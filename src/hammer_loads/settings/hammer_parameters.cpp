@@ -37,6 +37,8 @@ constexpr HammerKey kHammerKeys[] = {
     {"drive_inertia_kg_m2", "kg m2", [](P& p) -> double& { return p.drive_inertia; }},
 };
 
+constexpr const char* kRatioKey = "drive_reaction_ratio";
+
 }  // namespace
 
 std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes) {
@@ -47,9 +49,16 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   constexpr double kDegree = 3.14159265358979323846 / 180.0;
   parameters.rocker_com_angle *= kDegree;
 
+  if (reader.given(kRatioKey))
+    parameters.drive_reaction_ratio = reader.number(kRatioKey, "", NumberRule::within(-10.0, 10.0));
+
   Checked<Mechanism> mechanism = Mechanism::make(parameters);
   for (const std::string& problem : mechanism.problems) reader.addProblem(problem);
   notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
+  if (!reader.given(kRatioKey))
+    notes.push_back(
+        std::string(kRatioKey) +
+        ": not given, counts as 1: the hull feels the drive's reaction as of a flywheel on the crank's shaft");
   if (reader.problems().size() != problems_before) return std::nullopt;
   return mechanism.value;
 }
@@ -60,7 +69,8 @@ std::vector<std::string> hammerKeys() {
   return keys;
 }
 
-/// The drive's inertia is a first guess, which a calibration replaces in any hammer.
+/// The drive's inertia is a first guess, which a calibration replaces in any hammer; how it turns is no part of the
+/// mechanism.
 bool hasHammerKey(const ParameterMap& parameters) {
   return std::any_of(std::begin(kHammerKeys), std::end(kHammerKeys), [&](const HammerKey& key) {
     return std::string(key.key) != "drive_inertia_kg_m2" && parameters.count(key.key) != 0;

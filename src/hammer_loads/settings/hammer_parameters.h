@@ -1,4 +1,4 @@
-/// The hammer file: one mechanism, every key required.
+/// The hammer file: one mechanism, every key required but `drive_reaction_ratio`.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ class ParameterReader;
 /// Nothing when the reader got a problem with it; notes get the mechanism's accepted peculiarities.
 std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes);
 
-/// Keys of the hammer file, in its order.
+/// Keys that the hammer file must have, in its order.
 std::vector<std::string> hammerKeys();
 
 bool hasHammerKey(const ParameterMap& parameters);

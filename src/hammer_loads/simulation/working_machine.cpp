@@ -345,6 +345,8 @@ CrankTruth WorkingMachine::truth() const noexcept {
   truth.pressure = now_.y[kPressure];
   truth.hull_pitch = hullPitch(now_.time);
   truth.load = links_.load(links_.at(now_.angle()), truth.speed, truth.acceleration, gravityAt(now_.time));
+  const double rotor = crank_side_inertia_ * truth.acceleration + motor_inertia_ * rate_[kMotorSpeed];
+  truth.drive_reaction_y = -settings_.hammer.drive_reaction_ratio * rotor;
   return truth;
 }
 

@@ -12,7 +12,7 @@
 
 namespace hammer_loads::simulation {
 
-/// Machine at one instant. Load BY the links ON the hull about D, axes of hammer_hull, weight included.
+/// Machine at one instant. Loads ON the hull about D, axes of hammer_hull.
 struct CrankTruth {
   double time{};          ///< since start [s]
   std::int64_t turn{};    ///< dead centres passed
@@ -25,7 +25,8 @@ struct CrankTruth {
   double net_torque{};    ///< motor less friction, on the shaft [N m]
   double pressure{};      ///< at the motor [Pa]
   double hull_pitch{};    ///< [rad]
-  Load load;
+  Load load;                  ///< BY the links, weight included
+  double drive_reaction_y{};  ///< BY motor and flywheel about +y [N m]
 };
 
 /// One blow and the turn that it ended.
