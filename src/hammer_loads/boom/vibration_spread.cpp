@@ -17,7 +17,8 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
   }
   for (int k = 0; k < now.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    OilDeviation deviation = given_;
+    OilDeviation& deviation = deviation_[i];
+    deviation = given_;
     if (vibration.identifier()) {
       deviation.frequency = std::min(given_.frequency, vibration.identifier()->frequencyDeviation(k));
       deviation.damping = std::min(given_.damping, vibration.identifier()->dampingDeviation(k));

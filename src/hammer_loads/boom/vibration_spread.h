@@ -33,6 +33,8 @@ class VibrationSpread {
   void strike(const JointVector& impulse) noexcept;
   void rest() noexcept;
 
+  /// Of a mode: as given or, where that is less, as identified.
+  const OilDeviation& deviation(int mode) const noexcept { return deviation_[static_cast<std::size_t>(mode)]; }
   int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }
   /// Weight of a run's squared difference in the variance: the two of the stiffness count half each.
   static double weight(int run) noexcept { return run == kStiffer || run == kSofter ? 0.5 : 1.0; }
@@ -45,6 +47,7 @@ class VibrationSpread {
   }
 
   OilDeviation given_;
+  std::array<OilDeviation, kMaxJoints> deviation_;
   BoomModes modes_;
   std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
   std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run

@@ -32,12 +32,14 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
       joints_(boom_.chain(), settings),
       model_(settings.boom),
       striking_distance_(striking_distance),
+      base_(settings.base),
       follow_vibration_(model_ != BoomModel::kRigid && !boom_.cylinders().empty()),
       givers_{"front edge", "left edge", "rear edge", "right edge"} {
   const JointVector zero = JointVector::Zero(boom_.chain().joints());
   motion_ = {zero, zero, zero};
   torque_ = {zero, zero, zero};
-  state_.frequency.resize(0);
+  state_.frequency.resize(0), state_.frequency_deviation.resize(0), state_.damping.resize(0);
+  state_.contact_torque = zero;
   state_.deviations = unknownDeviations(boom_.chain().joints());
   state_.reduced = {kInfinity, kInfinity};
   state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
@@ -67,7 +69,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     ++faults_;
     return state_;
   }
-  const Eigen::Vector3d g_B(0.0, 0.0, -sample.gravity);
+  const Eigen::Vector3d g_B = gravityInRoot(sample.gravity, base_);
   if (follow_vibration_) {
     const bool continued = known_ && step.count > 0;
     if (!continued) boom_.vibration().rest(), spread_.rest();
@@ -114,12 +116,25 @@ void BoomFollower::tellVibration() noexcept {
   const BoomModes& modes = boom_.vibration().modes();
   state_.dead_centre = modes.dead_centre;
   state_.frequency = modes.omega / kTwoPi;
+  tellModes();
   state_.reduced = boom_.reducedHull(Eigen::Vector3d::UnitZ());
   if (state_.choice.compliant) {
     state_.tip = boom_.tipVibration();
   } else {
     state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
   }
+}
+
+void BoomFollower::tellModes() noexcept {
+  const Vibration& vibration = boom_.vibration();
+  const auto& identifier = vibration.identifier();
+  const auto count = state_.frequency.size();
+  state_.damping.resize(count), state_.frequency_deviation.resize(count);
+  for (int k = 0; k < count; ++k) {
+    state_.damping[k] = vibration.mode(k).zeta;
+    state_.frequency_deviation[k] = spread_.deviation(k).frequency * state_.frequency[k];
+  }
+  state_.identified = identifier && identifier->identified();
 }
 
 void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept {

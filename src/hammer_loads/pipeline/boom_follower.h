@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
 #include "hammer_loads/pipeline/wrench_history.h"
@@ -19,7 +20,7 @@ struct BoomSample {
   StampNs stamp{};
   HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
                              ///< weight, no hull motion
-  double gravity{};          ///< [m/s2], along -z of the chain's root: a level base
+  double gravity{};          ///< [m/s2]
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
 };
 
@@ -42,10 +43,16 @@ struct BoomState {
   BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
   Eigen::Vector3d gravity_tip = Eigen::Vector3d::Zero();   ///< in the hull's axes [m/s2]
-  bool dead_centre{};      ///< a cylinder does not hold its joint: no modes, taken as rigid
-  JointVector frequency;   ///< natural frequencies, per mode [Hz]; none when vibration is not followed
-  ReducedHull reduced;     ///< along hull z; infinite without modes
-  Boom::TipVibration tip;  ///< zero for a rigid boom
+  bool dead_centre{};               ///< a cylinder does not hold its joint: no modes, taken as rigid
+  JointVector frequency;            ///< natural frequencies, per mode [Hz]; none when vibration is not followed
+  JointVector frequency_deviation;  ///< standard [Hz]
+  JointVector damping;              ///< of each mode [-]
+  bool identified{};                ///< frequencies and damping follow the sensors
+  JointVector contact_torque;       ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
+  bool measured{};                  ///< the cylinders' forces are those of measured pressures
+  bool press_force_lost{};          ///< the rock does not press on the hull, by measured pressures
+  ReducedHull reduced;              ///< along hull z; infinite without modes
+  Boom::TipVibration tip;           ///< zero for a rigid boom
   BoomChoice choice;
   std::optional<HoldDown> hold_down;  ///< against the mean press force of the last turn that had one
 };
@@ -88,12 +95,14 @@ class BoomFollower {
   void vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept;
   void findLoads(const BoomSample& sample) noexcept;
   void tellVibration() noexcept;
+  void tellModes() noexcept;
 
   Boom boom_;
   VibrationSpread spread_;
   JointBuffer joints_;
   BoomModel model_;
   double striking_distance_;
+  BaseTilt base_;
   bool follow_vibration_;
   BoomState state_;
   JointMotion motion_;

@@ -8,11 +8,6 @@
 #include "hammer_loads/pipeline/unit_check.h"
 
 namespace hammer_loads {
-namespace {
-
-constexpr double kMostAngle = 1e4;  // [rad]: degrees are taken and recognised, garbage is not
-
-}  // namespace
 
 HullPitch::HullPitch(std::vector<std::string> joints, double initial)
     : joints_(std::move(joints)),

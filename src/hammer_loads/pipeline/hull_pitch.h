@@ -11,6 +11,9 @@ namespace hammer_loads {
 /// of joints in any order.
 class HullPitch {
  public:
+  /// A larger angle is refused: degrees are taken and recognised, garbage is not [rad].
+  static constexpr double kMostAngle = 1e4;
+
   /// initial: pitch until every joint has been heard [rad].
   HullPitch(std::vector<std::string> joints, double initial);
 

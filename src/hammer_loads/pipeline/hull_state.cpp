@@ -1,7 +1,5 @@
 #include "hammer_loads/pipeline/hull_state.h"
 
-#include <cmath>
-
 namespace hammer_loads {
 namespace {
 
@@ -14,25 +12,20 @@ HullMotion vibrationOf(const BoomState& boom) noexcept {
 
 }  // namespace
 
-HullState::HullState(const PipelineSettings& settings)
-    : source_(settings.hull_motion),
-      gravity_(settings.gravity),
-      pitch_(settings.pitch_joints, settings.hull_pitch),
-      imu_(settings.imu) {
+HullState::HullState(const PipelineSettings& settings, const std::optional<Boom>& boom)
+    : source_(settings.hull_motion), weight_(settings, boom), imu_(settings.imu) {
   weigh();
 }
 
 /// Of a fixed hull the weight is all its motion.
 void HullState::weigh() noexcept {
-  const double pitch = pitch_.pitch();
-  weight_ = {gravity_ * std::sin(pitch), -gravity_ * std::cos(pitch)};
-  if (source_ == HullMotionSource::kFixed) now_ = {weight_, false};
+  if (source_ == HullMotionSource::kFixed) now_ = {weight_.gravity(), false};
 }
 
 bool HullState::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
-  if (!pitch_.update(names, positions)) return false;
+  const bool of_pitch = weight_.joints(names, positions);
   weigh();
-  return true;
+  return of_pitch;
 }
 
 std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& reading) noexcept {
@@ -48,11 +41,10 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
     const std::optional<HullMotion> measured = imu_.at(stamp);
     known_ = measured.has_value();
     imu_counts_.missed += !known_;
-    set(measured.value_or(HullMotion(weight_)));
+    set(measured.value_or(HullMotion(weight_.gravity())));
   } else if (source_ == HullMotionSource::kModel) {
-    set({{weight_.x + vibration_.gravity.x, weight_.z + vibration_.gravity.z},
-         vibration_.rate,
-         vibration_.acceleration});
+    const Gravity& weight = weight_.gravity();
+    set({{weight.x + vibration_.gravity.x, weight.z + vibration_.gravity.z}, vibration_.rate, vibration_.acceleration});
   }
   return now_.motion;
 }

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "hammer_loads/pipeline/boom_follower.h"
+#include "hammer_loads/pipeline/hull_gravity.h"
 #include "hammer_loads/pipeline/hull_imu.h"
-#include "hammer_loads/pipeline/hull_pitch.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
 namespace hammer_loads {
@@ -21,7 +21,7 @@ struct ImuCounts {
   std::uint64_t missed{};  ///< crank samples at which the hull's motion was not known: weight by pitch then
 };
 
-/// Owns pitch and IMU, and the boom's last vibration.
+/// Owns gravity and IMU, and the boom's last vibration.
 class HullState {
  public:
   struct Motion {
@@ -29,7 +29,7 @@ class HullState {
     bool moves{};       ///< the hull's own motion is in it
   };
 
-  explicit HullState(const PipelineSettings& settings);
+  HullState(const PipelineSettings& settings, const std::optional<Boom>& boom);
 
   /// Boom joint angles, any subset in any order. Whether a pitch joint was among them.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
@@ -44,9 +44,9 @@ class HullState {
   void rest() noexcept { vibration_ = {}; }
 
   const Motion& motion() const noexcept { return now_; }
-  /// False where IMU or boom should give the hull's motion and do not: weight by pitch then.
+  /// False where IMU or boom should give the hull's motion and do not: weight by joint angles then.
   bool motionKnown() const noexcept { return known_; }
-  const HullPitch& pitch() const noexcept { return pitch_; }
+  const HullPitch& pitch() const noexcept { return weight_.pitch(); }
   const ImuCounts& imuCounts() const noexcept { return imu_counts_; }
 
  private:
@@ -54,11 +54,9 @@ class HullState {
   void set(const HullMotion& motion) noexcept;
 
   HullMotionSource source_;
-  double gravity_;  ///< [m/s2]
-  HullPitch pitch_;
+  HullGravity weight_;
   HullImu imu_;
   ImuCounts imu_counts_;
-  Gravity weight_;        ///< by the latest pitch, hull axes [m/s2]
   HullMotion vibration_;  ///< of the boom's tip at the last sample, without weight
   Motion now_;
   bool known_{true};

@@ -19,7 +19,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       settings_(settings),
       model_(mechanism_, settings.level),
       crank_(model_, settings_),
-      hull_(settings_),
+      hull_(settings_, boom),
       turn_(model_, crank_.step(), crank_.tracker()),
       sampler_(model_, crank_.step(), crank_.tracker(), settings_),
       most_force_(kMostForce *

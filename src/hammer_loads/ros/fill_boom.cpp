@@ -17,6 +17,11 @@ void copy(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
   to.x = from.x(), to.y = from.y(), to.z = from.z();
 }
 
+void copy(const Wrench& from, geometry_msgs::Wrench& to) {
+  copy(from.force, to.force);
+  copy(from.torque, to.torque);
+}
+
 }  // namespace
 
 void prepareJointLoads(const Boom& boom, JointLoads& message) {
@@ -35,9 +40,29 @@ void prepareJointLoads(const Boom& boom, JointLoads& message) {
   message.cylinder_pressure_Pa.resize(boom.cylinders().size());
 }
 
+void prepareSections(const Boom& boom, SectionLoads& message) {
+  message.header.frame_id = boom.parameters().chain.root;
+  for (const Section& section : boom.sections()) message.section_name.push_back(section.name());
+  message.load.resize(boom.sections().size());
+  message.load_deviation.resize(boom.sections().size());
+}
+
+void prepareReactions(const Boom& boom, JointReactions& message) {
+  const auto joints = static_cast<std::size_t>(boom.chain().joints());
+  message.header.frame_id = boom.parameters().chain.root;
+  message.joint_name = boom.chain().jointNames();
+  message.load.resize(joints);
+  message.load_deviation.resize(joints);
+  for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
+  message.base_force_N.resize(boom.cylinders().size());
+  message.rod_force_N.resize(boom.cylinders().size());
+}
+
 void prepareVibration(const Boom& boom, BoomVibration& message) {
   message.header.frame_id = boom.parameters().chain.tip;
-  message.natural_frequency_Hz.reserve(kMaxJoints);
+  for (std::vector<double>* values :
+       {&message.natural_frequency_Hz, &message.natural_frequency_deviation_Hz, &message.damping_ratio})
+    values->reserve(kMaxJoints);
   message.hold_down_limit.reserve(kLongestLimit);
 }
 
@@ -47,10 +72,38 @@ void fillJointLoads(const BoomState& state, JointLoads& message) {
   copy(state.loads.weight, message.weight_torque_Nm);
   copy(state.loads.motion, message.motion_torque_Nm);
   copy(state.loads.vibration, message.vibration_torque_Nm);
+  copy(state.contact_torque, message.contact_torque_Nm);
   copy(state.loads.total, message.total_torque_Nm);
+  copy(state.deviations.torque, message.total_torque_deviation_Nm);
   for (std::size_t i = 0; i < message.cylinder_name.size(); ++i) {
     message.cylinder_force_N[i] = state.loads.cylinder[i].force;
+    message.cylinder_force_deviation_N[i] = state.deviations.cylinder[i];
     message.cylinder_pressure_Pa[i] = state.loads.cylinder[i].pressure;
+    message.cylinder_flags[i] = state.cylinder_flags[i];
+  }
+  message.flags = 0;
+  if (state.press_force_lost) message.flags |= JointLoads::FLAG_PRESS_FORCE_LOST;
+  if (state.hold_down && state.hold_down->least < 1.0) message.flags |= JointLoads::FLAG_HOLD_DOWN;
+  if (state.measured) message.flags |= JointLoads::FLAG_MEASURED;
+}
+
+void fillSections(const BoomState& state, SectionLoads& message) {
+  message.header.stamp = timeOf(state.stamp);
+  for (std::size_t i = 0; i < message.load.size(); ++i) {
+    copy(state.steel.section[i], message.load[i]);
+    copy(state.deviations.section[i], message.load_deviation[i]);
+  }
+}
+
+void fillReactions(const BoomState& state, JointReactions& message) {
+  message.header.stamp = timeOf(state.stamp);
+  for (std::size_t i = 0; i < message.load.size(); ++i) {
+    copy(state.steel.joint[i], message.load[i]);
+    copy(state.deviations.joint[i], message.load_deviation[i]);
+  }
+  for (std::size_t i = 0; i < message.base_force_N.size(); ++i) {
+    copy(state.steel.pins[i].base, message.base_force_N[i]);
+    copy(state.steel.pins[i].rod, message.rod_force_N[i]);
   }
 }
 
@@ -61,6 +114,9 @@ void fillVibration(const BoomFollower& follower, BoomVibration& message) {
   copy(state.tip.displacement.tail<3>(), message.rotation_rad);
   copy(state.tip.acceleration.head<3>(), message.acceleration_m_s2);
   message.natural_frequency_Hz.assign(state.frequency.begin(), state.frequency.end());
+  message.natural_frequency_deviation_Hz.assign(state.frequency_deviation.begin(), state.frequency_deviation.end());
+  message.damping_ratio.assign(state.damping.begin(), state.damping.end());
+  message.identified = state.identified;
   message.reduced_mass_kg = state.reduced.mass;
   message.reduced_stiffness_N_m = state.reduced.stiffness;
   message.compliant = state.choice.compliant;

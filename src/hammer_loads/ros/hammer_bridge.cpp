@@ -43,6 +43,8 @@ void HammerBridge::prepareOutputs() {
   prepareMechanism(settings_.pipeline.crank_joint, outputs_.mechanism.message);
   if (settings_.boom) {
     prepareJointLoads(*settings_.boom, outputs_.joint_loads.message);
+    prepareSections(*settings_.boom, outputs_.section_loads.message);
+    prepareReactions(*settings_.boom, outputs_.joint_reactions.message);
     prepareVibration(*settings_.boom, outputs_.boom_vibration.message);
   }
   for (const std::string& link : settings_.pipeline.boom_wrench_links) {
@@ -124,6 +126,12 @@ void HammerBridge::sendBoom(const ros::Time& record_time) {
   const BoomFollower& boom = *pipeline_->boom();
   fillJointLoads(boom.state(), outputs_.joint_loads.message);
   outputs_.joint_loads.send(record_time);
+  if (!boom.boom().sections().empty()) {
+    fillSections(boom.state(), outputs_.section_loads.message);
+    outputs_.section_loads.send(record_time);
+  }
+  fillReactions(boom.state(), outputs_.joint_reactions.message);
+  outputs_.joint_reactions.send(record_time);
   fillVibration(boom, outputs_.boom_vibration.message);
   outputs_.boom_vibration.send(record_time);
 }

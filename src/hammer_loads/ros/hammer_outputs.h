@@ -6,9 +6,11 @@
 #include <hammer_loads/BoomVibration.h>
 #include <hammer_loads/HullLoads.h>
 #include <hammer_loads/JointLoads.h>
+#include <hammer_loads/JointReactions.h>
 #include <hammer_loads/PinForces.h>
 #include <hammer_loads/Pulse.h>
 #include <hammer_loads/RunInfo.h>
+#include <hammer_loads/SectionLoads.h>
 #include <sensor_msgs/JointState.h>
 
 #include <deque>
@@ -24,6 +26,8 @@ struct HammerOutputs {
   Output<HullLoads> hull_loads{"hull_loads"};
   std::deque<Output<geometry_msgs::WrenchStamped>> boom_wrench;  ///< one per boom_wrench link, in their order
   Output<JointLoads> joint_loads{"joint_loads"};
+  Output<SectionLoads> section_loads{"section_loads"};
+  Output<JointReactions> joint_reactions{"joint_reactions"};
   Output<BoomVibration> boom_vibration{"boom_vibration"};
   Output<sensor_msgs::JointState> mechanism{"mechanism"};
   Output<PinForces> pin_forces{"pin_forces", Delivery::kOnRequest};
@@ -34,7 +38,8 @@ struct HammerOutputs {
   void forEach(const Visit& visit) {
     visit(run_info), visit(hull_wrench), visit(hull_loads);
     for (auto& wrench : boom_wrench) visit(wrench);
-    visit(joint_loads), visit(boom_vibration), visit(mechanism), visit(pin_forces), visit(blow), visit(pulse);
+    visit(joint_loads), visit(section_loads), visit(joint_reactions), visit(boom_vibration), visit(mechanism),
+        visit(pin_forces), visit(blow), visit(pulse);
   }
 };
 

@@ -77,6 +77,8 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.pitch_joints = reader.names("pitch_joints");
   s.hull_pitch = reader.number("hull_pitch_rad", "rad", kAny);
   s.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
+  s.base.roll = reader.number("base_roll_rad", "rad", NumberRule::within(-1.0, 1.0));
+  s.base.pitch = reader.number("base_pitch_rad", "rad", NumberRule::within(-1.0, 1.0));
   s.crank_sensor = readCrankSensor(reader);
   s.crank_latency = reader.number("crank_latency_s", "s", NumberRule::within(0.0, 1.0));
   s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kNotNegative);

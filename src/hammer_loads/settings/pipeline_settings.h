@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/crank/crank_sensor.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/linkage/level.h"
@@ -89,6 +90,7 @@ struct PipelineSettings {
   HullMotionSource hull_motion{};
   HullImuSettings imu;                 ///< where the IMU sits
   double gravity{};                    ///< [m/s2], >= 0
+  BaseTilt base;                       ///< of the ground that the machine stands on
   CrankSensor crank_sensor;            ///< where it sits
   double crank_latency{};              ///< header stamp less the instant of the measurement [s], >= 0
   double crank_angle_resolution{};     ///< encoder count [rad], >= 0; 0: read off the readings

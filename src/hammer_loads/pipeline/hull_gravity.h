@@ -1,0 +1,39 @@
+/// Gravity as the hull sees it, by the latest joint angles.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/boom/gravity.h"
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/hull_pitch.h"
+#include "hammer_loads/settings/pipeline_settings.h"
+
+namespace hammer_loads {
+
+/// With a boom by its description, whose fixed tilts and swing count, once every joint of its chain has been heard.
+/// Else by the sum of the pitch joints, swing at zero.
+class HullGravity {
+ public:
+  HullGravity(const PipelineSettings& settings, const std::optional<Boom>& boom);
+
+  /// Boom joint angles, any subset in any order. Whether any was of use.
+  bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+
+  const Gravity& gravity() const noexcept { return gravity_; }  ///< hull axes [m/s2]
+  const HullPitch& pitch() const noexcept { return pitch_; }
+
+ private:
+  bool takePosition(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
+  void find() noexcept;
+
+  HullPitch pitch_;
+  Eigen::Vector3d g_B_;  ///< in the root's axes [m/s2]
+  std::optional<Chain> chain_;
+  JointVector position_;  ///< of the chain's joints; NaN: not heard
+  Gravity gravity_;
+};
+
+}  // namespace hammer_loads
