@@ -72,6 +72,7 @@ class Boom {
   void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
 
   const ChainPose& pose() const noexcept { return pose_; }
+  const JointVector& position() const noexcept { return joints_.position; }  ///< of the joints, as last moved
   /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
   Eigen::Vector3d gravityAtTip() const noexcept { return pose_.tip().linear().transpose() * g_B_; }
   JointVector hammerTorque(const Wrench& w_tip) const noexcept { return jointTorqueOfTipLoad(pose_, w_tip); }

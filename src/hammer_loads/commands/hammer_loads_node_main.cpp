@@ -13,11 +13,13 @@ Usage: rosrun hammer_loads hammer_loads_node [NAME:=TOPIC]... [_KEY:=VALUE]...
 Topics in (remap them with NAME:=TOPIC)
   crank         sensor_msgs/JointState  angle [rad] and speed [rad/s] of the joint `crank_joint`
   joint_states  sensor_msgs/JointState  angles [rad] of the boom's joints
-  hull_imu      sensor_msgs/Imu         with hull_motion: imu; acceleration less gravity [m/s2], turning rate [rad/s]
+  hull_imu      sensor_msgs/Imu         with hull_motion: imu or boom_stiffness: identified; acceleration less gravity
+                                        [m/s2], turning rate [rad/s]
+  cylinder_pressures  prefix of NAME/bore and NAME/rod, sensor_msgs/FluidPressure per cylinder: gauge [Pa]
   /tf, /tf_static  where boom_wrench_links names frames outside the boom's chain
 
 Topics out (private: below the node's name)
-  ~hull_wrench ~hull_loads ~boom_wrench/LINK ~joint_loads ~boom_vibration ~mechanism ~pin_forces ~pulse ~blow
+  ~hull_wrench ~hull_loads ~boom_wrench/LINK ~joint_loads ~section_loads ~joint_reactions ~boom_vibration ~mechanism ~pin_forces ~pulse ~blow
   ~run_info (latched)  /diagnostics
 
 Services

@@ -35,6 +35,9 @@ void addOptions(CLI::App& app, Arguments& given, BagJob& job) {
   topic("--crank-topic", job.topics.crank, kDefaultTopics.crank);
   topic("--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
   topic("--imu-topic", job.topics.hull_imu, kDefaultTopics.hull_imu);
+  topic("--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures);
+  app.get_option("--pressures-topic")
+      ->description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   app.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
   app.add_flag("--pins", job.pins, "pin forces as well");
   app.add_option("--grapple", given.grapple, "the grapple as well, from --joint-states-topic; may be repeated")

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "hammer_loads/boom/contact_load.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kPi = 0.5 * kTwoPi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLeastContact = 0.02;  // of the boom's weight: pressures tell no smaller force
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -30,6 +32,8 @@ BoomDeviations unknownDeviations(int joints) {
 BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double striking_distance)
     : boom_(std::move(boom)),
       joints_(boom_.chain(), settings),
+      pressures_(settings.joint_max_age),
+      observer_(settings.imu.position),
       model_(settings.boom),
       striking_distance_(striking_distance),
       base_(settings.base),
@@ -43,6 +47,8 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
   state_.deviations = unknownDeviations(boom_.chain().joints());
   state_.reduced = {kInfinity, kInfinity};
   state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
+  if (follow_vibration_ && settings.boom_stiffness == BoomStiffness::kIdentified) boom_.vibration().identify();
+  least_contact_ = kLeastContact * settings.gravity * massFrom(boom_.chain(), boom_.pose(), 1).mass;
   state_.choice.rigid_tolerance = boom_.parameters().rigid_tolerance;
   for (const Cylinder& cylinder : boom_.cylinders()) givers_.push_back(cylinder.parameters().name);
 }
@@ -76,10 +82,12 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     boom_.moveCompliant(motion_, g_B);
     spread_.follow(boom_.vibration());
     if (continued) vibrate(step, sample.spread);
+    observe(sample, seconds(sample.stamp - last_stamp_));
   } else {
     boom_.move(motion_, g_B);
   }
   known_ = true;
+  last_stamp_ = sample.stamp;
   state_.gravity_tip = boom_.gravityAtTip();
   state_.choice.compliant = takesCompliant();
   findLoads(sample);
@@ -91,9 +99,55 @@ void BoomFollower::findLoads(const BoomSample& sample) noexcept {
   const Wrench w_tip = onTip(sample.motion_wrench);
   const bool rigid = !state_.choice.compliant;
   boom_.loads(w_tip, rigid, state_.loads);
-  boom_.steelLoads(w_tip, rigid, state_.steel);
+  takeMeasured(sample);
+  boom_.steelLoads({w_tip.force + contact_.force, w_tip.torque + contact_.torque}, rigid, state_.steel);
   if (sample.spread.count > 0) boom_.deviations(spread_, sample.spread, rigid, state_.deviations);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
+}
+
+/// Frequencies and damping as sensors show them.
+void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
+  if (!boom_.vibration().identifier()) return;
+  if (sample.imu) observer_.imu(boom_, motion_, *sample.imu);
+  observer_.joints(boom_, sample.stamp, step, joints_);
+  if (pressures_.accepted() == 0) return;
+  boom_.loads(onTip(sample.motion_wrench), true, state_.loads);
+  observer_.pressures(boom_, sample.stamp, pressures_, state_.loads);
+}
+
+/// A measured force holds what acts on its joint, whatever the model says; the difference is the rock's.
+void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
+  state_.contact_torque.setZero();
+  contact_ = {};
+  std::size_t measured = 0;
+  for (std::size_t i = 0; i < boom_.cylinders().size() && pressures_.accepted() > 0; ++i) {
+    const Cylinder& cylinder = boom_.cylinders()[i];
+    const int joint = cylinder.joint();
+    const std::optional<ChamberPressures> p = pressures_.at(i, sample.stamp);
+    const CylinderPosition at = cylinder.at(motion_.position[joint]);
+    if (!p || at.dead_centre) continue;
+    const double total = -forceOf(cylinder, *p) * at.arm;
+    state_.contact_torque[joint] = total - state_.loads.total[joint];
+    state_.loads.total[joint] = total;
+    state_.loads.cylinder[i] = cylinder.load(at, total);
+    ++measured;
+  }
+  state_.measured = measured > 0 && measured == boom_.cylinders().size();
+  findContact();
+}
+
+/// Three cylinders in a plane tell the force; of others the torques alone are known.
+void BoomFollower::findContact() noexcept {
+  state_.press_force_lost = false;
+  if (!state_.measured || boom_.cylinders().size() != 3) return;
+  const auto& c = boom_.cylinders();
+  const std::array<int, 3> joints{c[0].joint(), c[1].joint(), c[2].joint()};
+  const Eigen::Vector3d torque(state_.contact_torque[joints[0]], state_.contact_torque[joints[1]],
+                               state_.contact_torque[joints[2]]);
+  const std::optional<Wrench> load = inPlaneTipLoad(boom_.pose(), joints, torque);
+  if (!load) return;
+  contact_ = *load;
+  state_.press_force_lost = contact_.force.z() < least_contact_;
 }
 
 void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept {

@@ -10,7 +10,9 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
+#include "hammer_loads/pipeline/mode_observer.h"
 #include "hammer_loads/pipeline/wrench_history.h"
 
 namespace hammer_loads {
@@ -22,6 +24,7 @@ struct BoomSample {
                              ///< weight, no hull motion
   double gravity{};          ///< [m/s2]
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
+  std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
 };
 
 /// Why the boom is taken as rigid or compliant.
@@ -69,6 +72,10 @@ class BoomFollower {
                    const std::vector<double>& velocities) noexcept {
     return joints_.update(stamp, names, positions, velocities);
   }
+  /// Gauge pressure [Pa] of a cylinder, index as in Boom::cylinders(). Whether it was taken.
+  bool pressure(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept {
+    return pressures_.update(stamp, cylinder, chamber, pressure);
+  }
   /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
   /// until the next call.
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
@@ -85,6 +92,7 @@ class BoomFollower {
   bool known() const noexcept { return known_; }  ///< the last sample had no fault
   const Boom& boom() const noexcept { return boom_; }
   const JointBuffer& joints() const noexcept { return joints_; }
+  const CylinderPressures& pressures() const noexcept { return pressures_; }
   std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
   /// What state().hold_down.least belongs to, such as "front edge" or a cylinder's name; empty when it is not known.
   const std::string& firstToGive() const noexcept;
@@ -94,12 +102,17 @@ class BoomFollower {
   bool takesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept;
   void findLoads(const BoomSample& sample) noexcept;
+  void observe(const BoomSample& sample, double step) noexcept;
+  void takeMeasured(const BoomSample& sample) noexcept;
+  void findContact() noexcept;
   void tellVibration() noexcept;
   void tellModes() noexcept;
 
   Boom boom_;
   VibrationSpread spread_;
   JointBuffer joints_;
+  CylinderPressures pressures_;
+  ModeObserver observer_;
   BoomModel model_;
   double striking_distance_;
   BaseTilt base_;
@@ -107,6 +120,9 @@ class BoomFollower {
   BoomState state_;
   JointMotion motion_;
   TorqueStep torque_;
+  Wrench contact_;          ///< BY the rock ON the tip beyond the blows, where measured pressures tell it
+  double least_contact_{};  ///< along z: less is none [N]
+  StampNs last_stamp_{};    ///< of the last sample without a fault
   bool known_{};
   std::uint64_t faults_{};
   std::vector<std::string> givers_;  ///< edges, then cylinders

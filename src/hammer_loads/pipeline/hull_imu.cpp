@@ -31,15 +31,27 @@ std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& readi
   return std::nullopt;
 }
 
-std::optional<HullMotion> HullImu::at(StampNs stamp) const noexcept {
+std::optional<ImuReading> HullImu::reading(StampNs stamp) const noexcept {
   if (readings_ < 2 || std::abs(seconds(stamp - now_.stamp)) > settings_.max_age) return std::nullopt;
   const double interval = seconds(now_.stamp - before_.stamp);
-  const double part = std::clamp(seconds(stamp - now_.stamp) / interval, -1.0, 1.0);
-  const Eigen::Vector3d rate = now_.rate + part * (now_.rate - before_.rate);
-  const Eigen::Vector3d acceleration = (now_.rate - before_.rate) / interval;
-  const Eigen::Vector3d& r = settings_.position;
-  const Eigen::Vector3d force =
-      now_.force + part * (now_.force - before_.force) - acceleration.cross(r) - rate.cross(rate.cross(r));
+  double part = std::clamp(seconds(stamp - now_.stamp) / interval, -1.0, 1.0);
+  if (blowBetween(before_.stamp, now_.stamp)) {
+    part = stamp < *blow_ ? -1.0 : 0.0;
+  } else if (blowBetween(now_.stamp, stamp)) {
+    part = 0.0;
+  }
+  return ImuReading{now_.force + part * (now_.force - before_.force), now_.rate + part * (now_.rate - before_.rate)};
+}
+
+std::optional<HullMotion> HullImu::at(StampNs stamp) const noexcept {
+  const std::optional<ImuReading> read = reading(stamp);
+  if (!read) return std::nullopt;
+  const bool smooth = !blowBetween(before_.stamp, std::max(now_.stamp, stamp));
+  const double interval = seconds(now_.stamp - before_.stamp);
+  const Eigen::Vector3d acceleration =
+      smooth ? Eigen::Vector3d((now_.rate - before_.rate) / interval) : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d &r = settings_.position, &rate = read->rate;
+  const Eigen::Vector3d force = read->specific_force - acceleration.cross(r) - rate.cross(rate.cross(r));
   return HullMotion{{-force.x(), -force.z()}, rate.y(), acceleration.y()};
 }
 

@@ -35,13 +35,21 @@ class HullImu {
   /// when a log is played again. No allocation.
   std::optional<ImuRefusal> update(StampNs stamp, const ImuReading& reading) noexcept;
 
-  /// Motion at a stamp: on the line through the last two readings, also one interval beyond them at most. Nothing
-  /// before the second reading in a row or when the last is more than max_age away.
+  /// A blow was struck at that instant: accelerations jump there, so no line and no difference goes across it.
+  void struck(StampNs stamp) noexcept { blow_ = stamp; }
+
+  /// What the unit reads at a stamp, in axes of hammer_hull: on the line through the last two readings, also one
+  /// interval beyond them at most; where a blow lies between, the nearest reading on the stamp's side. Nothing before
+  /// the second reading in a row or when the last is more than max_age away.
+  std::optional<ImuReading> reading(StampNs stamp) const noexcept;
+  /// Motion at a stamp, known as reading() is. Turning acceleration zero until two readings after a blow give it.
   std::optional<HullMotion> at(StampNs stamp) const noexcept;
 
   StampNs last() const noexcept { return now_.stamp; }  ///< stamp of the last reading taken [ns]
 
  private:
+  bool blowBetween(StampNs from, StampNs to) const noexcept { return blow_ && from < *blow_ && *blow_ <= to; }
+
   /// In axes of hammer_hull.
   struct Sample {
     StampNs stamp{};
@@ -51,7 +59,7 @@ class HullImu {
   HullImuSettings settings_;
   Sample now_, before_;
   int readings_{};  ///< in a row, counted up to 2
-  std::optional<StampNs> rewound_;
+  std::optional<StampNs> rewound_, blow_;
 };
 
 }  // namespace hammer_loads

@@ -37,23 +37,38 @@ std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& readin
 void HullState::set(const HullMotion& motion) noexcept { now_ = {motion, known_}; }
 
 const HullMotion& HullState::predict(StampNs stamp) noexcept {
+  find(stamp);
+  imu_counts_.missed += source_ == HullMotionSource::kImu && !known_;
+  return now_.motion;
+}
+
+void HullState::find(StampNs stamp) noexcept {
   if (source_ == HullMotionSource::kImu) {
     const std::optional<HullMotion> measured = imu_.at(stamp);
     known_ = measured.has_value();
-    imu_counts_.missed += !known_;
     set(measured.value_or(HullMotion(weight_.gravity())));
   } else if (source_ == HullMotionSource::kModel) {
     const Gravity& weight = weight_.gravity();
     set({{weight.x + vibration_.gravity.x, weight.z + vibration_.gravity.z}, vibration_.rate, vibration_.acceleration});
   }
-  return now_.motion;
+}
+
+void HullState::struck(StampNs blow, StampNs sample) noexcept {
+  imu_.struck(blow);
+  find(sample);
+}
+
+std::optional<ImuReading> HullState::newImuReading(StampNs stamp) noexcept {
+  if (imu_counts_.accepted == imu_taken_) return std::nullopt;
+  imu_taken_ = imu_counts_.accepted;
+  return imu_.reading(stamp);
 }
 
 void HullState::vibrates(const BoomState* boom) noexcept {
   if (source_ != HullMotionSource::kModel) return;
   known_ = boom != nullptr && !boom->fault;
   vibration_ = known_ ? vibrationOf(*boom) : HullMotion{};
-  predict(0);
+  find(0);
 }
 
 }  // namespace hammer_loads

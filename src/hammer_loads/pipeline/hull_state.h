@@ -38,6 +38,10 @@ class HullState {
   /// Before a sample is taken: its motion as far as it is known by then (of the boom's vibration: that of the sample
   /// before).
   const HullMotion& predict(StampNs stamp) noexcept;
+  /// A blow was struck within the step to the sample: its motion again, with that known.
+  void struck(StampNs blow, StampNs sample) noexcept;
+  /// What the IMU reads at the sample in the hull's axes, if a reading has come since the last call.
+  std::optional<ImuReading> newImuReading(StampNs stamp) noexcept;
   /// After it: the vibration of the boom at the sample; null: not known.
   void vibrates(const BoomState* boom) noexcept;
   /// What follows is not continuous with what was: the boom is at rest.
@@ -52,6 +56,7 @@ class HullState {
  private:
   void weigh() noexcept;
   void set(const HullMotion& motion) noexcept;
+  void find(StampNs stamp) noexcept;
 
   HullMotionSource source_;
   HullGravity weight_;
@@ -59,6 +64,7 @@ class HullState {
   ImuCounts imu_counts_;
   HullMotion vibration_;  ///< of the boom's tip at the last sample, without weight
   Motion now_;
+  std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
   bool known_{true};
 };
 

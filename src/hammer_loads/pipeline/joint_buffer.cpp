@@ -8,7 +8,6 @@
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
-namespace {}  // namespace
 
 double JointBuffer::Track::difference(double from, double to) const noexcept {
   return turns_freely ? std::remainder(to - from, kTwoPi) : to - from;
@@ -121,6 +120,12 @@ std::optional<JointFault> JointBuffer::at(StampNs stamp, JointMotion& motion) co
     if (newest.velocity_age == 0.0) motion.velocity[j] += (1.0 - part) * (before.velocity - newest.velocity);
   }
   return std::nullopt;
+}
+
+std::optional<JointBuffer::Reading> JointBuffer::newest(int joint) const noexcept {
+  const Track& track = tracks_[static_cast<std::size_t>(joint)];
+  if (track.count == 0) return std::nullopt;
+  return Reading{track.back(0).stamp, track.back(0).position};
 }
 
 std::vector<std::string> JointBuffer::complaints(StampNs stamp) const {

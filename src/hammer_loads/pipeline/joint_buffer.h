@@ -45,6 +45,14 @@ class JointBuffer {
   /// Motion at an instant, or what is not known of it (then `motion` is void). No allocation.
   std::optional<JointFault> at(StampNs stamp, JointMotion& motion) const noexcept;
 
+  /// A joint's angle as it came.
+  struct Reading {
+    StampNs stamp{};
+    double position{};
+  };
+  /// The newest one of a joint, if any.
+  std::optional<Reading> newest(int joint) const noexcept;
+
   const JointRefusals& refusals() const noexcept { return refusals_; }
   const std::string& name(int joint) const noexcept { return names_[static_cast<std::size_t>(joint)]; }
   /// Every joint that is missing or stale at an instant, for diagnostics: "arm_joint: never heard".

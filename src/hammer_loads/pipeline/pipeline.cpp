@@ -79,6 +79,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (taken == CrankFollower::Taken::kRefused) return refuse(Refusal::kImplausible);
   result_.crank = crank_.estimate();
   result_.consistency = crank_.tracker().consistency();
+  if (taken == CrankFollower::Taken::kContinued) tellBlow();
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(stamp);
   if (taken == CrankFollower::Taken::kContinued) {
     turn_.follow(hull_.motion().motion, result_);
@@ -106,6 +107,15 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   return result_;
 }
 
+/// Measured accelerations of the hull jump at a blow.
+void Pipeline::tellBlow() noexcept {
+  for (const CrankStep::Passage& passage : crank_.step()) {
+    if (!passage.strikes) continue;
+    const StampNs after = static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
+    hull_.struck(crank_.step().start() + after, result_.stamp);
+  }
+}
+
 void Pipeline::followBoom() noexcept {
   result_.boom = nullptr;
   if (!boom_) return;
@@ -114,7 +124,8 @@ void Pipeline::followBoom() noexcept {
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   const Eigen::Matrix3d covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
   const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, covariance);
-  result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity, spread}, step);
+  result_.boom =
+      &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp)}, step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i)
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);

@@ -27,8 +27,13 @@ class Pipeline {
   /// A message of boom joints, any subset in any order: angles [rad], speeds [rad/s] or none. Whether any was of use.
   bool boomJoints(StampNs stamp, const std::vector<std::string>& names, const std::vector<double>& positions,
                   const std::vector<double>& velocities) noexcept;
-  /// A reading of the hull's IMU; used with hull_motion imu alone. Why it was refused, if it was.
+  /// A reading of the hull's IMU; used with hull_motion imu and boom_stiffness identified. Why it was refused, if it
+  /// was.
   std::optional<ImuRefusal> hullImu(StampNs stamp, const ImuReading& reading) noexcept;
+  /// Gauge pressure [Pa] in a chamber of a cylinder of the boom, index as in Boom::cylinders(). Whether it was taken.
+  bool cylinderPressure(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept {
+    return boom_ && boom_->pressure(stamp, cylinder, chamber, pressure);
+  }
   /// A crank message in JointState's terms; finds the crank joint in it.
   const SampleResult& crankJoint(StampNs stamp, const std::vector<std::string>& names,
                                  const std::vector<double>& positions, const std::vector<double>& velocities) noexcept;
@@ -47,6 +52,7 @@ class Pipeline {
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
   void followBoom() noexcept;
+  void tellBlow() noexcept;
 
   Mechanism mechanism_;
   PipelineSettings settings_;

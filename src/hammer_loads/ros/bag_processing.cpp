@@ -44,6 +44,11 @@ class HammerRuns {
     }
     if (topic == topics.hull_imu && flow_->needsImu())
       flow_->hullImu(*messageOf<sensor_msgs::Imu>(item), item.getTime());
+    for (const HammerBridge::PressureTopic& pressure : pressures_) {
+      if (topic == pressure.name)
+        flow_->cylinderPressure(pressure.cylinder, pressure.chamber, *messageOf<sensor_msgs::FluidPressure>(item),
+                                item.getTime());
+    }
   }
 
   void end() {
@@ -58,7 +63,9 @@ class HammerRuns {
   /// Static transforms are the same in every run.
   void begin() {
     joints_came_ = false;
-    flow_.emplace(runs_[next_++].settings);
+    const Settings& settings = runs_[next_++].settings;
+    flow_.emplace(settings);
+    pressures_ = HammerBridge::pressureTopics(settings, settings.input_topics.cylinder_pressures);
     attachToBag(flow_->outputs(), output_, job_.output_prefix, job_.pins);
     for (const auto& [time, message] : statics_) flow_->transforms(*message, true, time);
   }
@@ -77,6 +84,7 @@ class HammerRuns {
   std::size_t next_{};
   bool joints_came_{};  ///< in this run
   std::optional<HammerBridge> flow_;
+  std::vector<HammerBridge::PressureTopic> pressures_;
   std::vector<std::pair<ros::Time, tf2_msgs::TFMessage::ConstPtr>> statics_;
 };
 
@@ -86,8 +94,9 @@ Wanted wantedTopics(const std::vector<BagRun>& runs, bool hammer, const std::str
   if (!hammer) return wanted;
   for (const BagRun& run : runs) {
     const InputTopics& topics = run.settings.input_topics;
-    if (run.settings.pipeline.hull_motion == HullMotionSource::kImu)
-      wanted[topics.hull_imu] = typeOf<sensor_msgs::Imu>();
+    for (const auto& pressure : HammerBridge::pressureTopics(run.settings, topics.cylinder_pressures))
+      wanted[pressure.name] = typeOf<sensor_msgs::FluidPressure>();
+    if (needsImu(run.settings.pipeline)) wanted[topics.hull_imu] = typeOf<sensor_msgs::Imu>();
     wanted[topics.crank] = wanted[topics.joint_states] = typeOf<sensor_msgs::JointState>();
     if (!run.settings.pipeline.boom_wrench_links.empty())
       wanted["/tf"] = wanted["/tf_static"] = typeOf<tf2_msgs::TFMessage>();

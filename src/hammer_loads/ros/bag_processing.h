@@ -27,7 +27,8 @@ struct BagJob {
   std::string grapple_prefix{"/grapple"};
 };
 
-inline const InputTopics kDefaultTopics{"/hammer/crank", "/joint_states", "/hammer/hull_imu"};
+inline const InputTopics kDefaultTopics{"/hammer/crank", "/joint_states", "/hammer/hull_imu",
+                                        "/hammer/cylinder_pressures"};
 
 /// Reads the inputs' messages in record order and writes every output at the record time of the input that caused it.
 /// progress: part done in [0, 1]. Returns what went wrong, one line each; nothing if all is well. Then the report is

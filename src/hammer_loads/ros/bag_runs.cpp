@@ -65,7 +65,9 @@ Settings withTopics(Settings settings, const InputTopics& given, const InputTopi
   const InputTopics topics{
       firstOf({given.crank, known.crank, recorded.crank, kDefaultTopics.crank}),
       firstOf({given.joint_states, known.joint_states, recorded.joint_states, kDefaultTopics.joint_states}),
-      firstOf({given.hull_imu, known.hull_imu, recorded.hull_imu, kDefaultTopics.hull_imu})};
+      firstOf({given.hull_imu, known.hull_imu, recorded.hull_imu, kDefaultTopics.hull_imu}),
+      firstOf({given.cylinder_pressures, known.cylinder_pressures, recorded.cylinder_pressures,
+               kDefaultTopics.cylinder_pressures})};
   return withInputTopics(std::move(settings), topics);
 }
 

@@ -21,9 +21,9 @@ std::pair<const std::string, std::string> definition() {
 
 /// MD5 sum of each type in this version.
 const std::map<std::string, std::string>& definitions() {
-  static const std::map<std::string, std::string> known{definition<Blow>(),      definition<BoomVibration>(),
-                                                        definition<HullLoads>(), definition<JointLoads>(),
-                                                        definition<PinForces>(), definition<Pulse>()};
+  static const std::map<std::string, std::string> known{
+      definition<Blow>(),           definition<BoomVibration>(), definition<HullLoads>(), definition<JointLoads>(),
+      definition<JointReactions>(), definition<SectionLoads>(),  definition<PinForces>(), definition<Pulse>()};
   return known;
 }
 

@@ -1,6 +1,7 @@
 /// From input messages to output messages: the same for the live node, the nodelet and process_bag.
 #pragma once
 
+#include <sensor_msgs/FluidPressure.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
@@ -25,9 +26,19 @@ class HammerBridge {
   void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void hullImu(const sensor_msgs::Imu& message, const ros::Time& record_time);
+  /// Gauge pressure in a chamber of one of cylinders().
+  void cylinderPressure(std::size_t cylinder, Chamber chamber, const sensor_msgs::FluidPressure& message,
+                        const ros::Time& record_time);
   /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
-  bool needsImu() const { return settings_.pipeline.hull_motion == HullMotionSource::kImu; }
+  bool needsImu() const { return hammer_loads::needsImu(settings_.pipeline); }
+  /// Topics of the pressures below `prefix`, and whose they are; none without a boom on cylinders.
+  struct PressureTopic {
+    std::string name;
+    std::size_t cylinder{};
+    Chamber chamber{};
+  };
+  static std::vector<PressureTopic> pressureTopics(const Settings& settings, const std::string& prefix);
   /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
   bool needsTransforms() const { return frame_wrenches_.has_value(); }
   /// A new run begins with the next input, in the state of a bridge just made; counts go on. For a time that jumped and

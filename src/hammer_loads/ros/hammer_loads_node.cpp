@@ -33,6 +33,7 @@ void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
   joint_states_ = node.subscribe("joint_states", kTopicQueue, &HammerLoadsNode::onJointStates, this, no_delay);
   crank_ = node.subscribe("crank", kTopicQueue, &HammerLoadsNode::onCrank, this, no_delay);
   if (bridge_.needsImu()) hull_imu_ = node.subscribe("hull_imu", kTopicQueue, &HammerLoadsNode::onImu, this, no_delay);
+  subscribePressures(node);
   joint_states_topic_ = joint_states_.getTopic();
   crank_topic_ = crank_.getTopic();
   hull_imu_topic_ = hull_imu_.getTopic();
@@ -47,6 +48,18 @@ void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
   if (bridge_.needsTransforms())
     tf_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf", kTopicQueue, transforms(false), {}, no_delay);
   diagnostics_.watch({&crank_, &joint_states_, &hull_imu_});
+}
+
+void HammerLoadsNode::subscribePressures(ros::NodeHandle& node) {
+  const std::string prefix = node.resolveName("cylinder_pressures");
+  pressure_topics_ = HammerBridge::pressureTopics(bridge_.settings(), prefix);
+  using Given = const Event<sensor_msgs::FluidPressure>&;
+  for (std::size_t i = 0; i < pressure_topics_.size(); ++i) {
+    const boost::function<void(Given)> take = [this, i](Given event) { onPressure(i, event); };
+    pressures_.push_back(node.subscribe<sensor_msgs::FluidPressure, Given>(pressure_topics_[i].name, kTopicQueue, take,
+                                                                           {}, ros::TransportHints().tcpNoDelay()));
+    pressure_topics_[i].name = pressures_.back().getTopic();
+  }
 }
 
 void HammerLoadsNode::sayWhatRuns() const {
@@ -144,6 +157,13 @@ void HammerLoadsNode::onImu(const Event<sensor_msgs::Imu>& event) {
   bridge_.hullImu(*event.getConstMessage(), record_time);
 }
 
+void HammerLoadsNode::onPressure(std::size_t topic, const Event<sensor_msgs::FluidPressure>& event) {
+  const ros::Time record_time = recordTime(event.getReceiptTime());
+  const HammerBridge::PressureTopic& from = pressure_topics_[topic];
+  log_->write(from.name, record_time, *event.getConstMessage());
+  bridge_.cylinderPressure(from.cylinder, from.chamber, *event.getConstMessage(), record_time);
+}
+
 void HammerLoadsNode::onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static) {
   const ros::Time record_time = recordTime(event.getReceiptTime());
   const tf2_msgs::TFMessage& message = *event.getConstMessage();
@@ -168,7 +188,8 @@ std::unique_ptr<HammerLoadsNode> makeHammerNode(const ros::NodeHandle& node, con
   if (!settings.value) return nullptr;
   auto log = makeNodeLog(settings.value->log, private_node.getNamespace(), problems);
   if (!log) return nullptr;
-  const InputTopics topics{node.resolveName("crank"), node.resolveName("joint_states"), node.resolveName("hull_imu")};
+  const InputTopics topics{node.resolveName("crank"), node.resolveName("joint_states"), node.resolveName("hull_imu"),
+                           node.resolveName("cylinder_pressures")};
   return std::make_unique<HammerLoadsNode>(node, private_node, withInputTopics(*settings.value, topics),
                                            std::move(log));
 }

@@ -36,6 +36,7 @@ class HammerLoadsNode final {
   using JointState = sensor_msgs::JointState;
 
   void subscribe(ros::NodeHandle& node);
+  void subscribePressures(ros::NodeHandle& node);
   void sayWhatRuns() const;
   void announceRun();
   void beginRun();
@@ -46,6 +47,7 @@ class HammerLoadsNode final {
   void onCrank(const Event<JointState>& event);
   void onJointStates(const Event<JointState>& event);
   void onImu(const Event<sensor_msgs::Imu>& event);
+  void onPressure(std::size_t topic, const Event<sensor_msgs::FluidPressure>& event);
   void onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static);
   ros::Time recordTime(const ros::Time& arrival);
 
@@ -60,6 +62,8 @@ class HammerLoadsNode final {
   boost::recursive_mutex reconfigure_mutex_;
   dynamic_reconfigure::Server<HammerLoadsConfig> reconfigure_;
   LogServices log_services_;
+  std::vector<ros::Subscriber> pressures_;
+  std::vector<HammerBridge::PressureTopic> pressure_topics_;  ///< resolved
   ros::Subscriber joint_states_, crank_, hull_imu_, tf_, tf_static_;
   std::string joint_states_topic_, crank_topic_, hull_imu_topic_;  ///< resolved
 };

@@ -8,10 +8,11 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::array<std::pair<const char*, std::string InputTopics::*>, 3> kKeys{
+constexpr std::array<std::pair<const char*, std::string InputTopics::*>, 4> kKeys{
     {{"input_topic_crank", &InputTopics::crank},
      {"input_topic_joint_states", &InputTopics::joint_states},
-     {"input_topic_hull_imu", &InputTopics::hull_imu}}};
+     {"input_topic_hull_imu", &InputTopics::hull_imu},
+     {"input_topic_cylinder_pressures", &InputTopics::cylinder_pressures}}};
 
 }  // namespace
 

@@ -12,10 +12,11 @@ namespace hammer_loads {
 /// Resolved names; empty: not known.
 struct InputTopics {
   std::string crank, joint_states, hull_imu;
+  std::string cylinder_pressures;  ///< prefix: its topics are /NAME/bore and /NAME/rod below it, per cylinder
 };
 
-/// Takes the keys `input_topic_crank`, `input_topic_joint_states` and `input_topic_hull_imu`, none of them required,
-/// out of the parameters.
+/// Takes the keys `input_topic_crank`, `input_topic_joint_states`, `input_topic_hull_imu` and
+/// `input_topic_cylinder_pressures`, none of them required, out of the parameters.
 InputTopics takeInputTopics(ParameterMap& parameters, std::vector<std::string>& problems);
 
 /// The same keys as YAML, one a line; none for a topic that is not known.

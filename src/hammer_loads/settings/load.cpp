@@ -31,6 +31,20 @@ std::string boomConflict(BoomModel model, bool boom_file, bool description) {
   return "robot_description: missing, must be given (a URDF), or boom must be none or auto";
 }
 
+/// What a boom that vibrates, or does not, demands of the other keys; empty when they agree.
+std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, bool vibrates) {
+  if (vibrates && pipeline.boom_acceleration == BoomAcceleration::kDifference)
+    return "boom_acceleration: difference, must be none with a boom that may be compliant: where the joints' sensors "
+           "see "
+           "the vibration, it would count twice";
+  if (!vibrates && pipeline.boom_stiffness == BoomStiffness::kIdentified)
+    return "boom_stiffness: identified, must be given without a boom on its cylinders' oil (boom: compliant or auto, "
+           "and a boom file)";
+  if (!boom_file && pipeline.hull_motion == HullMotionSource::kModel)
+    return "hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring";
+  return {};
+}
+
 /// Nothing when there is none, or the reader got a problem with it.
 std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel model, const std::string& description,
                              std::vector<std::string>& notes) {
@@ -61,8 +75,9 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   PipelineSettings pipeline = readPipelineSettings(reader);
   const LogSettings log = readLogSettings(reader);
   std::optional<Boom> boom = readBoom(reader, boom_file, pipeline.boom, robot_description, result.notes);
-  if (pipeline.hull_motion == HullMotionSource::kModel && !boom_file)
-    reader.addProblem("hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring");
+  const bool vibrates = boom_file && pipeline.boom != BoomModel::kNone && pipeline.boom != BoomModel::kRigid;
+  const std::string conflict = vibrationConflict(pipeline, boom_file, vibrates);
+  if (!conflict.empty()) reader.addProblem(conflict);
   reader.reportUnknownKeys();
   result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());
   if (!mechanism || !result.problems.empty()) return result;

@@ -35,8 +35,8 @@ struct Settings {
 /// hammer key given means that all must be; with none given hammer_mo100.yaml is used.
 ///
 /// Boom: from the text of a robot description (URDF; empty: none) and the boom file's keys, of which a single one given
-/// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`; where the description lacks one of
-/// the two and `boom` is auto, there is no boom and a note says so.
+/// means that all must be. Without them it is rigid, from `base_link` to `hammer_hull`; where the description lacks one
+/// of the two and `boom` is auto, there is no boom and a note says so.
 Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
                        const std::string& robot_description = {});
 

@@ -18,6 +18,7 @@ bool namesATopic(const std::string& link) {
 void readBoom(ParameterReader& reader, PipelineSettings& s) {
   s.boom = reader.choice("boom", kBoomModelNames);
   s.boom_acceleration = reader.choice("boom_acceleration", kBoomAccelerationNames);
+  s.boom_stiffness = reader.choice("boom_stiffness", kBoomStiffnessNames);
   s.joint_max_age = reader.number("joint_max_age_s", "s", NumberRule::positive());
   s.boom_wrench_links = reader.names("boom_wrench_links");
   for (const std::string& link : s.boom_wrench_links) {

@@ -59,6 +59,14 @@ enum class BoomAcceleration {
   kDifference,  ///< of the joints' velocities
 };
 
+/// How the modes' frequencies and damping are known.
+enum class BoomStiffness {
+  kGiven,       ///< by the boom file
+  kIdentified,  ///< followed from hull IMU, joint states above 100 Hz and cylinder pressures, whichever come
+};
+
+constexpr std::array<std::pair<const char*, BoomStiffness>, 2> kBoomStiffnessNames{
+    {{"given", BoomStiffness::kGiven}, {"identified", BoomStiffness::kIdentified}}};
 constexpr std::array<std::pair<const char*, BoomModel>, 4> kBoomModelNames{{{"none", BoomModel::kNone},
                                                                             {"rigid", BoomModel::kRigid},
                                                                             {"compliant", BoomModel::kCompliant},
@@ -110,10 +118,16 @@ struct PipelineSettings {
   double withhold_above{};             ///< predicted error of the wrench over the turn's peak [-], > 0
   BoomModel boom{};
   BoomAcceleration boom_acceleration{};
+  BoomStiffness boom_stiffness{};
   double joint_max_age{};                      ///< between a crank sample and a joint's nearest state [s], > 0
   std::vector<std::string> boom_wrench_links;  ///< links and TF frames at which the hull wrench is published as well
   double tf_max_wait{};                        ///< of a wrench for the transform to its frame [s], > 0
 };
+
+/// Whether readings of the hull's IMU count.
+inline bool needsImu(const PipelineSettings& settings) {
+  return settings.hull_motion == HullMotionSource::kImu || settings.boom_stiffness == BoomStiffness::kIdentified;
+}
 
 /// Usable only if the reader got no problem.
 PipelineSettings readPipelineSettings(ParameterReader& reader);

@@ -1,0 +1,52 @@
+/// Measured pressures in the chambers of the boom's cylinders at the instants of the crank samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "hammer_loads/boom/cylinder_flags.h"
+#include "hammer_loads/boom/joint_space.h"
+#include "hammer_loads/util/stamp.h"
+
+namespace hammer_loads {
+
+enum class Chamber : std::size_t { kBore, kRod };
+
+/// The last two readings of each chamber. At an instant: on the line through them, beyond the newest one by one
+/// interval at most. No allocation.
+class CylinderPressures {
+ public:
+  /// max_age: from an instant to the nearest reading [s].
+  explicit CylinderPressures(double max_age) : max_age_(max_age) {}
+
+  /// Gauge pressure [Pa] of a cylinder of the boom. One that is not finite, beyond what steel holds or not newer than
+  /// the last is refused and counted; time running back is believed from the second reading on.
+  bool update(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept;
+  /// Nothing unless both chambers are known.
+  std::optional<ChamberPressures> at(std::size_t cylinder, StampNs stamp) const noexcept;
+
+  std::uint64_t accepted() const noexcept { return accepted_; }
+  std::uint64_t refused() const noexcept { return refused_; }
+  /// Readings taken of a cylinder: what it has more than before is new.
+  std::uint64_t count(std::size_t cylinder) const noexcept { return counts_[cylinder]; }
+
+ private:
+  struct Reading {
+    StampNs stamp{};
+    double pressure{};
+  };
+  struct Track {
+    Reading before, now;
+    int readings{};  ///< in a row, counted up to 2
+    std::optional<StampNs> rewound;
+  };
+  std::optional<double> at(const Track& track, StampNs stamp) const noexcept;
+
+  double max_age_;
+  std::array<std::array<Track, 2>, kMaxJoints> tracks_;
+  std::array<std::uint64_t, kMaxJoints> counts_{};
+  std::uint64_t accepted_{}, refused_{};
+};
+
+}  // namespace hammer_loads

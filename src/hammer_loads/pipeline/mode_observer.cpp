@@ -1,0 +1,74 @@
+#include "hammer_loads/pipeline/mode_observer.h"
+
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+/// Standard deviation of one reading, of its offset at the start, and how far that wanders in a second.
+struct Doubt {
+  double noise, offset, walk;
+};
+constexpr Doubt kAcceleration{0.3, 0.3, 0.05};    // [m/s2]
+constexpr Doubt kRate{0.005, 0.02, 0.005};        // [rad/s]
+constexpr Doubt kAngle{2e-4, 0.01, 0.002};        // [rad]
+constexpr Doubt kTorque{0.004, 0.02, 0.002};      // of the torque that the cylinder's relief valve allows
+constexpr double kSlowest = 0.01, kMemory = 0.5;  // [s] between joint states; of a joint's mean speed
+constexpr double kStands = 0.005, kMoved = 0.02;  // [rad/s], [rad]: a joint that is slower stands; a jump
+
+void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, double size = 1.0) noexcept {
+  reading.noise = size * doubt.noise;
+  reading.offset_deviation = size * doubt.offset;
+  reading.offset_walk = size * doubt.walk;
+  boom.vibration().observe(channel, reading);
+}
+
+}  // namespace
+
+void ModeObserver::imu(Boom& boom, const JointMotion& motion, const ImuReading& reading) noexcept {
+  const Jacobian J = tipJacobian(boom.pose());
+  const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * motion.velocity;
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  see(boom, 0, tipAccelerationReading(J, imu_position_, x, g_T, reading.specific_force.x()), kAcceleration);
+  see(boom, 1, tipAccelerationReading(J, imu_position_, z, g_T, reading.specific_force.z()), kAcceleration);
+  see(boom, 2, tipRateReading(J, y, reading.rate.y() - slow_rate.y()), kRate);
+}
+
+void ModeObserver::joints(Boom& boom, StampNs sample, double step, const JointBuffer& joints) noexcept {
+  const int count = boom.chain().joints();
+  for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
+    const int joint = boom.cylinders()[i].joint();
+    const std::optional<JointBuffer::Reading> now = joints.newest(joint);
+    JointTrack& track = joints_[i];
+    if (!now || now->stamp == track.stamp) continue;
+    const double interval = seconds(now->stamp - track.stamp), moved = now->position - track.position;
+    const bool jumped = !(interval > 0.0) || interval > kSlowest || std::abs(moved) > kMoved;
+    track.stamp = now->stamp, track.position = now->position;
+    if (jumped) {
+      track.speed = 2.0 * kStands;
+      continue;
+    }
+    track.speed += std::min(1.0, interval / kMemory) * (moved / interval - track.speed);
+    if (std::abs(track.speed) > kStands || std::abs(seconds(sample - now->stamp)) > 0.75 * step) continue;
+    see(boom, kImuChannels + static_cast<int>(i), jointAngleReading(count, joint, now->position), kAngle);
+  }
+}
+
+void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures,
+                             const BoomLoads& loads) noexcept {
+  const auto cylinders = boom.cylinders().size();
+  for (std::size_t i = 0; i < cylinders; ++i) {
+    if (pressures.count(i) == pressures_[i]) continue;
+    pressures_[i] = pressures.count(i);
+    const std::optional<ChamberPressures> p = pressures.at(i, sample);
+    const Cylinder& cylinder = boom.cylinders()[i];
+    const int j = cylinder.joint();
+    const CylinderPosition at = cylinder.at(boom.position()[j]);
+    if (!p || at.dead_centre || !boom.vibration().known()) continue;
+    const double torque = -forceOf(cylinder, *p) * at.arm - loads.hammer[j] - loads.weight[j] - loads.motion[j];
+    see(boom, kImuChannels + static_cast<int>(cylinders + i), jointTorqueReading(boom.vibration().modes(), j, torque),
+        kTorque, cylinder.greatestPush() * std::abs(at.arm));
+  }
+}
+
+}  // namespace hammer_loads
