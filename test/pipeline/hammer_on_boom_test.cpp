@@ -25,6 +25,7 @@ const Recording& recording() {
   static const Recording recorded = [] {
     simulation::MachineSettings machine = simulation::workingMo100();
     machine.drive.stop_time = 1e9;
+    machine.drive.start_time = 0.0, machine.drive.start_ramp = 0.5, machine.start_angle = 3.0;  // goes forward at once
     HammerOnBoom hammer(machine, simulation::oilBoomEo2621());
     Recording r;
     for (int i = 1; i * kMillisecond < kEnd; ++i) {
