@@ -30,7 +30,8 @@ class Parser(argparse.ArgumentParser):
 
 class Version(argparse.Action):
     def __call__(self, parser, *_):
-        parser.exit(0, f"hammer_loads {package_version()}\n")
+        print(f"hammer_loads {package_version()}")
+        parser.exit(0)
 
 
 def parser():

@@ -1,6 +1,7 @@
 """Two or more machines side by side."""
+from report.charts import block
 from report.damage import SLOPES
-from report.markup import Raw, duration, in_unit, number, paragraph, scaled, table, text, utc
+from report.markup import Raw, duration, in_unit, number, paragraph, scaled, table, utc
 from report.quantities import QUANTITIES
 from report.sensor_health import refusals_of, worst_of
 from report.series import quantile
@@ -8,6 +9,7 @@ from report.series import quantile
 MOST_CURVES = 8
 MOST_SIDE_BY_SIDE = 4  # beyond: a machine is a row
 GRID = 300
+TIME_UNITS = [(86400.0, "days"), (3600.0, "h"), (60.0, "min"), (1.0, "s")]
 
 
 def figures_of(subject, segments, channels):
@@ -59,14 +61,15 @@ def overlaid(subjects, segments, charts):
         count = max(1, min([GRID] + [int(len(c) * longest / max(run[-1][0] for run in c.runs if run) / 2)
                                      for c in curves if len(c) > 1]))
         step = longest * (1 + 1e-9) / count
+        seconds, time_unit = next(u for u in TIME_UNITS if longest >= 3 * u[0] or u[0] == 1.0)
         unit = f" [{quantity.unit}]" if quantity.unit else ""
-        content += f"<h4>{text(quantity.title + unit)}</h4>\n"
-        content += charts.compared(quantity.title, quantity.unit, [s.label for s in shown], step,
-                                   [c.on_grid(step, count) for c in curves], "compared")
+        content += block(f"{quantity.title}{unit} over time [{time_unit}]", charts.compared(
+            quantity.title, quantity.unit, [s.label for s in shown], step / seconds,
+            [c.on_grid(step, count) for c in curves], "compared"))
     return content
 
 
 def comparison(subjects, segments, charts):
     columns = {s.label: figures_of(s, segments[s.label], s.counted_channels()) for s in subjects}
-    note = paragraph("Over the time since each one's start; line: mean, band: least and greatest.", "note")
+    note = paragraph("Time since each one's start; line: mean, band: least and greatest.", "note")
     return Raw(comparison_table(columns) + note + overlaid(subjects, segments, charts))

@@ -91,7 +91,7 @@ def channel_pictures(channel):
         return paragraph(f"{channel.name}: no cycle.")
     rows = by_range(cycles)
     pictures = figure(matrix_picture(cycles, unit, f"{channel.name}: cycles by range and mean"),
-                      f"{channel.name}: cycles by range and mean; the darker, the more (logarithmic)")
+                      f"{channel.name}: cycles by range and mean; the stronger the colour, the more (logarithmic)")
     pictures += figure(histogram_picture(rows, unit, f"{channel.name}: cycles by range"),
                        f"{channel.name}: cycles by range",
                        [("bar", "cycles"), ("line second", "share of the damage at slope 5, its largest at the top")])

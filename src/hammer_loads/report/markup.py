@@ -2,13 +2,15 @@
 import datetime
 import html
 import math
+import unicodedata
 
 UNITS = {"N": (1e-3, "kN"), "Nm": (1e-3, "kN m"), "MPa": (1.0, "MPa"), "Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
 
 
 def text(value):
     """Escaped; what no page may hold (control characters, half of a surrogate pair) is replaced."""
-    shown = "".join(c if c.isprintable() or c in "\n\t" else "\ufffd" for c in str(value))
+    shown = "".join("\ufffd" if unicodedata.category(c) in ("Cc", "Cs", "Cn") and c not in "\n\t" else c
+                    for c in str(value))
     return html.escape(shown, quote=True)
 
 

@@ -1,5 +1,6 @@
 """Blow rate, energy, restitution, peak force and hold-down over time."""
-from report.markup import details, number, paragraph, table, text
+from report.charts import block
+from report.markup import details, number, paragraph, table
 from report.quantities import QUANTITIES
 from report.series import statistics
 
@@ -40,9 +41,7 @@ def over_time(subject, segments, charts, group, most=MOST_POINTS):
     for quantity in QUANTITIES:
         values = segments[quantity.key]
         unit = f" [{quantity.unit}]" if quantity.unit else ""
-        content += f"<h4>{text(quantity.title + unit)}</h4>\n" + paragraph(quantity.meaning.capitalize() + ".", "note")
-        if not len(values):
-            content += paragraph("No value in any turn.")
-            continue
-        content += charts.over_time(quantity.title, quantity.unit, values.thinned(most), subject.first_ns, group)
+        chart = charts.over_time(quantity.title, quantity.unit, values.thinned(most), subject.first_ns,
+                                 group) if len(values) else paragraph("No value in any turn.")
+        content += block(quantity.title + unit, paragraph(quantity.meaning.capitalize() + ".", "note") + chart)
     return content + summary_table(segments) + details("The charts as a table", by_time_table(segments))

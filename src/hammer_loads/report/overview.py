@@ -29,7 +29,7 @@ def warnings_list(subjects, mixed):
             lines.append(f"<li>{name}{text(words)}{where}</li>")
     if not lines:
         return paragraph("No warnings.", "good")
-    return f'<ul class="warnings">\n' + "\n".join(lines) + "\n</ul>\n"
+    return "<ul class=\"warnings\">\n" + "\n".join(lines) + "\n</ul>\n"
 
 
 def key_figures(subject, segments):

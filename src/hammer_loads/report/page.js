@@ -10,18 +10,25 @@
     return rows.map(function (row) { return [new Date(chart.base_ms + 1000 * row[0])].concat(row.slice(1)); });
   }
 
-  function numberText(value) { return value === null || value === undefined ? '–' : String(Number(value.toPrecision(4))); }
+  // dygraphs takes a formatter's text as HTML.
+  function escaped(words) {
+    return words.replace(/[&<>"']/g, function (c) { return '&#' + c.charCodeAt(0) + ';'; });
+  }
+
+  function numberText(value, unit) {
+    if (value === null || value === undefined) return '\u2013';
+    return Number(value.toPrecision(4)) + (unit ? ' ' + escaped(unit) : '');
+  }
 
   function optionsOf(chart, unit) {
     var dated = chart.base_ms !== undefined;
     return {
-      customBars: true, labelsUTC: true, labels: [dated ? 'time (UTC)' : 'time [s]'].concat(chart.labels),
+      customBars: true, labelsUTC: true, labels: [dated ? 'time (UTC)' : 'time'].concat(chart.labels),
       colors: palette, strokeWidth: 1.5, fillAlpha: 0.22, gridLineColor: 'rgba(128,128,128,0.35)',
       axisLineColor: 'rgba(128,128,128,0.8)', connectSeparatedPoints: !dated, animatedZooms: false,
-      legend: chart.labels.length > 1 ? 'always' : 'onmouseover', labelsSeparateLines: false, highlightCircleSize: 3,
-      xlabel: dated ? null : 'time since the start [s]',
-      axes: { y: { axisLabelWidth: 52, valueFormatter: function (v) { return numberText(v) + (unit ? ' ' + unit : ''); } },
-              x: { pixelsPerLabel: 90 } }
+      legend: 'always', labelsSeparateLines: false, highlightCircleSize: 3,
+      axes: { y: { axisLabelWidth: 52, valueFormatter: function (v) { return numberText(v, unit); } },
+              x: { pixelsPerLabel: 64 } }
     };
   }
 
@@ -50,6 +57,7 @@
     var place = document.getElementById('chart' + at);
     var first = chart.choices ? chart.choices[0] : chart;
     var options = optionsOf(chart, first.unit), settling = false;
+    options.labelsDiv = document.getElementById('legend' + at);
     options.zoomCallback = function (from, to) {
       if (settling) return;
       settling = true;
@@ -63,7 +71,8 @@
     var select = document.querySelector('select[data-chart="' + at + '"]');
     select.addEventListener('change', function () {
       var choice = chart.choices[select.selectedIndex], next = optionsOf(chart, choice.unit);
-      graph.updateOptions({ file: rowsOf(chart, choice.rows), axes: next.axes, dateWindow: null });
+      graph.updateOptions({ file: rowsOf(chart, choice.rows), axes: next.axes, dateWindow: null,
+                            labels: [next.labels[0], choice.label] });
     });
   });
 

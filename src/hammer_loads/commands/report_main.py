@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One page from what process_bag --db and the ledgers hold."""
+"""report: one page, and tables, from what process_bag --db and the ledgers hold."""
 import pathlib
 import sys
 
