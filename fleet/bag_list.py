@@ -19,6 +19,14 @@ def file_name(machine, bag, parameters):
     return readable + "-" + hashlib.sha256("\n".join([machine, bag, *parameters]).encode()).hexdigest()[:8]
 
 
+def page_name(machine):
+    """Of the machine's page; another one for another machine."""
+    readable = re.sub(r"[^A-Za-z0-9._-]", "_", machine)
+    if readable == machine and machine not in ("all", ".", ".."):
+        return machine
+    return readable + "-" + hashlib.sha256(machine.encode()).hexdigest()[:8]
+
+
 def made(machine, bag, parameters):
     """Paths are absolute: jobs run elsewhere."""
     bag, parameters = os.path.abspath(bag), tuple(os.path.abspath(p) for p in parameters)

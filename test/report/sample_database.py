@@ -5,6 +5,7 @@ a plain reading of ASTM E1049 (three-point counting of the whole), which shares 
 """
 import hashlib
 import math
+import os
 import random
 import sqlite3
 
@@ -204,6 +205,8 @@ def make(path, machine=None, seconds=60.0, first_ns=1700000000 * SECOND, seed=1,
          warnings=(), refusals=None, restarts=0, rows=True):
     """Writes a database; returns the stamp of its last blow [ns]."""
     machine = machine or Machine()
+    if os.path.exists(path):
+        os.unlink(path)
     db = sqlite3.connect(str(path), isolation_level=None)
     db.execute("PRAGMA journal_mode = OFF")
     db.execute("PRAGMA synchronous = OFF")

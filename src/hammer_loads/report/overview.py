@@ -4,14 +4,20 @@ from report.quantities import QUANTITIES
 from report.series import quantile
 
 MOST_RUNS_SHOWN = 50
+MOST_FAILED_SHOWN = 10
 
 
 def warnings_of(subject):
-    """(words, run's number) most important first, those of several runs once."""
+    """{words: numbers of its runs}, most important first, those of several runs once."""
     found = {}
     for at, run in enumerate(subject.runs, 1):
         for row in subject.database.records("SELECT text FROM warnings WHERE run_id = ? ORDER BY place", run["run_id"]):
             found.setdefault(row["text"], []).append(at)
+    failed = subject.failed_bags()
+    for bag, reason in failed[:MOST_FAILED_SHOWN]:
+        found[f"bag {bag}: {reason}"] = []
+    if len(failed) > MOST_FAILED_SHOWN:
+        found[f"{len(failed) - MOST_FAILED_SHOWN} more bags gave nothing"] = []
     if not subject.runs:
         found["no run at all: the recording holds no sample of a crank"] = []
     elif subject.total("turns") == 0:

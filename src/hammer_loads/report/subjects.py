@@ -60,6 +60,13 @@ class Subject:
                     result.add_band((run["first_stamp_ns"] - first) * 1e-9, *(v * quantity.factor for v in row))
         return result
 
+    def failed_bags(self):
+        """(bag, reason) of a merged file's bags that gave nothing."""
+        if self.database.kind != FLEET:
+            return []
+        return list(self.database.rows(
+            "SELECT bag, reason FROM bags WHERE machine = ? AND status <> 'done' ORDER BY bag", self.label))
+
     def counted_channels(self):
         """Channels with their cycles over all runs: pieces add exactly. A changed grid begins another channel."""
         if self.database.kind == FLEET:
@@ -115,18 +122,22 @@ def stem(path):
     return pathlib.Path(path).stem
 
 
+def fleet_subjects(database, only_machine):
+    """Every machine that has a bag, also one whose bags all failed."""
+    names = [name for name, in database.rows("SELECT DISTINCT machine FROM bags ORDER BY machine")]
+    if only_machine is not None and only_machine not in names:
+        raise Problem(f"{database.path}: --machine {only_machine}: no bag of it")
+    runs = grouped(database.records("SELECT runs.*, bags.machine AS owner FROM runs JOIN bags USING(bag_id) "
+                                    "ORDER BY first_stamp_ns, run_key"), "owner")
+    return [Subject(database, name, runs.get(name, [])) for name in names if only_machine in (None, name)]
+
+
 def subjects_of(database, only_machine=None):
     """A recording's machines, a merged file's machines; ledgers have none."""
     if database.kind == LEDGER:
         return []
     if database.kind == FLEET:
-        runs = database.records("SELECT runs.*, bags.machine AS owner FROM runs JOIN bags USING(bag_id) "
-                                "ORDER BY first_stamp_ns, run_key")
-        groups = grouped(runs, "owner")
-        if only_machine is not None and only_machine not in groups:
-            raise Problem(f"{database.path}: --machine {only_machine}: no run of it")
-        return [Subject(database, name, groups[name]) for name in sorted(groups)
-                if only_machine in (None, name)]
+        return fleet_subjects(database, only_machine)
     if only_machine is not None:
         raise Problem(f"{database.path}: --machine is for merged files, this is a recording of one bag")
     groups = grouped(database.records("SELECT * FROM runs ORDER BY first_stamp_ns, run_id"), "machine")
