@@ -26,9 +26,9 @@
       customBars: true, labelsUTC: true, labels: [dated ? 'time (UTC)' : 'time'].concat(chart.labels),
       colors: palette, strokeWidth: 1.5, fillAlpha: 0.22, gridLineColor: 'rgba(128,128,128,0.35)',
       axisLineColor: 'rgba(128,128,128,0.8)', connectSeparatedPoints: !dated, animatedZooms: false,
-      legend: 'always', labelsSeparateLines: false, highlightCircleSize: 3,
+      legend: 'always', labelsSeparateLines: false, highlightCircleSize: 3, digitsAfterDecimal: 4,
       axes: { y: { axisLabelWidth: 52, valueFormatter: function (v) { return numberText(v, unit); } },
-              x: { pixelsPerLabel: 64 } }
+              x: { pixelsPerLabel: 76, axisLabelWidth: 72 } }
     };
   }
 
