@@ -1,0 +1,170 @@
+"""Takes outcomes of bags into a merged file: each run once, a bag that changed instead of its older self."""
+import datetime
+import json
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+for home in (HERE.parent / "src" / "hammer_loads", HERE.parent):  # in the source, installed
+    if (home / "report").is_dir():
+        sys.path.insert(0, str(home))
+        break
+
+from report.database import RECORDING, Database  # noqa: E402  (the path must be set first)
+from report.problem import Problem  # noqa: E402
+from report.quantities import QUANTITIES  # noqa: E402
+
+# Copied as they are, with another run_id.
+COPIED = ["refusals", "warnings", "channels", "cycles", "residues"]
+OPTIONAL = {"turns": ["turns", "blows"]}
+OUTCOME = ("machine", "bag", "status", "reason", "input_sha256", "parameters_sha256")
+
+
+def of_stamp(stamp_ns):
+    """Day and ISO week, UTC."""
+    if stamp_ns is None:
+        return None, None
+    day = datetime.date(1970, 1, 1) + datetime.timedelta(days=stamp_ns // 86400000000000)
+    year, week, _ = day.isocalendar()
+    return day.isoformat(), f"{year}-W{week:02d}"
+
+
+def recording(path):
+    """The database of a bag, and the keys of its runs."""
+    source = Database(path)
+    if source.kind != RECORDING:
+        raise Problem(f"{path}: is no result of process_bag")
+    return source, [key for key, in source.rows("SELECT run_key FROM runs ORDER BY run_id")]
+
+
+class Loader:
+    """For one transaction of the store."""
+
+    def __init__(self, store, rows=None):
+        self.store, self.tables = store, COPIED + OPTIONAL.get(rows, [])
+        self._next_run = (store.row("SELECT max(run_id) FROM runs")[0] or 0) + 1
+        self._next_bag = (store.row("SELECT max(bag_id) FROM bags")[0] or 0) + 1
+        self._columns = {}
+
+    def add(self, outcome_path):
+        """True if the merged file changed."""
+        with open(outcome_path, encoding="utf-8") as file:
+            outcome = json.load(file)
+        source, keys = None, []
+        if outcome["status"] == "done":
+            try:
+                source, keys = recording(outcome_path[:-len(".json")] + ".sqlite")
+                self._look_for_twin(outcome, keys)
+            except Problem as problem:
+                outcome.update(status="failed", reason=str(problem))
+        if self._is_known(outcome, keys if outcome["status"] == "done" else []):
+            return False
+        self._remove(outcome)
+        self.store.execute("SAVEPOINT before_the_bag")
+        try:
+            bag_id = self._add_bag(outcome)
+            if outcome["status"] == "done":
+                self._add_runs(source, bag_id)
+        except (Problem, self.store.Refusal) as problem:
+            self.store.execute("ROLLBACK TO SAVEPOINT before_the_bag")
+            outcome.update(status="failed", reason=" ".join(str(problem).split()))
+            self._add_bag(outcome)
+        self.store.execute("RELEASE SAVEPOINT before_the_bag")
+        self.store.execute("DELETE FROM stale_machines WHERE machine = ?", outcome["machine"])
+        self.store.insert("stale_machines", ["machine"], [(outcome["machine"],)])
+        return True
+
+    def _look_for_twin(self, outcome, keys):
+        """The same recording under another name counts once."""
+        for key in keys:
+            other = self.store.row("SELECT bags.machine, bag FROM bags JOIN runs USING(bag_id) WHERE run_key = ?", key)
+            if other is not None and tuple(other) != (outcome["machine"], outcome["bag"]):
+                outcome.update(status="twice", reason=f"same recording and parameters as {other[1]} of {other[0]}")
+                return
+
+    def _is_known(self, outcome, keys):
+        found = self.store.row("SELECT bag_id, status, reason, input_sha256, parameters_sha256 FROM bags "
+                               "WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
+        if found is None or tuple(found[1:]) != tuple(outcome[k] for k in OUTCOME[2:]):
+            return False
+        return keys == [key for key, in self.store.rows(
+            "SELECT run_key FROM runs WHERE bag_id = ? ORDER BY run_id", found[0])]
+
+    def _remove(self, outcome):
+        """What the bag gave before it or its parameters changed."""
+        found = self.store.row("SELECT bag_id FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
+        if found is None:
+            return
+        for table in COPIED + ["run_figures"] + [t for t in OPTIONAL["turns"] if self.store.columns(t)]:
+            self.store.execute(f"DELETE FROM {table} WHERE run_id IN (SELECT run_id FROM runs WHERE bag_id = ?)", found[0])
+        self.store.execute("DELETE FROM runs WHERE bag_id = ?", found[0])
+        self.store.execute("DELETE FROM bags WHERE bag_id = ?", found[0])
+
+    def _add_bag(self, outcome):
+        bag_id, self._next_bag = self._next_bag, self._next_bag + 1
+        self.store.insert("bags", ["bag_id", *OUTCOME], [(bag_id, *(outcome[k] for k in OUTCOME))])
+        return bag_id
+
+    def _add_runs(self, source, bag_id):
+        first = self._next_run
+        for run in source.records("SELECT * FROM runs ORDER BY run_id"):
+            run_id, own = first + run["run_id"] - 1, run["run_id"]
+            self._next_run = max(self._next_run, run_id + 1)
+            self._add_parameters(source, run)
+            run.update(run_id=run_id, bag_id=bag_id)
+            run["day"], run["week"] = of_stamp(run["first_stamp_ns"])
+            names = [name for name in self._columns_of("runs") if name in run]
+            self.store.insert("runs", names, [[run[name] for name in names]])
+            self.store.insert("run_figures", ["run_id", "quantity", "count", "least", "mean", "greatest", "total"],
+                              figures(source, own, run_id))
+        for table in self.tables:
+            self._copy(source, table, first - 1)
+
+    def _add_parameters(self, source, run):
+        key = (run["parameters_sha256"], run["version"])
+        if self.store.row("SELECT 1 FROM parameter_values WHERE parameters_sha256 = ? AND version = ? LIMIT 1", *key):
+            return
+        if not self.store.row("SELECT 1 FROM parameter_sets WHERE parameters_sha256 = ?", key[0]):
+            self.store.insert("parameter_sets", ["parameters_sha256", "parameters_yaml"], [(key[0], run["parameters_yaml"])])
+        self.store.insert("parameter_values", ["parameters_sha256", "version", "key", "value", "shipped"],
+                          [(*key, *row) for row in source.rows(
+                              "SELECT key, value, shipped FROM parameters WHERE run_id = ?", run["run_id"])])
+
+    def _columns_of(self, table):
+        """As SQLite spells them; PostgreSQL has all in lower case."""
+        if table not in self._columns:
+            self._columns[table] = {name.lower() for name in self.store.columns(table)}
+        return self._columns[table]
+
+    def _copy(self, source, table, shift):
+        columns = source.columns(table)
+        self._make_rows_of_turns(table, columns)
+        known = self._columns_of(table)
+        names = [name for name in columns if name.lower() in known]
+        listed = ", ".join(f"run_id + {shift}" if name == "run_id" else name for name in names)
+        self.store.insert(table, names, source.rows(f"SELECT {listed} FROM {table}"))
+
+    def _make_rows_of_turns(self, table, columns):
+        """Tables of turns have a column for each field of a message: as the first bag has them, later ones are added."""
+        if table in COPIED:
+            return
+        fields = [c for c in columns if c not in ("run_id", "turn", "stamp_ns")]
+        if not self._columns_of(table):
+            self.store.execute(f"CREATE TABLE {table}(run_id INTEGER NOT NULL, turn BIGINT NOT NULL, stamp_ns BIGINT, " +
+                               "".join(f"{name} DOUBLE PRECISION, " for name in fields) + "PRIMARY KEY(run_id, turn))")
+            del self._columns[table]
+        for name in fields:
+            if name.lower() not in self._columns_of(table):
+                self.store.execute(f"ALTER TABLE {table} ADD COLUMN {name} DOUBLE PRECISION")
+                del self._columns[table]
+
+
+def figures(source, own, run_id):
+    """Of each quantity over all turns: count, least, mean, greatest, total."""
+    for table in ("turns", "blows"):
+        quantities = [q for q in QUANTITIES if q.table == table]
+        listed = ", ".join(f"count({q.expression}), min({q.expression}), avg({q.expression}), max({q.expression}), "
+                           f"sum({q.expression})" for q in quantities)
+        values = next(iter(source.rows(f"SELECT {listed} FROM {table} WHERE run_id = ?", own)))
+        for at, quantity in enumerate(quantities):
+            yield (run_id, quantity.key, *values[5 * at:5 * at + 5])

@@ -1,0 +1,68 @@
+-- Tables of a merged file, SQLite or PostgreSQL. Rows of a run are those of process_bag --db with another run_id;
+-- what many runs share (parameters) is there once. NULL: not determined.
+
+CREATE TABLE bags(                   -- every bag that was tried
+  bag_id INTEGER PRIMARY KEY, machine TEXT NOT NULL, bag TEXT NOT NULL, input_sha256 TEXT, parameters_sha256 TEXT,
+  status TEXT NOT NULL,              -- done, failed, or twice: its runs are in already, from another bag
+  reason TEXT, UNIQUE(machine, bag));
+
+CREATE TABLE parameter_sets(parameters_sha256 TEXT PRIMARY KEY, parameters_yaml TEXT NOT NULL);
+CREATE TABLE parameter_values(
+  parameters_sha256 TEXT NOT NULL, version TEXT NOT NULL, key TEXT NOT NULL, value TEXT, shipped TEXT,
+  PRIMARY KEY(parameters_sha256, version, key));
+
+CREATE TABLE runs(
+  run_id INTEGER PRIMARY KEY, bag_id INTEGER NOT NULL REFERENCES bags, run_key TEXT NOT NULL UNIQUE,
+  input_sha256 TEXT NOT NULL, parameters_sha256 TEXT NOT NULL, machine TEXT NOT NULL, version TEXT NOT NULL,
+  revision TEXT NOT NULL, first_stamp_ns BIGINT, last_stamp_ns BIGINT, day TEXT, week TEXT,
+  duration_s DOUBLE PRECISION, level TEXT, samples BIGINT, published BIGINT, restarts BIGINT, turns BIGINT,
+  blows BIGINT, backward_passes BIGINT, consistency DOUBLE PRECISION, timing_noise_s DOUBLE PRECISION,
+  speed_noise_rad_s DOUBLE PRECISION, angle_resolution_rad DOUBLE PRECISION, drive_inertia_kg_m2 DOUBLE PRECISION,
+  drive_inertia_deviation DOUBLE PRECISION, equivalent_cycles_per_hour DOUBLE PRECISION);
+CREATE INDEX runs_of_bag ON runs(bag_id);
+
+CREATE VIEW parameters AS
+  SELECT run_id, key, value, shipped FROM runs JOIN parameter_values USING(parameters_sha256, version);
+
+CREATE TABLE refusals(run_id INTEGER NOT NULL, reason TEXT NOT NULL, count BIGINT NOT NULL, PRIMARY KEY(run_id, reason));
+CREATE TABLE warnings(run_id INTEGER NOT NULL, place INTEGER NOT NULL, key TEXT, text TEXT, PRIMARY KEY(run_id, place));
+
+CREATE TABLE run_figures(            -- of all turns of a run; quantity: blow_rate_Hz, or a column of turns or blows
+  run_id INTEGER NOT NULL, quantity TEXT NOT NULL, count BIGINT NOT NULL, least DOUBLE PRECISION,
+  mean DOUBLE PRECISION, greatest DOUBLE PRECISION, total DOUBLE PRECISION, PRIMARY KEY(run_id, quantity));
+
+CREATE TABLE channels(
+  run_id INTEGER NOT NULL, channel INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT, counted INTEGER,
+  least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, samples BIGINT, skipped BIGINT, below BIGINT,
+  above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION, mean_deviation DOUBLE PRECISION,
+  sn_knee_range_MPa DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION, sn_slope DOUBLE PRECISION,
+  sn_slope_below DOUBLE PRECISION, mean_stress_sensitivity DOUBLE PRECISION, PRIMARY KEY(run_id, channel));
+CREATE TABLE cycles(
+  run_id INTEGER NOT NULL, channel INTEGER NOT NULL, steps INTEGER NOT NULL, low INTEGER NOT NULL,
+  count BIGINT NOT NULL, PRIMARY KEY(run_id, channel, steps, low));
+CREATE TABLE residues(
+  run_id INTEGER NOT NULL, channel INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
+  PRIMARY KEY(run_id, channel, place));
+
+-- Machines that got a bag and whose sums are still to be written.
+CREATE TABLE stale_machines(machine TEXT PRIMARY KEY);
+
+-- Sums of a machine over all its runs: written anew for each machine that got a bag. Another hammer, boom or grid
+-- (identity, least, greatest, classes) is another row. remaining_hours NULL: no end in sight, or no S-N curve.
+CREATE TABLE machine_channels(
+  machine_channel INTEGER PRIMARY KEY, machine TEXT NOT NULL, identity TEXT NOT NULL, name TEXT NOT NULL, unit TEXT,
+  least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, hours DOUBLE PRECISION, samples BIGINT,
+  skipped BIGINT, below BIGINT, above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION,
+  mean_deviation DOUBLE PRECISION, sn_knee_range_MPa DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION,
+  sn_slope DOUBLE PRECISION, sn_slope_below DOUBLE PRECISION, mean_stress_sensitivity DOUBLE PRECISION,
+  equivalent_cycles_per_hour DOUBLE PRECISION, largest_range DOUBLE PRECISION, damage DOUBLE PRECISION,
+  remaining_hours DOUBLE PRECISION);
+CREATE TABLE machine_equivalents(
+  machine_channel INTEGER NOT NULL, slope DOUBLE PRECISION NOT NULL, equivalent_range DOUBLE PRECISION,
+  deviation DOUBLE PRECISION, PRIMARY KEY(machine_channel, slope));
+CREATE TABLE machine_cycles(
+  machine_channel INTEGER NOT NULL, steps INTEGER NOT NULL, low INTEGER NOT NULL, count BIGINT NOT NULL,
+  PRIMARY KEY(machine_channel, steps, low));
+CREATE TABLE machine_residues(
+  machine_channel INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
+  PRIMARY KEY(machine_channel, place));

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""One bag to one database and one outcome: what is wrong with a bag is an outcome too, not a failure of the job."""
+import argparse
+import hashlib
+import json
+import os
+import subprocess
+import sys
+
+from programs import program
+
+LONGEST_REASON = 500
+
+
+def sha256(paths):
+    """Over the files' bytes in their order; nothing for what cannot be read."""
+    digest = hashlib.sha256()
+    try:
+        for path in paths:
+            with open(path, "rb") as file:
+                for piece in iter(lambda: file.read(1 << 20), b""):
+                    digest.update(piece)
+    except OSError:
+        return None
+    return digest.hexdigest()
+
+
+def reason_of(done):
+    """First line that the program says; its end where it says nothing."""
+    if done.returncode < 0:
+        return f"process_bag ended by signal {-done.returncode}"
+    lines = [line for line in done.stderr.splitlines() if line and not line.startswith("note: ")]
+    return (lines[0] if lines else f"process_bag ended with code {done.returncode}")[:LONGEST_REASON]
+
+
+def processed(bag, parameters, database):
+    """(status, reason); the database is there if the status is `done`."""
+    if bag.endswith(".active"):
+        return "failed", "is still being written, or was left by a power cut: rosbag reindex makes it a bag"
+    if not os.path.isfile(bag):
+        return "failed", "does not exist" if not os.path.exists(bag) else "is no regular file"
+    arguments = [program("process_bag"), "--no-bag", bag, "--db", database]
+    for file in parameters:
+        arguments += ["--params", file]
+    done = subprocess.run(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, encoding="utf-8",
+                          errors="replace")
+    return ("done", None) if done.returncode == 0 else ("failed", reason_of(done))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--machine", required=True)
+    parser.add_argument("--bag", required=True)
+    parser.add_argument("--params", action="append", default=[])
+    parser.add_argument("--db", required=True, help="to write; empty if the bag gives none")
+    parser.add_argument("--outcome", required=True, help="JSON to write")
+    given = parser.parse_args()
+    for path in (given.db, given.outcome):
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        if os.path.exists(path):
+            os.unlink(path)
+    status, reason = processed(given.bag, given.params, given.db)
+    if status != "done":
+        open(given.db, "w").close()
+    outcome = {"machine": given.machine, "bag": given.bag, "input_sha256": sha256([given.bag]),
+               "parameters_sha256": sha256(given.params), "status": status, "reason": reason}
+    part = given.outcome + ".part"
+    with open(part, "w", encoding="utf-8") as file:
+        json.dump(outcome, file, indent=1, sort_keys=True)
+    os.replace(part, given.outcome)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

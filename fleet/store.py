@@ -1,0 +1,124 @@
+"""A merged file: SQLite by a path, PostgreSQL by a connection URL; the same statements for both."""
+import itertools
+import os
+import pathlib
+import sqlite3
+
+APPLICATION_ID, VERSION = 0x484C5246, 1
+SCHEMA = pathlib.Path(__file__).resolve().parent / "merged_schema.sql"
+ROWS_AT_ONCE = 1000
+
+
+class BadStore(Exception):
+    """One line that names the file or the server."""
+
+
+class SqliteStore:
+    """Opened for writing: a new file gets its tables, another database is refused."""
+
+    Refusal = sqlite3.IntegrityError  # of a row
+
+    def __init__(self, path):
+        self.name = path
+        if os.path.lexists(path) and not os.path.isfile(path):
+            raise BadStore(f"{path}: is no regular file")
+        try:
+            self._connection = sqlite3.connect(path, isolation_level=None, timeout=60.0)
+            self._connection.execute("PRAGMA synchronous = NORMAL")
+            self.begin()
+            self._check()
+        except sqlite3.Error as error:
+            raise BadStore(f"{path}: {error}")
+
+    def _check(self):
+        application, = self.row("PRAGMA application_id")
+        version, = self.row("PRAGMA user_version")
+        if application == 0 and self.row("SELECT count(*) FROM sqlite_master") == (0,):
+            for statement in SCHEMA.read_text(encoding="utf-8").split(";\n"):
+                self._connection.execute(statement)
+            self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            self._connection.execute(f"PRAGMA user_version = {VERSION}")
+        elif application != APPLICATION_ID:
+            raise BadStore(f"{self.name}: is another database, no merged file")
+        elif version != VERSION:
+            raise BadStore(f"{self.name}: merged file of version {version}, this program writes version {VERSION}")
+        self.commit()
+
+    def begin(self):
+        """One writer at a time; another one waits."""
+        self._connection.execute("BEGIN IMMEDIATE")
+
+    def commit(self):
+        self._connection.execute("COMMIT")
+
+    def rows(self, sql, *values):
+        return self._connection.execute(sql, values)
+
+    def row(self, sql, *values):
+        return self._connection.execute(sql, values).fetchone()
+
+    def execute(self, sql, *values):
+        self._connection.execute(sql, values)
+
+    def insert(self, table, columns, rows):
+        marks = ",".join("?" * len(columns))
+        self._connection.executemany(f"INSERT INTO {table}({','.join(columns)}) VALUES({marks})", rows)
+
+    def columns(self, table):
+        return [row[1] for row in self.rows(f"PRAGMA table_info({table})")]
+
+    def close(self):
+        self._connection.close()
+
+
+class PostgresStore:
+    """Opened for writing; tables are made in the first schema of the search path."""
+
+    def __init__(self, url):
+        import psycopg2
+        import psycopg2.extras
+        self._extras, self.name, self.Refusal = psycopg2.extras, "PostgreSQL", psycopg2.IntegrityError
+        try:
+            self._connection = psycopg2.connect(url)
+        except psycopg2.Error as error:
+            raise BadStore("PostgreSQL: " + " ".join(str(error).split()))
+        self._cursor = self._connection.cursor()
+        self.begin()
+        if not self.columns("bags"):
+            self._cursor.execute(SCHEMA.read_text(encoding="utf-8"))
+        self.commit()
+
+    def begin(self):
+        """One writer at a time; another one waits."""
+        self._cursor.execute("SELECT pg_advisory_xact_lock(%s)", (APPLICATION_ID,))
+
+    def commit(self):
+        self._connection.commit()
+
+    def rows(self, sql, *values):
+        cursor = self._connection.cursor()
+        cursor.execute(sql.replace("?", "%s"), values)
+        return cursor
+
+    def row(self, sql, *values):
+        return self.rows(sql, *values).fetchone()
+
+    def execute(self, sql, *values):
+        self.rows(sql, *values)
+
+    def insert(self, table, columns, rows):
+        rows = iter(rows)
+        for some in iter(lambda: list(itertools.islice(rows, ROWS_AT_ONCE)), []):
+            self._extras.execute_values(self._cursor, f"INSERT INTO {table}({','.join(columns)}) VALUES %s", some,
+                                        page_size=ROWS_AT_ONCE)
+
+    def columns(self, table):
+        return [name for name, in self.rows("SELECT column_name FROM information_schema.columns WHERE table_name = ? "
+                                            "AND table_schema = current_schema()", table)]
+
+    def close(self):
+        self._connection.close()
+
+
+def opened(target):
+    return PostgresStore(target) if target.startswith(("postgresql://", "postgres://")) else SqliteStore(target)

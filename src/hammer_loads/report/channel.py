@@ -1,0 +1,59 @@
+"""A counted channel: its load cycles, the time they took, and what they cost."""
+from report.damage import SLOPES, curve_of, equivalent_range, range_deviation, remaining_hours
+from report.rainflow import Count
+
+TALLY = ("samples", "skipped", "below", "above", "gaps")
+
+
+class Channel:
+    """Over one or more runs of one machine; a piece is added with add()."""
+
+    def __init__(self, name, unit, grid, curve, cycles_per_hour):
+        self.name, self.unit, self.curve, self.cycles_per_hour = name, unit, curve, cycles_per_hour
+        self.count = Count(*grid)
+        self.hours = 0.0
+        self.samples = self.skipped = self.below = self.above = self.gaps = 0
+        self.minimum = self.maximum = None
+        self._deviation_sum, self._deviations = 0.0, 0
+
+    @classmethod
+    def of(cls, row, cycles_per_hour):
+        """From a row of a table `channels`."""
+        unit = row.get("unit") or row["name"].rsplit("_", 1)[-1]
+        grid = (row["least"], row["greatest"], row["classes"])
+        return cls(row["name"], unit, grid, curve_of(row), cycles_per_hour)
+
+    def add_tally(self, row):
+        for name in TALLY:
+            setattr(self, name, getattr(self, name) + (row[name] or 0))
+        if row["minimum"] is not None:
+            self.minimum = row["minimum"] if self.minimum is None else min(self.minimum, row["minimum"])
+            self.maximum = row["maximum"] if self.maximum is None else max(self.maximum, row["maximum"])
+
+    def add_deviation(self, mean, samples):
+        if mean is not None and samples:
+            self._deviation_sum += mean * samples
+            self._deviations += samples
+
+    @property
+    def deviation(self):
+        """Mean standard deviation of a sample; None where there is none."""
+        return self._deviation_sum / self._deviations if self._deviations else None
+
+    def equivalents(self, cycles=None):
+        """Damage-equivalent ranges as (value, deviation) at SLOPES; (None, None) without any time."""
+        if not (self.hours > 0.0 and self.cycles_per_hour and self.cycles_per_hour > 0.0):
+            return [(None, None)] * len(SLOPES)
+        cycles = self.count.ranges_and_means() if cycles is None else cycles
+        deviation = range_deviation(self.deviation)
+        return [equivalent_range(cycles, m, self.hours * self.cycles_per_hour, deviation) for m in SLOPES]
+
+    def damage(self, cycles=None):
+        """(value, deviation), or (None, None) without an S-N curve."""
+        if self.curve is None:
+            return None, None
+        cycles = self.count.ranges_and_means() if cycles is None else cycles
+        return self.curve.damage(cycles, range_deviation(self.deviation))
+
+    def remaining_hours(self, damage):
+        return remaining_hours(damage, self.hours) if damage[0] is not None and self.hours > 0.0 else (None, None)

@@ -1,0 +1,88 @@
+"""Command line of report."""
+import argparse
+import os
+import pathlib
+import signal
+import sys
+import xml.etree.ElementTree as ElementTree
+
+from report import csv_tables, output, page
+from report.database import Database
+from report.problem import Problem
+
+WRONG_USAGE, FAILURE, INTERRUPTED = 2, 1, 130
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def package_version():
+    """From package.xml: three levels up in the source, one up where it is installed."""
+    for directory in (HERE.parent, HERE.parents[2]):
+        path = directory / "package.xml"
+        if path.is_file():
+            return ElementTree.parse(path).getroot().findtext("version")
+    raise Problem(f"{HERE}: no package.xml above it; the installation is not whole")
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        self.exit(WRONG_USAGE, f"{self.prog}: {' '.join(message.split())} (--help shows the options)\n")
+
+
+class Version(argparse.Action):
+    def __call__(self, parser, *_):
+        print(f"hammer_loads {package_version()}")
+        parser.exit(0)
+
+
+def parser():
+    result = Parser(
+        prog="report", description="One page, and tables, from what process_bag --db and the ledgers hold.",
+        epilog="The page needs no other file and no network. Two or more machines are compared. Errors are one line "
+               "each; exit code 1, or 2 for wrong usage.")
+    result.add_argument("files", nargs="+", metavar="FILE.sqlite",
+                        help="written by process_bag --db or --ledger, the node's ledger, or a fleet's merged file")
+    result.add_argument("--html", metavar="OUT.html", help="page to write, which must not exist")
+    result.add_argument("--csv", metavar="DIRECTORY", help="every table as CSV into a new directory")
+    result.add_argument("--machine", metavar="NAME", help="of a fleet's merged file this machine alone")
+    result.add_argument("--force", action="store_true", help="replace what this command wrote")
+    result.add_argument("--version", action=Version, nargs=0, help="print the version and end")
+    return result
+
+
+def run(given):
+    if given.html is not None:
+        output.check_file(given.html, given.files, given.force, page.why_page_must_stay)
+    if given.csv is not None:
+        output.check_directory(given.csv, given.force, csv_tables.why_directory_must_stay)
+    databases = [Database(path) for path in given.files]
+    if given.html is not None:
+        content = page.page(databases, package_version(), given.machine)
+        output.publish_file(given.html, content, given.force)
+        print(f"{given.html}: {len(databases)} file{'s' if len(databases) > 1 else ''}, {len(content) / 1e6:.2f} MB")
+    if given.csv is not None:
+        output.publish_directory(given.csv, lambda part: csv_tables.write_tables(databases, part), given.force)
+        print(f"{given.csv}: {len(os.listdir(given.csv))} tables")
+
+
+def interrupted(*_):
+    raise KeyboardInterrupt
+
+
+def main(arguments):
+    """Exit code."""
+    options = parser()
+    given = options.parse_args(arguments)
+    if given.html is None and given.csv is None:
+        options.error("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
+    for name in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(name) != signal.SIG_IGN:
+            signal.signal(name, interrupted)
+    try:
+        run(given)
+        return 0
+    except Problem as problem:
+        print(problem, file=sys.stderr)
+        return FAILURE
+    except KeyboardInterrupt:
+        print("interrupted: nothing is written", file=sys.stderr)
+        return INTERRUPTED

@@ -1,0 +1,46 @@
+"""Every table of the files as CSV: TABLE.csv, ledgers' as ledger_TABLE.csv; the first column is the file."""
+import csv
+import os
+
+from report.database import LEDGER
+from report.subjects import stem
+
+
+def file_name(database, table):
+    return ("ledger_" if database.kind == LEDGER else "") + table + ".csv"
+
+
+def write_tables(databases, directory):
+    """Same tables of several files go into one CSV; a column that a file lacks stays empty."""
+    tables = {}
+    for database in databases:
+        for table in database.tables():
+            tables.setdefault(file_name(database, table), []).append((database, table))
+    for name, sources in tables.items():
+        columns = list(dict.fromkeys(c for database, table in sources for c in database.columns(table)))
+        with open(directory / name, "w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["file", *columns])
+            for database, table in sources:
+                write_rows(writer, database, table, columns)
+
+
+def write_rows(writer, database, table, columns):
+    present = database.columns(table)
+    listed = ", ".join(f'"{c}"' if c in present else "NULL" for c in columns)
+    order = ", ".join(f'"{c}"' for c in present[:4])
+    label = stem(database.path)
+    for row in database.rows(f'SELECT {listed} FROM "{table}" ORDER BY {order}'):
+        writer.writerow([label, *row])
+
+
+def why_directory_must_stay(name):
+    """A directory of nothing but such files may be replaced."""
+    for entry in sorted(os.listdir(name)):
+        path = os.path.join(name, entry)
+        if not (entry.endswith(".csv") and os.path.isfile(path) and not os.path.islink(path)):
+            return f"{entry} is none of its tables"
+        with open(path, "rb") as file:
+            if not file.read(5) == b"file,":
+                return f"{entry} is none of its tables"
+    return None

@@ -1,0 +1,63 @@
+"""Numbers over time: statistics of all, and few enough to draw, with least and greatest kept."""
+import math
+
+
+class Segments:
+    """Values of several runs: each a list of (time_s since the first stamp, least, middle, greatest)."""
+
+    def __init__(self):
+        self.runs = []
+
+    def begin_run(self):
+        self.runs.append([])
+
+    def add(self, time_s, value):
+        self.runs[-1].append((time_s, value, value, value))
+
+    def add_band(self, time_s, least, middle, greatest):
+        self.runs[-1].append((time_s, least, middle, greatest))
+
+    def __len__(self):
+        return sum(len(run) for run in self.runs)
+
+    def middles(self):
+        return [point[2] for run in self.runs for point in run]
+
+    def thinned(self, most):
+        """At most some `most` points; neighbours become one with least, mean and greatest. None between two runs."""
+        together = max(1, math.ceil(len(self) / most))
+        points = []
+        for run in self.runs:
+            if points and run:
+                points.append(None)
+            points += [merged(run[at:at + together]) for at in range(0, len(run), together)]
+        return points
+
+    def on_grid(self, step_s, count):
+        """Mean over each interval of time, with least and greatest; None where there is nothing."""
+        cells = [[] for _ in range(count)]
+        for run in self.runs:
+            for point in run:
+                cells[min(count - 1, max(0, int(point[0] / step_s)))].append(point)
+        return [merged(cell) if cell else None for cell in cells]
+
+
+def merged(points):
+    return (points[0][0], min(p[1] for p in points), sum(p[2] for p in points) / len(points),
+            max(p[3] for p in points))
+
+
+def quantile(ordered, part):
+    """Of values in rising order; None of none."""
+    if not ordered:
+        return None
+    at = part * (len(ordered) - 1)
+    low = int(at)
+    high = min(low + 1, len(ordered) - 1)
+    return ordered[low] + (at - low) * (ordered[high] - ordered[low])
+
+
+def statistics(values):
+    """Least, 5 %, median, 95 %, greatest."""
+    ordered = sorted(values)
+    return [quantile(ordered, part) for part in (0.0, 0.05, 0.5, 0.95, 1.0)]

@@ -1,0 +1,147 @@
+"""What a page is about: one machine's runs in one file, in the order of time."""
+import pathlib
+
+from report.channel import Channel
+from report.database import FLEET, LEDGER
+from report.problem import Problem
+from report.series import Segments
+
+MOST_TURNS_ONE_BY_ONE = 500000  # beyond: a run is a point, where the file has figures of runs
+
+
+class Subject:
+    def __init__(self, database, label, runs):
+        self.database, self.label, self.runs = database, label, runs
+
+    @property
+    def first_ns(self):
+        return min((r["first_stamp_ns"] for r in self.runs if r["first_stamp_ns"] is not None), default=None)
+
+    @property
+    def last_ns(self):
+        return max((r["last_stamp_ns"] for r in self.runs if r["last_stamp_ns"] is not None), default=None)
+
+    def total(self, name):
+        return sum(run[name] or 0 for run in self.runs)
+
+    @property
+    def hours(self):
+        return self.total("duration_s") / 3600.0
+
+    def of_runs(self, sql):
+        """(run, row as a dictionary) of a query with one parameter, the run."""
+        for run in self.runs:
+            for row in self.database.records(sql, run["run_id"]):
+                yield run, row
+
+    def _has_rows(self, table):
+        tables = self.database.tables()
+        if "run_figures" not in tables:
+            return True
+        return table in tables and self.total("turns") <= MOST_TURNS_ONE_BY_ONE and any(
+            self.database.value(f"SELECT 1 FROM {table} WHERE run_id = ? LIMIT 1", run["run_id"]) for run in self.runs)
+
+    def segments(self, quantity):
+        """A value per turn, in the unit shown; per run where the file has no rows of turns."""
+        result, first = Segments(), self.first_ns or 0
+        if self._has_rows(quantity.table):
+            sql = f"SELECT stamp_ns, {quantity.expression} FROM {quantity.table} WHERE run_id = ? ORDER BY turn"
+            for run in self.runs:
+                result.begin_run()
+                for stamp, value in self.database.rows(sql, run["run_id"]):
+                    if value is not None and stamp is not None:
+                        result.add((stamp - first) * 1e-9, value * quantity.factor)
+            return result
+        sql = "SELECT least, mean, greatest FROM run_figures WHERE run_id = ? AND quantity = ?"
+        result.begin_run()
+        for run in self.runs:
+            for row in self.database.rows(sql, run["run_id"], quantity.key):
+                if row[1] is not None and run["first_stamp_ns"] is not None:
+                    result.add_band((run["first_stamp_ns"] - first) * 1e-9, *(v * quantity.factor for v in row))
+        return result
+
+    def failed_bags(self):
+        """(bag, reason) of a merged file's bags that gave nothing."""
+        if self.database.kind != FLEET:
+            return []
+        return list(self.database.rows(
+            "SELECT bag, reason FROM bags WHERE machine = ? AND status <> 'done' ORDER BY bag", self.label))
+
+    def counted_channels(self):
+        """Channels with their cycles over all runs: pieces add exactly. A changed grid begins another channel."""
+        if self.database.kind == FLEET:
+            return fleet_channels(self)
+        channels = {}
+        for run in self.runs:
+            for row in self.database.records("SELECT * FROM channels WHERE run_id = ? AND counted ORDER BY channel",
+                                             run["run_id"]):
+                key = (row["name"], row["least"], row["greatest"], row["classes"])
+                if key not in channels:
+                    channels[key] = Channel.of(row, run["equivalent_cycles_per_hour"])
+                add_piece(channels[key], self.database, run, row)
+        return list(channels.values())
+
+
+def add_piece(channel, database, run, row):
+    place = (run["run_id"], row["channel"])
+    channel.add_tally(row)
+    channel.add_deviation(row["mean_deviation"], row["samples"])
+    channel.hours += (run["duration_s"] or 0.0) / 3600.0
+    channel.count.add_closed(database.rows(
+        "SELECT steps, low, count FROM cycles WHERE run_id = ? AND channel = ?", *place))
+    channel.count.join([c for c, in database.rows(
+        "SELECT class FROM residues WHERE run_id = ? AND channel = ? ORDER BY place", *place)])
+
+
+def fleet_channels(subject):
+    """A merged file has the sums of each machine already."""
+    channels, database = [], subject.database
+    per_hour = max((r["equivalent_cycles_per_hour"] or 0.0 for r in subject.runs), default=0.0)
+    for row in database.records("SELECT * FROM machine_channels WHERE machine = ? ORDER BY machine_channel",
+                                subject.label):
+        channel = Channel.of(row, per_hour)
+        channel.add_tally(row)
+        channel.add_deviation(row["mean_deviation"], row["samples"])
+        channel.hours = row["hours"]
+        at = row["machine_channel"]
+        channel.count.add_closed(database.rows("SELECT steps, low, count FROM machine_cycles WHERE machine_channel = ?", at))
+        channel.count.residue = [c for c, in database.rows(
+            "SELECT class FROM machine_residues WHERE machine_channel = ? ORDER BY place", at)]
+        channels.append(channel)
+    return channels
+
+
+def grouped(runs, key):
+    groups = {}
+    for run in runs:
+        groups.setdefault(run[key], []).append(run)
+    return groups
+
+
+def stem(path):
+    return pathlib.Path(path).stem
+
+
+def fleet_subjects(database, only_machine):
+    """Every machine that has a bag, also one whose bags all failed."""
+    names = [name for name, in database.rows("SELECT DISTINCT machine FROM bags ORDER BY machine")]
+    if only_machine is not None and only_machine not in names:
+        raise Problem(f"{database.path}: --machine {only_machine}: no bag of it")
+    runs = grouped(database.records("SELECT runs.*, bags.machine AS owner FROM runs JOIN bags USING(bag_id) "
+                                    "ORDER BY first_stamp_ns, run_key"), "owner")
+    return [Subject(database, name, runs.get(name, [])) for name in names if only_machine in (None, name)]
+
+
+def subjects_of(database, only_machine=None):
+    """A recording's machines, a merged file's machines; ledgers have none."""
+    if database.kind == LEDGER:
+        return []
+    if database.kind == FLEET:
+        return fleet_subjects(database, only_machine)
+    if only_machine is not None:
+        raise Problem(f"{database.path}: --machine is for merged files, this is a recording of one bag")
+    groups = grouped(database.records("SELECT * FROM runs ORDER BY first_stamp_ns, run_id"), "machine")
+    name = stem(database.path)
+    if len(groups) < 2:
+        return [Subject(database, name, runs) for runs in groups.values()] or [Subject(database, name, [])]
+    return [Subject(database, f"{name}, machine {identity[:8]}", runs) for identity, runs in groups.items()]

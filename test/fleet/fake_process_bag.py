@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+"""process_bag --no-bag BAG --params FILE --db OUT without ROS: a bag is a line of text, `SEED SECONDS FIRST_S` or `broken`.
+
+Each call adds a line to calls.txt beside this program, so that a test sees which bags ran.
+"""
+import hashlib
+import os
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+SELF = pathlib.Path(os.path.abspath(__file__)).parent  # where the link is
+sys.path.insert(0, str(HERE.parent / "report"))
+import sample_database as sample  # noqa: E402  (the path must be set first)
+
+
+def main(arguments):
+    version_file = SELF / "version.txt"
+    version = version_file.read_text().strip() if version_file.exists() else "0.1.0"
+    if "--version" in arguments:
+        print(f"hammer_loads {version}")
+        return 0
+    bag, out = arguments[arguments.index("--no-bag") + 1], arguments[arguments.index("--db") + 1]
+    with open(SELF / "calls.txt", "a") as file:
+        file.write(os.path.basename(bag) + "\n")
+    words = open(bag).read().split()
+    if words[0] == "broken":
+        print(f"{bag}: is no bag, or a damaged one", file=sys.stderr)
+        return 1
+    parameters = [open(a).read() for b, a in zip(arguments, arguments[1:]) if b == "--params"]
+    name = hashlib.sha256("".join(parameters).encode()).hexdigest()[:6]
+    sample.make(out, sample.Machine(name, peak_N=40600.0 + 500 * int(words[0])), seconds=float(words[1]),
+                first_ns=int(float(words[2]) * 1e9), seed=int(words[0]), boom=False, classes=128)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,56 @@
+"""Lists of bags."""
+import pathlib
+import tempfile
+import unittest
+
+from support import SOURCE  # noqa: F401  (sets the path)
+import bag_list
+
+
+class Lists(unittest.TestCase):
+    def setUp(self):
+        self._directory = tempfile.TemporaryDirectory()
+        self.addCleanup(self._directory.cleanup)
+        self.directory = pathlib.Path(self._directory.name)
+
+    def listed(self, name, text):
+        path = self.directory / name
+        path.write_text(text)
+        return bag_list.read(str(path))
+
+    def test_csv_and_yaml_say_the_same(self):
+        as_csv = self.listed("a.csv", "machine,bag,parameters\nred,x.bag,h.yaml;b.yaml\nblue,/abs/y.bag,\n")
+        as_yaml = self.listed("a.yaml", "- {machine: red, bag: x.bag, parameters: [h.yaml, b.yaml]}\n"
+                                        "- {machine: blue, bag: /abs/y.bag}\n")
+        self.assertEqual(as_csv, as_yaml)
+        self.assertEqual(as_csv[0].bag, str(self.directory / "x.bag"))
+        self.assertEqual(as_csv[0].parameters, (str(self.directory / "h.yaml"), str(self.directory / "b.yaml")))
+        self.assertEqual(as_csv[1].bag, "/abs/y.bag")
+
+    def test_folder(self):
+        for machine, files in (("red", ("1.bag", "2.bag.active", "h.yaml", "notes.txt")), ("blue", ("1.bag",))):
+            (self.directory / machine).mkdir()
+            for name in files:
+                (self.directory / machine / name).write_text("")
+        bags = bag_list.read(str(self.directory))
+        self.assertEqual([(b.machine, pathlib.Path(b.bag).name, len(b.parameters)) for b in bags],
+                         [("blue", "1.bag", 0), ("red", "1.bag", 1), ("red", "2.bag.active", 1)])
+        self.assertEqual(len({bag.name for bag in bags}), 3)
+
+    def test_bad_ones_are_one_line(self):
+        for name, text, words in (("a.csv", "bag\nx.bag\n", "machine,bag,parameters"),
+                                  ("b.csv", "machine,bag\nred,\n", "entry 1: machine and bag"),
+                                  ("c.csv", "machine,bag\n", "names no bag"),
+                                  ("d.csv", "machine,bag\nred,x.bag\nred,x.bag\n", "twice"),
+                                  ("e.yaml", "machine: red\n", "must be a list")):
+            with self.assertRaisesRegex(bag_list.BadList, f"{name}: .*{words}"):
+                self.listed(name, text)
+
+    def test_names_of_pages_differ(self):
+        names = ["a b", "a_b", "all", "../x", "a/b", ".."]
+        self.assertEqual(len({bag_list.page_name(name) for name in names} | {"all"}), len(names) + 1)
+        self.assertFalse([n for n in names if "/" in bag_list.page_name(n)])
+
+
+if __name__ == "__main__":
+    unittest.main()

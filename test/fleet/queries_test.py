@@ -1,0 +1,60 @@
+"""Shipped questions on a fleet of which the answers are known."""
+import csv
+import io
+import subprocess
+import sys
+import unittest
+
+from support import FLEET, MergeTest
+import sample_database as sample
+
+
+class Queries(MergeTest):
+    """Red strikes hard, blue's sensor jitters, green's bag is broken."""
+
+    def setUp(self):
+        super().setUp()
+        red = sample.Machine("red", peak_N=60000.0, parameters={"rocker_mass_kg": ("36.0", "35.2")})
+        blue = sample.Machine("blue", jitter_s=4e-4)
+        self.merge(self.add("r", of=red), self.add("b", "blue", of=blue, seconds=80.0, restarts=4, refusals={"duplicate": 8}),
+                   self.add("g", "green", status="failed"))
+
+    def answer(self, name):
+        done = subprocess.run([sys.executable, str(FLEET / "query"), name, str(self.directory / "merged.sqlite"), "--csv"],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return list(csv.DictReader(io.StringIO(done.stdout)))
+
+    def test_answers(self):
+        self.assertEqual([row["machine"] for row in self.answer("worst_machines")], ["red", "blue"])
+        self.assertEqual([row["machine"] for row in self.answer("sensors_to_calibrate")], ["blue"])
+        self.assertEqual(self.answer("restarts")[0]["restarts"], "4")
+        self.assertEqual(self.answer("highest_peaks")[0]["machine"], "red")
+        self.assertEqual([(row["machine"], row["refused"]) for row in self.answer("refused_samples")], [("blue", "8")])
+        hours = {row["machine"]: float(row["hours"]) for row in self.answer("hours_and_blows")}
+        self.assertAlmostEqual(hours["blue"], 80 / 3600, delta=1e-4)
+        self.assertEqual([row["bag"] for row in self.answer("failed_bags")], ["/in/g.bag"])
+        self.assertIn(("rocker_mass_kg", "36.0", "red"),
+                      [(row["key"], row["value"], row["machine"]) for row in self.answer("changed_parameters")])
+        self.assertEqual([row["week"] for row in self.answer("energy_by_week")], ["2023-W46", "2023-W46"])
+        energy = sum(float(row["energy_MJ"]) for row in self.answer("energy_by_week"))
+        self.assertAlmostEqual(energy, self.ask("SELECT sum(total) / 1e6 FROM run_figures WHERE quantity = 'energy_J'")[0][0])
+        self.assertEqual(len(self.answer("lowest_hold_down")), 2)
+        self.assertEqual(self.answer("blank_turns"), [])
+        self.assertEqual(self.answer("life_left"), [])
+
+    def test_every_shipped_question_runs_and_says_what_it_asks(self):
+        shipped = sorted(FLEET.glob("queries/*.sql"))
+        self.assertGreaterEqual(len(shipped), 10)
+        for path in shipped:
+            self.assertTrue(path.read_text().startswith("-- "), path)
+            self.answer(path.stem)
+
+    def test_a_file_that_is_none(self):
+        done = subprocess.run([sys.executable, str(FLEET / "query"), "life_left", "/dev/null"], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1))
+
+
+if __name__ == "__main__":
+    unittest.main()

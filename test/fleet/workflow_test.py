@@ -1,0 +1,78 @@
+"""The workflow on one machine: what is broken is a row, only what changed runs again."""
+import sqlite3
+import unittest
+
+from support import FleetTest
+
+
+class Workflow(FleetTest):
+    def setUp(self):
+        super().setUp()
+        self.bags = self.directory / "bags"
+        for machine, count in (("red", 3), ("blue <b>", 2)):
+            folder = self.bags / machine
+            folder.mkdir(parents=True)
+            (folder / "hammer.yaml").write_text(f"hammer: {machine}\n")
+            for i in range(count):
+                (folder / f"{machine[0]}{i}.bag").write_text(f"{i} 20 {1700000000 + 100 * i}")
+        (self.bags / "red" / "r_broken.bag").write_text("broken")
+        (self.bags / "red" / "r_now.bag.active").write_text("0 20 0")
+
+    def bags_table(self):
+        db = sqlite3.connect(str(self.out / "merged.sqlite"))
+        rows = db.execute("SELECT bag, status, reason FROM bags").fetchall()
+        db.close()
+        return {bag.rsplit("/", 1)[1]: (status, reason) for bag, status, reason in rows}
+
+    def test_broken_bags_are_rows_and_only_changes_run(self):
+        self.run_fleet(self.bags)
+        everything = ["b0.bag", "b1.bag", "r0.bag", "r1.bag", "r2.bag", "r_broken.bag"]
+        self.assertEqual(self.calls(), everything)
+        rows = self.bags_table()
+        self.assertEqual([name for name, row in sorted(rows.items()) if row[0] == "done"], everything[:5])
+        self.assertIn("is no bag", rows["r_broken.bag"][1])
+        self.assertIn("still being written", rows["r_now.bag.active"][1])
+        pages = sorted(path.name for path in (self.out / "pages").iterdir())
+        self.assertEqual(len(pages), 3)
+        self.assertIn("all.html", pages)
+
+        self.run_fleet(self.bags)
+        self.assertEqual(self.calls(), [])
+
+        (self.bags / "red" / "r1.bag").write_text("7 20 1700000100")
+        (self.bags / "red" / "r_broken.bag").write_text("5 20 1700000900")
+        blue = self.out / "pages" / next(page for page in pages if page.startswith("blue"))
+        before = blue.stat().st_mtime_ns
+        self.run_fleet(self.bags)
+        self.assertEqual(self.calls(), ["r1.bag", "r_broken.bag"])
+        self.assertEqual(self.bags_table()["r_broken.bag"], ("done", None))
+        self.assertEqual(blue.stat().st_mtime_ns, before)
+
+        (self.bags / "blue <b>" / "hammer.yaml").write_text("hammer: blue, new rocker\n")
+        self.run_fleet(self.bags)
+        self.assertEqual(self.calls(), ["b0.bag", "b1.bag"])
+
+        (self.programs / "version.txt").write_text("0.2.0")
+        self.run_fleet(self.bags)
+        self.assertEqual(self.calls(), everything)
+
+    def test_list_and_rows_of_turns(self):
+        listed = self.directory / "list.csv"
+        listed.write_text("machine,bag,parameters\nred,bags/red/r0.bag,bags/red/hammer.yaml\n"
+                          "green,bags/red/none.bag,\n")
+        self.run_fleet(listed, config=["rows=turns"])
+        self.assertEqual(self.bags_table(), {"r0.bag": ("done", None), "none.bag": ("failed", "does not exist")})
+        db = sqlite3.connect(str(self.out / "merged.sqlite"))
+        self.assertEqual(db.execute("SELECT count(*) FROM turns").fetchone(), (100,))
+        db.close()
+
+    def test_a_bad_list_is_one_line(self):
+        done = self.snakemake(self.directory / "none.csv")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("fleet: ", done.stdout)
+        self.assertIn("none.csv: does not exist", done.stdout)
+        self.assertNotIn("Traceback", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
