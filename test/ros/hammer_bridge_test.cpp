@@ -27,7 +27,8 @@ Bytes bytesOf(const Message& message) {
 template <typename Wants>
 void attach(HammerBridge& bridge, const Wants& wants, Kept& kept) {
   bridge.outputs().forEach([&](auto& output) {
-    if (!wants(output.name())) return output.attach({});
+    output.detachAll();
+    if (!wants(output.name())) return;
     output.attach(
         [&all = kept[output.name()]](const auto& message, const ros::Time&) { all.push_back(bytesOf(message)); });
   });

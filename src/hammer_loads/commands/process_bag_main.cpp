@@ -1,7 +1,7 @@
 /// process_bag: a recording in, the hammer's loads or the grapple's motion out.
 #include <console_bridge/console.h>
 
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 
 #include "hammer_loads/commands/command_line.h"
@@ -9,23 +9,26 @@
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/ros/bag_output.h"
 #include "hammer_loads/ros/bag_processing.h"
+#include "hammer_loads/tables/table_schema.h"
 
 namespace hammer_loads {
 namespace {
 
 struct Arguments {
-  std::vector<std::string> bags;  ///< inputs, then the output
+  std::vector<std::string> bags;  ///< inputs, then the output unless there is none
   std::vector<std::string> params, grapple;
-  std::string urdf;
-  bool force{};
+  std::string urdf, tables;
+  bool force{}, no_bag{};
 };
 
 void addOptions(CLI::App& app, Arguments& given, BagJob& job) {
   app.add_option("bags", given.bags,
                  "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
       ->required()
-      ->expected(2, 1000000);
-  app.add_flag("--force", given.force, "replace OUT.bag if it holds outputs of this package and nothing else");
+      ->expected(1, 1000000);
+  const auto no_bag = app.add_flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
+  app.add_option("--db", given.tables, "write the results as tables, which must not exist")->type_name("FILE.sqlite");
+  app.add_flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
   addParamsOption(app, given.params);
   app.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(app, given.urdf);
@@ -39,10 +42,11 @@ void addOptions(CLI::App& app, Arguments& given, BagJob& job) {
   app.get_option("--pressures-topic")
       ->description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   app.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
-  app.add_flag("--pins", job.pins, "pin forces as well");
+  app.add_flag("--pins", job.pins, "pin forces as well")->excludes(no_bag);
   app.add_option("--grapple", given.grapple, "the grapple as well, from --joint-states-topic; may be repeated")
       ->allow_extra_args(false)
-      ->type_name("FILE.yaml");
+      ->type_name("FILE.yaml")
+      ->excludes(no_bag);
   app.add_option("--grapple-prefix", job.grapple_prefix, "of the grapple's topics")->capture_default_str();
 }
 
@@ -69,15 +73,60 @@ std::vector<std::string> readFiles(const Arguments& given, BagJob& job) {
   return problems;
 }
 
-Checked<OutputFile> takeOutput(const Arguments& given, const BagJob& job) {
+/// What the command line alone shows to be wrong; empty: nothing.
+std::string usageProblem(const Arguments& given) {
+  if (given.no_bag && given.tables.empty()) return "--no-bag: nothing would be written, --db FILE.sqlite is required";
+  if (!given.no_bag && given.bags.size() < 2) return "bags: IN.bag... and OUT.bag are required, or --no-bag";
+  const auto whole = [](const std::string& name) { return std::filesystem::weakly_canonical(name); };
+  if (!given.no_bag && !given.tables.empty() && whole(given.tables) == whole(given.bags.back()))
+    return "--db: " + given.tables + ", must be another file than OUT.bag";
+  return {};
+}
+
+/// A file to write, and where its name in the job stands.
+struct Output {
+  std::string name;
+  std::string& path;
+  std::function<std::string(const std::string&)> keep;
+};
+
+std::vector<Output> outputsOf(const Arguments& given, BagJob& job) {
+  std::vector<Output> outputs;
   const auto named = [](const std::string& given_name, const std::string& by_default) {
     return given_name.empty() ? by_default : given_name;
   };
   const std::vector<std::string> topics{named(job.topics.crank, kDefaultTopics.crank),
                                         named(job.topics.joint_states, kDefaultTopics.joint_states),
                                         named(job.topics.hull_imu, kDefaultTopics.hull_imu)};
-  return OutputFile::make({given.bags.back(), job.inputs, given.force,
-                           [&topics](const std::string& name) { return whyBagMustStay(name, topics); }});
+  if (!given.tables.empty()) outputs.push_back({given.tables, job.tables, whyTablesMustStay});
+  if (!given.no_bag)
+    outputs.push_back({given.bags.back(), job.output,
+                       [topics](const std::string& name) { return whyBagMustStay(name, topics); }});
+  return outputs;
+}
+
+/// Takes the files, processes, gives them their names. What went wrong, one line each.
+std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport& report) {
+  const std::vector<Output> outputs = outputsOf(given, job);
+  std::vector<OutputFile> files;
+  for (const Output& output : outputs) {
+    Checked<OutputFile> file = OutputFile::make({output.name, job.inputs, given.force, output.keep});
+    if (!file.value) return file.problems;
+    output.path = file.value->path();
+    files.push_back(*std::move(file.value));
+  }
+  ProgressBar bar;
+  std::vector<std::string> problems = processBag(job, std::ref(bar), report);
+  for (std::string& problem : problems) {
+    for (const Output& output : outputs)
+      if (problem.rfind(output.path + ":", 0) == 0) problem.replace(0, output.path.size(), output.name);
+  }
+  for (OutputFile& file : files) {
+    if (!problems.empty()) break;
+    const std::string problem = file.publish();
+    if (!problem.empty()) problems.push_back(problem);
+  }
+  return problems;
 }
 
 int run(int argc, const char* const* argv) {
@@ -87,27 +136,23 @@ int run(int argc, const char* const* argv) {
   BagJob job;
   addOptions(app, given, job);
   if (const auto code = parse(app, argc, argv)) return *code;
+  const std::string usage = usageProblem(given);
+  if (!usage.empty()) {
+    std::cerr << "process_bag: " << usage << " (--help shows the options)\n";
+    return kExitWrongUsage;
+  }
   endCleanlyOnSignals();
-  job.inputs.assign(given.bags.begin(), given.bags.end() - 1);
+  job.inputs.assign(given.bags.begin(), given.bags.end() - (given.no_bag ? 0 : 1));
   const std::vector<std::string> bad_files = readFiles(given, job);
   if (!bad_files.empty()) return fail(bad_files);
-  Checked<OutputFile> output = takeOutput(given, job);
-  if (!output.value) return fail(output.problems);
-  job.output = output.value->path();
 
-  ProgressBar bar;
   BagReport report;
-  std::vector<std::string> problems = processBag(job, std::ref(bar), report);
-  for (std::string& problem : problems) {
-    if (problem.rfind(job.output + ":", 0) == 0) problem.replace(0, job.output.size(), given.bags.back());
-  }
+  const std::vector<std::string> problems = process(given, job, report);
   if (!problems.empty()) return fail(problems);
-  const std::string problem = output.value->publish();
-  if (!problem.empty()) return fail({problem});
   for (const std::string& note : report.notes) std::cerr << "note: " << note << '\n';
   std::cerr << textOf(report);
-  for (const std::string& warning : report.warnings) std::cerr << "warning: " << warning << '\n';
-  std::cout << given.bags.back() << ": " << summaryOf(report) << std::endl;
+  for (const std::string& warning : textsOf(report.warnings)) std::cerr << "warning: " << warning << '\n';
+  std::cout << (given.no_bag ? given.tables : given.bags.back()) << ": " << summaryOf(report) << std::endl;
   return 0;
 }
 

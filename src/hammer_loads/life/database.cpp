@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace hammer_loads::life {
@@ -25,7 +26,11 @@ void Database::fail(const std::string& problem) {
 
 bool Database::check(int result) {
   if (result == SQLITE_OK || result == SQLITE_ROW || result == SQLITE_DONE) return true;
-  fail(handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(result));
+  std::string reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(result);
+  const int error = handle_ ? sqlite3_system_errno(handle_.get()) : 0;
+  const int kind = result & 0xFF;
+  if (error != 0 && (kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN)) reason += std::string(": ") + std::strerror(error);
+  fail(reason);
   return false;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 struct sqlite3;
@@ -37,6 +39,17 @@ class Database {
       bindAll(values...);
       return *this;
     }
+    /// One value after another, where their number is not known beforehand: reset(), bind() each place from 1, step().
+    void reset();
+    void bind(int place, std::int64_t value);
+    void bind(int place, std::uint64_t value) { bind(place, static_cast<std::int64_t>(value)); }
+    void bind(int place, std::uint32_t value) { bind(place, std::int64_t{value}); }
+    void bind(int place, double value);  ///< NULL for NaN
+    void bind(int place, const std::string& value);
+    template <typename T>
+    void bind(int place, const std::optional<T>& value) {  ///< NULL for nothing
+      value ? bind(place, *value) : bind(place, std::numeric_limits<double>::quiet_NaN());
+    }
     /// Next row of a query; false after the last one, and after an error.
     bool step();
     std::int64_t integer(int column) const;
@@ -54,13 +67,6 @@ class Database {
       int place = 0;
       (bind(++place, values), ...);
     }
-    void reset();
-    void bind(int place, std::int64_t value);
-    void bind(int place, std::uint64_t value) { bind(place, static_cast<std::int64_t>(value)); }
-    void bind(int place, std::uint32_t value) { bind(place, std::int64_t{value}); }
-    void bind(int place, double value);  ///< NULL for NaN
-    void bind(int place, const std::string& value);
-
     Database& database_;
     std::unique_ptr<sqlite3_stmt, Finalize> statement_;
   };

@@ -7,6 +7,7 @@
 #include "hammer_loads/ros/bag_inputs.h"
 #include "hammer_loads/ros/bag_output.h"
 #include "hammer_loads/ros/bag_runs.h"
+#include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/bag_warnings.h"
 #include "hammer_loads/ros/grapple_bag_processing.h"
 #include "hammer_loads/ros/hammer_bridge.h"
@@ -18,11 +19,17 @@ namespace {
 /// What is read, and as which type.
 using Wanted = std::map<std::string, std::string>;
 
+/// Where results go; null: not wanted.
+struct Sinks {
+  rosbag::Bag* bag;
+  BagTables* tables;
+};
+
 /// The hammer's bridge through the runs of a recording.
 class HammerRuns {
  public:
-  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, rosbag::Bag& output, BagReport& report)
-      : runs_(runs), job_(job), output_(output), report_(report) {
+  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, const Sinks& sinks, BagReport& report)
+      : runs_(runs), job_(job), sinks_(sinks), report_(report) {
     begin();
   }
 
@@ -39,7 +46,7 @@ class HammerRuns {
       flow_->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
     }
     if (topic == topics.crank) {
-      ++report_.samples;
+      ++samples_;
       flow_->crank(*messageOf<sensor_msgs::JointState>(item), item.getTime());
     }
     if (topic == topics.hull_imu && flow_->needsImu())
@@ -52,21 +59,25 @@ class HammerRuns {
   }
 
   void end() {
+    ++report_.runs;
+    report_.samples += samples_;
     add(flow_->pipeline().counts(), report_.crank);
     report_.wrenches += flow_->outputs().hull_wrench.sent();
     report_.turns += flow_->outputs().blow.sent();
-    warnOfRun(*flow_, joints_came_, report_.warnings);
-    ++report_.runs;
+    warnOfRun(*flow_, joints_came_, static_cast<std::int64_t>(report_.runs), report_.warnings);
+    if (sinks_.tables != nullptr) sinks_.tables->end(*flow_, samples_);
   }
 
  private:
   /// Static transforms are the same in every run.
   void begin() {
     joints_came_ = false;
+    samples_ = 0;
     const Settings& settings = runs_[next_++].settings;
     flow_.emplace(settings);
     pressures_ = HammerBridge::pressureTopics(settings, settings.input_topics.cylinder_pressures);
-    attachToBag(flow_->outputs(), output_, job_.output_prefix, job_.pins);
+    if (sinks_.bag != nullptr) attachToBag(flow_->outputs(), *sinks_.bag, job_.output_prefix, job_.pins);
+    if (sinks_.tables != nullptr) sinks_.tables->begin(*flow_);
     for (const auto& [time, message] : statics_) flow_->transforms(*message, true, time);
   }
 
@@ -79,10 +90,11 @@ class HammerRuns {
 
   const std::vector<BagRun>& runs_;
   const BagJob& job_;
-  rosbag::Bag& output_;
+  const Sinks& sinks_;
   BagReport& report_;
   std::size_t next_{};
-  bool joints_came_{};  ///< in this run
+  bool joints_came_{};       ///< in this run
+  std::uint64_t samples_{};  ///< messages with crank samples, likewise
   std::optional<HammerBridge> flow_;
   std::vector<HammerBridge::PressureTopic> pressures_;
   std::vector<std::pair<ros::Time, tf2_msgs::TFMessage::ConstPtr>> statics_;
@@ -125,12 +137,22 @@ struct Work {
   std::string slider_topic;  ///< empty: no grapple
 };
 
-void process(const Work& work, rosbag::Bag& output, const std::function<void(double)>& progress, BagReport& report) {
+void warnOfInputs(const Work& work, const std::vector<std::string>& topics, const std::set<std::string>& heard,
+                  std::vector<BagWarning>& warnings) {
+  warnOfPublishers(work.inputs, topics, warnings);
+  warnOfDefinitions(work.inputs, warnings);
+  warnOfLostMessages(work.inputs, warnings);
+  if (work.hammer) warnOfMissing(work.inputs, work.runs, heard, warnings);
+}
+
+void process(const Work& work, const Sinks& sinks, const std::function<void(double)>& progress, BagReport& report) {
   std::optional<HammerRuns> hammer;
   std::optional<GrappleFlow> grapple;
-  if (work.hammer) hammer.emplace(work.runs, work.job, output, report);
-  if (work.job.grapple)
-    attachToBag(grapple.emplace(*work.job.grapple).outputs(), output, work.job.grapple_prefix, false);
+  if (work.hammer) hammer.emplace(work.runs, work.job, sinks, report);
+  if (work.job.grapple) {
+    grapple.emplace(*work.job.grapple);
+    if (sinks.bag != nullptr) attachToBag(grapple->outputs(), *sinks.bag, work.job.grapple_prefix, false);
+  }
 
   const Wanted wanted = wantedTopics(work.runs, work.hammer, work.slider_topic);
   std::vector<std::string> topics;
@@ -146,30 +168,38 @@ void process(const Work& work, rosbag::Bag& output, const std::function<void(dou
     if (hammer) hammer->take(item);
     if (grapple && item.getTopic() == work.slider_topic)
       grapple->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
+    if (sinks.tables != nullptr && !sinks.tables->problem().empty()) return;
   }
-  warnOfPublishers(work.inputs, topics, report.warnings);
-  warnOfDefinitions(work.inputs, report.warnings);
-  warnOfLostMessages(work.inputs, report.warnings);
-  if (hammer) {
-    hammer->end();
-    warnOfMissing(work.inputs, work.runs, heard, report.warnings);
-  }
+  if (hammer) hammer->end();
+  warnOfInputs(work, topics, heard, report.warnings);
   if (!grapple) return;
   report.grapple = refusalReport(*grapple);
   report.jaw_edges = grapple->accepted();
 }
 
-/// Into the output's file; what went wrong in one line, empty if nothing did.
+/// Into the tables alone, or beside a bag; what went wrong in one line, empty if nothing did.
+std::string writeTables(const Work& work, rosbag::Bag* bag, const std::function<void(double)>& progress,
+                        BagReport& report) {
+  std::optional<BagTables> tables;
+  if (!work.job.tables.empty()) tables.emplace(work.job.tables, work.job.inputs);
+  process(work, {bag, tables ? &*tables : nullptr}, progress, report);
+  if (!tables) return {};
+  tables->finish(report.warnings);
+  return tables->problem().empty() ? "" : work.job.tables + ": cannot be written: " + tables->problem();
+}
+
+/// Into the output files; what went wrong in one line, empty if nothing did.
 std::string write(const Work& work, const std::function<void(double)>& progress, BagReport& report) {
+  if (work.job.output.empty()) return writeTables(work, nullptr, progress, report);
   BagOutput output;
   errno = 0;
   try {
     output.open(work.job.output);
-    process(work, output.bag(), progress, report);
+    const std::string problem = writeTables(work, &output.bag(), progress, report);
     output.close();
-    return {};
+    return problem;
   } catch (const rosbag::BagException& error) {  // what goes wrong with an input is none
-    return "cannot be written: " + onOneLine(errno != 0 ? std::strerror(errno) : error.what());
+    return work.job.output + ": cannot be written: " + onOneLine(errno != 0 ? std::strerror(errno) : error.what());
   }
 }
 
@@ -185,27 +215,27 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     const Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
     if (!runs.value) return runs.problems;
     report.notes = runs.notes;
-    report.hammer_prefix = job.output_prefix;
-    report.grapple_prefix = job.grapple_prefix;
+    if (!job.output.empty()) report.hammer_prefix = job.output_prefix, report.grapple_prefix = job.grapple_prefix;
     Work work{*inputs.value, job, *runs.value, false, ""};
     const InputTopics& first = runs.value->front().settings.input_topics;
     for (const BagRun& run : *runs.value)
       work.hammer = work.hammer || inputs.value->has(run.settings.input_topics.crank);
-    if (!work.hammer) report.notes = report.warnings = {};
+    if (!work.hammer) report.notes = {}, report.warnings = {};
     if (job.grapple) work.slider_topic = first.joint_states;
-    const std::string& required = job.grapple ? first.joint_states : first.crank;
-    if (job.grapple ? !inputs.value->has(required) : !work.hammer)
+    const bool hammer_required = !job.grapple || !job.tables.empty();
+    const std::string& required = hammer_required ? first.crank : first.joint_states;
+    if (hammer_required ? !work.hammer : !inputs.value->has(required))
       return {names + ": no topic " + required + ", is required; topics there: " + inputs.value->topicList()};
     const std::string problem = typeProblem(*inputs.value, wantedTopics(work.runs, work.hammer, work.slider_topic));
     if (!problem.empty()) return {names + ": " + problem};
     const std::string failure = write(work, progress, report);
-    if (!failure.empty()) return {job.output + ": " + failure};
-    if (report.wrenches == 0 && report.jaw_edges == 0)
+    if (!failure.empty()) return {failure};
+    if (report.wrenches == 0 && (report.jaw_edges == 0 || !job.tables.empty()))
       return {names + ": " +
               (work.hammer ? noWrench(*inputs.value, runs.value->back(), report)
                            : "no jaw edge; " + onOneLine(report.grapple))};
     if (work.hammer && report.wrenches == 0)
-      addOnce(report.warnings, noWrench(*inputs.value, runs.value->back(), report));
+      addOnce(report.warnings, {"no wrench", noWrench(*inputs.value, runs.value->back(), report)});
     return {};
   } catch (const std::exception& error) {
     return {names + ": cannot be read: " + onOneLine(error.what())};

@@ -14,7 +14,8 @@ namespace hammer_loads {
 
 struct BagJob {
   std::vector<std::string> inputs;  ///< bags of one recording
-  std::string output;               ///< file to write; what it holds is lost
+  std::string output;               ///< bag to write; what it holds is lost; empty: none
+  std::string tables;               ///< empty file, to get the results as tables (doc/tables.md); "": none
   /// Parameters over the shipped ones; nothing: those of the recording's run_info, if it has one.
   std::optional<ParameterMap> parameters;
   /// Text of a URDF; nothing: that of the recording's run_info, if it has one.
@@ -31,6 +32,7 @@ inline const InputTopics kDefaultTopics{"/hammer/crank", "/joint_states", "/hamm
                                         "/hammer/cylinder_pressures"};
 
 /// Reads the inputs' messages in record order and writes every output at the record time of the input that caused it.
+/// A problem with a file begins with its name in the job.
 /// progress: part done in [0, 1]. Returns what went wrong, one line each; nothing if all is well. Then the report is
 /// whole, otherwise the output is of no use.
 std::vector<std::string> processBag(const BagJob& job, const std::function<void(double)>& progress, BagReport& report);

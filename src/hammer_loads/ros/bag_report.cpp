@@ -8,6 +8,19 @@ void addOnce(std::vector<std::string>& lines, const std::string& line) {
   if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
 }
 
+void addOnce(std::vector<BagWarning>& warnings, const BagWarning& warning) {
+  const bool known = std::any_of(warnings.begin(), warnings.end(), [&](const BagWarning& other) {
+    return other.run == warning.run && other.text == warning.text;
+  });
+  if (!known) warnings.push_back(warning);
+}
+
+std::vector<std::string> textsOf(const std::vector<BagWarning>& warnings) {
+  std::vector<std::string> texts;
+  for (const BagWarning& warning : warnings) addOnce(texts, warning.text);
+  return texts;
+}
+
 void add(const SampleCounts& counts, SampleCounts& sum) {
   sum.accepted += counts.accepted;
   sum.restarts += counts.restarts;
@@ -32,7 +45,7 @@ std::string summaryOf(const BagReport& report) {
     text = std::to_string(report.samples) + " crank samples, " + std::to_string(report.wrenches) + " wrenches, " +
            std::to_string(report.turns) + " turns";
     if (report.runs > 1) text += " in " + std::to_string(report.runs) + " runs";
-    text += ", written under " + report.hammer_prefix;
+    if (!report.hammer_prefix.empty()) text += ", written under " + report.hammer_prefix;
   }
   if (report.jaw_edges > 0)
     text += (text.empty() ? "" : "; ") + std::to_string(report.jaw_edges) +

@@ -9,6 +9,12 @@
 
 namespace hammer_loads {
 
+struct BagWarning {
+  std::string key;   ///< the same for the same cause
+  std::string text;  ///< one line: what is missing or suspicious
+  std::int64_t run{};  ///< 1 for the first; 0: of the recording
+};
+
 struct BagReport {
   SampleCounts crank;         ///< of all runs
   std::uint64_t samples{};    ///< messages with crank samples
@@ -16,14 +22,18 @@ struct BagReport {
   std::uint64_t turns{};      ///< blows written
   std::uint64_t jaw_edges{};  ///< slider samples with a jaw edge
   std::uint64_t runs{};
-  std::string hammer_prefix, grapple_prefix;  ///< of the topics written
+  std::string hammer_prefix, grapple_prefix;  ///< of the topics written; empty: no bag
   std::string grapple;                        ///< refusalReport of the grapple, if there was one
   std::vector<std::string> notes;             ///< what was used, one line each
-  std::vector<std::string> warnings;          ///< what is missing or suspicious, one line each
+  std::vector<BagWarning> warnings;           ///< none twice for the same run
 };
 
 /// Adds a line unless it is there already.
 void addOnce(std::vector<std::string>& lines, const std::string& line);
+void addOnce(std::vector<BagWarning>& warnings, const BagWarning& warning);
+
+/// Each text once.
+std::vector<std::string> textsOf(const std::vector<BagWarning>& warnings);
 
 void add(const SampleCounts& counts, SampleCounts& sum);
 

@@ -35,15 +35,16 @@ bool isRepeated(const std::vector<RecordedRun>& runs, const RunInfo& info) {
          runs.back().info.robot_description == info.robot_description;
 }
 
-RunInfos readRunInfos(const BagInputs& inputs, std::vector<std::string>& warnings) {
+RunInfos readRunInfos(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
   RunInfos found;
   rosbag::View view;
   inputs.addTo(view, rosbag::TypeQuery(ros::message_traits::datatype<RunInfo>()));
   for (const rosbag::MessageInstance& item : view) {
     const auto info = item.instantiate<RunInfo>();
     if (!info) {
-      addOnce(warnings, item.getTopic() + ": hammer_loads/RunInfo of another definition (MD5 " + item.getMD5Sum() +
-                            ", here " + ros::message_traits::md5sum<RunInfo>() + "), is not used");
+      addOnce(warnings, {"definitions", item.getTopic() + ": hammer_loads/RunInfo of another definition (MD5 " +
+                                            item.getMD5Sum() + ", here " + ros::message_traits::md5sum<RunInfo>() +
+                                            "), is not used"});
       continue;
     }
     if (!isOfHammer(*info)) continue;
@@ -77,7 +78,7 @@ InputTopics recordedTopics(const RunInfo& info) {
   return parameters ? takeInputTopics(*parameters, ignored) : InputTopics{};
 }
 
-Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, std::vector<std::string>& warnings) {
+Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, std::vector<BagWarning>& warnings) {
   Checked<std::vector<BagRun>> result;
   const ParameterMap parameters = job.parameters.value_or(ParameterMap{});
   std::string description = job.robot_description.value_or("");
@@ -92,7 +93,8 @@ Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, 
   result.problems = std::move(settings.problems);
   if (!settings.value) return result;
   if (!hasHammerKey(parameters))
-    addOnce(warnings, "no hammer file was given (--params): the masses and lengths of the MO-100 are used");
+    addOnce(warnings,
+            {"hammer file", "no hammer file was given (--params): the masses and lengths of the MO-100 are used"});
   result.notes.insert(result.notes.end(), settings.value->notes.begin(), settings.value->notes.end());
   result.value.emplace().push_back({ros::Time(), withTopics(*std::move(settings.value), job.topics, topics)});
   return result;
@@ -135,7 +137,7 @@ Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob&
 
 }  // namespace
 
-Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<std::string>& warnings) {
+Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
   const RunInfos infos = readRunInfos(inputs, warnings);
   if (job.parameters || infos.runs.empty()) return runOfJob(job, infos, warnings);
   if (infos.topics.size() == 1) return recordedRuns(inputs, job, infos);

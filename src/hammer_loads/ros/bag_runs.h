@@ -20,6 +20,6 @@ struct BagRun {
 
 /// One run with the job's parameters, or one for each run_info of a hammer_loads node: from its record time on, the
 /// first one also for what comes before it. Notes say what is used; what makes it doubtful is added to `warnings`.
-Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<std::string>& warnings);
+Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings);
 
 }  // namespace hammer_loads

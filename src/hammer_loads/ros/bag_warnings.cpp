@@ -45,28 +45,30 @@ std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
 
 }  // namespace
 
-void warnOfRun(const HammerBridge& bridge, bool joints_came, std::vector<std::string>& warnings) {
+void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run,
+               std::vector<BagWarning>& warnings) {
   for (const Warning& warning : warningsOf(bridge.pipeline())) {
     const bool of_joints = std::strcmp(warning.key, "pitch joints") == 0;
     const std::string& topic = bridge.settings().input_topics.joint_states;
-    if (!of_joints) addOnce(warnings, warning.text);
-    if (of_joints && joints_came) addOnce(warnings, topic + ": " + warning.text);  // else warnOfMissing
+    if (!of_joints) addOnce(warnings, {warning.key, warning.text, run});
+    if (of_joints && joints_came)  // else warnOfMissing
+      addOnce(warnings, {warning.key, topic + ": " + warning.text, run});
   }
 }
 
 void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
-                      std::vector<std::string>& warnings) {
+                      std::vector<BagWarning>& warnings) {
   for (const std::string& name : topics) {
     const auto found = inputs.topics().find(name);
     if (found == inputs.topics().end() || found->second.publishers.size() < 2) continue;
     if (found->second.types.count(typeOf<tf2_msgs::TFMessage>()) != 0) continue;  // as usual there
     std::string publishers;
     for (const std::string& node : found->second.publishers) publishers += (publishers.empty() ? "" : ", ") + node;
-    addOnce(warnings, name + ": several publishers: " + publishers);
+    addOnce(warnings, {"publishers", name + ": several publishers: " + publishers});
   }
 }
 
-void warnOfLostMessages(const BagInputs& inputs, std::vector<std::string>& warnings) {
+void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
   for (const auto& [name, topic] : inputs.topics()) {
     if (!isGapTopic(name) || topic.types.count(typeOf<diagnostic_msgs::DiagnosticStatus>()) == 0) continue;
     std::uint64_t lost = 0;
@@ -75,12 +77,13 @@ void warnOfLostMessages(const BagInputs& inputs, std::vector<std::string>& warni
     for (const rosbag::MessageInstance& item : view)
       lost += lostMessages(*messageOf<diagnostic_msgs::DiagnosticStatus>(item));
     if (lost > 0)
-      addOnce(warnings, name + ": the log lost " + std::to_string(lost) +
-                            " messages; where an input is among them, the outputs differ from those of the node");
+      addOnce(warnings, {"lost messages", name + ": the log lost " + std::to_string(lost) +
+                                              " messages; where an input is among them, the outputs differ from those "
+                                              "of the node"});
   }
 }
 
-void warnOfDefinitions(const BagInputs& inputs, std::vector<std::string>& warnings) {
+void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
   std::string list;
   for (const auto& [name, topic] : inputs.topics()) {
     const auto known = definitions().find(*topic.types.begin());
@@ -88,23 +91,26 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<std::string>& warnin
     list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + known->first + ")";
   }
   if (!list.empty())
-    addOnce(warnings, "messages of another version of this package: " + list + "; `rosbag fix` makes them readable");
+    addOnce(warnings, {"definitions", "messages of another version of this package: " + list +
+                                          "; `rosbag fix` makes them readable"});
 }
 
 /// Topics that are wanted and did not come.
 void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
-                   std::vector<std::string>& warnings) {
+                   std::vector<BagWarning>& warnings) {
   for (const BagRun& run : runs) {
     const InputTopics& topics = run.settings.input_topics;
     const PipelineSettings& pipeline = run.settings.pipeline;
     const bool joints = !pipeline.pitch_joints.empty() || run.settings.boom;
     if (joints && heard.count(topics.joint_states) == 0)
-      addOnce(warnings, "no message on " + topics.joint_states + " (--joint-states-topic); topics of its type there: " +
-                            inputs.topicsOfType(typeOf<sensor_msgs::JointState>()));
+      addOnce(warnings,
+              {"joint states", "no message on " + topics.joint_states +
+                                   " (--joint-states-topic); topics of its type there: " +
+                                   inputs.topicsOfType(typeOf<sensor_msgs::JointState>())});
     if (pipeline.hull_motion == HullMotionSource::kImu && heard.count(topics.hull_imu) == 0)
-      addOnce(warnings, "hull_motion: imu, but no message on " + topics.hull_imu +
-                            " (--imu-topic): weight by pitch; topics of its type there: " +
-                            inputs.topicsOfType(typeOf<sensor_msgs::Imu>()));
+      addOnce(warnings, {"imu", "hull_motion: imu, but no message on " + topics.hull_imu +
+                                    " (--imu-topic): weight by pitch; topics of its type there: " +
+                                    inputs.topicsOfType(typeOf<sensor_msgs::Imu>())});
   }
 }
 

@@ -14,22 +14,23 @@ namespace hammer_loads {
 class HammerBridge;
 
 /// What the pipeline's state says at the end of a run: wrong units, joints that never came.
-/// joints_came: there were messages on their topic.
-void warnOfRun(const HammerBridge& bridge, bool joints_came, std::vector<std::string>& warnings);
+/// joints_came: there were messages on their topic. run: its number.
+void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run,
+               std::vector<BagWarning>& warnings);
 
 /// Several nodes on one of these topics. Transforms come from several as a rule.
 void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
-                      std::vector<std::string>& warnings);
+                      std::vector<BagWarning>& warnings);
 
 /// What the log that made the bags could not keep.
-void warnOfLostMessages(const BagInputs& inputs, std::vector<std::string>& warnings);
+void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings);
 
 /// Messages of another version of this package: their definition differs.
-void warnOfDefinitions(const BagInputs& inputs, std::vector<std::string>& warnings);
+void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warnings);
 
 /// Topics that the runs want and that are not among those heard.
 void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
-                   std::vector<std::string>& warnings);
+                   std::vector<BagWarning>& warnings);
 
 /// Why a run gave no wrench at all, in one line.
 std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report);

@@ -48,6 +48,7 @@ class HammerBridge {
   void begin(const Settings& settings);
 
   HammerOutputs& outputs() { return outputs_; }
+  const HammerOutputs& outputs() const { return outputs_; }
   const Settings& settings() const { return settings_; }
   const Pipeline& pipeline() const { return *pipeline_; }
   const std::optional<FrameWrenches>& frameWrenches() const { return frame_wrenches_; }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace hammer_loads {
 
@@ -31,17 +32,21 @@ class Output {
 
   const std::string& name() const { return name_; }
   Delivery delivery() const { return delivery_; }
-  void attach(Deliver deliver) { deliver_ = std::move(deliver); }
+  /// What is attached takes every message from now on, in the order of attaching.
+  void attach(Deliver deliver) { attached_.push_back(std::move(deliver)); }
+  void detachAll() { attached_.clear(); }
+  /// Whether a message goes anywhere: else what only the message shows need not be computed.
+  bool attached() const { return !attached_.empty(); }
   void send(const ros::Time& record_time) {
     ++sent_;
-    if (deliver_) deliver_(message, record_time);
+    for (const Deliver& deliver : attached_) deliver(message, record_time);
   }
   std::uint64_t sent() const { return sent_; }  ///< messages since the start
 
  private:
   std::string name_;
   Delivery delivery_;
-  Deliver deliver_;
+  std::vector<Deliver> attached_;
   std::uint64_t sent_{};
 };
 

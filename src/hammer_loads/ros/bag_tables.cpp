@@ -1,0 +1,114 @@
+#include "hammer_loads/ros/bag_tables.h"
+
+#include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/ros/stamp.h"
+#include "hammer_loads/ros/version.h"
+#include "hammer_loads/settings/parameter_texts.h"
+#include "hammer_loads/tables/sha256.h"
+
+namespace hammer_loads {
+namespace {
+
+std::string nameOf(Level level) {
+  for (const auto& [name, named] : kLevelNames)
+    if (named == level) return name;
+  return {};
+}
+
+/// What is known when the run begins.
+RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
+  RunRecord record;
+  const std::vector<ParameterText> parameters = parameterTexts(configDirectory(), settings.yaml);
+  record.input_sha256 = input_sha256;
+  record.parameters_sha256 = sha256Of({settings.yaml, settings.robot_description});
+  record.machine = sha256Of({machineText(parameters, settings.robot_description)});
+  record.version = packageVersion();
+  record.revision = packageRevision();
+  record.parameters_yaml = settings.yaml;
+  record.level = nameOf(settings.pipeline.level);
+  for (const ParameterText& parameter : parameters)
+    record.parameters.push_back({parameter.key, parameter.value, parameter.shipped});
+  return record;
+}
+
+void addCounts(const SampleCounts& counts, RunRecord& record) {
+  record.restarts = counts.restarts;
+  record.backward_passes = counts.backward_passes;
+  for (std::size_t i = 0; i < counts.refused.size(); ++i)
+    record.refusals.push_back({kRefusalNames[i], counts.refused[i]});
+}
+
+/// What the filter has learned of sensor and machine by the end of the run.
+void addLearned(const CrankTracker& tracker, RunRecord& record) {
+  record.consistency = tracker.consistency();
+  record.angle_resolution = tracker.angleResolution();
+  const auto* filter = dynamic_cast<const CrankFilter*>(&tracker);
+  if (filter == nullptr) return;
+  record.timing_noise = filter->timingNoise();
+  record.speed_noise = filter->speedNoise();
+  const BlowFactor blow = filter->blowFactor();
+  record.drive_inertia = blow.drive_inertia;
+  record.drive_inertia_deviation = blow.inertia_deviation;
+}
+
+}  // namespace
+
+BagTables::BagTables(const std::string& file, const std::vector<std::string>& inputs)
+    : input_sha256_(sha256OfFiles(inputs)),
+      pulse_(numberFieldsOf<Pulse>()),
+      blow_(numberFieldsOf<Blow>()),
+      writer_(file, pulse_.columns(), blow_.columns()) {}
+
+void BagTables::begin(HammerBridge& bridge) {
+  records_.push_back(recordOf(bridge.settings(), input_sha256_));
+  traces_ = {};
+  longest_step_ = bridge.settings().pipeline.stale_after;
+  HammerOutputs& outputs = bridge.outputs();
+  outputs.hull_loads.attach([this](const HullLoads& message, const ros::Time&) { takeSample(message); });
+  outputs.pulse.attach([this](const Pulse& message, const ros::Time&) { takePulse(message); });
+  outputs.blow.attach([this](const Blow& message, const ros::Time&) {
+    writer_.blow(run(), {message.turn, stampOf(message.header.stamp), blow_.valuesOf(message)});
+  });
+}
+
+void BagTables::takeSample(const HullLoads& message) {
+  const StampNs stamp = stampOf(message.header.stamp);
+  RunRecord& record = records_.back();
+  if (!record.first_stamp) record.first_stamp = stamp;
+  const double step = record.last_stamp ? seconds(stamp - *record.last_stamp) : 0.0;
+  if (step > 0.0 && step <= longest_step_) record.duration += step;
+  record.last_stamp = stamp;
+  traces_.add({stamp, message.force_x_N, message.force_z_N, message.torque_y_Nm, message.force_z_deviation_N,
+               message.crank_angle_rad});
+}
+
+void BagTables::takePulse(const Pulse& message) {
+  const StampNs stamp = stampOf(message.header.stamp);
+  writer_.turn(run(), {message.turn, stamp, pulse_.valuesOf(message)});
+  traces_.turnEnded(message.turn, stamp, message.period_s, message.amplitude_N);
+}
+
+void BagTables::end(const HammerBridge& bridge, std::uint64_t samples) {
+  RunRecord& record = records_.back();
+  record.samples = samples;
+  record.published = bridge.outputs().hull_loads.sent();
+  record.turns = bridge.outputs().pulse.sent();
+  record.blows = bridge.outputs().blow.sent();
+  addCounts(bridge.pipeline().counts(), record);
+  addLearned(bridge.pipeline().crank().tracker(), record);
+  writer_.traces(run(), traces_);
+}
+
+void BagTables::finish(const std::vector<BagWarning>& warnings) {
+  std::int64_t run = 0;
+  for (RunRecord& record : records_) {
+    ++run;
+    for (const BagWarning& warning : warnings) {
+      if (warning.run == 0 || warning.run == run) record.warnings.push_back({warning.key, warning.text});
+    }
+    writer_.run(run, record);
+  }
+  writer_.finish();
+}
+
+}  // namespace hammer_loads

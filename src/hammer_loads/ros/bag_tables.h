@@ -1,0 +1,43 @@
+/// Results of a recording as tables: takes what the hammer's outputs give.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/ros/bag_report.h"
+#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/number_fields.h"
+#include "hammer_loads/tables/table_writer.h"
+
+namespace hammer_loads {
+
+class BagTables {
+ public:
+  /// file: empty. inputs: the recording's bags, hashed here. Throws std::runtime_error where one cannot be read.
+  BagTables(const std::string& file, const std::vector<std::string>& inputs);
+
+  /// A run begins; the bridge must outlive it.
+  void begin(HammerBridge& bridge);
+  /// It has ended after so many messages with crank samples.
+  void end(const HammerBridge& bridge, std::uint64_t samples);
+  /// After the last run; warnings: of all runs and of the recording.
+  void finish(const std::vector<BagWarning>& warnings);
+
+  /// Why the file cannot be written, one line without its name; empty while all is well.
+  const std::string& problem() const { return writer_.problem(); }
+
+ private:
+  void takeSample(const HullLoads& message);
+  void takePulse(const Pulse& message);
+  std::int64_t run() const { return static_cast<std::int64_t>(records_.size()); }
+
+  std::string input_sha256_;
+  NumberFields pulse_, blow_;
+  TableWriter writer_;
+  std::vector<RunRecord> records_;  ///< the last one is of the run at work
+  TurnTraces traces_;
+  double longest_step_{};  ///< between samples of one piece [s]
+};
+
+}  // namespace hammer_loads

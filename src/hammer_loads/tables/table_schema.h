@@ -1,0 +1,24 @@
+/// Tables of process_bag's results (doc/tables.md), and what makes a file one of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hammer_loads {
+
+constexpr int kTablesApplication = 0x484C5242;  ///< "HLRB"
+constexpr int kTablesVersion = 1;
+
+/// A column that comes from a message's field.
+struct TableColumn {
+  std::string name;
+  bool is_integer{};
+};
+
+/// Everything up to the first row: one transaction is begun. The same rows give the same bytes.
+std::string beginTablesSql(const std::vector<TableColumn>& turn, const std::vector<TableColumn>& blow);
+
+/// Why an existing file must stay; empty: it is a file of these tables.
+std::string whyTablesMustStay(const std::string& file);
+
+}  // namespace hammer_loads

@@ -1,0 +1,90 @@
+#include "hammer_loads/tables/table_writer.h"
+
+#include <cmath>
+#include <utility>
+
+#include "hammer_loads/tables/sha256.h"
+#include "hammer_loads/util/stamp.h"
+
+namespace hammer_loads {
+namespace {
+
+std::string insertSql(const std::string& table, std::size_t values) {
+  std::string sql = "INSERT INTO " + table + " VALUES(";
+  for (std::size_t i = 1; i <= values; ++i) sql += (i == 1 ? "?" : ", ?") + std::to_string(i);
+  return sql + ")";
+}
+
+/// Infinite is NULL as well: SQL knows no such number.
+double finite(double value) { return std::isfinite(value) ? value : RunRecord::kUnknown; }
+
+}  // namespace
+
+TableWriter::TurnTable::TurnTable(life::Database& database, const std::string& name, std::vector<TableColumn> of_message)
+    : columns(std::move(of_message)), insert(database, insertSql(name, columns.size() + 2).c_str()) {}
+
+void TableWriter::TurnTable::add(std::int64_t run, const TurnRow& row) {
+  insert.reset();
+  int place = 0;
+  insert.bind(++place, run);
+  insert.bind(++place, row.turn);
+  insert.bind(++place, row.stamp);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].name == "turn") continue;
+    if (columns[i].is_integer)
+      insert.bind(++place, static_cast<std::int64_t>(row.values[i]));
+    else
+      insert.bind(++place, finite(row.values[i]));
+  }
+  insert.step();
+}
+
+TableWriter::TableWriter(const std::string& file, std::vector<TableColumn> turn, std::vector<TableColumn> blow)
+    : database_(file, life::Database::Use::kWrite, 0) {
+  database_.run(beginTablesSql(turn, blow).c_str());
+  turns_.emplace(database_, "turns", std::move(turn));
+  blows_.emplace(database_, "blows", std::move(blow));
+}
+
+void TableWriter::turn(std::int64_t run, const TurnRow& row) { turns_->add(run, row); }
+void TableWriter::blow(std::int64_t run, const TurnRow& row) { blows_->add(run, row); }
+
+void TableWriter::traces(std::int64_t run, const TurnTraces& traces) {
+  if (const TurnTrace* typical = traces.typical()) trace(run, "typical", *typical);
+  if (traces.worst()) trace(run, "worst", *traces.worst());
+}
+
+void TableWriter::trace(std::int64_t run, const std::string& kind, const TurnTrace& trace) {
+  Statement insert(database_, insertSql("traces", 10).c_str());
+  std::int64_t place = 0;
+  for (const TraceSample& s : trace.samples)
+    insert.run(run, kind, trace.turn, place++, seconds(s.stamp - trace.start), finite(s.force_x), finite(s.force_z),
+               finite(s.torque_y), finite(s.force_z_deviation), finite(s.crank_angle));
+}
+
+void TableWriter::run(std::int64_t run, const RunRecord& r) {
+  const std::string key = sha256Of({r.input_sha256, r.parameters_sha256, r.version, std::to_string(run)});
+  Statement(database_, insertSql("runs", 25).c_str())
+      .run(run, key, r.input_sha256, r.parameters_sha256, r.machine, r.version, r.revision, r.parameters_yaml,
+           r.first_stamp, r.last_stamp, finite(r.duration), r.level, r.samples, r.published, r.restarts, r.turns,
+           r.blows, r.backward_passes, finite(r.consistency), finite(r.timing_noise), finite(r.speed_noise),
+           finite(r.angle_resolution), finite(r.drive_inertia), finite(r.drive_inertia_deviation),
+           finite(r.equivalent_cycles_per_hour));
+  Statement parameter(database_, insertSql("parameters", 4).c_str());
+  for (const RunRecord::Parameter& p : r.parameters) parameter.run(run, p.key, p.value, p.shipped);
+  Statement refusal(database_, insertSql("refusals", 3).c_str());
+  for (const RunRecord::Refusals& refused : r.refusals) {
+    if (refused.count > 0) refusal.run(run, refused.reason, refused.count);
+  }
+  Statement warning(database_, insertSql("warnings", 4).c_str());
+  std::int64_t place = 0;
+  for (const RunRecord::Warning& w : r.warnings) warning.run(run, place++, w.key, w.text);
+}
+
+void TableWriter::finish() {
+  turns_.reset();
+  blows_.reset();
+  database_.run("COMMIT");
+}
+
+}  // namespace hammer_loads

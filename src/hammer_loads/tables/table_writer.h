@@ -1,0 +1,55 @@
+/// Results of runs into a SQLite file, in one transaction.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/life/database.h"
+#include "hammer_loads/tables/run_record.h"
+#include "hammer_loads/tables/table_schema.h"
+#include "hammer_loads/tables/turn_traces.h"
+
+namespace hammer_loads {
+
+/// Values of a turn's or a blow's columns, in their order.
+struct TurnRow {
+  std::uint64_t turn{};
+  std::int64_t stamp{};  ///< [ns]
+  const std::vector<double>& values;
+};
+
+/// Nothing throws: problem() says what went wrong first, and all after it does nothing.
+class TableWriter {
+ public:
+  /// The file must be empty.
+  TableWriter(const std::string& file, std::vector<TableColumn> turn, std::vector<TableColumn> blow);
+
+  /// Run numbers begin with 1. The columns `turn` are the rows' own.
+  void turn(std::int64_t run, const TurnRow& row);
+  void blow(std::int64_t run, const TurnRow& row);
+  void traces(std::int64_t run, const TurnTraces& traces);
+  void run(std::int64_t run, const RunRecord& record);
+  /// Ends the transaction: all of the file is written.
+  void finish();
+
+  /// One line without the file's name; empty while all is well.
+  const std::string& problem() const { return database_.problem(); }
+
+ private:
+  using Statement = life::Database::Statement;
+  struct TurnTable {
+    TurnTable(life::Database& database, const std::string& name, std::vector<TableColumn> columns);
+    void add(std::int64_t run, const TurnRow& row);
+    std::vector<TableColumn> columns;
+    Statement insert;
+  };
+
+  void trace(std::int64_t run, const std::string& kind, const TurnTrace& trace);
+
+  life::Database database_;
+  std::optional<TurnTable> turns_, blows_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,35 @@
+// SHA-256 against the examples of FIPS 180-2 and against sha256sum.
+#include "hammer_loads/tables/sha256.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/command.h"
+
+namespace hammer_loads {
+namespace {
+
+TEST(Sha256, GivesThePublishedExamples) {
+  EXPECT_EQ(Sha256().add("abc").hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(Sha256().add("a").add("bc").hex(), Sha256().add("abc").hex());
+}
+
+TEST(Sha256, OfFilesIsThatOfTheirBytesInOrder) {
+  const std::string bag = HAMMER_LOADS_TEST_DATA "/mo100_1khz.bag", csv = HAMMER_LOADS_TEST_DATA "/mo100_linkage.csv";
+  const std::string reference = test::runCommand("cat", bag + " " + csv + " | sha256sum").out;
+  EXPECT_EQ(sha256OfFiles({bag, csv}), reference.substr(0, 64));
+  EXPECT_NE(sha256OfFiles({csv, bag}), reference.substr(0, 64));
+  EXPECT_THROW(sha256OfFiles({bag, "no/such/file"}), std::runtime_error);
+  EXPECT_THROW(sha256OfFiles({HAMMER_LOADS_TEST_DATA}), std::runtime_error) << "a directory";
+}
+
+TEST(Sha256, OfTextsKnowsWhereOneEnds) {
+  EXPECT_NE(sha256Of({"ab", "c"}), sha256Of({"a", "bc"}));
+  EXPECT_NE(sha256Of({"abc"}), sha256Of({"abc", ""}));
+  EXPECT_EQ(sha256Of({"ab", "c"}), sha256Of({"ab", "c"}));
+}
+
+}  // namespace
+}  // namespace hammer_loads
