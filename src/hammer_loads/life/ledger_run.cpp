@@ -82,13 +82,18 @@ std::optional<std::string> LedgerRun::hold() {
   return problem(trouble);
 }
 
-std::optional<std::string> LedgerRun::add(LifePiece piece) {
+void LedgerRun::keep(LifePiece piece) {
   if (!isEmpty(piece)) waiting_.push_back(std::move(piece));
+  compact(attempted_);
+}
+
+std::optional<std::string> LedgerRun::add(LifePiece piece) {
+  keep(std::move(piece));
   return write(false);
 }
 
 std::optional<std::string> LedgerRun::end(std::optional<LifePiece> last) {
-  if (last && !isEmpty(*last)) waiting_.push_back(std::move(*last));
+  if (last) keep(*std::move(last));
   std::optional<std::string> trouble = write(true);
   if (!trouble) lock_.reset();
   return trouble;
@@ -104,7 +109,6 @@ void LedgerRun::compact(std::size_t from) {
 }
 
 std::optional<std::string> LedgerRun::write(bool end) {
-  compact(attempted_);
   if (ended_ || (waiting_.empty() && !end)) return std::nullopt;
   if (refused_) {
     waiting_.clear();

@@ -49,6 +49,8 @@ class LedgerRun {
 
   /// Takes the ledger, if no other run has it. Nothing when it is this run's now, else one line; call again later.
   std::optional<std::string> hold();
+  /// Keeps a piece for the next add() or end(); does not touch the file.
+  void keep(LifePiece piece);
   /// Adds a piece, and what waits. Nothing when all is written, else one line.
   std::optional<std::string> add(LifePiece piece);
   /// Adds the last piece and what waits, ends the run and releases the ledger. After a problem it may be called again,

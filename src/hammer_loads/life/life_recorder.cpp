@@ -53,26 +53,47 @@ Checked<LifeRecorder> LifeRecorder::make(const LifeSettings& settings, const std
   return result;
 }
 
+double LifeRecorder::valueOf(std::size_t counter, const double* values) const noexcept {
+  double value = 0.0;
+  for (std::size_t t = sums_[counter].begin; t < sums_[counter].end; ++t)
+    value += terms_[t].factor * values[terms_[t].input];
+  return value;
+}
+
+double LifeRecorder::deviationOf(std::size_t counter, const double* deviations) const noexcept {
+  double variance = 0.0;
+  for (std::size_t t = sums_[counter].begin; t < sums_[counter].end; ++t) {
+    const double part = terms_[t].factor * deviations[terms_[t].input];
+    variance += part * part;
+  }
+  return std::sqrt(variance);
+}
+
 void LifeRecorder::sample(std::int64_t stamp, const double* values, const double* deviations) noexcept {
   for (std::size_t i = 0; i < counters_.size(); ++i) {
-    double value = 0.0, variance = 0.0;
-    for (std::size_t t = sums_[i].begin; t < sums_[i].end; ++t) {
-      const Term& term = terms_[t];
-      value += term.factor * values[term.input];
-      if (deviations == nullptr) continue;
-      const double part = term.factor * deviations[term.input];
-      variance += part * part;
-    }
+    const double value = valueOf(i, values);
     counters_[i].add(value);
-    if (deviations != nullptr && CycleCounter::isLoad(value)) counters_[i].addDeviation(std::sqrt(variance));
+    if (deviations != nullptr && CycleCounter::isLoad(value)) counters_[i].addDeviation(deviationOf(i, deviations));
   }
-  if (contiguous_ && stamp > last_) duration_ += static_cast<std::uint64_t>(stamp - last_);
-  contiguous_ = true;
-  last_ = stamp;
+  lastUntil(stamp);
   if (!piece_begun_) {
     piece_begun_ = true;
     piece_start_ = stamp;
   }
+}
+
+void LifeRecorder::between(std::int64_t instant, const double* values) noexcept {
+  for (std::size_t i = 0; i < counters_.size(); ++i) {
+    const double value = valueOf(i, values);
+    if (!std::isnan(value)) counters_[i].add(value);
+  }
+  lastUntil(instant);
+}
+
+void LifeRecorder::lastUntil(std::int64_t stamp) noexcept {
+  if (contiguous_ && stamp > last_) duration_ += static_cast<std::uint64_t>(stamp - last_);
+  contiguous_ = true;
+  last_ = stamp;
 }
 
 void LifeRecorder::gap() noexcept {

@@ -25,7 +25,8 @@ struct LifePiece {
 /// How the caller's loop looks:
 ///
 ///     if (recorder.due(stamp)) use(recorder.take());   // before the sample: pieces end at whole periods and days
-///     recorder.sample(stamp, values, deviations);      // and each extreme between samples, in time order
+///     recorder.between(instant, values);               // each extreme since the last sample, in time order
+///     recorder.sample(stamp, values, deviations);
 ///
 /// recorder.gap() where samples are missing or time ran back, recorder.turn() at each blow, take() at the end.
 class LifeRecorder {
@@ -36,6 +37,9 @@ class LifeRecorder {
   /// Values and standard deviations of the inputs at an instant [ns], in their order; NaN: none, and `deviations` may
   /// be null. No allocation.
   void sample(std::int64_t stamp, const double* values, const double* deviations) noexcept;
+  /// Values at an instant between two samples [ns], where some are known; NaN: not known there, which is no sample left
+  /// out. A hot spot counts where all its loads are known. No allocation.
+  void between(std::int64_t instant, const double* values) noexcept;
   /// Samples are missing before the next one, or time runs back there.
   void gap() noexcept;
   void turn() noexcept { ++turns_; }
@@ -61,6 +65,10 @@ class LifeRecorder {
   struct Sum {
     std::size_t begin{}, end{};  ///< in terms_
   };
+
+  double valueOf(std::size_t counter, const double* values) const noexcept;
+  double deviationOf(std::size_t counter, const double* deviations) const noexcept;
+  void lastUntil(std::int64_t stamp) noexcept;
 
   std::vector<std::string> names_;
   std::vector<CycleCounter> counters_;

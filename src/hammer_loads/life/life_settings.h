@@ -15,6 +15,7 @@ namespace hammer_loads::life {
 struct CountedChannel {
   std::string name;  ///< such as section_loads/NAME/torque_y_Nm; its unit is the name's end
   LoadGrid grid;
+  std::string key{};  ///< its short name in the parameter file
 };
 
 /// One load's part in a stress.

@@ -22,7 +22,7 @@ TurnLoads emptyTurn(std::size_t channels) {
 TurnLoadsRecorder::TurnLoadsRecorder(std::size_t channels)
     : turn_(emptyTurn(channels)), result_(turn_), integrals_(channels) {}
 
-void TurnLoadsRecorder::add(std::int64_t instant, const double* values) noexcept {
+void TurnLoadsRecorder::take(std::int64_t instant, const double* values, bool sampled) noexcept {
   if (!started_) {
     started_ = true;
     turn_.start = instant;
@@ -30,7 +30,7 @@ void TurnLoadsRecorder::add(std::int64_t instant, const double* values) noexcept
   for (std::size_t i = 0; i < integrals_.size(); ++i) {
     const double value = values[i];
     if (!std::isfinite(value)) {
-      ++turn_.skipped[i];
+      turn_.skipped[i] += sampled || !std::isnan(value) ? 1U : 0U;
       continue;
     }
     Integral& integral = integrals_[i];

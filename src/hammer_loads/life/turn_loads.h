@@ -27,7 +27,9 @@ class TurnLoadsRecorder {
 
   /// One value per channel at an instant [ns]; NaN or infinity: none. An instant that is not after the one before adds
   /// to the extremes and nothing to the mean.
-  void add(std::int64_t instant, const double* values) noexcept;
+  void add(std::int64_t instant, const double* values) noexcept { take(instant, values, true); }
+  /// The same for an instant between samples; NaN: not known there, which is no number left out.
+  void between(std::int64_t instant, const double* values) noexcept { take(instant, values, false); }
   /// The blow at `instant` ends the turn. Valid until the next call.
   const TurnLoads& endTurn(std::int64_t instant) noexcept;
   /// Samples are missing, or time ran back: forgets the turn begun. The next one begins with its first value.
@@ -39,6 +41,7 @@ class TurnLoadsRecorder {
     double first_value{}, last_value{}, sum{};
     bool begun{};
   };
+  void take(std::int64_t instant, const double* values, bool sampled) noexcept;
   void clear() noexcept;
 
   TurnLoads turn_, result_;

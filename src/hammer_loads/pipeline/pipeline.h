@@ -42,6 +42,7 @@ class Pipeline {
 
   const SampleResult& result() const noexcept { return result_; }  ///< of the last sample
   SampleCounts counts() const noexcept;
+  const HullModel& model() const noexcept { return model_; }
   const CrankFollower& crank() const noexcept { return crank_; }
   const HullState& hull() const noexcept { return hull_; }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }

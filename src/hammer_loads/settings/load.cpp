@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "hammer_loads/hammer/choose_level.h"
+#include "hammer_loads/settings/channel_names.h"
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/read_boom.h"
+#include "hammer_loads/settings/read_life.h"
 #include "hammer_loads/settings/read_log.h"
 #include "hammer_loads/settings/yaml_value.h"
 
@@ -66,6 +68,13 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
   return std::move(boom.value);
 }
 
+/// Channels can be judged only where the boom is known.
+life::LifeSettings readLife(ParameterReader& reader, const std::optional<Boom>& boom) {
+  life::LifeSettings settings = readLifeSettings(reader);
+  if (reader.problems().empty()) checkChannels(settings, channelNames(boom ? &*boom : nullptr), reader);
+  return settings;
+}
+
 Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description, bool hammer_given) {
   Checked<Settings> result;
   const InputTopics topics = takeInputTopics(parameters, result.problems);
@@ -78,6 +87,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   const bool vibrates = boom_file && pipeline.boom != BoomModel::kNone && pipeline.boom != BoomModel::kRigid;
   const std::string conflict = vibrationConflict(pipeline, boom_file, vibrates);
   if (!conflict.empty()) reader.addProblem(conflict);
+  life::LifeSettings life = readLife(reader, boom);
   reader.reportUnknownKeys();
   result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());
   if (!mechanism || !result.problems.empty()) return result;
@@ -87,7 +97,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
     result.notes.push_back(describe(choice));
   }
   result.value = Settings{
-      *mechanism, pipeline, log, std::move(boom), hammer_given, robot_description, reader.yaml() + yamlOf(topics),
+      *mechanism, pipeline, log, std::move(life), std::move(boom), hammer_given, robot_description, reader.yaml() + yamlOf(topics),
       {},         topics};
   return result;
 }
@@ -96,12 +106,14 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
 
 Checked<Settings> load(const std::string& config_directory, const ParameterMap& given,
                        const std::string& robot_description) {
-  std::vector<std::string> shipped{config_directory + "/pipeline.yaml", config_directory + "/log.yaml"};
+  std::vector<std::string> shipped{config_directory + "/pipeline.yaml", config_directory + "/log.yaml",
+                                   config_directory + "/life.yaml"};
   if (!hasHammerKey(given)) shipped.push_back(config_directory + "/hammer_mo100.yaml");
 
   std::vector<std::string> problems;
   ParameterMap parameters;
   const bool all_read = addFiles(shipped, parameters, problems);
+  leaveOutUnwantedChannels(given, parameters);
   merge(given, parameters);
   Checked<Settings> result;
   if (all_read) result = settingsFrom(std::move(parameters), robot_description, hasHammerKey(given));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/life/life_settings.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/log/log_settings.h"
 #include "hammer_loads/settings/input_topics.h"
@@ -20,6 +21,7 @@ struct Settings {
   Mechanism mechanism;
   PipelineSettings pipeline;
   LogSettings log;
+  life::LifeSettings life;         ///< every channel that it names is one of this machine
   std::optional<Boom> boom;        ///< nothing: `boom: none`, no robot description, or a foreign one
   bool hammer_given{};             ///< else the shipped MO-100 is used
   std::string robot_description;   ///< the URDF's text, as given
@@ -31,7 +33,8 @@ struct Settings {
 
 /// Settings from what was given over what is shipped in `config_directory`, or every problem at once, one line each.
 ///
-/// Pipeline and log: each key given replaces the shipped one. Hammer: physical parameters have no defaults, so a single
+/// Pipeline, log and life: each key given replaces the shipped one; of the shipped life_channels those that are not
+/// wanted any more are left out. Hammer: physical parameters have no defaults, so a single
 /// hammer key given means that all must be; with none given hammer_mo100.yaml is used.
 ///
 /// Boom: from the text of a robot description (URDF; empty: none) and the boom file's keys, of which a single one given

@@ -98,7 +98,38 @@ void readHotSpot(ParameterReader& reader, const std::string& name, const std::ve
   if (grid) spots.push_back({name, std::move(influences), *grid, curve, mean});
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// The names of a list; none where it is none.
+std::vector<std::string> namesIn(const ParameterMap& parameters, const char* key) {
+  const auto found = parameters.find(key);
+  if (found == parameters.end()) return {};
+  return asTexts(found->second.value).value_or(std::vector<std::string>{});
+}
+
 }  // namespace
+
+void checkChannels(const life::LifeSettings& settings, const std::vector<std::string>& of_machine,
+                   ParameterReader& reader) {
+  for (const life::CountedChannel& channel : settings.channels) {
+    if (std::count(of_machine.begin(), of_machine.end(), channel.name) != 0) continue;
+    reader.addProblem(channel.key + "_channel: " + quotedText(channel.name) +
+                      ", must be a load of this machine: " + listed(of_machine));
+  }
+}
+
+void leaveOutUnwantedChannels(const ParameterMap& given, ParameterMap& shipped) {
+  if (given.count("life_channels") == 0) return;
+  const std::vector<std::string> wanted = namesIn(given, "life_channels");
+  for (const std::string& name : namesIn(shipped, "life_channels")) {
+    if (std::count(wanted.begin(), wanted.end(), name) != 0) continue;
+    for (const char* key : {"_channel", "_full_scale_least", "_full_scale_greatest"}) shipped.erase(name + key);
+  }
+}
 
 life::LifeSettings readLifeSettings(ParameterReader& reader) {
   life::LifeSettings s;
@@ -111,7 +142,7 @@ life::LifeSettings readLifeSettings(ParameterReader& reader) {
     if (twice) reader.addProblem(key + ": " + quotedText(channel) + ", must be given once");
     channels.push_back({name, channel});
     const std::optional<LoadGrid> grid = readGrid(reader, name, "", classes);
-    if (grid) s.channels.push_back({channel, *grid});
+    if (grid) s.channels.push_back({channel, *grid, name});
   }
   for (const std::string& name : reader.names("hot_spots")) readHotSpot(reader, name, channels, classes, s.hot_spots);
   constexpr double kNsPerSecond = 1e9;

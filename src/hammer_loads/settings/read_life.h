@@ -6,7 +6,15 @@
 
 namespace hammer_loads {
 
-/// Usable only if the reader got no problem. Whether the machine has the channels is LifeRecorder::make()'s to judge.
+/// Usable only if the reader got no problem; checkChannels() then judges whether the machine has its channels.
 life::LifeSettings readLifeSettings(ParameterReader& reader);
+
+/// A problem for each counted channel that is not among the machine's.
+void checkChannels(const life::LifeSettings& settings, const std::vector<std::string>& of_machine,
+                   ParameterReader& reader);
+
+/// Removes from the shipped parameters the keys of channels that the given life_channels leave out: else they would be
+/// unknown keys.
+void leaveOutUnwantedChannels(const ParameterMap& given, ParameterMap& shipped);
 
 }  // namespace hammer_loads

@@ -1,0 +1,20 @@
+/// A sample's loads as a row of numbers, in the order of channelNames().
+#pragma once
+
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/pipeline/sample_result.h"
+
+namespace hammer_loads {
+
+constexpr std::size_t kHullChannels = 3;  ///< they come first: force_x, force_z, torque_y
+
+inline void wrenchValues(const HullWrench& wrench, double* values) noexcept {
+  values[0] = wrench.force_x, values[1] = wrench.force_z, values[2] = wrench.torque_y;
+}
+
+/// Of an accepted sample; NaN: not known. boom: as for the names. Both arrays have as many places as
+/// there are names. The wrench's deviation is that at the sample.
+void channelValues(const SampleResult& result, const HullWrench& wrench_deviation, const Boom* boom,
+                   double* values, double* deviations) noexcept;
+
+}  // namespace hammer_loads

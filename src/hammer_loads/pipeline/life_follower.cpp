@@ -1,0 +1,113 @@
+#include "hammer_loads/pipeline/life_follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hammer_loads/pipeline/channel_values.h"
+#include "hammer_loads/pipeline/hull_deviation.h"
+#include "hammer_loads/pipeline/step_wrenches.h"
+#include "hammer_loads/settings/channel_names.h"
+
+namespace hammer_loads {
+namespace {
+
+/// Of the wrench at the sample, whatever is published of it.
+HullWrench deviationAtSample(const Pipeline& pipeline) noexcept {
+  const SampleResult& result = pipeline.result();
+  if (!result.outputs.empty()) {
+    const WrenchOutput& last = result.outputs.back();
+    if (last.stamp == result.stamp && last.interval == 0.0) return last.deviation.wrench;
+  }
+  const auto covariance = pipeline.crank().tracker().motionCovariance(pipeline.settings().torque_deviation_part);
+  return hullDeviation(pipeline.model(), result.crank, result.hull.motion, covariance).wrench;
+}
+
+}  // namespace
+
+LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& settings)
+    : pipeline_(&pipeline),
+      boom_(pipeline.boom() ? &pipeline.boom()->boom() : nullptr),
+      channels_(channelNames(boom_)),
+      recorder_(life::LifeRecorder::make(settings, channels_).value.value()),
+      turn_(channels_.size()),
+      values_(channels_.size()),
+      deviations_(channels_.size()),
+      between_(channels_.size(), std::numeric_limits<double>::quiet_NaN()) {
+  turns_.fill(life::TurnLoadsRecorder(channels_.size()).endTurn(-1));
+}
+
+bool LifeFollower::due() const noexcept {
+  const SampleResult& result = pipeline_->result();
+  return !result.refusal && recorder_.due(result.stamp);
+}
+
+life::LifePiece LifeFollower::take() {
+  life::LifePiece piece = recorder_.take();
+  if (total_) {
+    total_->advance(piece);
+  } else {
+    total_ = piece;
+  }
+  return piece;
+}
+
+void LifeFollower::follow() noexcept {
+  const SampleResult& result = pipeline_->result();
+  if (!result.refusal) {
+    const CrankStep& step = pipeline_->crank().step();
+    if (last_ && step.known() && step.start() == *last_) {
+      followStep(result);
+    } else {
+      recorder_.gap();
+      turn_.restart();
+    }
+    channelValues(result, deviationAtSample(*pipeline_), boom_, values_.data(), deviations_.data());
+    recorder_.sample(result.stamp, values_.data(), deviations_.data());
+    turn_.add(result.stamp, values_.data());
+    last_ = result.stamp;
+    if (!since_) since_ = last_;
+  }
+  confirmTurns(result);
+}
+
+void LifeFollower::followStep(const SampleResult& result) noexcept {
+  const CrankStep& step = pipeline_->crank().step();
+  const auto stampOf = [&](double time) {
+    return step.start() + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
+  };
+  forEachStepWrench(
+      pipeline_->model(), step, result.hull.motion,
+      [&](double time, const HullWrench& wrench) {
+        wrenchValues(wrench, between_.data());
+        recorder_.between(stampOf(time), between_.data());
+        turn_.between(stampOf(time), between_.data());
+      },
+      [&](double time) { endTurn(stampOf(time)); });
+}
+
+/// Whether it was a blow shows later.
+void LifeFollower::endTurn(StampNs stamp) noexcept {
+  turns_[next_turn_] = turn_.endTurn(stamp);
+  next_turn_ = (next_turn_ + 1) % turns_.size();
+}
+
+/// A turn that began with what turned out to be no blow is not whole.
+void LifeFollower::confirmTurns(const SampleResult& result) noexcept {
+  for (std::size_t i = 0; i < result.turn_ends; ++i) {
+    recorder_.turn();
+    for (life::TurnLoads& turn : turns_) {
+      if (turn.end == result.ends[i].stamp) turn.whole = turn.whole && last_blow_ == turn.start;
+    }
+    last_blow_ = result.ends[i].stamp;
+  }
+}
+
+const life::TurnLoads* LifeFollower::turnLoads(const TurnEnd& end) const noexcept {
+  const auto found =
+      std::find_if(turns_.begin(), turns_.end(), [&](const life::TurnLoads& turn) { return turn.end == end.stamp; });
+  return found == turns_.end() ? nullptr : &*found;
+}
+
+}  // namespace hammer_loads

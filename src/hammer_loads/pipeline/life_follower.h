@@ -1,0 +1,61 @@
+/// Load cycles of a run, and the loads of each of its turns.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/life/life_recorder.h"
+#include "hammer_loads/life/turn_loads.h"
+#include "hammer_loads/pipeline/pipeline.h"
+
+namespace hammer_loads {
+
+/// Takes what a pipeline's samples gave: every channel at each accepted sample, the hull wrench between them where it is
+/// extreme and on both sides of a blow, in time order. Beside the pipeline, which does not know of it. How a run goes:
+///
+///     const SampleResult& result = pipeline.crankSample(...);
+///     if (follower.due()) use(follower.take());
+///     follower.follow();
+///     for each of result.ends: follower.turnLoads(end);
+class LifeFollower {
+ public:
+  /// Refers to the pipeline, which must outlive it. settings: checked against channelNames() of its boom.
+  LifeFollower(const Pipeline& pipeline, const life::LifeSettings& settings);
+
+  /// Whether the piece ends before the pipeline's last sample.
+  bool due() const noexcept;
+  /// Ends the piece and adds it to the total. Allocates.
+  life::LifePiece take();
+  /// Takes the pipeline's last sample; once. No allocation.
+  void follow() noexcept;
+  /// Loads of a turn that the last sample's result has among its ends; null where no sample near its blow was accepted.
+  const life::TurnLoads* turnLoads(const TurnEnd& end) const noexcept;
+
+  const std::vector<std::string>& channels() const noexcept { return channels_; }
+  const life::LifeRecorder& recorder() const noexcept { return recorder_; }
+  /// What take() has given so far; nothing before its first call.
+  const std::optional<life::LifePiece>& total() const noexcept { return total_; }
+  std::optional<StampNs> since() const noexcept { return since_; }  ///< first sample counted
+
+ private:
+  void followStep(const SampleResult& result) noexcept;
+  void endTurn(StampNs stamp) noexcept;
+  void confirmTurns(const SampleResult& result) noexcept;
+
+  const Pipeline* pipeline_;
+  const Boom* boom_;  ///< null: none
+  std::vector<std::string> channels_;
+  life::LifeRecorder recorder_;
+  life::TurnLoadsRecorder turn_;
+  std::optional<life::LifePiece> total_;
+  std::optional<StampNs> since_, last_;  ///< first and last sample counted; last_: none after a gap
+  std::optional<StampNs> last_blow_;     ///< the last one that was none but a blow
+  /// Turns whose blow is not measured yet, and those just measured: as many as a result has ends, and one.
+  std::array<life::TurnLoads, std::tuple_size<decltype(SampleResult::ends)>::value + 1> turns_;
+  std::size_t next_turn_{};  ///< in turns_
+  std::vector<double> values_, deviations_, between_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,73 @@
+/// The hull wrench inside the step between two samples, where a series of samples misses its extremes.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/crank_step.h"
+
+namespace hammer_loads {
+
+/// A part of a step without a blow.
+struct SmoothSpan {
+  double from{}, to{};         ///< after the step's start [s]
+  CrankEstimate begin, finish;  ///< there
+};
+
+/// Instants in a short span where a component of the wrench is least or largest, in order of time [s].
+struct ExtremeInstants {
+  std::size_t count{};
+  std::array<double, 3> time;
+};
+
+/// At most one for each component. A component that rises at one end of the span and falls at the other has its
+/// extreme where the cubic by values and slopes of both ends has it: off by some 1e-4 of the span.
+ExtremeInstants extremeInstants(const HullModel& model, const CrankStep& step, const HullMotion& hull,
+                                const SmoothSpan& span) noexcept;
+
+/// Calls wrench(time, wrench) in order of time for each extreme inside the step and for both sides of each blow, and
+/// turn(time) between them where a blow may end a turn. Times are after the step's start [s]. hull: motion over the
+/// step. Of extremes closer than 1.25 ms one may be missed; points on the way to them are given as well.
+template <typename OnWrench, typename OnTurn>
+void forEachStepWrench(const HullModel& model, const CrankStep& step, const HullMotion& hull, const OnWrench& wrench,
+                       const OnTurn& turn) noexcept {
+  constexpr double kLongest = 1.25e-3;  // [s]: 15 of them in the MO-100's pulse
+  const auto wrenchOf = [&](const CrankEstimate& crank) { return hullWrench(model, motionOf(crank), hull); };
+  const auto alongSpan = [&](const SmoothSpan& span) {
+    if (!(span.to > span.from)) return;
+    const int count = std::max(1, static_cast<int>(std::ceil((span.to - span.from) / kLongest)));
+    SmoothSpan part{span.from, span.from, span.begin, span.begin};
+    for (int i = 1; i <= count; ++i) {
+      const bool last = i == count;
+      part.from = part.to, part.begin = part.finish;
+      part.to = last ? span.to : span.from + (span.to - span.from) * i / count;
+      part.finish = last ? span.finish : step.at(part.to);
+      const ExtremeInstants extremes = extremeInstants(model, step, hull, part);
+      for (std::size_t k = 0; k < extremes.count; ++k) wrench(extremes.time[k], wrenchOf(step.at(extremes.time[k])));
+      if (!last) wrench(part.to, wrenchOf(part.finish));
+    }
+  };
+  SmoothSpan span{0.0, 0.0, step.at(0.0), {}};
+  for (const CrankStep::Passage& passage : step) {
+    const auto side = [&](bool earlier) {
+      if (passage.smooth) return step.at(passage.time);
+      return step.besides(passage, earlier == passage.forward ? Side::kBeforeBlow : Side::kAfterBlow);
+    };
+    span.to = passage.time;
+    span.finish = side(true);
+    alongSpan(span);
+    wrench(passage.time, wrenchOf(span.finish));
+    if (passage.may_strike) turn(passage.time);
+    span.begin = side(false);
+    span.from = passage.time;
+    wrench(passage.time, wrenchOf(span.begin));
+  }
+  span.to = step.length();
+  span.finish = step.at(span.to);
+  alongSpan(span);
+}
+
+}  // namespace hammer_loads
