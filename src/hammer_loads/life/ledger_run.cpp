@@ -19,7 +19,7 @@ namespace hammer_loads::life {
 class LedgerRun::Lock {
  public:
   /// Nothing after a problem.
-  static std::unique_ptr<Lock> take(const std::string& path, std::string& problem) {
+  static std::unique_ptr<Lock> take(const std::string& path, std::string& problem, bool& busy) {
     const int file = open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file < 0) {
       problem = std::string("its lock cannot be opened: ") + std::strerror(errno);
@@ -27,8 +27,9 @@ class LedgerRun::Lock {
     }
     auto lock = std::unique_ptr<Lock>(new Lock(file));
     if (flock(file, LOCK_EX | LOCK_NB) == 0) return lock;
-    problem = errno == EWOULDBLOCK ? "another run is writing it; waiting for that to end"
-                                   : std::string("its lock cannot be taken: ") + std::strerror(errno);
+    busy = errno == EWOULDBLOCK;
+    problem = busy ? "another run is writing it; waiting for that to end"
+                   : std::string("its lock cannot be taken: ") + std::strerror(errno);
     return nullptr;
   }
   ~Lock() { close(file_); }
@@ -73,13 +74,24 @@ LedgerRun& LedgerRun::operator=(LedgerRun&&) noexcept = default;
 std::optional<std::string> LedgerRun::hold() {
   if (lock_) return std::nullopt;
   std::string trouble;
+  busy_ = false;
   if (isSomethingElse(path_)) {
     trouble = "is no regular file";
   } else {
-    lock_ = Lock::take(path_, trouble);
+    lock_ = Lock::take(path_, trouble, busy_);
   }
   if (lock_) return std::nullopt;
   return problem(trouble);
+}
+
+std::optional<std::string> LedgerRun::prepare() {
+  if (std::optional<std::string> trouble = hold()) return trouble;
+  if (access(path_.c_str(), F_OK) != 0) return std::nullopt;
+  Database database(path_, Database::Use::kWrite, kPatience);
+  beginAsLedger(database);
+  database.run("ROLLBACK");
+  if (database.good()) return std::nullopt;
+  return problem(database.problem());
 }
 
 void LedgerRun::keep(LifePiece piece) {

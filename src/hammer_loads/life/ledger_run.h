@@ -49,6 +49,8 @@ class LedgerRun {
 
   /// Takes the ledger, if no other run has it. Nothing when it is this run's now, else one line; call again later.
   std::optional<std::string> hold();
+  /// The same, and looks whether what is there is a ledger; changes nothing in it.
+  std::optional<std::string> prepare();
   /// Keeps a piece for the next add() or end(); does not touch the file.
   void keep(LifePiece piece);
   /// Adds a piece, and what waits. Nothing when all is written, else one line.
@@ -57,6 +59,8 @@ class LedgerRun {
   /// with no piece.
   std::optional<std::string> end(std::optional<LifePiece> last);
 
+  /// Whether another run has the ledger, by the last attempt to take it.
+  bool isBusy() const { return busy_; }
   /// Whether the run is refused for good: its name was in the ledger before.
   bool refused() const { return refused_; }
   /// Pieces given but not written, those of one day added up.
@@ -77,7 +81,7 @@ class LedgerRun {
   std::size_t attempted_{};  ///< of waiting_, those that the last attempt may have written
   bool attempted_end_{};
   std::int64_t pieces_{};  ///< commits known to be in the ledger
-  bool refused_{}, ended_{};
+  bool refused_{}, ended_{}, busy_{};
 };
 
 }  // namespace hammer_loads::life

@@ -1,0 +1,66 @@
+/// A ledger that is written beside the work.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hammer_loads/life/piece_sink.h"
+
+namespace hammer_loads::life {
+
+/// Has a thread of its own, which alone touches the file; begin(), add() and end() only put down what is to be done.
+/// What cannot be written is kept and tried again each second; runs are written in their order.
+class LedgerThread final : public PieceSink {
+ public:
+  explicit LedgerThread(std::string path);
+  ~LedgerThread() override;
+  LedgerThread(const LedgerThread&) = delete;
+  LedgerThread& operator=(const LedgerThread&) = delete;
+
+  void begin(const LedgerMachine& machine, const std::string& run) override;
+  void add(const LifePiece& piece) override;
+  void end(const LifePiece& last) override;
+  /// A last attempt; then the thread is at its end and nothing more is taken. Nothing when all is written, else one
+  /// line.
+  std::optional<std::string> close();
+
+  struct State {
+    std::string problem;    ///< of the last attempt, one line; empty: all is well
+    std::size_t waiting{};  ///< pieces given but not written, those of one day added up
+  };
+  State state() const;
+  const std::string& path() const { return path_; }
+
+ private:
+  struct Job {
+    std::optional<LedgerRun> begin;
+    std::optional<LifePiece> piece;
+    bool ends{};
+  };
+  struct Run {
+    LedgerRun ledger;
+    bool ends{};
+  };
+
+  void put(Job job);
+  void work();
+  void take(Job job);
+  void write();
+
+  const std::string path_;
+  std::deque<Run> runs_;  ///< the thread's own
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::vector<Job> jobs_;  ///< this and the rest under the mutex
+  State state_;
+  bool closing_{};
+  std::thread thread_;
+};
+
+}  // namespace hammer_loads::life
