@@ -1,10 +1,12 @@
-/// Turn loads and cycles of a session against the machine's own loads, which know no samples.
+/// Turn loads and cycles of a session against what the pipeline itself knows at every instant.
 #include "hammer_loads/pipeline/life_follower.h"
 
 #include <gtest/gtest.h>
 
-#include <map>
+#include <algorithm>
+#include <cmath>
 
+#include "hammer_loads/pipeline/step_wrenches.h"
 #include "support/counting_new.h"
 #include "support/session_player.h"
 
@@ -13,19 +15,8 @@ namespace {
 
 constexpr double kPeak = 8.6e3;  // [N], about, of the session's turns
 
-/// Runs a session through pipeline and follower; each(result, follower) after every sample.
-template <typename Each>
-void run(const Settings& settings, const simulation::Session& session, const Each& each) {
-  test::Player player(settings, true, session);
-  LifeFollower follower(player.pipeline, settings.life);
-  player.playTo(1e9, [&](double, const SampleResult& result) {
-    if (follower.due()) follower.take();
-    follower.follow();
-    each(result, follower);
-  });
-}
-
-simulation::Session sessionAt(double rate, const std::vector<simulation::CrankSensorSettings::Interval>& drop_outs) {
+simulation::Session sessionAt(double rate,
+                              const std::vector<simulation::CrankSensorSettings::Interval>& drop_outs = {}) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = test::kSessionEnd;
   machine.crank.rate = rate;
@@ -33,24 +24,153 @@ simulation::Session sessionAt(double rate, const std::vector<simulation::CrankSe
   return simulation::recordSession(machine);
 }
 
+/// Plays a session into pipeline and follower; each(result, follower) after every sample. The count of all of it.
+template <typename Each>
+life::LifePiece run(const Settings& settings, const simulation::Session& session, const Each& each) {
+  test::Player player(settings, true, session);
+  LifeFollower follower(player.pipeline, settings.life);
+  player.playTo(1e9, [&](double, const SampleResult& result) {
+    if (follower.due()) follower.take();
+    follower.follow();
+    each(result, follower);
+  });
+  follower.take();
+  return follower.total().value();
+}
+
+const auto kNothing = [](const SampleResult&, const LifeFollower&) {};
+
 TEST(TurnLoads, OfTheHullHaveThePulsesPeakAtAnyRate) {
   for (const double rate : {100.0, 1000.0}) {
     std::size_t turns = 0;
-    run(test::settingsWith("{}"), sessionAt(rate, {}), [&](const SampleResult& result, const LifeFollower& follower) {
+    run(test::settingsWith("{}"), sessionAt(rate), [&](const SampleResult& result, const LifeFollower& follower) {
       for (std::size_t i = 0; i < result.turn_ends; ++i) {
         const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
         ASSERT_NE(turn, nullptr);
         ASSERT_EQ(turn->whole, result.ends[i].pulse.has_value());
         if (!turn->whole) continue;
         ++turns;
+        const HalfSinePulse& pulse = *result.ends[i].pulse;
         // The pulse's amplitude is that of a parabola through points 1.25 ms apart, along the turn's own track.
-        EXPECT_NEAR(turn->maximum[1], result.ends[i].pulse->amplitude, 5e-4 * kPeak) << rate;
-        EXPECT_NEAR(turn->mean[1], result.ends[i].pulse->turn_impulse_z / result.ends[i].pulse->period, 0.01 * kPeak)
-            << rate;
+        EXPECT_NEAR(turn->maximum[1], pulse.amplitude, 5e-4 * kPeak) << rate;
+        EXPECT_NEAR(turn->mean[1], pulse.turn_impulse_z / pulse.period, 0.01 * kPeak) << rate;
       }
     });
     EXPECT_GT(turns, 8U) << rate;
   }
+}
+
+TEST(TurnLoads, OfJointsAreThoseOfTheSamples) {
+  double greatest = -1e300;
+  std::optional<StampNs> blow;
+  std::size_t turns = 0;
+  run(test::settingsWith("boom: rigid\n"), sessionAt(1000.0),
+      [&](const SampleResult& result, const LifeFollower& follower) {
+        const auto joint =
+            std::find(follower.channels().begin(), follower.channels().end(), "joint_loads/arm_joint/total_torque_Nm");
+        ASSERT_NE(joint, follower.channels().end());
+        const auto channel = static_cast<std::size_t>(joint - follower.channels().begin());
+        for (std::size_t i = 0; i < result.turn_ends; ++i) {
+          const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
+          // The samples of some 50 ms after a blow belong to the next turn: no greater load may come there in this
+          // session.
+          if (turn->whole && blow && *blow == turn->start) {
+            ++turns;
+            EXPECT_LE(turn->maximum[channel], greatest);
+            EXPECT_GT(turn->maximum[channel], 0.9 * greatest);
+            EXPECT_GE(turn->maximum_instant[channel], turn->start);
+            EXPECT_LE(turn->maximum_instant[channel], turn->end);
+          }
+          blow = result.ends[i].stamp;
+          greatest = -1e300;
+        }
+        if (result.refusal || result.boom == nullptr || result.boom->fault) return;
+        greatest = std::max(greatest, result.boom->loads.total[static_cast<Eigen::Index>(channel - 3)]);
+      });
+  EXPECT_GT(turns, 5U);
+}
+
+TEST(StepWrenches, NoInstantOfAStepIsBeyondThem) {
+  for (const double rate : {50.0, 1000.0}) {
+    const simulation::Session session = sessionAt(rate);
+    test::Player player(test::settingsWith("{}"), true, session);
+    const Pipeline& pipeline = player.pipeline;
+    double beyond = 0.0;
+    std::size_t blows = 0;
+    player.playTo(1e9, [&](double, const SampleResult& result) {
+      const CrankStep& step = pipeline.crank().step();
+      if (result.refusal || !step.known()) return;
+      const DriveReaction drive = driveReaction(pipeline.model(), step.driveInertia());
+      const StepLoad load{pipeline.model(), drive, result.hull.motion};
+      std::vector<double> times{0.0}, forces{load.at(step.at(0.0)).force_z};
+      forEachStepWrench(
+          load, step,
+          [&](double time, const HullWrench& wrench) {
+            EXPECT_GE(time, times.back());
+            times.push_back(time);
+            forces.push_back(wrench.force_z);
+          },
+          [&](double) { ++blows; });
+      EXPECT_LE(times.back(), step.length());
+      forces.push_back(result.wrench.force_z);
+      const auto [least, greatest] = std::minmax_element(forces.begin(), forces.end());
+      for (int i = 1; i < 50; ++i) {
+        const double force = load.at(step.at(step.length() * i / 50.0)).force_z;
+        beyond = std::max({beyond, force - *greatest, *least - force});
+      }
+    });
+    EXPECT_GT(blows, 8U);
+    EXPECT_LT(beyond, 1e-4 * kPeak) << rate;
+  }
+}
+
+TEST(LoadCycles, OfSparseSamplesAreThoseOfDenseOnes) {
+  const Settings settings = test::settingsWith("{}");
+  const life::LifePiece sparse = run(settings, sessionAt(100.0), kNothing);
+  const life::LifePiece dense = run(settings, sessionAt(1000.0), kNothing);
+  for (const std::size_t channel : {0U, 1U}) {
+    const auto largest = [&](const life::LifePiece& piece) {
+      return life::rangesAndMeans(piece.counts[channel]).back().range;
+    };
+    EXPECT_NEAR(largest(sparse), largest(dense), 0.01 * largest(dense)) << channel;
+  }
+  EXPECT_EQ(sparse.turns, dense.turns);
+  EXPECT_GT(dense.counts[1].tally.counted, 3000U);
+  EXPECT_EQ(dense.counts[1].tally.skipped, 0U);
+  EXPECT_EQ(dense.counts[1].tally.gaps, 0U);
+  EXPECT_GT(dense.counts[1].tally.deviations, 3000U);
+}
+
+TEST(LoadCycles, AGapIsCountedAndItsTurnIsNotWhole) {
+  std::vector<bool> whole;
+  const life::LifePiece piece = run(test::settingsWith("{}"), sessionAt(1000.0, {{3.5, 3.9}}),
+                                    [&](const SampleResult& result, const LifeFollower& follower) {
+                                      for (std::size_t i = 0; i < result.turn_ends; ++i) {
+                                        const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
+                                        whole.push_back(turn != nullptr && turn->whole);
+                                      }
+                                    });
+  EXPECT_EQ(piece.counts[1].tally.gaps, 1U);
+  EXPECT_EQ(std::count(whole.begin() + 1, whole.end(), false), 1);
+  EXPECT_EQ(piece.turns, whole.size());
+}
+
+TEST(LoadCycles, AllocatesNothingPerSample) {
+  const Settings settings = test::settingsWith("boom: compliant\n");
+  const simulation::Session session = sessionAt(1000.0);
+  test::Player player(settings, true, session);
+  LifeFollower follower(player.pipeline, settings.life);
+  std::size_t allocated = 0, samples = 0;
+  player.playTo(1e9, [&](double, const SampleResult& result) {
+    ASSERT_FALSE(follower.due()) << "the session is shorter than the period";
+    const std::size_t before = test::allocations;
+    follower.follow();
+    for (std::size_t i = 0; i < result.turn_ends; ++i) EXPECT_NE(follower.turnLoads(result.ends[i]), nullptr);
+    allocated += test::allocations - before;
+    ++samples;
+  });
+  EXPECT_EQ(allocated, 0U);
+  EXPECT_GT(samples, 4000U);
 }
 
 }  // namespace

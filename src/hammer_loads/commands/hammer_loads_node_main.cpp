@@ -20,7 +20,7 @@ Topics in (remap them with NAME:=TOPIC)
 
 Topics out (private: below the node's name)
   ~hull_wrench ~hull_loads ~boom_wrench/LINK ~joint_loads ~section_loads ~joint_reactions ~boom_vibration ~mechanism ~pin_forces ~pulse ~blow
-  ~run_info (latched)  /diagnostics
+  ~turn_loads ~load_cycles (latched) ~run_info (latched)  /diagnostics
 
 Services
   ~log/start ~log/stop ~log/split  std_srvs/Trigger
@@ -30,6 +30,7 @@ Parameters (private; SI units, each explained in its file in the package's direc
   hammer_mo100.yaml    the hammer; one key given means that all must be
   pipeline.yaml        how samples become loads
   log.yaml             where and how to log
+  life.yaml            which load cycles are counted; the ledger that keeps them
   boom_eo2621.yaml     cylinders and supports of a boom; without it the boom is rigid
   robot_description    URDF of the boom; without it there are no loads of the boom
 

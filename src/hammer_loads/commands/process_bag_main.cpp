@@ -7,6 +7,7 @@
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
+#include "hammer_loads/life/ledger_batch.h"
 #include "hammer_loads/ros/bag_output.h"
 #include "hammer_loads/ros/bag_processing.h"
 #include "hammer_loads/tables/table_schema.h"
@@ -17,7 +18,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> bags;  ///< inputs, then the output unless there is none
   std::vector<std::string> params, grapple;
-  std::string urdf, tables;
+  std::string urdf, tables, ledger;
   bool force{}, no_bag{};
 };
 
@@ -28,6 +29,8 @@ void addOptions(CLI::App& app, Arguments& given, BagJob& job) {
       ->expected(1, 1000000);
   const auto no_bag = app.add_flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
   app.add_option("--db", given.tables, "write the results as tables, which must not exist")->type_name("FILE.sqlite");
+  app.add_option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
+      ->type_name("FILE.sqlite");
   app.add_flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
   addParamsOption(app, given.params);
   app.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
@@ -75,7 +78,8 @@ std::vector<std::string> readFiles(const Arguments& given, BagJob& job) {
 
 /// What the command line alone shows to be wrong; empty: nothing.
 std::string usageProblem(const Arguments& given) {
-  if (given.no_bag && given.tables.empty()) return "--no-bag: nothing would be written, --db FILE.sqlite is required";
+  if (given.no_bag && given.tables.empty() && given.ledger.empty())
+    return "--no-bag: nothing would be written, --db or --ledger FILE.sqlite is required";
   if (!given.no_bag && given.bags.size() < 2) return "bags: IN.bag... and OUT.bag are required, or --no-bag";
   const auto whole = [](const std::string& name) { return std::filesystem::weakly_canonical(name); };
   if (!given.no_bag && !given.tables.empty() && whole(given.tables) == whole(given.bags.back()))
@@ -100,9 +104,18 @@ std::vector<Output> outputsOf(const Arguments& given, BagJob& job) {
                                         named(job.topics.hull_imu, kDefaultTopics.hull_imu)};
   if (!given.tables.empty()) outputs.push_back({given.tables, job.tables, whyTablesMustStay});
   if (!given.no_bag)
-    outputs.push_back({given.bags.back(), job.output,
-                       [topics](const std::string& name) { return whyBagMustStay(name, topics); }});
+    outputs.push_back(
+        {given.bags.back(), job.output, [topics](const std::string& name) { return whyBagMustStay(name, topics); }});
   return outputs;
+}
+
+/// What went wrong; runs that are not counted again are warnings.
+std::vector<std::string> writeLedger(life::LedgerBatch& ledger, BagReport& report) {
+  std::vector<std::string> known;
+  const std::string problem = ledger.write(known);
+  for (const std::string& line : known) addOnce(report.warnings, {"ledger", line});
+  if (problem.empty()) return {};
+  return {problem};
 }
 
 /// Takes the files, processes, gives them their names. What went wrong, one line each.
@@ -115,12 +128,20 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
     output.path = file.value->path();
     files.push_back(*std::move(file.value));
   }
+  std::optional<life::LedgerBatch> ledger;
+  if (!given.ledger.empty()) {
+    ledger.emplace(given.ledger, [](const std::string& busy) { std::cerr << busy << '\n'; });
+    const std::string problem = ledger->check();
+    if (!problem.empty()) return {problem};
+    job.pieces = &*ledger;
+  }
   ProgressBar bar;
   std::vector<std::string> problems = processBag(job, std::ref(bar), report);
   for (std::string& problem : problems) {
     for (const Output& output : outputs)
       if (problem.rfind(output.path + ":", 0) == 0) problem.replace(0, output.path.size(), output.name);
   }
+  if (ledger && problems.empty()) problems = writeLedger(*ledger, report);
   for (OutputFile& file : files) {
     if (!problems.empty()) break;
     const std::string problem = file.publish();
@@ -152,7 +173,8 @@ int run(int argc, const char* const* argv) {
   for (const std::string& note : report.notes) std::cerr << "note: " << note << '\n';
   std::cerr << textOf(report);
   for (const std::string& warning : textsOf(report.warnings)) std::cerr << "warning: " << warning << '\n';
-  std::cout << (given.no_bag ? given.tables : given.bags.back()) << ": " << summaryOf(report) << std::endl;
+  const std::string& results = given.tables.empty() ? given.ledger : given.tables;
+  std::cout << (given.no_bag ? results : given.bags.back()) << ": " << summaryOf(report) << std::endl;
   return 0;
 }
 

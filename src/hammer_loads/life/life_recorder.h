@@ -53,6 +53,8 @@ class LifeRecorder {
   /// Names of what is counted, hot spots as hotSpotChannel(), and their grids.
   const std::vector<std::string>& channels() const { return names_; }
   const LoadGrid& grid(std::size_t channel) const { return counters_[channel].grid(); }
+  /// Since the last take().
+  const SampleTally& tally(std::size_t channel) const { return counters_[channel].tally(); }
 
  private:
   LifeRecorder() = default;

@@ -6,7 +6,8 @@
 
 namespace hammer_loads {
 
-constexpr std::size_t kHullChannels = 3;  ///< they come first: force_x, force_z, torque_y
+constexpr std::size_t kHullChannels = 3;     ///< they come first: force_x, force_z, torque_y
+constexpr std::size_t kSectionChannels = 6;  ///< of each section
 
 inline void wrenchValues(const HullWrench& wrench, double* values) noexcept {
   values[0] = wrench.force_x, values[1] = wrench.force_z, values[2] = wrench.torque_y;
@@ -14,7 +15,7 @@ inline void wrenchValues(const HullWrench& wrench, double* values) noexcept {
 
 /// Of an accepted sample; NaN: not known. boom: as for the names. Both arrays have as many places as
 /// there are names. The wrench's deviation is that at the sample.
-void channelValues(const SampleResult& result, const HullWrench& wrench_deviation, const Boom* boom,
-                   double* values, double* deviations) noexcept;
+void channelValues(const SampleResult& result, const HullWrench& wrench_deviation, const Boom* boom, double* values,
+                   double* deviations) noexcept;
 
 }  // namespace hammer_loads

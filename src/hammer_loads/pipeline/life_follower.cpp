@@ -20,8 +20,10 @@ HullWrench deviationAtSample(const Pipeline& pipeline) noexcept {
     const WrenchOutput& last = result.outputs.back();
     if (last.stamp == result.stamp && last.interval == 0.0) return last.deviation.wrench;
   }
-  const auto covariance = pipeline.crank().tracker().motionCovariance(pipeline.settings().torque_deviation_part);
-  return hullDeviation(pipeline.model(), result.crank, result.hull.motion, covariance).wrench;
+  const CrankTracker& tracker = pipeline.crank().tracker();
+  const DriveReaction drive = driveReaction(pipeline.model(), tracker.driveInertia());
+  const auto covariance = tracker.motionCovariance(pipeline.settings().torque_deviation_part);
+  return hullDeviation(pipeline.model(), drive, result.crank, result.hull.motion, covariance).wrench;
 }
 
 }  // namespace
@@ -77,8 +79,9 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
   const auto stampOf = [&](double time) {
     return step.start() + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
   };
+  const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   forEachStepWrench(
-      pipeline_->model(), step, result.hull.motion,
+      StepLoad{pipeline_->model(), drive, result.hull.motion}, step,
       [&](double time, const HullWrench& wrench) {
         wrenchValues(wrench, between_.data());
         recorder_.between(stampOf(time), between_.data());

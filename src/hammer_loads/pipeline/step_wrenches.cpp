@@ -26,13 +26,12 @@ void insert(double time, ExtremeInstants& sorted) noexcept {
 
 }  // namespace
 
-ExtremeInstants extremeInstants(const HullModel& model, const CrankStep& step, const HullMotion& hull,
-                                const SmoothSpan& span) noexcept {
+ExtremeInstants extremeInstants(const StepLoad& load, const CrankStep& step, const SmoothSpan& span) noexcept {
   constexpr double kNear = 1e-3;  // of the span: where slopes are looked at
   const double length = span.to - span.from;
   const auto at = [&](const CrankEstimate& crank) {
     Components values;
-    wrenchValues(hullWrench(model, motionOf(crank), hull), values.data());
+    wrenchValues(load.at(crank), values.data());
     return values;
   };
   const Components from = at(span.begin), after = at(step.at(span.from + kNear * length));

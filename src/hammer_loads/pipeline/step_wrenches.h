@@ -11,9 +11,18 @@
 
 namespace hammer_loads {
 
+/// What the wrench needs beside the crank's motion.
+struct StepLoad {
+  const HullModel& model;
+  const DriveReaction& drive;
+  const HullMotion& hull;  ///< over the step
+
+  HullWrench at(const CrankEstimate& crank) const noexcept { return hullWrench(model, drive, motionOf(crank), hull); }
+};
+
 /// A part of a step without a blow.
 struct SmoothSpan {
-  double from{}, to{};         ///< after the step's start [s]
+  double from{}, to{};          ///< after the step's start [s]
   CrankEstimate begin, finish;  ///< there
 };
 
@@ -25,17 +34,15 @@ struct ExtremeInstants {
 
 /// At most one for each component. A component that rises at one end of the span and falls at the other has its
 /// extreme where the cubic by values and slopes of both ends has it: off by some 1e-4 of the span.
-ExtremeInstants extremeInstants(const HullModel& model, const CrankStep& step, const HullMotion& hull,
-                                const SmoothSpan& span) noexcept;
+ExtremeInstants extremeInstants(const StepLoad& load, const CrankStep& step, const SmoothSpan& span) noexcept;
 
 /// Calls wrench(time, wrench) in order of time for each extreme inside the step and for both sides of each blow, and
-/// turn(time) between them where a blow may end a turn. Times are after the step's start [s]. hull: motion over the
-/// step. Of extremes closer than 1.25 ms one may be missed; points on the way to them are given as well.
+/// turn(time) between them where a blow may end a turn. Times are after the step's start [s]. Of
+/// extremes closer than 1.25 ms one may be missed; points on the way to them are given as well.
 template <typename OnWrench, typename OnTurn>
-void forEachStepWrench(const HullModel& model, const CrankStep& step, const HullMotion& hull, const OnWrench& wrench,
+void forEachStepWrench(const StepLoad& load, const CrankStep& step, const OnWrench& wrench,
                        const OnTurn& turn) noexcept {
   constexpr double kLongest = 1.25e-3;  // [s]: 15 of them in the MO-100's pulse
-  const auto wrenchOf = [&](const CrankEstimate& crank) { return hullWrench(model, motionOf(crank), hull); };
   const auto alongSpan = [&](const SmoothSpan& span) {
     if (!(span.to > span.from)) return;
     const int count = std::max(1, static_cast<int>(std::ceil((span.to - span.from) / kLongest)));
@@ -45,9 +52,9 @@ void forEachStepWrench(const HullModel& model, const CrankStep& step, const Hull
       part.from = part.to, part.begin = part.finish;
       part.to = last ? span.to : span.from + (span.to - span.from) * i / count;
       part.finish = last ? span.finish : step.at(part.to);
-      const ExtremeInstants extremes = extremeInstants(model, step, hull, part);
-      for (std::size_t k = 0; k < extremes.count; ++k) wrench(extremes.time[k], wrenchOf(step.at(extremes.time[k])));
-      if (!last) wrench(part.to, wrenchOf(part.finish));
+      const ExtremeInstants extremes = extremeInstants(load, step, part);
+      for (std::size_t k = 0; k < extremes.count; ++k) wrench(extremes.time[k], load.at(step.at(extremes.time[k])));
+      if (!last) wrench(part.to, load.at(part.finish));
     }
   };
   SmoothSpan span{0.0, 0.0, step.at(0.0), {}};
@@ -59,11 +66,11 @@ void forEachStepWrench(const HullModel& model, const CrankStep& step, const Hull
     span.to = passage.time;
     span.finish = side(true);
     alongSpan(span);
-    wrench(passage.time, wrenchOf(span.finish));
+    wrench(passage.time, load.at(span.finish));
     if (passage.may_strike) turn(passage.time);
     span.begin = side(false);
     span.from = passage.time;
-    wrench(passage.time, wrenchOf(span.begin));
+    wrench(passage.time, load.at(span.begin));
   }
   span.to = step.length();
   span.finish = step.at(span.to);

@@ -26,11 +26,11 @@ void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) 
                         const Message& message, const ros::Time& time) { log.writeLatched(topic, time, message); });
       return;
     }
-    const ros::Publisher publisher = private_node.advertise<Message>(output.name(), kTopicQueue);
-    const bool logged = output.delivery() == Delivery::kLogged;
+    const bool last = output.delivery() == Delivery::kLast, logged = last || output.delivery() == Delivery::kLogged;
+    const ros::Publisher publisher = private_node.advertise<Message>(output.name(), kTopicQueue, last);
     output.attach(
-        [&log, publisher, logged, topic = publisher.getTopic()](const Message& message, const ros::Time& time) {
-          if (publisher.getNumSubscribers() > 0) publisher.publish(message);
+        [&log, publisher, last, logged, topic = publisher.getTopic()](const Message& message, const ros::Time& time) {
+          if (last || publisher.getNumSubscribers() > 0) publisher.publish(message);
           if (logged) log.write(topic, time, message);
         });
   });
@@ -43,7 +43,7 @@ void attachToBag(Outputs& outputs, rosbag::Bag& bag, const std::string& prefix, 
     using Message = typename std::decay_t<decltype(output)>::Message;
     const std::string topic = prefix + "/" + output.name();
     if (output.delivery() == Delivery::kOnRequest && !on_request) return;
-    const bool latched = output.delivery() == Delivery::kLatched;
+    const bool latched = output.delivery() == Delivery::kLatched || output.delivery() == Delivery::kLast;
     output.attach([&bag, topic, latched](const Message& message, const ros::Time& time) {
       latched ? writeLatched(bag, topic, time, message) : bag.write(topic, time, message);
     });

@@ -65,6 +65,7 @@ class HammerRuns {
     report_.wrenches += flow_->outputs().hull_wrench.sent();
     report_.turns += flow_->outputs().blow.sent();
     warnOfRun(*flow_, joints_came_, static_cast<std::int64_t>(report_.runs), report_.warnings);
+    flow_->finishCount();
     if (sinks_.tables != nullptr) sinks_.tables->end(*flow_, samples_);
   }
 
@@ -76,6 +77,7 @@ class HammerRuns {
     const Settings& settings = runs_[next_++].settings;
     flow_.emplace(settings);
     pressures_ = HammerBridge::pressureTopics(settings, settings.input_topics.cylinder_pressures);
+    if (job_.pieces != nullptr) flow_->keepPieces(*job_.pieces);
     if (sinks_.bag != nullptr) attachToBag(flow_->outputs(), *sinks_.bag, job_.output_prefix, job_.pins);
     if (sinks_.tables != nullptr) sinks_.tables->begin(*flow_);
     for (const auto& [time, message] : statics_) flow_->transforms(*message, true, time);
@@ -222,7 +224,7 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
       work.hammer = work.hammer || inputs.value->has(run.settings.input_topics.crank);
     if (!work.hammer) report.notes = {}, report.warnings = {};
     if (job.grapple) work.slider_topic = first.joint_states;
-    const bool hammer_required = !job.grapple || !job.tables.empty();
+    const bool hammer_required = !job.grapple || !job.tables.empty() || job.pieces != nullptr;
     const std::string& required = hammer_required ? first.crank : first.joint_states;
     if (hammer_required ? !work.hammer : !inputs.value->has(required))
       return {names + ": no topic " + required + ", is required; topics there: " + inputs.value->topicList()};
@@ -230,7 +232,7 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     if (!problem.empty()) return {names + ": " + problem};
     const std::string failure = write(work, progress, report);
     if (!failure.empty()) return {failure};
-    if (report.wrenches == 0 && (report.jaw_edges == 0 || !job.tables.empty()))
+    if (report.wrenches == 0 && (report.jaw_edges == 0 || hammer_required))
       return {names + ": " +
               (work.hammer ? noWrench(*inputs.value, runs.value->back(), report)
                            : "no jaw edge; " + onOneLine(report.grapple))};

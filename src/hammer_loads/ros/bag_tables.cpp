@@ -21,7 +21,7 @@ RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
   const std::vector<ParameterText> parameters = parameterTexts(configDirectory(), settings.yaml);
   record.input_sha256 = input_sha256;
   record.parameters_sha256 = sha256Of({settings.yaml, settings.robot_description});
-  record.machine = sha256Of({machineText(parameters, settings.robot_description)});
+  record.machine = sha256Of({settings.machine});
   record.version = packageVersion();
   record.revision = packageRevision();
   record.parameters_yaml = settings.yaml;

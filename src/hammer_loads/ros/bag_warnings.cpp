@@ -45,8 +45,7 @@ std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
 
 }  // namespace
 
-void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run,
-               std::vector<BagWarning>& warnings) {
+void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, std::vector<BagWarning>& warnings) {
   for (const Warning& warning : warningsOf(bridge.pipeline())) {
     const bool of_joints = std::strcmp(warning.key, "pitch joints") == 0;
     const std::string& topic = bridge.settings().input_topics.joint_states;
@@ -54,6 +53,7 @@ void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run,
     if (of_joints && joints_came)  // else warnOfMissing
       addOnce(warnings, {warning.key, topic + ": " + warning.text, run});
   }
+  for (const Warning& warning : bridge.life().warnings()) addOnce(warnings, {warning.key, warning.text, run});
 }
 
 void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
@@ -91,8 +91,8 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warning
     list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + known->first + ")";
   }
   if (!list.empty())
-    addOnce(warnings, {"definitions", "messages of another version of this package: " + list +
-                                          "; `rosbag fix` makes them readable"});
+    addOnce(warnings, {"definitions",
+                       "messages of another version of this package: " + list + "; `rosbag fix` makes them readable"});
 }
 
 /// Topics that are wanted and did not come.
@@ -103,10 +103,9 @@ void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, con
     const PipelineSettings& pipeline = run.settings.pipeline;
     const bool joints = !pipeline.pitch_joints.empty() || run.settings.boom;
     if (joints && heard.count(topics.joint_states) == 0)
-      addOnce(warnings,
-              {"joint states", "no message on " + topics.joint_states +
-                                   " (--joint-states-topic); topics of its type there: " +
-                                   inputs.topicsOfType(typeOf<sensor_msgs::JointState>())});
+      addOnce(warnings, {"joint states", "no message on " + topics.joint_states +
+                                             " (--joint-states-topic); topics of its type there: " +
+                                             inputs.topicsOfType(typeOf<sensor_msgs::JointState>())});
     if (pipeline.hull_motion == HullMotionSource::kImu && heard.count(topics.hull_imu) == 0)
       addOnce(warnings, {"imu", "hull_motion: imu, but no message on " + topics.hull_imu +
                                     " (--imu-topic): weight by pitch; topics of its type there: " +

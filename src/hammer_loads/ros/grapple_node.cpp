@@ -15,7 +15,7 @@ GrappleNode::GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, con
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       diagnostics_(node, private_node, flow_, *log_),
       log_services_(
-          private_node, *log_, [this] { beginRun(); }, [] {}) {
+          private_node, *log_, [] {}, [this] { beginRun(); }, [] {}) {
   attachToNode(flow_.outputs(), private_node, *log_);
   RunInfo info = flow_.outputs().run_info.message;
   info.header.stamp = ros::Time::now();

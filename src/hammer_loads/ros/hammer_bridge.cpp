@@ -36,7 +36,8 @@ void HammerBridge::prepareOutputs() {
   const std::string frame = hullFrame(settings_);
   for (std_msgs::Header* header :
        {&outputs_.hull_wrench.message.header, &outputs_.hull_loads.message.header, &outputs_.mechanism.message.header,
-        &outputs_.pin_forces.message.header, &outputs_.blow.message.header, &outputs_.pulse.message.header})
+        &outputs_.pin_forces.message.header, &outputs_.blow.message.header, &outputs_.pulse.message.header,
+        &outputs_.turn_loads.message.header, &outputs_.load_cycles.message.header})
     header->frame_id = frame;
   outputs_.run_info.message.version = packageVersion();
   outputs_.run_info.message.revision = packageRevision();
@@ -57,9 +58,11 @@ void HammerBridge::prepareOutputs() {
 }
 
 void HammerBridge::begin(const Settings& settings) {
+  finishCount();
   settings_ = settings;
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
   pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
+  beginCount();
   if (frame_wrenches_) frame_wrenches_->reset();
   RunInfo& run_info = outputs_.run_info.message;
   run_info.parameters_yaml = settings_.yaml;
@@ -67,6 +70,19 @@ void HammerBridge::begin(const Settings& settings) {
   run_info.notes = settings_.notes;
   prepareHullLoads(settings_.pipeline.level, outputs_.hull_loads.message);
   run_begun_ = false;
+}
+
+void HammerBridge::beginCount() { life_.emplace(*pipeline_, settings_, outputs_, pieces_); }
+
+void HammerBridge::finishCount() {
+  if (!life_ || !life_->begun()) return;
+  life_->finish();
+  beginCount();
+}
+
+void HammerBridge::keepPieces(life::PieceSink& pieces) {
+  pieces_ = &pieces;
+  beginCount();
 }
 
 /// Stamped with the first input: a second run over the same input says the same.
@@ -117,6 +133,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   beginRun(record_time);
   const SampleResult& result =
       pipeline_->crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
+  life_->follow(stampOf(message.header.stamp), record_time);
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
@@ -158,6 +175,7 @@ void HammerBridge::sendBoom(const ros::Time& record_time) {
 void HammerBridge::send(const TurnEnd& end, const ros::Time& record_time) {
   fillBlow(end, outputs_.blow.message);
   outputs_.blow.send(record_time);
+  life_->sendTurn(end, record_time);
   if (!end.pulse) return;
   fillPulse(end, outputs_.pulse.message);
   outputs_.pulse.send(record_time);

@@ -13,6 +13,7 @@
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/frame_wrench.h"
 #include "hammer_loads/ros/hammer_outputs.h"
+#include "hammer_loads/ros/life_flow.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -47,10 +48,17 @@ class HammerBridge {
   /// The same with other settings.
   void begin(const Settings& settings);
 
+  /// What each run counts goes there as well, piece by piece; to be called before the first input. It must outlive
+  /// this.
+  void keepPieces(life::PieceSink& pieces);
+  /// Ends the count of the run at work: its last ~load_cycles and piece. What follows begins a new one.
+  void finishCount();
+
   HammerOutputs& outputs() { return outputs_; }
   const HammerOutputs& outputs() const { return outputs_; }
   const Settings& settings() const { return settings_; }
   const Pipeline& pipeline() const { return *pipeline_; }
+  const LifeFlow& life() const { return *life_; }
   const std::optional<FrameWrenches>& frameWrenches() const { return frame_wrenches_; }
 
  private:
@@ -61,6 +69,7 @@ class HammerBridge {
   };
 
   void prepareOutputs();
+  void beginCount();
   void beginRun(const ros::Time& record_time);
   void send(const WrenchOutput& output, const ros::Time& record_time);
   void sendBoom(const ros::Time& record_time);
@@ -69,6 +78,8 @@ class HammerBridge {
   Settings settings_;
   std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
   HammerOutputs outputs_;
+  std::optional<LifeFlow> life_;  ///< of the pipeline, replaced with each count
+  life::PieceSink* pieces_{};     ///< null: none
   std::vector<ChainLink> chain_links_;
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
   std::optional<FrameWrenches> frame_wrenches_;

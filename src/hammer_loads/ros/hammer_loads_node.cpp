@@ -12,19 +12,28 @@ namespace hammer_loads {
 HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
                                  std::unique_ptr<BagLog> log)
     : log_(std::move(log)),
+      ledger_(settings.life.ledger.empty() ? nullptr : std::make_unique<life::LedgerThread>(settings.life.ledger)),
       bridge_(settings),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       config_(configInForce(log_->isRecording())),
-      diagnostics_(node, private_node, bridge_, *log_),
+      diagnostics_(node, private_node, bridge_, *log_, ledger_.get()),
       reconfigure_(reconfigure_mutex_, private_node),
       log_services_(
-          private_node, *log_, [this] { beginRun(); }, [this] { logSwitched(); }) {
+          private_node, *log_, [this] { bridge_.finishCount(); }, [this] { beginRun(); }, [this] { logSwitched(); }) {
+  if (ledger_) bridge_.keepPieces(*ledger_);
   attachToNode(bridge_.outputs(), private_node, *log_);
   announceRun();
   reconfigure_.updateConfig(config_);
   reconfigure_.setCallback([this](HammerLoadsConfig& config, std::uint32_t) { onReconfigure(config); });
   subscribe(node);
   sayWhatRuns();
+}
+
+HammerLoadsNode::~HammerLoadsNode() {
+  bridge_.finishCount();
+  if (!ledger_) return;
+  if (const auto problem = ledger_->close())
+    ROS_ERROR("%s; %zu pieces of the count are not in it", problem->c_str(), ledger_->state().waiting);
 }
 
 void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
@@ -72,6 +81,7 @@ void HammerLoadsNode::sayWhatRuns() const {
   ROS_INFO("hammer: %s; level %s%s", settings.hammer_given ? "its own file" : "the shipped MO-100", level.c_str(),
            notes.c_str());
   ROS_INFO("log: %s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "not recording");
+  if (ledger_) ROS_INFO("ledger of load cycles: %s", ledger_->path().c_str());
   ROS_INFO("waits for %s with joint %s, %s%s", crank_topic_.c_str(), settings.pipeline.crank_joint.c_str(),
            joint_states_topic_.c_str(), bridge_.needsImu() ? (", " + hull_imu_topic_).c_str() : "");
 }
@@ -123,6 +133,7 @@ void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
 void HammerLoadsNode::switchLog(bool on) {
   if (!on) log_->stop();
   if (on && !log_->isRecording()) {
+    bridge_.finishCount();
     const std::vector<std::string> problems = log_->start();
     for (const std::string& problem : problems) ROS_ERROR("%s", problem.c_str());
     on = problems.empty();

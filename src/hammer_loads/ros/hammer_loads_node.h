@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/life/ledger_thread.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/hammer_bridge.h"
@@ -29,6 +30,8 @@ class HammerLoadsNode final {
   /// log: started already where settings.log.enabled.
   HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
                   std::unique_ptr<BagLog> log);
+  /// Ends the count, and writes to log and ledger what is not there yet.
+  ~HammerLoadsNode();
 
  private:
   template <typename Message>
@@ -53,6 +56,7 @@ class HammerLoadsNode final {
 
   // What is used stands before what uses it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
+  std::unique_ptr<life::LedgerThread> ledger_;  ///< null: none is kept
   HammerBridge bridge_;
   RecordClock clock_;
   bool one_topic_{};  ///< crank and joint states arrive on the same topic

@@ -7,10 +7,12 @@
 #include <hammer_loads/HullLoads.h>
 #include <hammer_loads/JointLoads.h>
 #include <hammer_loads/JointReactions.h>
+#include <hammer_loads/LoadCycles.h>
 #include <hammer_loads/PinForces.h>
 #include <hammer_loads/Pulse.h>
 #include <hammer_loads/RunInfo.h>
 #include <hammer_loads/SectionLoads.h>
+#include <hammer_loads/TurnLoads.h>
 #include <sensor_msgs/JointState.h>
 
 #include <deque>
@@ -33,6 +35,8 @@ struct HammerOutputs {
   Output<PinForces> pin_forces{"pin_forces", Delivery::kOnRequest};
   Output<Blow> blow{"blow"};
   Output<Pulse> pulse{"pulse"};
+  Output<TurnLoads> turn_loads{"turn_loads"};
+  Output<LoadCycles> load_cycles{"load_cycles", Delivery::kLast};
 
   template <typename Visit>
   void forEach(const Visit& visit) {
@@ -40,6 +44,7 @@ struct HammerOutputs {
     for (auto& wrench : boom_wrench) visit(wrench);
     visit(joint_loads), visit(section_loads), visit(joint_reactions), visit(boom_vibration), visit(mechanism),
         visit(pin_forces), visit(blow), visit(pulse);
+    visit(turn_loads), visit(load_cycles);
   }
 };
 

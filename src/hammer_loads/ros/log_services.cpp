@@ -4,9 +4,9 @@
 
 namespace hammer_loads {
 
-LogServices::LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> begin,
-                         std::function<void()> switched)
-    : log_(log), begin_(std::move(begin)), switched_(std::move(switched)) {
+LogServices::LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> finish,
+                         std::function<void()> begin, std::function<void()> switched)
+    : log_(log), finish_(std::move(finish)), begin_(std::move(begin)), switched_(std::move(switched)) {
   const auto serve = [&](const char* name, void (LogServices::*act)(Response&)) {
     return private_node.advertiseService<std_srvs::Trigger::Request, Response>(
         name, [this, act](std_srvs::Trigger::Request&, Response& response) {
@@ -24,6 +24,7 @@ void LogServices::start(Response& response) {
     response.message = "is recording already";
     return;
   }
+  finish_();
   const std::vector<std::string> problems = log_.start();
   response.success = problems.empty();
   response.message = problems.empty() ? "recording" : problems.front();
@@ -40,6 +41,7 @@ void LogServices::stop(Response& response) {
 }
 
 void LogServices::split(Response& response) {
+  if (log_.isRecording()) finish_();
   response.success = log_.split();
   response.message = response.success ? "recording in a new file" : "was not recording";
   if (response.success) begin_();

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/ros/life_diagnostics.h"
 #include "hammer_loads/ros/log_diagnostics.h"
 #include "hammer_loads/ros/steady_time.h"
 
@@ -14,9 +15,10 @@ using diagnostic_msgs::DiagnosticStatus;
 }  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                                 const BagLog& log)
+                                 const BagLog& log, const life::LedgerThread* ledger)
     : bridge_(bridge),
       log_(log),
+      ledger_(ledger),
       // The name space is the node's own, a nodelet's in a manager as well.
       updater_(node, private_node, private_node.getNamespace()) {
   updater_.setHardwareID("none");
@@ -27,6 +29,7 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   if (bridge.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
   if (bridge.needsImu()) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
   updater_.add("model", this, &NodeDiagnostics::describeModel);
+  updater_.add("life", [this](Status& status) { describeLife(bridge_.life(), ledger_, status); });
   updater_.add("log", [&log](Status& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ =
@@ -50,6 +53,8 @@ void NodeDiagnostics::report() {
 
 std::vector<Warning> NodeDiagnostics::warnings() const {
   std::vector<Warning> warnings = warningsOf(bridge_.pipeline());
+  for (const Warning& warning : bridge_.life().warnings()) warnings.push_back(warning);
+  if (const auto warning = ledgerWarning(ledger_)) warnings.push_back(*warning);
   if (!bridge_.settings().hammer_given)
     warnings.push_back({"hammer", "no hammer file was given: the masses and lengths of the MO-100 are used", true});
   for (const ros::Subscriber* input : inputs_) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/life/ledger_thread.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/ros/hammer_bridge.h"
@@ -21,7 +22,9 @@ namespace hammer_loads {
 /// model, boom, log health.
 class NodeDiagnostics {
  public:
-  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge, const BagLog& log);
+  /// ledger: null where none is kept.
+  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge, const BagLog& log,
+                  const life::LedgerThread* ledger);
 
   /// Topics that should have one publisher each; those without a topic are ignored. They must outlive this or its
   /// reports.
@@ -46,6 +49,7 @@ class NodeDiagnostics {
 
   const HammerBridge& bridge_;
   const BagLog& log_;
+  const life::LedgerThread* ledger_;
   std::vector<const ros::Subscriber*> inputs_;
   Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
   SampleCounts last_counts_;

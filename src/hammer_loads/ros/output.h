@@ -14,6 +14,7 @@ namespace hammer_loads {
 enum class Delivery {
   kLogged,     ///< published and logged
   kOnRequest,  ///< published, but left out of logs and bags unless asked for: it follows from what they hold
+  kLast,       ///< published and logged; late subscribers get the last one
   kLatched,    ///< one message per run, repeated for late subscribers and in every file
 };
 

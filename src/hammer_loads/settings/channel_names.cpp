@@ -9,6 +9,10 @@ std::vector<std::string> channelNames(const Boom* boom) {
     names.push_back("joint_loads/" + joint + "/total_torque_Nm");
   for (const Cylinder& cylinder : boom->cylinders())
     names.push_back("joint_loads/" + cylinder.parameters().name + "/cylinder_force_N");
+  for (const Section& section : boom->sections()) {
+    for (const char* field : {"force_x_N", "force_y_N", "force_z_N", "torque_x_Nm", "torque_y_Nm", "torque_z_Nm"})
+      names.push_back("section_loads/" + section.name() + "/" + field);
+  }
   return names;
 }
 

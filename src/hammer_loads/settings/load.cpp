@@ -68,6 +68,12 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
   return std::move(boom.value);
 }
 
+std::string withoutDriveInertia(std::string yaml) {
+  const std::size_t begin = yaml.find("drive_inertia_kg_m2:");
+  if (begin != std::string::npos) yaml.erase(begin, yaml.find('\n', begin) - begin + 1);
+  return yaml;
+}
+
 /// Channels can be judged only where the boom is known.
 life::LifeSettings readLife(ParameterReader& reader, const std::optional<Boom>& boom) {
   life::LifeSettings settings = readLifeSettings(reader);
@@ -81,9 +87,12 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   const bool boom_file = hasBoomKey(parameters);
   ParameterReader reader(std::move(parameters));
   const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes);
+  const std::string hammer_yaml = reader.yaml();
   PipelineSettings pipeline = readPipelineSettings(reader);
   const LogSettings log = readLogSettings(reader);
+  const std::size_t before_boom = reader.yaml().size();
   std::optional<Boom> boom = readBoom(reader, boom_file, pipeline.boom, robot_description, result.notes);
+  const std::string boom_yaml = reader.yaml().substr(before_boom);
   const bool vibrates = boom_file && pipeline.boom != BoomModel::kNone && pipeline.boom != BoomModel::kRigid;
   const std::string conflict = vibrationConflict(pipeline, boom_file, vibrates);
   if (!conflict.empty()) reader.addProblem(conflict);
@@ -96,9 +105,17 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
     pipeline.level = choice.level;
     result.notes.push_back(describe(choice));
   }
-  result.value = Settings{
-      *mechanism, pipeline, log, std::move(life), std::move(boom), hammer_given, robot_description, reader.yaml() + yamlOf(topics),
-      {},         topics};
+  result.value = Settings{*mechanism,
+                          pipeline,
+                          log,
+                          std::move(life),
+                          std::move(boom),
+                          hammer_given,
+                          robot_description,
+                          reader.yaml() + yamlOf(topics),
+                          withoutDriveInertia(hammer_yaml) + boom_yaml + robot_description,
+                          {},
+                          topics};
   return result;
 }
 

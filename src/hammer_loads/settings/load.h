@@ -27,6 +27,8 @@ struct Settings {
   std::string robot_description;   ///< the URDF's text, as given
   std::string yaml;                ///< every parameter in force; loading it alone with the same robot description
                                    ///< gives the same settings
+  std::string machine;             ///< hammer and boom parameters and robot description: the same of the same machine.
+                                   ///< The drive's inertia is left out: `calibrate` finds a better one for it
   std::vector<std::string> notes;  ///< accepted peculiarities, one line each
   InputTopics input_topics;        ///< at the end of `yaml` as well
 };

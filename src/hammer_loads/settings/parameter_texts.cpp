@@ -30,26 +30,15 @@ std::vector<ParameterText> parameterTexts(const std::string& config_directory, c
   std::vector<std::string> problems;
   ParameterMap parameters = parameterMap(YAML::Load(yaml), {}, problems).value_or(ParameterMap{});
   takeInputTopics(parameters, problems);  // names of a recording, no parameters
-  ParameterMap shipped = shippedIn(config_directory, {"pipeline.yaml", "log.yaml", "life.yaml"});
-  const ParameterMap general = shipped;
-  merge(shippedIn(config_directory, {"hammer_mo100.yaml", "boom_eo2621.yaml"}), shipped);
+  const ParameterMap shipped =
+      shippedIn(config_directory, {"pipeline.yaml", "log.yaml", "life.yaml", "hammer_mo100.yaml", "boom_eo2621.yaml"});
   std::vector<ParameterText> texts;
   for (const auto& [key, parameter] : parameters) {
     const auto found = shipped.find(key);
     texts.push_back({key, textOf(parameter.value),
-                     found == shipped.end() ? std::nullopt : std::make_optional(textOf(found->second.value)),
-                     general.count(key) == 0});
+                     found == shipped.end() ? std::nullopt : std::make_optional(textOf(found->second.value))});
   }
   return texts;
-}
-
-std::string machineText(const std::vector<ParameterText>& parameters, const std::string& robot_description) {
-  std::string text;
-  for (const ParameterText& parameter : parameters) {
-    if (parameter.of_machine && parameter.key != "drive_inertia_kg_m2")
-      text += parameter.key + ": " + parameter.value + "\n";
-  }
-  return text + robot_description;
 }
 
 }  // namespace hammer_loads

@@ -150,6 +150,8 @@ life::LifeSettings readLifeSettings(ParameterReader& reader) {
   if (std::isfinite(period)) s.period = std::llround(kNsPerSecond * period);
   s.equivalent_cycles_per_hour = reader.number("life_equivalent_cycles_per_hour", "1/h", NumberRule::positive());
   const std::string ledger = reader.text("life_ledger");
+  if (!ledger.empty() && ledger != "none" && ledger.front() != '/')
+    reader.addProblem("life_ledger: " + quotedText(ledger) + ", must be an absolute path, or none");
   if (ledger != "none") s.ledger = ledger;
   return s;
 }

@@ -1,0 +1,37 @@
+#include "hammer_loads/ros/life_diagnostics.h"
+
+#include "hammer_loads/util/stamp.h"
+
+namespace hammer_loads {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+std::optional<Warning> ledgerWarning(const life::LedgerThread* ledger) {
+  if (ledger == nullptr) return std::nullopt;
+  const std::string problem = ledger->state().problem;
+  if (problem.empty()) return std::nullopt;
+  return Warning{"ledger", "life_ledger: " + problem, true};
+}
+
+void describeLife(const LifeFlow& life, const life::LedgerThread* ledger,
+                  diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const LifeFollower& follower = life.follower();
+  status.summary(DiagnosticStatus::OK, follower.since() ? "counting" : "waits for loads");
+  for (const Warning& warning : life.warnings()) status.mergeSummary(DiagnosticStatus::WARN, warning.text);
+  if (const auto warning = ledgerWarning(ledger)) status.mergeSummary(DiagnosticStatus::WARN, warning->text);
+  if (follower.since()) status.add("counting since [s]", seconds(*follower.since()));
+  status.add("period [s]", seconds(life.period()));
+  const std::vector<life::SampleTally> tallies = life.tallies();
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    const std::string& channel = follower.recorder().channels()[i];
+    status.add(channel + ": samples", tallies[i].counted);
+    if (tallies[i].skipped > 0) status.add(channel + ": skipped", tallies[i].skipped);
+    if (tallies[i].below > 0) status.add(channel + ": below full scale", tallies[i].below);
+    if (tallies[i].above > 0) status.add(channel + ": above full scale", tallies[i].above);
+    if (tallies[i].gaps > 0) status.add(channel + ": gaps", tallies[i].gaps);
+  }
+  status.add("ledger", ledger == nullptr ? "none" : ledger->path());
+  if (ledger != nullptr) status.add("pieces not in the ledger yet", ledger->state().waiting);
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,57 @@
+/// A run's turn loads and load cycles on their way to messages and ledger.
+#pragma once
+
+#include <ros/time.h>
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/life/piece_sink.h"
+#include "hammer_loads/pipeline/life_follower.h"
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/ros/hammer_outputs.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+
+class LifeFlow {
+ public:
+  /// Refers to pipeline and outputs, which must outlive it. pieces: null, or where the counts go as well; must outlive
+  /// it, too.
+  LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOutputs& outputs, life::PieceSink* pieces);
+
+  /// Takes what the pipeline made of a crank message with this header stamp; the first one names the run.
+  void follow(StampNs header, const ros::Time& record_time);
+  /// Of one of the ends of the result just followed.
+  void sendTurn(const TurnEnd& end, const ros::Time& record_time);
+  /// Sends what has been counted, at the record time of the last message; nothing may follow.
+  void finish();
+
+  bool begun() const { return begun_; }
+  const LifeFollower& follower() const { return follower_; }
+  std::int64_t period() const { return period_; }  ///< of ~load_cycles and pieces [ns]
+  /// Samples of each channel since the count began.
+  std::vector<life::SampleTally> tallies() const;
+  /// Loads beyond their full scale, with the keys that set it. Not for the hot path.
+  std::vector<Warning> warnings() const;
+
+ private:
+  life::LifePiece sendCycles(const ros::Time& record_time);
+
+  LifeFollower follower_;
+  HammerOutputs& outputs_;
+  life::PieceSink* pieces_;
+  life::LedgerMachine machine_;
+  /// Of one channel's full scale.
+  struct ScaleKeys {
+    std::string least, greatest;
+  };
+  static std::vector<ScaleKeys> scaleKeys(const life::LifeSettings& settings);
+
+  std::vector<ScaleKeys> scale_keys_;
+  std::int64_t period_;
+  ros::Time record_time_;  ///< of the last message
+  bool begun_{};
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""The ledger of live nodes: the numbers of their bags; one writer at a time; its trouble is not the node's."""
+import glob
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from hammer_loads.msg import LoadCycles
+from sensor_msgs.msg import JointState
+
+from process_rostest import DATA, NodeProcess, command, eventually
+
+# Commits are counted in runs.pieces: one for each period live, one for a run from its bags.
+TABLES = {'epochs': '*', 'channels': '*', 'runs': 'run, name, epoch, ended', 'days': '*', 'tallies': '*',
+          'cycles': '*', 'residues': '*'}
+
+
+def contents(path):
+    with sqlite3.connect('file:%s?mode=ro' % path, uri=True) as ledger:
+        return {table: ledger.execute('SELECT %s FROM %s ORDER BY 1, 2, 3, 4' % (columns, table)).fetchall()
+                for table, columns in TABLES.items()}
+
+
+def session(begin, end):
+    """Messages of the recorded 1 kHz session between two times after its start [s], as (topic, message)."""
+    messages = []
+    with rosbag.Bag(os.path.join(DATA, 'mo100_1khz.bag')) as bag:
+        first = None
+        for topic, message, stamp in bag.read_messages():
+            first = first or stamp
+            if begin <= (stamp - first).to_sec() < end:
+                messages.append((topic, message))
+    return messages
+
+
+class LedgerTest(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.ledger = os.path.join(self.directory, 'machine.sqlite')
+        self.statuses = {}
+        self.diagnostics = rospy.Subscriber('/diagnostics', DiagnosticArray, self.take_diagnostics)
+
+    def tearDown(self):
+        self.diagnostics.unregister()
+        shutil.rmtree(self.directory, ignore_errors=True)
+
+    def take_diagnostics(self, message):
+        for status in message.status:
+            self.statuses[status.name] = status
+
+    def life_of(self, name):
+        """Text of the node's status of its count, empty before the first one."""
+        texts = [s.message for n, s in self.statuses.items() if name in n and n.endswith('life')]
+        return texts[0] if texts else ''
+
+    def node(self, name, ledger, log=False):
+        return NodeProcess(name, {'life_ledger': ledger, 'life_period_s': 1.0, 'log_enabled': log,
+                                  'log_directory': self.directory, 'log_min_free_mb': 0})
+
+    def feed(self, name, begin, end):
+        """Until the count has seen the last of it, in periods of a second."""
+        counts = []
+        subscriber = rospy.Subscriber('/%s/load_cycles' % name, LoadCycles, counts.append)
+        crank = rospy.Publisher('/%s/crank' % name, JointState, queue_size=100000)
+        joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=100000)
+        self.assertTrue(eventually(lambda: crank.get_num_connections() > 0 and joints.get_num_connections() > 0 and
+                                   subscriber.get_num_connections() > 0))
+        messages = session(begin, end)
+        for topic, message in messages:
+            (crank if topic == '/hammer/crank' else joints).publish(message)
+        last = messages[-1][1].header.stamp
+        self.assertTrue(eventually(lambda: counts and (last - counts[-1].header.stamp).to_sec() < 1.1))
+        subscriber.unregister()
+        return counts
+
+    def test_the_bags_of_a_run_give_its_numbers_and_are_not_counted_again(self):
+        node = self.node('counted', self.ledger, log=True)
+        counts = self.feed('counted', 0.0, 8.0)
+        code, _, err = node.end(signal.SIGINT)
+        self.assertEqual(code, 0, err)
+        self.assertGreater(len(counts), 4)
+        self.assertGreater(counts[-1].turns, 10)
+        self.assertEqual([c.name for c in counts[-1].channel],
+                         ['hull_wrench/force_x_N', 'hull_wrench/force_z_N', 'hull_wrench/torque_y_Nm'])
+        live = contents(self.ledger)
+        self.assertGreater(sum(row[-1] for row in live['cycles']), 20)
+        self.assertEqual([row[-1] for row in live['runs']], [1], 'ended')
+        bag, = glob.glob(self.directory + '/*.bag')
+        again = os.path.join(self.directory, 'again.sqlite')
+        subprocess.run([command('process_bag'), '--no-bag', bag, '--ledger', again], check=True)
+        self.assertEqual(contents(again), live)
+        known = subprocess.run([command('process_bag'), '--no-bag', bag, '--ledger', self.ledger], check=True,
+                               stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertIn('is in it already, not counted again', known.stderr)
+        self.assertEqual(contents(self.ledger), live)
+
+    def test_a_second_node_waits_says_so_and_loses_nothing(self):
+        first = self.node('first', self.ledger)
+        self.feed('first', 0.0, 5.0)
+        self.assertTrue(eventually(lambda: os.path.exists(self.ledger)))
+        second = self.node('second', self.ledger)
+        counts = self.feed('second', 5.0, 9.0)
+        self.assertTrue(eventually(lambda: 'another run is writing it' in self.life_of('second')),
+                        self.life_of('second'))
+        self.assertEqual(first.end()[0], 0)
+        self.assertTrue(eventually(lambda: self.life_of('second') == 'counting'), self.life_of('second'))
+        code, _, err = second.end()
+        self.assertEqual(code, 0, err)
+        ledger = contents(self.ledger)
+        self.assertEqual([row[-1] for row in ledger['runs']], [1, 1])
+        self.assertGreater(ledger['days'][0][-1], counts[-1].turns)
+
+    def test_a_ledger_that_cannot_be_costs_the_ledger_alone(self):
+        os.mkdir(self.ledger)
+        node = self.node('without', self.ledger)
+        self.feed('without', 0.0, 5.0)
+        self.assertTrue(eventually(lambda: 'is no regular file' in self.life_of('without')), self.life_of('without'))
+        code, out, err = node.end()
+        self.assertEqual(code, 0, err)
+        self.assertEqual((out + err).count('is no regular file'), 2, 'once when it is new, once at the end')
+
+
+if __name__ == '__main__':
+    rospy.init_node('ledger_rostest')
+    rostest.rosrun('hammer_loads', 'ledger', LedgerTest, sys.argv)
