@@ -35,7 +35,7 @@ def pipeline_seeds():
 
 def parameter_seeds(config):
     text = {path.stem: path.read_bytes() for path in sorted(config.glob("*.yaml"))}
-    whole = b"\n".join(text[name] for name in ("hammer_mo100", "pipeline", "log"))
+    whole = b"\n".join(text[name] for name in ("hammer_mo100", "pipeline", "log", "life"))
     lines = (line for line in whole.split(b"\n") if not line.lstrip().startswith(b"#"))
     bare = b"\n".join(line.split(b" #")[0].rstrip() for line in lines)
     return {**text, "whole": whole, "whole_bare": bare}

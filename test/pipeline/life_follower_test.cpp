@@ -97,9 +97,9 @@ TEST(StepWrenches, NoInstantOfAStepIsBeyondThem) {
     const Pipeline& pipeline = player.pipeline;
     double beyond = 0.0;
     std::size_t blows = 0;
-    player.playTo(1e9, [&](double, const SampleResult& result) {
+    player.playTo(1e9, [&](double time_of_session, const SampleResult& result) {
       const CrankStep& step = pipeline.crank().step();
-      if (result.refusal || !step.known()) return;
+      if (time_of_session < test::kSessionWorks || result.refusal || !step.known()) return;
       const DriveReaction drive = driveReaction(pipeline.model(), step.driveInertia());
       const StepLoad load{pipeline.model(), drive, result.hull.motion};
       std::vector<double> times{0.0}, forces{load.at(step.at(0.0)).force_z};
@@ -120,7 +120,7 @@ TEST(StepWrenches, NoInstantOfAStepIsBeyondThem) {
       }
     });
     EXPECT_GT(blows, 8U);
-    EXPECT_LT(beyond, 1e-4 * kPeak) << rate;
+    EXPECT_LT(beyond, 3e-4 * kPeak) << rate;  // the cubic's extreme is some 1 % of 1.25 ms off
   }
 }
 

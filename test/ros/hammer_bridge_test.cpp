@@ -6,6 +6,7 @@
 
 #include <map>
 
+#include "hammer_loads/settings/channel_names.h"
 #include "support/counting_new.h"
 #include "support/session_player.h"
 
@@ -113,6 +114,92 @@ TEST(WhoListens, AndComesBackGetsWhatTheOthersGot) {
     ASSERT_LT(some[topic].size(), all[topic].size()) << topic;
     const std::size_t kept = 3;  // of the end: after it came back
     EXPECT_TRUE(std::equal(some[topic].end() - kept, some[topic].end(), all[topic].end() - kept)) << topic;
+  }
+}
+
+/// Says which pieces came.
+class Notes final : public life::PieceSink {
+ public:
+  void begin(const life::LedgerMachine&, const std::string& run) override { runs.push_back(run); }
+  void add(const life::LifePiece& piece) override { pieces.push_back(piece); }
+  void end(const life::LifePiece& last) override {
+    pieces.push_back(last);
+    ++ended;
+  }
+  std::vector<std::string> runs;
+  std::vector<life::LifePiece> pieces;
+  std::size_t ended{};
+};
+
+TEST(LoadCycles, ComeEachPeriodOfStampsAndAtTheEnd) {
+  HammerBridge bridge(test::settingsWith("life_period_s: 2.0\n"));
+  Notes notes;
+  bridge.keepPieces(notes);
+  std::vector<LoadCycles> counts;
+  bridge.outputs().load_cycles.attach([&](const LoadCycles& count, const ros::Time&) { counts.push_back(count); });
+  play(bridge, 1000.0, true, kNothing);
+  EXPECT_EQ(counts.size(), 3U) << "of 8 s, the last period is not over";
+  bridge.finishCount();
+  bridge.finishCount();
+  ASSERT_EQ(counts.size(), 4U);
+  ASSERT_EQ(notes.pieces.size(), 4U);
+  EXPECT_EQ(notes.ended, 1U);
+  std::uint64_t samples = 0, turns = 0;
+  for (const life::LifePiece& piece : notes.pieces) {
+    samples += piece.counts[1].tally.counted;
+    turns += piece.turns;
+  }
+  EXPECT_EQ(counts.back().channel[1].samples, samples);
+  EXPECT_EQ(counts.back().turns, turns);
+  EXPECT_EQ(counts.back().turns, bridge.outputs().blow.sent());
+  EXPECT_GT(counts.back().turns, counts[1].turns);
+  EXPECT_EQ(counts.back().channel[1].gaps, 1U) << "0.4 s; over 0.1 s the model knows the way";
+  EXPECT_EQ(counts.back().since, counts[0].since);
+}
+
+TEST(LoadCycles, ARunsNameIsThatOfItsInputs) {
+  std::vector<std::string> names;
+  for (const char* with : {"{}", "life_period_s: 1.0\ncrank_zero_rad: 0.001\n", "bulk_modulus_Pa: 1.1e+9\n"}) {
+    HammerBridge bridge(test::settingsWith(with));
+    Notes notes;
+    bridge.keepPieces(notes);
+    play(bridge, 50.0, true, kNothing);
+    bridge.reset();
+    play(bridge, 50.0, true, kNothing);
+    ASSERT_EQ(notes.runs.size(), 2U);
+    EXPECT_EQ(notes.runs[0], notes.runs[1]) << "the same messages";
+    EXPECT_EQ(notes.ended, 1U);
+    names.push_back(notes.runs[0]);
+  }
+  EXPECT_EQ(names[0], names[1]) << "the same machine";
+  EXPECT_NE(names[0], names[2]);
+}
+
+TEST(LoadCycles, BeyondTheFullScaleNameTheirKey) {
+  HammerBridge bridge(test::settingsWith("hull_z_full_scale_greatest: 3000.0\n"));
+  play(bridge, 1000.0, true, kNothing);
+  const std::vector<Warning> warnings = bridge.life().warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].text.find("hull_wrench/force_z_N ("), std::string::npos) << warnings[0].text;
+  EXPECT_NE(warnings[0].text.find("hull_z_full_scale_greatest"), std::string::npos) << warnings[0].text;
+  EXPECT_EQ(warnings[0].text.find("least"), std::string::npos) << warnings[0].text;
+}
+
+TEST(TurnLoadsMessage, ComesWithEachBlowAndNamesEveryChannel) {
+  const Settings settings = test::settingsWith("boom: rigid\n");
+  HammerBridge bridge(settings);
+  std::vector<TurnLoads> turns;
+  bridge.outputs().turn_loads.attach([&](const TurnLoads& turn, const ros::Time&) { turns.push_back(turn); });
+  play(bridge, 1000.0, true, kNothing);
+  ASSERT_GT(turns.size(), 20U);
+  EXPECT_EQ(turns.size(), bridge.outputs().blow.sent());
+  const TurnLoads& last = turns.back();
+  EXPECT_EQ(last.channel, channelNames(&*settings.boom));
+  EXPECT_EQ(last.channel.size(), 3U + 4U + settings.boom->cylinders().size() + 6U * settings.boom->sections().size());
+  ASSERT_EQ(last.minimum.size(), last.channel.size());
+  for (std::size_t i = 0; i < last.channel.size(); ++i) {
+    EXPECT_LE(last.minimum[i], last.mean[i]) << last.channel[i];
+    EXPECT_LE(last.mean[i], last.maximum[i]) << last.channel[i];
   }
 }
 

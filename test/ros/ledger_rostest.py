@@ -26,7 +26,7 @@ TABLES = {'epochs': '*', 'channels': '*', 'runs': 'run, name, epoch, ended', 'da
 
 def contents(path):
     with sqlite3.connect('file:%s?mode=ro' % path, uri=True) as ledger:
-        return {table: ledger.execute('SELECT %s FROM %s ORDER BY 1, 2, 3, 4' % (columns, table)).fetchall()
+        return {table: sorted(ledger.execute('SELECT %s FROM %s' % (columns, table)).fetchall(), key=repr)
                 for table, columns in TABLES.items()}
 
 

@@ -50,7 +50,7 @@ TEST(Load, ShippedFilesAreValid) {
 }
 
 TEST(Load, ShippedFilesOfOneKindEachLoadOverThemselves) {
-  for (const char* name : {"hammer_mo100.yaml", "pipeline.yaml", "log.yaml"}) {
+  for (const char* name : {"hammer_mo100.yaml", "pipeline.yaml", "log.yaml", "life.yaml"}) {
     const Checked<Settings> settings = loadShippedWith({configDirectory() + "/" + name});
     ASSERT_EQ(settings.problems, Lines{}) << name;
     EXPECT_EQ(settings.value->yaml, loadShippedWith({}).value->yaml) << name;
@@ -115,9 +115,31 @@ TEST(Load, DumpHoldsEveryShippedKeyOnce) {
   const ParameterMap dumped = parameterMap(YAML::Load(yaml), "dump", problems).value();
   EXPECT_EQ(problems, Lines{});
   std::size_t shipped = 0;
-  for (const char* name : {"/hammer_mo100.yaml", "/pipeline.yaml", "/log.yaml"})
+  for (const char* name : {"/hammer_mo100.yaml", "/pipeline.yaml", "/log.yaml", "/life.yaml"})
     shipped += readParameterFile(configDirectory() + name, problems)->size();
   EXPECT_EQ(dumped.size(), shipped);
+}
+
+TEST(Load, GivenChannelsReplaceTheShippedOnes) {
+  const std::string arm =
+      "life_channels: [hull_z, arm]\narm_channel: hull_wrench/force_x_N\narm_full_scale_least: -1\n"
+      "arm_full_scale_greatest: 1\n";
+  const TemporaryFile file(arm);
+  const Checked<Settings> settings = loadShippedWith({file.path()});
+  ASSERT_EQ(settings.problems, Lines{});
+  ASSERT_EQ(settings.value->life.channels.size(), 2U);
+  EXPECT_EQ(settings.value->life.channels[0].name, "hull_wrench/force_z_N");
+  EXPECT_EQ(settings.value->life.channels[1].key, "arm");
+  EXPECT_EQ(settings.value->yaml.find("hull_x"), std::string::npos);
+  const TemporaryFile dump(settings.value->yaml);
+  EXPECT_EQ(loadShippedWith({dump.path()}).value->yaml, settings.value->yaml);
+  EXPECT_EQ(problemsOf(arm + "hull_x_full_scale_least: -1\n").size(), 1U) << "given for no channel";
+}
+
+TEST(Load, CountedChannelsMustBeLoadsOfTheMachine) {
+  EXPECT_EQ(problemsOf("hull_x_channel: joint_loads/arm_joint/total_torque_Nm\n"),
+            Lines{"hull_x_channel: \"joint_loads/arm_joint/total_torque_Nm\", must be a load of this machine: "
+                  "hull_wrench/force_x_N, hull_wrench/force_z_N, hull_wrench/torque_y_Nm (FILE:1)"});
 }
 
 TEST(Load, RefusesWhatIsNoYamlMap) {
@@ -147,7 +169,7 @@ TEST(Load, RefusesUnreadableFilesAndNamesEach) {
             (Lines{missing + ": cannot be read: No such file or directory",
                    testing::TempDir() + ": is a directory, must be a YAML file"}));
   const Lines no_config = loadFiles(testing::TempDir() + "nowhere", {}).problems;
-  ASSERT_EQ(no_config.size(), 3U);
+  ASSERT_EQ(no_config.size(), 4U);
   EXPECT_NE(no_config[0].find("nowhere/pipeline.yaml: cannot be read"), std::string::npos) << no_config[0];
 }
 
@@ -333,8 +355,27 @@ TEST_F(LoadBoom, FaultsOfOneDescriptionComeTogether) {
   EXPECT_EQ(loaded(urdf, boom_, "stale_after_s: -1").problems.size(), 3U);
 }
 
+TEST_F(LoadBoom, ItsLoadsMayBeCounted) {
+  const std::string arm = "hull_x_channel: joint_loads/arm_joint/total_torque_Nm\n";
+  EXPECT_EQ(loaded(urdf_, boom_, arm).problems, Lines{});
+  EXPECT_EQ(loaded(urdf_, boom_, "hull_x_channel: joint_loads/arm_cylinder/cylinder_force_N\n").problems, Lines{});
+  EXPECT_EQ(loaded("", "", arm).problems.size(), 1U);
+}
+
+TEST_F(LoadBoom, AMachineIsItsHammerAndItsBoom) {
+  const std::string machine = loaded(urdf_, boom_).value->machine;
+  EXPECT_EQ(loaded(urdf_, boom_, "crank_zero_rad: 0.1\nlife_classes: 64\n").value->machine, machine);
+  EXPECT_NE(loaded(urdf_, with(boom_, "damping_ratio: 0.05", "damping_ratio: 0.06")).value->machine, machine);
+  EXPECT_NE(loaded(urdf_ + "<!-- -->", boom_).value->machine, machine);
+  const auto of = [](const char* key, const char* value) {
+    return loadShippedWith({TemporaryFile(hammerYaml({{key, value}})).path()}).value->machine;
+  };
+  EXPECT_EQ(of("drive_inertia_kg_m2", "1.5"), of("drive_inertia_kg_m2", "2.5"));
+  EXPECT_NE(of("rocker_mass_kg", "36.5"), of("rocker_mass_kg", "37.5"));
+}
+
 TEST(Load, ConfigDirectoryHoldsTheShippedFiles) {
-  for (const char* name : {"hammer_mo100.yaml", "pipeline.yaml", "log.yaml"})
+  for (const char* name : {"hammer_mo100.yaml", "pipeline.yaml", "log.yaml", "life.yaml"})
     EXPECT_TRUE(std::filesystem::is_regular_file(configDirectory() + "/" + name)) << name;
 }
 

@@ -59,11 +59,11 @@ TEST(ReadLife, StressByModulusAreaOrCoefficient) {
   EXPECT_DOUBLE_EQ(toe.influences.at(1).factor, 1e-4);
   EXPECT_FALSE(toe.curve);
   const Read direct =
-      read(kToe + kCurve + "toe_mean_stress: fkm\ntoe_mean_stress_sensitivity: 0.3\nlife_ledger: m.sqlite\n");
+      read(kToe + kCurve + "toe_mean_stress: fkm\ntoe_mean_stress_sensitivity: 0.3\nlife_ledger: /m.sqlite\n");
   EXPECT_EQ(direct.problems, std::vector<std::string>{});
   EXPECT_EQ(direct.settings.hot_spots.at(0).curve->slopeBelow(), 5.0);
   EXPECT_EQ(direct.settings.hot_spots.at(0).mean_stress->sensitivity, 0.3);
-  EXPECT_EQ(direct.settings.ledger, "m.sqlite");
+  EXPECT_EQ(direct.settings.ledger, "/m.sqlite");
   EXPECT_FALSE(read(kToe + kCurve + "toe_mean_stress: none\n").settings.hot_spots.at(0).mean_stress);
 }
 
@@ -83,6 +83,7 @@ TEST(ReadLife, WhatIsWrongIsNamed) {
   EXPECT_EQ(problems(kToe + kCurve), Lines{"toe_mean_stress: missing, must be one of none, fkm"});
   EXPECT_EQ(problems("hull_x_full_scale_greatest: -300000.0").size(), 1U);
   EXPECT_EQ(problems("hull_x_channel: hull_wrench/force_z_N").size(), 1U);
+  EXPECT_EQ(problems("life_ledger: m.sqlite"), Lines{"life_ledger: \"m.sqlite\", must be an absolute path, or none"});
   EXPECT_EQ(problems("life_classes: 1").size(), 1U);
   EXPECT_EQ(problems("toe_full_scale_least_MPa: 0").size(), 1U);  // of no hot spot
   EXPECT_EQ(problems("life_channels: []").size(), 9U);            // keys of no channel

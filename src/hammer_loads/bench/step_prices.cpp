@@ -1,5 +1,6 @@
 #include "hammer_loads/bench/step_prices.h"
 
+#include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/simulation/session.h"
@@ -55,6 +56,21 @@ PriceRow pipelinePrice(const Settings& settings, const char* name, Level level) 
   return {"pipeline", name, costOf(readings.size(), pass), {}, {}};
 }
 
+/// Pipeline, turn loads and cycles of the shipped channels.
+PriceRow countedPrice(const Settings& settings, const char* name, Level level) {
+  const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
+  Pipeline pipeline(settings.mechanism, settingsOf(settings, level, CrankEstimator::kMechanism));
+  LifeFollower follower(pipeline, settings.life);
+  const auto pass = [&] {
+    for (const simulation::CrankReading& r : readings) {
+      keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}));
+      if (follower.due()) follower.take();
+      follower.follow();
+    }
+  };
+  return {"pipeline", name, costOf(readings.size(), pass), {}, {}};
+}
+
 }  // namespace
 
 std::vector<PriceRow> stepPrices(const Settings& settings) {
@@ -63,7 +79,9 @@ std::vector<PriceRow> stepPrices(const Settings& settings) {
           trackerPrice(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
           trackerPrice(settings, "mechanism, linkage", Level::kLinkage, CrankEstimator::kMechanism),
           pipelinePrice(settings, "rocker", Level::kRocker),
-          pipelinePrice(settings, "linkage", Level::kLinkage)};
+          pipelinePrice(settings, "linkage", Level::kLinkage),
+          countedPrice(settings, "rocker, turn loads and cycles", Level::kRocker),
+          countedPrice(settings, "linkage, turn loads and cycles", Level::kLinkage)};
 }
 
 }  // namespace hammer_loads::accuracy

@@ -1,6 +1,7 @@
 #include "hammer_loads/ros/hammer_loads_node.h"
 
 #include <cmath>
+#include <iostream>
 #include <utility>
 
 #include "hammer_loads/ros/attach.h"
@@ -32,8 +33,12 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
 HammerLoadsNode::~HammerLoadsNode() {
   bridge_.finishCount();
   if (!ledger_) return;
-  if (const auto problem = ledger_->close())
-    ROS_ERROR("%s; %zu pieces of the count are not in it", problem->c_str(), ledger_->state().waiting);
+  const std::optional<std::string> problem = ledger_->close();
+  if (!problem) return;
+  const std::string text =
+      *problem + "; " + std::to_string(ledger_->state().waiting) + " pieces of the count are not in it";
+  if (ros::ok()) ROS_ERROR("%s", text.c_str());
+  if (!ros::ok()) std::cerr << text << std::endl;  // the console is down
 }
 
 void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
