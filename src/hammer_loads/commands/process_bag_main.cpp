@@ -84,6 +84,11 @@ std::string usageProblem(const Arguments& given) {
   const auto whole = [](const std::string& name) { return std::filesystem::weakly_canonical(name); };
   if (!given.no_bag && !given.tables.empty() && whole(given.tables) == whole(given.bags.back()))
     return "--db: " + given.tables + ", must be another file than OUT.bag";
+  const std::string other = given.no_bag ? given.tables : given.bags.back();
+  for (const std::string& output : {given.tables, other}) {
+    if (!given.ledger.empty() && !output.empty() && whole(given.ledger) == whole(output))
+      return "--ledger: " + given.ledger + ", must be another file than " + output;
+  }
   return {};
 }
 
