@@ -53,6 +53,7 @@ class Subject:
                         result.add((stamp - first) * 1e-9, value * quantity.factor)
             return result
         sql = "SELECT least, mean, greatest FROM run_figures WHERE run_id = ? AND quantity = ?"
+        result.of_runs = True
         result.begin_run()
         for run in self.runs:
             for row in self.database.rows(sql, run["run_id"], quantity.key):
