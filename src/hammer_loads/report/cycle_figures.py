@@ -25,7 +25,7 @@ def equivalents_table(channels):
                     [number(scaled(cycles[-1][0] if cycles else 0.0, factor)), number(sum(n for _, _, n in cycles), 6),
                      with_deviation(damage), with_deviation(channel.remaining_hours(damage)),
                      f"{channel.below + channel.above}, {channel.skipped}, {channel.gaps}"])
-    header = (["Channel", "Unit"] + [f"Range, slope {m:g}" for m in SLOPES] +
+    header = (["Channel", "Unit"] + [f"Range, slope\u00a0{m:g}" for m in SLOPES] +
               ["Largest range", "Cycles", "Damage", "Hours left", "Saturated, skipped, gaps"])
     return table("Damage-equivalent loads", header, rows)
 
