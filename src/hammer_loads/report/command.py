@@ -64,6 +64,8 @@ def run(given):
 
 
 def write(given, databases):
+    for note in page.notes(databases):
+        print(f"note: {note}", file=sys.stderr)
     if given.html is not None:
         content = page.page(databases, package_version(), given.machine)
         output.publish_file(given.html, content, given.force)

@@ -50,7 +50,8 @@ def overlaid(subjects, segments, charts):
     shown = [s for s in subjects if any(len(v) for v in segments[s.label].values())][:MOST_CURVES]
     content = ""
     if len(shown) < len(subjects):
-        content += paragraph(f"Curves of {len(shown)} of {len(subjects)} machines; those without a turn have none.", "note")
+        content += paragraph(f"Curves of {len(shown)} of {len(subjects)} machines: the first {MOST_CURVES} with a turn.",
+                             "note")
     for quantity in QUANTITIES:
         curves = [segments[s.label][quantity.key] for s in shown]
         longest = max((p[0] for c in curves for run in c.runs for p in run), default=0.0)
