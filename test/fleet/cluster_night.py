@@ -2,7 +2,6 @@
 
 HAMMER_LOADS_PROGRAMS: folder of the built process_bag and report.
 """
-import os
 import pathlib
 import re
 import shutil
@@ -16,7 +15,7 @@ import unittest
 import rosbag
 
 from cluster import Postgres, Slurm
-from support import FLEET, SOURCE
+from fleet_support import FLEET, SOURCE
 
 RECORDED = SOURCE / "test" / "data" / "mo100_100hz.bag"
 BAGS, MACHINES, SECONDS, BROKEN = 200, 5, 6.0, 77

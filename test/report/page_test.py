@@ -3,7 +3,7 @@ import sqlite3
 import statistics
 import unittest
 
-from support import Reader, ReportTest, report
+from support import ReportTest, report
 import sample_database as sample
 
 
