@@ -3,7 +3,7 @@ import pathlib
 import tempfile
 import unittest
 
-from support import SOURCE  # noqa: F401  (sets the path)
+from fleet_support import SOURCE  # noqa: F401  (sets the path)
 import bag_list
 
 

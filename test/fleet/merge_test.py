@@ -5,7 +5,7 @@ import subprocess
 import sys
 import unittest
 
-from support import FLEET, MergeTest
+from fleet_support import FLEET, MergeTest
 import sample_database as sample
 from report.database import Database
 from report.subjects import subjects_of

@@ -2,7 +2,7 @@
 import sqlite3
 import unittest
 
-from support import FleetTest
+from fleet_support import FleetTest
 
 
 class Workflow(FleetTest):

@@ -85,6 +85,16 @@ TEST_F(DownstreamTest, LinksTheLibrariesWithoutRosByTheirOwnNames) {
     EXPECT_EQ(libraries.text.find(other), std::string::npos) << libraries.text;
 }
 
+TEST_F(DownstreamTest, RunsWhatIsPython) {
+  const Answer report = inInstallSpace("rosrun hammer_loads report --version");
+  EXPECT_EQ(report.status, 0) << report.text;
+  EXPECT_EQ(report.text.find("hammer_loads "), 0u) << report.text;
+  const Answer merge = inInstallSpace("$(rospack find hammer_loads)/fleet/merge.py " + (build_ / "m.sqlite").string() +
+                                      " < /dev/null");
+  EXPECT_EQ(merge.status, 0) << merge.text;
+  EXPECT_NE(merge.text.find("0 bags"), std::string::npos) << merge.text;
+}
+
 TEST_F(DownstreamTest, UsesMessagesAndTheLibrariesWithRos) {
   build("use_messages");
   const Answer own = run((build_ / "devel/lib/use_messages/use_messages").string(), build_ / "own.txt");

@@ -86,10 +86,11 @@ class ReportTest(unittest.TestCase):
         self.addCleanup(self._directory.cleanup)
         self.directory = pathlib.Path(self._directory.name)
 
-    def page_of(self, *files, options=()):
+    def page_of(self, *files, options=(), note=""):
+        """`note`: the one that the command gives."""
         out = self.directory / "page.html"
         outcome = report(*files, "--html", out, *options)
-        self.assertEqual((outcome.returncode, outcome.stderr), (0, ""))
+        self.assertEqual((outcome.returncode, outcome.stderr), (0, note and f"note: {note}\n"))
         return Reader(out.read_text(encoding="utf-8"))
 
     def assertRefused(self, outcome, *words, code=1):

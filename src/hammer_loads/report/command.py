@@ -4,9 +4,10 @@ import os
 import pathlib
 import signal
 import sys
+import tempfile
 import xml.etree.ElementTree as ElementTree
 
-from report import csv_tables, output, page
+from report import bags, csv_tables, output, page
 from report.database import Database
 from report.problem import Problem
 
@@ -39,11 +40,14 @@ def parser():
         prog="report", description="One page, and tables, from what process_bag --db and the ledgers hold.",
         epilog="The page needs no other file and no network. Two or more machines are compared. Errors are one line "
                "each; exit code 1, or 2 for wrong usage.")
-    result.add_argument("files", nargs="+", metavar="FILE.sqlite",
-                        help="written by process_bag --db or --ledger, the node's ledger, or a fleet's merged file")
+    result.add_argument("files", nargs="+", metavar="FILE",
+                        help="a database of process_bag --db, a ledger, a fleet's merged file, or a bag")
     result.add_argument("--html", metavar="OUT.html", help="page to write, which must not exist")
     result.add_argument("--csv", metavar="DIRECTORY", help="every table as CSV into a new directory")
     result.add_argument("--machine", metavar="NAME", help="of a fleet's merged file this machine alone")
+    result.add_argument("--params", action="append", default=[], metavar="FILE.yaml",
+                        help="for bags: parameters, as of process_bag; may be repeated")
+    result.add_argument("--urdf", metavar="FILE.urdf", help="for bags: robot description")
     result.add_argument("--force", action="store_true", help="replace what this command wrote")
     result.add_argument("--version", action=Version, nargs=0, help="print the version and end")
     return result
@@ -54,7 +58,14 @@ def run(given):
         output.check_file(given.html, given.files, given.force, page.why_page_must_stay)
     if given.csv is not None:
         output.check_directory(given.csv, given.force, csv_tables.why_directory_must_stay)
-    databases = [Database(path) for path in given.files]
+    with tempfile.TemporaryDirectory(prefix="hammer_loads_report") as folder:
+        write(given, [Database(bags.database_of(path, given.params, given.urdf, folder) if bags.is_bag(path) else path)
+                      for path in given.files])
+
+
+def write(given, databases):
+    for note in page.notes(databases):
+        print(f"note: {note}", file=sys.stderr)
     if given.html is not None:
         content = page.page(databases, package_version(), given.machine)
         output.publish_file(given.html, content, given.force)
@@ -74,6 +85,8 @@ def main(arguments):
     given = options.parse_args(arguments)
     if given.html is None and given.csv is None:
         options.error("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
+    if (given.params or given.urdf) and not any(map(bags.is_bag, given.files)):
+        options.error("--params and --urdf are for bags; a database has its parameters")
     for name in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(name) != signal.SIG_IGN:
             signal.signal(name, interrupted)

@@ -4,7 +4,6 @@ from report.damage import SLOPES
 from report.markup import Raw, duration, in_unit, number, paragraph, scaled, table, utc
 from report.quantities import QUANTITIES
 from report.sensor_health import refusals_of, worst_of
-from report.series import quantile
 
 MOST_CURVES = 8
 MOST_SIDE_BY_SIDE = 4  # beyond: a machine is a row
@@ -18,11 +17,11 @@ def figures_of(subject, segments, channels):
             ("Runs", number(len(subject.runs))), ("Turns", number(subject.total("turns"))),
             ("Blows", number(subject.total("blows")))]
     for quantity in QUANTITIES:
-        values = sorted(segments[quantity.key].middles())
+        _, _, median, _, greatest = segments[quantity.key].statistics()
         unit = f" [{quantity.unit}]" if quantity.unit else ""
-        rows.append((f"{quantity.title}{unit}, median", number(quantile(values, 0.5))))
+        rows.append((f"{quantity.title}{unit}, median", number(median)))
         if quantity.key in ("amplitude_N", "energy_J"):
-            rows.append((f"{quantity.title}{unit}, greatest", number(values[-1] if values else None)))
+            rows.append((f"{quantity.title}{unit}, greatest", number(greatest)))
     for channel in channels:
         factor, unit = in_unit(channel.unit)
         for slope, (value, _) in zip(SLOPES, channel.equivalents()):
@@ -51,7 +50,8 @@ def overlaid(subjects, segments, charts):
     shown = [s for s in subjects if any(len(v) for v in segments[s.label].values())][:MOST_CURVES]
     content = ""
     if len(shown) < len(subjects):
-        content += paragraph(f"Curves of {len(shown)} of {len(subjects)} machines; those without a turn have none.", "note")
+        content += paragraph(f"Curves of {len(shown)} of {len(subjects)} machines: the first {MOST_CURVES} with a turn.",
+                             "note")
     for quantity in QUANTITIES:
         curves = [segments[s.label][quantity.key] for s in shown]
         longest = max((p[0] for c in curves for run in c.runs for p in run), default=0.0)

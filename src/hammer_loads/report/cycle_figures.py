@@ -24,28 +24,34 @@ def equivalents_table(channels):
         rows.append([channel.name, unit] + [with_deviation(f, factor) for f in channel.equivalents(cycles)] +
                     [number(scaled(cycles[-1][0] if cycles else 0.0, factor)), number(sum(n for _, _, n in cycles), 6),
                      with_deviation(damage), with_deviation(channel.remaining_hours(damage)),
-                     channel.below + channel.above, channel.skipped, channel.gaps])
-    header = (["Channel", "Unit"] + [f"Range, slope {m:g}" for m in SLOPES] +
-              ["Largest range", "Cycles", "Damage", "Hours left", "Saturated", "Skipped", "Gaps"])
+                     f"{channel.below + channel.above}, {channel.skipped}, {channel.gaps}"])
+    header = (["Channel", "Unit"] + [f"Range, slope\u00a0{m:g}" for m in SLOPES] +
+              ["Largest range", "Cycles", "Damage", "Hours left", "Saturated, skipped, gaps"])
     return table("Damage-equivalent loads", header, rows)
 
 
-def matrix(cycles):
-    """{(mean's cell, range's cell): count}, least mean, width of a mean's cell, width of a range's cell."""
-    low = min(m for _, m, _ in cycles)
-    high = max(m for _, m, _ in cycles)
-    mean_width = (high - low) / CELLS or max(abs(high), 1.0) / CELLS
-    range_width = cycles[-1][0] / CELLS
+def of_whole_classes(extent, width):
+    """Size of a cell so that CELLS of them cover the extent, a multiple of a class: each holds as many classes."""
+    return max(1, math.ceil(extent * (1 - 1e-9) / (CELLS * width))) * width
+
+
+def matrix(cycles, width):
+    """{(mean's cell, range's cell): count}, least mean, size of a mean's cell, size of a range's cell."""
+    low = min(m for _, m, _ in cycles) - 0.25 * width
+    mean_size = of_whole_classes(max(m for _, m, _ in cycles) + 0.25 * width - low, 0.5 * width)
+    range_size = of_whole_classes(cycles[-1][0] + 0.5 * width, width)
     cells = {}
     for r, mean, n in cycles:
-        key = (min(CELLS - 1, int((mean - low) / mean_width)), min(CELLS - 1, int(r / range_width)))
+        key = (min(CELLS - 1, int((mean - low) / mean_size)), min(CELLS - 1, int(r / range_size)))
         cells[key] = cells.get(key, 0.0) + n
-    return cells, low, mean_width, range_width
+    return cells, low, mean_size, range_size
 
 
-def matrix_picture(cycles, unit, title):
-    cells, low, mean_width, range_width = matrix(cycles)
-    axes = Axes((low, low + CELLS * mean_width), (0.0, CELLS * range_width), f"mean [{unit}]", f"range [{unit}]")
+def matrix_picture(cycles, width, unit, title):
+    cells, low, mean_width, range_width = matrix(cycles, width)
+    across = 1 + max(i for i, _ in cells)
+    up = 1 + max(j for _, j in cells)
+    axes = Axes((low, low + across * mean_width), (0.0, up * range_width), f"mean [{unit}]", f"range [{unit}]")
     most = math.log(1.0 + max(cells.values()))
     for (i, j), n in sorted(cells.items()):
         axes.box(low + i * mean_width, low + (i + 1) * mean_width, j * range_width, (j + 1) * range_width, "heat",
@@ -54,12 +60,13 @@ def matrix_picture(cycles, unit, title):
     return axes.drawn(title)
 
 
-def by_range(cycles):
+def by_range(cycles, width):
     """(from, to, cycles, share of the damage at slopes 3, 5, 10) of each stretch of range."""
-    width = cycles[-1][0] / CELLS
-    rows = [[j * width, (j + 1) * width, 0.0, 0.0, 0.0, 0.0] for j in range(CELLS)]
+    size = of_whole_classes(cycles[-1][0] + 0.5 * width, width)
+    count = 1 + int(cycles[-1][0] / size)
+    rows = [[j * size, (j + 1) * size, 0.0, 0.0, 0.0, 0.0] for j in range(count)]
     for r, _, n in cycles:
-        row = rows[min(CELLS - 1, int(r / width))]
+        row = rows[min(count - 1, int(r / size))]
         row[2] += n
         for at, slope in ((3, 3.0), (4, 5.0), (5, 10.0)):
             row[at] += n * (r / cycles[-1][0]) ** slope
@@ -89,8 +96,9 @@ def channel_pictures(channel):
     cycles = [(r * factor, m * factor, n) for r, m, n in cycles]
     if not cycles:
         return paragraph(f"{channel.name}: no cycle.")
-    rows = by_range(cycles)
-    pictures = figure(matrix_picture(cycles, unit, f"{channel.name}: cycles by range and mean"),
+    width = channel.count.width * factor
+    rows = by_range(cycles, width)
+    pictures = figure(matrix_picture(cycles, width, unit, f"{channel.name}: cycles by range and mean"),
                       f"{channel.name}: cycles by range and mean; the stronger the colour, the more (logarithmic)")
     pictures += figure(histogram_picture(rows, unit, f"{channel.name}: cycles by range"),
                        f"{channel.name}: cycles by range",

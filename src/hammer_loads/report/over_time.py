@@ -2,18 +2,20 @@
 from report.charts import block
 from report.markup import details, number, paragraph, table
 from report.quantities import QUANTITIES
-from report.series import statistics
 
 MOST_POINTS = 600
 
 
 def summary_table(segments):
-    rows = []
+    rows, of_runs = [], any(s.of_runs for s in segments.values())
     for quantity in QUANTITIES:
-        values = segments[quantity.key].middles()
-        if values:
+        values = segments[quantity.key]
+        if len(values):
             unit = f" [{quantity.unit}]" if quantity.unit else ""
-            rows.append([quantity.title + unit] + [number(v) for v in statistics(values)] + [len(values)])
+            rows.append([quantity.title + unit] + [number(v) for v in values.statistics()] + [len(values)])
+    if of_runs:
+        return table("Over all runs: least and greatest of all turns, between them means of runs",
+                     ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Runs"], rows)
     return table("Over all turns", ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Values"], rows)
 
 

@@ -1,7 +1,6 @@
 """Who, when and with which parameters; and what to know first."""
 from report.markup import Raw, details, duration, number, paragraph, table, text, utc
 from report.quantities import QUANTITIES
-from report.series import quantile
 
 MOST_RUNS_SHOWN = 50
 MOST_FAILED_SHOWN = 10
@@ -42,7 +41,7 @@ def key_figures(subject, segments):
     """Medians over the turns, as large numbers."""
     figures = [("at work", duration(subject.total("duration_s"))), ("blows", number(subject.total("blows")))]
     for quantity in QUANTITIES:
-        middle = quantile(sorted(segments[quantity.key].middles()), 0.5)
+        middle = segments[quantity.key].statistics()[2]
         if middle is not None:
             figures.append((quantity.title.lower() + ", median", f"{number(middle, 3)} {quantity.unit}".strip()))
     items = "".join(f"<div><dt>{text(name)}</dt><dd>{text(value)}</dd></div>" for name, value in figures)
@@ -55,9 +54,10 @@ def runs_table(subject):
              run["blows"], run["level"] or "\u2013", f"{run['version']} ({run['revision'][:10]})", run["machine"][:12],
              run["input_sha256"][:12]] for at, run in enumerate(shown, 1)]
     header = ["Run", "From (UTC)", "To (UTC)", "At work", "Turns", "Blows", "Level", "Program", "Machine", "Recording"]
-    more = paragraph(f"{len(subject.runs) - len(shown)} more runs are in the tables.") if len(subject.runs) > len(
-        shown) else ""
-    return table("Runs; machine and recording by the beginning of their hashes", header, rows, numbers=False) + more
+    content = table("Runs; machine and recording by the beginning of their hashes", header, rows, numbers=False)
+    if len(shown) < len(subject.runs):
+        content += paragraph(f"{len(subject.runs) - len(shown)} more runs are in the tables.")
+    return content if len(shown) <= 12 else details(f"{len(subject.runs)} runs", content)
 
 
 def changed_parameters(subject):

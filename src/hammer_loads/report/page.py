@@ -50,6 +50,14 @@ def mixed_machines(databases, subjects):
     return lines
 
 
+def notes(databases):
+    """What a user of the command must know of the files, one line each."""
+    subjects = [s for database in databases for s in subjects_of(database)]
+    lines = mixed_machines(databases, subjects)
+    return lines + [f"{s.label}: {'no whole turn' if s.runs else 'no run at all'}" for s in subjects
+                    if not s.total("turns")]
+
+
 def subject_section(at, subject, segments, charts, most_points):
     name = f"m{at}"
     parts = [("overview", "Who, when, which parameters", overview(subject, segments)),

@@ -7,6 +7,7 @@ class Segments:
 
     def __init__(self):
         self.runs = []
+        self.of_runs = False  # a point is a run, its middle the mean of its turns
 
     def begin_run(self):
         self.runs.append([])
@@ -22,6 +23,13 @@ class Segments:
 
     def middles(self):
         return [point[2] for run in self.runs for point in run]
+
+    def statistics(self):
+        """Least, 5 %, median, 95 %, greatest; of runs the parts between are those of their means."""
+        ordered = sorted(self.middles())
+        points = [point for run in self.runs for point in run]
+        return ([min((p[1] for p in points), default=None)] + [quantile(ordered, part) for part in (0.05, 0.5, 0.95)] +
+                [max((p[3] for p in points), default=None)])
 
     def thinned(self, most):
         """At most some `most` points; neighbours become one with least, mean and greatest. None between two runs."""
@@ -55,9 +63,3 @@ def quantile(ordered, part):
     low = int(at)
     high = min(low + 1, len(ordered) - 1)
     return ordered[low] + (at - low) * (ordered[high] - ordered[low])
-
-
-def statistics(values):
-    """Least, 5 %, median, 95 %, greatest."""
-    ordered = sorted(values)
-    return [quantile(ordered, part) for part in (0.0, 0.05, 0.5, 0.95, 1.0)]

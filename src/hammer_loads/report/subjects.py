@@ -1,5 +1,6 @@
 """What a page is about: one machine's runs in one file, in the order of time."""
 import pathlib
+import re
 
 from report.channel import Channel
 from report.database import FLEET, LEDGER
@@ -53,6 +54,7 @@ class Subject:
                         result.add((stamp - first) * 1e-9, value * quantity.factor)
             return result
         sql = "SELECT least, mean, greatest FROM run_figures WHERE run_id = ? AND quantity = ?"
+        result.of_runs = True
         result.begin_run()
         for run in self.runs:
             for row in self.database.rows(sql, run["run_id"], quantity.key):
@@ -122,6 +124,11 @@ def stem(path):
     return pathlib.Path(path).stem
 
 
+def by_number(name):
+    """Machine 2 before machine 10."""
+    return [(int(part), "") if part.isdigit() else (0, part) for part in re.split(r"([0-9]+)", name)]
+
+
 def fleet_subjects(database, only_machine):
     """Every machine that has a bag, also one whose bags all failed."""
     names = [name for name, in database.rows("SELECT DISTINCT machine FROM bags ORDER BY machine")]
@@ -129,7 +136,8 @@ def fleet_subjects(database, only_machine):
         raise Problem(f"{database.path}: --machine {only_machine}: no bag of it")
     runs = grouped(database.records("SELECT runs.*, bags.machine AS owner FROM runs JOIN bags USING(bag_id) "
                                     "ORDER BY first_stamp_ns, run_key"), "owner")
-    return [Subject(database, name, runs.get(name, [])) for name in names if only_machine in (None, name)]
+    return [Subject(database, name, runs.get(name, [])) for name in sorted(names, key=by_number)
+            if only_machine in (None, name)]
 
 
 def subjects_of(database, only_machine=None):
