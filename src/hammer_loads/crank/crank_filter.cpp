@@ -35,6 +35,7 @@ constexpr double kMostFit = 8.0;           // likewise that one measurement may 
 constexpr double kUnexplained = 3.0;       // mean innovation^2 over its variance
 constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
+constexpr double kForgetDoubts = 30.0;     // [s]
 
 double square(double x) noexcept { return x * x; }
 
@@ -105,6 +106,8 @@ void CrankFilter::anchor(double measured, const CrankSample& sample) noexcept {
   // NaN-proof by min: never above the first guess
   p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
   p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
+  now_.by_error.setZero();
+  now_.by_error.row(Belief::kAngle) = SensorErrors::ofAngle(s.position.angle.offset);
 }
 
 int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noexcept {
@@ -120,7 +123,8 @@ double CrankFilter::angleVariance() const noexcept {
 CrankFilter::Innovation CrankFilter::angleInnovation(double measured) const noexcept {
   const double variance = angleVariance();
   return {CrankAngle::wrapToPi(measured - now_.state.position.angle.offset),
-          now_.covariance(Belief::kAngle, Belief::kAngle) + variance, variance};
+          now_.covariance(Belief::kAngle, Belief::kAngle) + variance, variance,
+          SensorErrors::ofAngle(now_.state.position.angle.offset)};
 }
 
 /// Of a measured speed about the speed at its stamp.
@@ -130,7 +134,8 @@ CrankFilter::Innovation CrankFilter::speedInnovation(double measured) const noex
       (timing_.variance() > 0.0
            ? square(acceleration(model_(now_.state.position.angle), now_.state)) * timing_.variance()
            : 0.0);
-  return {measured - now_.state.speed, explained + speed_variance_, speed_variance_};
+  return {measured - now_.state.speed, explained + speed_variance_, speed_variance_,
+          SensorErrors::ofSpeed(now_.state.position.angle.offset, now_.state.speed)};
 }
 
 void CrankFilter::correctAngle(Innovation innovation) noexcept {
@@ -151,7 +156,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
     inertia = std::max(inertia, square(kRelearn));
   }
   if (surprises_ > kManySurprises) now_.forgetInertiaCoupling();  // they would teach it nonsense
-  now_.correct(Belief::kAngle, innovation.value, innovation.variance);
+  now_.correct(Belief::kAngle, innovation.value, innovation.variance, innovation.by_error);
 }
 
 /// A machine that is not explained for seconds may have been learned wrong while the stamps' jitter was not known.
@@ -159,7 +164,9 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   unlearn_after_ -= dt;
   if (!(consistency_.growth() > kUnexplained) || unlearn_after_ > 0.0) return;
   unlearn_after_ = kUnlearnEvery;
+  doubt_load_ += 1.0;
   now_.state.drive_inertia = first_guess_;
+  now_.by_error.row(Belief::kInertia).setZero();
   now_.forgetInertiaCoupling();
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
   now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
@@ -171,7 +178,8 @@ void CrankFilter::correctSpeed(double measured) noexcept {
   fit_ += logLikelihood(innovation);
   const double squared = std::min(square(innovation.value), kWiden * innovation.total);
   if (square(innovation.value) <= squared)
-    now_.correct(Belief::kSpeed, innovation.value, innovation.total - now_.covariance(Belief::kSpeed, Belief::kSpeed));
+    now_.correct(Belief::kSpeed, innovation.value, innovation.total - now_.covariance(Belief::kSpeed, Belief::kSpeed),
+                 innovation.by_error);
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
 }
@@ -198,7 +206,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, double measured
     now_ = last;
     predict(dt, false, now_);
     const Innovation again = angleInnovation(measured);
-    now_.correct(Belief::kAngle, again.value, again.variance);
+    now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
     if (now_.state.position.isMirrored()) now_.state.position.angle.offset = 0.0;
     return;
   }
@@ -241,11 +249,12 @@ void CrankFilter::followRival(double dt, double measured, const CrankSample& sam
   Innovation innovation = angleInnovation(measured);
   double fit = logLikelihood(innovation);
   innovation.variance = std::max(innovation.variance, square(innovation.value) / kWiden);
-  now_.correct(Belief::kAngle, innovation.value, innovation.variance);
+  now_.correct(Belief::kAngle, innovation.value, innovation.variance, innovation.by_error);
   if (sample.speed) {
     const Innovation speed = speedInnovation(*sample.speed);
     fit += logLikelihood(speed);
-    if (speed.ratio() < kWiden) now_.correct(Belief::kSpeed, speed.value, speed.total - now_.covariance(1, 1));
+    if (speed.ratio() < kWiden)
+      now_.correct(Belief::kSpeed, speed.value, speed.total - now_.covariance(1, 1), speed.by_error);
   }
   std::swap(now_, *rival_);
   evidence_ += std::clamp(fit - fit_, -kMostFit, kMostFit) / consistency_.growth();
@@ -271,7 +280,8 @@ void CrankFilter::rememberBlow(const CrankBelief& last) noexcept {
   const CrankPosition &from = last.state.position, &to = now_.state.position;
   if (from.angle.side != Side::kAfterBlow || to.angle.side != Side::kBeforeBlow || to.blow != from.blow + 1) return;
   if (from.isMirrored() || to.isMirrored()) return;
-  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor));
+  errors_.endTurn(consistency_.growth());
+  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_error.row(Belief::kFactor));
 }
 
 /// A crank that is suddenly slower near the dead centre, or just after it than any blow makes it: the tool. True where
@@ -310,7 +320,8 @@ Tracking CrankFilter::begin(double measured, const CrankSample& sample) noexcept
 
 Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   const CrankBelief last = now_;
-  restart_load_ *= std::exp(-dt / kForgetRestarts);
+  restart_load_ *= std::max(0.0, 1.0 - dt / kForgetRestarts);
+  doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
   step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
   const bool struck = predict(dt, true, now_) > 0;
 
@@ -343,7 +354,10 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
       innovation = angleInnovation(measured);
     }
   }
-  if (has_speed_ && std::abs(now_.state.speed) > kLearnSpeed) consistency_.add(ratio);
+  if (has_speed_ && std::abs(now_.state.speed) > kLearnSpeed) {
+    consistency_.add(ratio);
+    errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.by_error.row(Belief::kAngle));
+  }
   before_ = last;
   before_hull_ = now_hull_;
   step_ = dt;
@@ -382,7 +396,7 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  const auto deviation = [&](Belief::Row row) { return std::sqrt(consistency_.growth() * now_.covariance(row, row)); };
+  const auto deviation = [&](Belief::Row row) { return std::sqrt(grown(now_)(row, row)); };
   return {now_.factor, deviation(Belief::kFactor), now_.state.drive_inertia, deviation(Belief::kInertia)};
 }
 
@@ -439,7 +453,13 @@ Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) co
   if (dt >= step_) return motionCovariance(torque_part);
   CrankBelief belief = before_;
   predict(dt, true, belief);
-  return consistency_.growth() * hammer_loads::motionCovariance(model_, belief, torque_part);
+  return hammer_loads::motionCovariance(model_, belief, grown(belief), torque_part);
+}
+
+/// By what the innovations show beyond the model, and by the sensor's errors, which are not corrected.
+ShaftMatrix CrankFilter::grown(const CrankBelief& belief) const noexcept {
+  const SensorErrors::Effect& effect = belief.by_error;
+  return consistency_.growth() * belief.covariance + (effect * errors_.moment()) * effect.transpose();
 }
 
 }  // namespace hammer_loads

@@ -62,7 +62,7 @@ class CrankFilter final : public CrankTracker {
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
-    return consistency_.growth() * hammer_loads::motionCovariance(model_, now_, torque_part);
+    return hammer_loads::motionCovariance(model_, now_, grown(now_), torque_part);
   }
   bool hasSpeed() const noexcept override { return has_speed_; }
   bool isPlausible() const noexcept override;
@@ -80,18 +80,24 @@ class CrankFilter final : public CrankTracker {
   double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
   double consistency() const noexcept override { return consistency_.mean(); }
+  /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
+  const SensorErrors& sensorErrors() const noexcept { return errors_; }
   /// It began anew so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
+  /// Innovations stay far larger than the model explains, whatever the drive inertia.
+  bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
 
  private:
   struct Innovation {
     double value{}, total{}, variance{};  ///< measured less predicted, its variance, the measurement's part of that
+    SensorErrors::Row by_error{SensorErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
     double ratio() const noexcept { return value * value / total; }
   };
-  static constexpr double kLost = 5.0;
+  static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
   static constexpr double kDoubt = 6.0;                             // logarithm of odds of the other belief
 
+  ShaftMatrix grown(const CrankBelief& belief) const noexcept;
   Innovation angleInnovation(double measured) const noexcept;
   Innovation speedInnovation(double measured) const noexcept;
   double angleVariance() const noexcept;
@@ -123,6 +129,7 @@ class CrankFilter final : public CrankTracker {
   Encoder encoder_;
   TimingNoise timing_;
   Consistency consistency_;
+  SensorErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;                   ///< at the last sample, corrected by it
   ShaftLoad load_;                    ///< there
@@ -138,6 +145,7 @@ class CrankFilter final : public CrankTracker {
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late
   double restart_load_{};  ///< beginnings since long, forgotten within some 2 s
+  double doubt_load_{};    ///< times that the inertia was doubted, forgotten within some 30 s
   bool has_speed_{};
 };
 
