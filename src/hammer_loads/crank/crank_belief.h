@@ -38,6 +38,10 @@ struct CrankBelief {
   /// Scalar measurement of one variable, Joseph form. Slides the position; it may end beyond the blow. by_error: what
   /// the sensor's errors make of the measurement.
   void correct(Row row, double innovation, double variance, const SensorErrors::Row& by_error) noexcept;
+  /// The same of a speed whose innovation has the variance `total`.
+  void correctSpeed(double innovation, double total, const SensorErrors::Row& measured) noexcept {
+    correct(kSpeed, innovation, total - covariance(kSpeed, kSpeed), measured);
+  }
   /// The coming correction teaches nothing of the inertia.
   void forgetInertiaCoupling() noexcept;
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.

@@ -6,10 +6,12 @@
 
 #include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
+#include "hammer_loads/crank/contact_rival.h"
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/crank/timing_noise.h"
+#include "hammer_loads/crank/weighed_sample.h"
 
 namespace hammer_loads {
 
@@ -67,7 +69,7 @@ class CrankFilter final : public CrankTracker {
   bool hasSpeed() const noexcept override { return has_speed_; }
   bool isPlausible() const noexcept override;
   BlowFactor blowFactor() const noexcept override;
-  bool isDoubtful() const noexcept override { return rival_ && evidence_ > kDoubt; }
+  bool isDoubtful() const noexcept override { return rival_.isDoubtful(); }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }
 
@@ -88,36 +90,30 @@ class CrankFilter final : public CrankTracker {
   bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
 
  private:
-  struct Innovation {
-    double value{}, total{}, variance{};  ///< measured less predicted, its variance, the measurement's part of that
-    SensorErrors::Row by_error{SensorErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
-    double ratio() const noexcept { return value * value / total; }
-  };
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
-  static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
-  static constexpr double kDoubt = 6.0;                             // logarithm of odds of the other belief
 
   ShaftMatrix grown(const CrankBelief& belief) const noexcept;
-  Innovation angleInnovation(double measured) const noexcept;
-  Innovation speedInnovation(double measured) const noexcept;
-  double angleVariance() const noexcept;
-  CrankSample ofCrank(const CrankSample& reading) noexcept;
+  WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
-  void correctAngle(Innovation innovation) noexcept;
-  void doubtInertia(double dt) noexcept;
-  void correctSpeed(double measured) noexcept;
-  void settleSide(const CrankBelief& last, double dt, double measured, bool struck) noexcept;
-  void respectCount(double reading) noexcept;
-  void rememberBlow(const CrankBelief& last) noexcept;
-  void meetRival() noexcept;
-  void followRival(double dt, double measured, const CrankSample& sample) noexcept;
-  bool chooseBelief() noexcept;
-  bool meetsTool(double dt, const Innovation& angle, const CrankSample& sample) noexcept;
+  bool meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool isContradiction(double dt, const Innovation& innovation) const noexcept;
-  Tracking begin(double measured, const CrankSample& sample) noexcept;
+  std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,
+                                     const WeighedSample& sample) noexcept;
+  bool correct(const CrankBelief& last, double dt, bool struck, const Innovation& innovation,
+               const WeighedSample& sample, double reading) noexcept;
+  void correctAngle(Innovation innovation) noexcept;
+  void settleSide(const CrankBelief& last, double dt, const WeighedSample& sample, bool struck) noexcept;
+  void respectCount(double reading) noexcept;
+  void correctSpeed(const WeighedSample& sample) noexcept;
+  void meetRival(const CrankBelief& belief) noexcept;
+  void learnFrom(const Innovation& innovation, double ratio) noexcept;
+  void rememberBlow(const CrankBelief& last) noexcept;
+  void doubtInertia(double dt) noexcept;
+  Tracking begin(const WeighedSample& sample) noexcept;
+  void anchor(const WeighedSample& sample) noexcept;
   bool hasRunAway(const ShaftState& state) const noexcept;
-  void anchor(double measured, const CrankSample& sample) noexcept;
   double mostSpeed() const noexcept;
+  double mostTorque() const noexcept;
 
   ShaftModel model_;        ///< with the latest motion of the hull
   ShaftModel step_model_;   ///< with its mean over the step between the last two samples
@@ -131,16 +127,14 @@ class CrankFilter final : public CrankTracker {
   Consistency consistency_;
   SensorErrors errors_;
   BlowHistory blows_;
-  CrankBelief now_;                   ///< at the last sample, corrected by it
-  ShaftLoad load_;                    ///< there
-  CrankBelief before_;                ///< at the last but one sample
-  double step_{};                     ///< between these two [s]
-  std::optional<CrankBelief> rival_;  ///< the same samples with contact where now_ has none, or the other way round
-  bool mirrored_{};                   ///< now_ had no contact and is on the mirrored branch
-  double evidence_{};                 ///< logarithm of the odds of rival_ against now_
-  double fit_{};                      ///< logarithm of the last sample's likelihood by now_
-  double turns_with_{kTurnsWith}, turns_without_{kTurnsWithout};  ///< contact, so far
-  double speed_variance_;                                         ///< of measured speeds, as identified [rad2/s2]
+  CrankBelief now_;        ///< at the last sample, corrected by it
+  ShaftLoad load_;         ///< there
+  CrankBelief before_;     ///< at the last but one sample
+  double step_{};          ///< between these two [s]
+  ContactRival rival_;     ///< the same samples with contact where now_ has none, or the other way round
+  bool mirrored_{};        ///< now_ had no contact and is on the mirrored branch
+  double fit_{};           ///< logarithm of the last sample's likelihood by now_
+  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
   double outlier_{};       ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late

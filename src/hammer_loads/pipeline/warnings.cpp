@@ -67,7 +67,7 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, std::ve
 /// Where the encoder sits. An error that the innovations show is named with what else looks the same.
 void warnOfPlace(const SensorErrors& errors, std::vector<Warning>& warnings) {
   constexpr double kDegree = kTwoPi / 360.0;
-  constexpr double kZero = 0.25 * kDegree;         // from there on the wrench is some 0.7 % worse
+  constexpr double kZero = 0.3 * kDegree;          // from there on the wrench is some 0.9 % worse
   constexpr double kEccentricity = 0.5 * kDegree;  // likewise
   constexpr double kDeviations = 2.0;
   const SensorErrors::Vector &found = errors.estimate(), &deviation = errors.deviation();

@@ -52,6 +52,7 @@ class HammerRuns {
   }
 
   void end() {
+    flow_->end();
     add(flow_->pipeline().counts(), report_.crank);
     report_.wrenches += flow_->outputs().hull_wrench.sent();
     report_.turns += flow_->outputs().blow.sent();
