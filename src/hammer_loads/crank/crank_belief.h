@@ -6,7 +6,7 @@
 
 namespace hammer_loads {
 
-/// What nobody measures, as random walks.
+/// What is not measured, as random walks.
 struct CrankWalks {
   double torque{};   ///< of the net torque [N m/sqrt(s)]
   double speed{};    ///< of the speed [rad/s/sqrt(s)]

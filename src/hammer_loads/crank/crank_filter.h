@@ -32,22 +32,17 @@ struct CrankFilterSettings {
   double blow_deviation{0.25};         ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
 };
 
-/// Extended Kalman filter, state: angle, speed, net torque, drive inertia (model.md 6), factor of the last blow on the
-/// crank's speed. The step between samples and its linearisation are advance()'s, through the blow as well.
+/// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
+/// speed. The step between samples and its linearisation are advance()'s, through the blow as well. Steps (1) to (10)
+/// of model.md 6.
 ///
 /// Learned beside the state: drive inertia within a few turns; encoder count, noise of measured speeds and jitter of
-/// the stamps within some hundred samples. An angle's variance is count^2/12 + noise^2 + (w sigma_t)^2.
+/// the stamps within some hundred samples; what the blows do within ten of them.
 ///
-/// An angle that the model cannot explain within 5 standard deviations widens the filter's uncertainty until it can: a
-/// supply that behaves otherwise than a slow random walk is followed with less smoothing, not refused, and teaches
-/// nothing of the inertia. Where such angles are frequent, on either side, a single one is rather its stamp's fault and
-/// gets less trust. A speed that far off is not used. Where following the angle would change the speed by a third, the
-/// sample is an outlier; a second one in a row that agrees with it is believed, and begins anew without the speed it
-/// tells. Near the blow neither is an outlier: the tool may be met some degrees early or take most of the speed.
-///
-/// At each blow a second belief goes on without contact: a rocker that finds no tool passes the dead centre onto the
-/// mirrored branch and comes back a turn later. Both take the same samples until one is far more likely; the likelier
-/// one is the estimate.
+/// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
+/// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
+/// row that agrees with it is believed, and begins anew. Near the blow it is none: the tool may be met some degrees
+/// early or take most of the speed.
 class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
