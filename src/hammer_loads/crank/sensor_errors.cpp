@@ -11,7 +11,7 @@ constexpr int kTurnsToKnow = 6;                          // nothing is concluded
 constexpr double kMemory = 300.0;                        // turns: a minute at work
 constexpr double kUnmodelled[3] = {1.7e-3, 2e-3, 4e-3};  // [rad] what a clean machine shows: 0.10, 0.11, 0.23 deg
 constexpr double kUnmodelledDeviations = 2.5;            // likewise, where it is seen less well
-constexpr double kUnseenDeviations = 0.8;                // of what is not seen: 88 to 99 % of the wrench's errors
+constexpr double kUnseenDeviations = 0.6;                // of what is not seen: 88 to 99 % of the wrench's errors
                                                          // then lie within two deviations (simulated machines)
 
 double square(double x) noexcept { return x * x; }
