@@ -57,6 +57,14 @@ TEST(Calibrate, WritesParametersThatEveryOtherCommandReads) {
   EXPECT_EQ(contentOf(output.path()), before);  // the same input gives the same bytes
 }
 
+TEST(Calibrate, ReplacesNothingThatItDidNotWrite) {
+  const TemporaryFile others("crank_zero_rad: 0.1\n");
+  const Outcome outcome = run(kBag + " --force --write " + others.path());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("no calibration"), std::string::npos) << outcome.err;
+  EXPECT_EQ(contentOf(others.path()), "crank_zero_rad: 0.1\n");
+}
+
 TEST(Calibrate, RefusesWhatItCannotUse) {
   const FreeName output;
   const Outcome no_topic = run(kBag + " --crank-topic /other --write " + output.path());

@@ -56,7 +56,7 @@ std::string textOf(const Calibration& c) {
 
 std::string yamlOf(const Calibration& c, const std::string& source) {
   if (!anyDetermined(c)) return {};
-  std::string text = "# Crank sensor and drive of one machine, found by calibrate from " + source + ":\n";
+  std::string text = std::string(kYamlBegins) + " " + source + ":\n";
   text += format(
       "# %.1f s, %zu blows, residuals %.3f of their deviation, %.3f in the last quarter with the values of the "
       "first three.\n",
@@ -91,9 +91,9 @@ std::string svgOf(const Calibration& c) {
   const auto x = [&](double part) { return kLeft + (kWidth - kLeft - kRight) * part; };
   const auto y = [&](double value) { return kTop + (kHeight - kTop - kBottom) * 0.5 * (1.0 - value / largest); };
   std::string svg = format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" font-family=\"sans-serif\" "
+      "%s xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" font-family=\"sans-serif\" "
       "font-size=\"13\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
-      kWidth, kHeight);
+      kSvgBegins, kWidth, kHeight);
   svg += format(
       "<text x=\"%.0f\" y=\"24\" font-size=\"16\">Mean residual of the crank angle over a turn, %zu blows</text>\n",
       kLeft, c.blows);

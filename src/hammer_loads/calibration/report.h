@@ -7,6 +7,10 @@
 
 namespace hammer_loads::calibration {
 
+/// How the files begin: by that their writer knows them again.
+constexpr const char* kYamlBegins = "# Crank sensor and drive of one machine, found by calibrate from";
+constexpr const char* kSvgBegins = "<svg id=\"hammer_loads_calibration\"";
+
 /// Some ten lines for a terminal.
 std::string textOf(const Calibration& calibration);
 /// Keys that are determined, each with its deviation; for `--params`.

@@ -5,6 +5,7 @@
 
 #include "hammer_loads/calibration/report.h"
 #include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/ros/crank_recording_bag.h"
 
 namespace hammer_loads {
@@ -15,34 +16,25 @@ namespace fs = std::filesystem;
 /// With another ending in place of the last one.
 std::string pictureBeside(const std::string& file) { return fs::path(file).replace_extension(".svg").string(); }
 
-/// Empty, or one line why a file may not be written.
-std::string refusal(const std::string& file, const std::vector<std::string>& inputs, bool force) {
-  std::error_code error;
-  for (const std::string& input : inputs) {
-    if (fs::equivalent(file, input, error)) return file + ": is an input, must be another file";
-  }
-  const fs::file_status status = fs::symlink_status(file, error);
-  if (!fs::exists(status)) return {};
-  if (!fs::is_regular_file(status)) return file + ": is no regular file, must be one or not exist";
-  return force ? std::string{} : file + ": exists, must not (--force replaces it)";
+/// Why an existing file must stay; empty: this command wrote it.
+std::string whyFileMustStay(const std::string& name) {
+  std::string line;
+  std::getline(std::ifstream(name), line);
+  const bool ours = line.rfind(calibration::kYamlBegins, 0) == 0 || line.rfind(calibration::kSvgBegins, 0) == 0;
+  return ours ? "" : "it holds no calibration";
 }
 
-/// Complete or not at all.
-bool write(const std::string& file, const std::string& text) {
-  const std::string part = file + ".part";
-  {
-    std::ofstream stream(part, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) {
-      std::cerr << file << ": cannot be written\n";
-      std::remove(part.c_str());
-      return false;
-    }
+/// Files and what goes into them: first all are filled, then all get their names. False: said why.
+bool write(std::vector<OutputFile>& files, const std::vector<std::string>& names,
+           const std::vector<std::string>& texts) {
+  std::string problem;
+  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) {
+    std::ofstream stream(files[i].path(), std::ios::binary);
+    if (!((stream << texts[i]) && stream.flush())) problem = names[i] + ": cannot be written";
   }
-  std::error_code error;
-  fs::rename(part, file, error);
-  if (error) std::cerr << file << ": cannot be written: " << error.message() << '\n';
-  return !error;
+  for (std::size_t i = 0; i < files.size() && problem.empty(); ++i) problem = files[i].publish();
+  if (!problem.empty()) std::cerr << problem << '\n';
+  return problem.empty();
 }
 
 calibration::Globals inForce(const CrankSensor& sensor) {
@@ -79,12 +71,17 @@ int run(int argc, const char* const* argv) {
   const std::string picture = pictureBeside(output);
   std::vector<std::string> inputs = bags;
   inputs.insert(inputs.end(), params.begin(), params.end());
-  for (const std::string& file : {output, picture}) {
-    const std::string problem = refusal(file, inputs, force);
-    if (problem.empty() && file != output) continue;
-    if (problem.empty() && picture != output) continue;
-    std::cerr << (problem.empty() ? output + ": ends in .svg, must be a name for YAML" : problem) << '\n';
+  if (picture == output) {
+    std::cerr << output << ": ends in .svg, must be a name for YAML\n";
     return kExitFailure;
+  }
+  endCleanlyOnSignals();
+  std::vector<OutputFile> files;
+  for (const std::string& file : {output, picture}) {
+    Checked<OutputFile> made = OutputFile::make({file, inputs, force, whyFileMustStay});
+    for (const std::string& problem : made.problems) std::cerr << problem << '\n';
+    if (!made.value) return kExitFailure;
+    files.push_back(*std::move(made.value));
   }
   const std::optional<Settings> settings = loadOrReport(params);
   if (!settings) return kExitFailure;
@@ -109,7 +106,7 @@ int run(int argc, const char* const* argv) {
   const calibration::Calibration found = calibration::calibrate(bag.samples, basis);
   const std::string yaml = found.problem.empty() ? yamlOf(found, fs::path(bags.front()).filename().string()) : "";
   (yaml.empty() ? std::cerr : std::cout) << (found.problem.empty() ? "" : bags.front() + ": ") << textOf(found);
-  if (yaml.empty() || !write(output, yaml) || !write(picture, svgOf(found))) return kExitFailure;
+  if (yaml.empty() || !write(files, {output, picture}, {yaml, svgOf(found)})) return kExitFailure;
   return finishOutput();
 }
 

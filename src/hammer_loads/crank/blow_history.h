@@ -15,17 +15,18 @@ class BlowHistory {
   explicit BlowHistory(const BlowPrior& first) noexcept
       : first_(first), mean_(first.mean), variance_(first.deviation * first.deviation) {}
 
-  /// factor of a blow and its variance, by all samples since.
-  void add(double factor, double variance) noexcept {
+  /// factor of a blow, its variance and its derivative by the sensor's errors, by all samples since.
+  void add(double factor, double variance, const SensorErrors::Row& by_error) noexcept {
     if (!(variance < 0.25 * variance_ || variance < kLeast * kLeast)) return;  // nothing was learned of it
     if (blows_ < kLength) ++blows_;
     const double gain = 1.0 / (blows_ + kFirstCounts), off = factor - mean_;
     mean_ += gain * off;
+    by_error_ += gain * (by_error - by_error_);
     variance_ += gain * (off * off - variance_);
   }
 
   BlowPrior prior() const noexcept {
-    return {mean_, std::clamp(std::sqrt(variance_), std::min(kLeast, first_.deviation), kMost)};
+    return {mean_, std::clamp(std::sqrt(variance_), std::min(kLeast, first_.deviation), kMost), by_error_};
   }
 
  private:
@@ -36,6 +37,7 @@ class BlowHistory {
   static constexpr double kMost = 0.3;
   BlowPrior first_;
   double mean_, variance_;
+  SensorErrors::Row by_error_{SensorErrors::Row::Zero()};
   int blows_{};
 };
 

@@ -22,6 +22,7 @@ void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
   covariance.row(kFactor).setZero();
   covariance.col(kFactor).setZero();
   covariance(kFactor, kFactor) = square(prior.deviation);
+  by_error.row(kFactor) = prior.by_error;
 }
 
 int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
@@ -41,6 +42,7 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
       tool_met = false;
     }
     const ShaftTransition& f = step.transition;
+    by_error.topRows<2>() = (f * by_error).eval();
     const ShaftTransition moved = f * covariance;
     covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
     covariance.topRightCorner<2, 3>() = moved.rightCols<3>();
@@ -56,7 +58,8 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
   return blows;
 }
 
-void CrankBelief::correct(Row row, double innovation, double variance) noexcept {
+void CrankBelief::correct(Row row, double innovation, double variance,
+                          const SensorErrors::Row& measured_by_error) noexcept {
   const double total = covariance(row, row) + variance;
   using Vector = Eigen::Matrix<double, 5, 1>;
   const Vector gain = covariance.col(row) / total;
@@ -68,6 +71,7 @@ void CrankBelief::correct(Row row, double innovation, double variance) noexcept 
       state.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
   state.drive_inertia = std::clamp(inertia, least_inertia, most_inertia);
   factor = std::clamp(factor + change[kFactor], kLeastFactor, kMostFactor);
+  by_error += gain * (measured_by_error - by_error.row(row)).eval();
   // (1 - K H) P (1 - K H)' + K R K' with H one row of the identity
   const ShaftMatrix left = covariance - gain * covariance.row(row);
   covariance = left - left.col(row) * gain.transpose() + gain * (variance * gain.transpose());
@@ -93,6 +97,7 @@ void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn) noex
   ShaftTransition f = ShaftTransition::Identity();
   ShaftLoad load;
   passBlow(model, prior.mean, state, load, f);
+  by_error.topRows<2>() = (f * by_error).eval();
   const ShaftTransition moved = f * covariance;
   covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
   covariance.topRightCorner<2, 3>() = moved.rightCols<3>();
@@ -121,7 +126,8 @@ bool CrankBelief::isSound(double most_speed) const noexcept {
 }
 
 /// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.
-Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, double torque_part) noexcept {
+Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, const ShaftMatrix& covariance,
+                                 double torque_part) noexcept {
   const ShaftState& state = belief.state;
   const ShaftLoad load = model(state.position.angle);
   const double inv = 1.0 / (state.drive_inertia + load.inertia);
@@ -137,7 +143,7 @@ Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& bel
   jacobian(2, CrankBelief::kTorque) = inv * torque_part;
   jacobian(2, CrankBelief::kInertia) =
       -(acceleration(load, state) + load.hull_acceleration) * state.drive_inertia * inv;
-  return jacobian * belief.covariance.topLeftCorner<4, 4>() * jacobian.transpose();
+  return jacobian * covariance.topLeftCorner<4, 4>() * jacobian.transpose();
 }
 
 }  // namespace hammer_loads

@@ -2,10 +2,11 @@
 #pragma once
 
 #include "hammer_loads/crank/crank_dynamics.h"
+#include "hammer_loads/crank/sensor_errors.h"
 
 namespace hammer_loads {
 
-/// What nobody measures, as random walks.
+/// What is not measured, as random walks.
 struct CrankWalks {
   double torque{};   ///< of the net torque [N m/sqrt(s)]
   double speed{};    ///< of the speed [rad/s/sqrt(s)]
@@ -14,8 +15,9 @@ struct CrankWalks {
 
 /// What is known of a blow before it comes: the factor on the crank's speed is drawn anew each time.
 struct BlowPrior {
-  double mean{1.0};    ///< [-], > 0
-  double deviation{};  ///< [-]
+  double mean{1.0};                                       ///< [-], > 0
+  double deviation{};                                     ///< [-]
+  SensorErrors::Row by_error{SensorErrors::Row::Zero()};  ///< d(mean)/d(sensor's errors), as it was learned with them
 };
 
 /// Gaussian belief: angle, speed, torque, logarithm of drive inertia, factor of the last blow.
@@ -24,16 +26,22 @@ struct CrankBelief {
 
   ShaftState state;
   ShaftMatrix covariance{ShaftMatrix::Zero()};
-  double factor{1.0};      ///< of the last blow
-  double least_inertia{};  ///< bounds of the drive inertia [kg m2]
-  double most_inertia{};   ///< likewise
-  bool tool_met{};         ///< before the dead centre: nothing strikes there any more
+  SensorErrors::Effect by_error{SensorErrors::Effect::Zero()};  ///< d(this, rows as above)/d(sensor's errors)
+  double factor{1.0};                                           ///< of the last blow
+  double least_inertia{};                                       ///< bounds of the drive inertia [kg m2]
+  double most_inertia{};                                        ///< likewise
+  bool tool_met{};  ///< before the dead centre: nothing strikes there any more
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
               double dt) noexcept;
-  /// Scalar measurement of one variable, Joseph form. Slides the position; it may end beyond the blow.
-  void correct(Row row, double innovation, double variance) noexcept;
+  /// Scalar measurement of one variable, Joseph form. Slides the position; it may end beyond the blow. by_error: what
+  /// the sensor's errors make of the measurement.
+  void correct(Row row, double innovation, double variance, const SensorErrors::Row& by_error) noexcept;
+  /// The same of a speed whose innovation has the variance `total`.
+  void correctSpeed(double innovation, double total, const SensorErrors::Row& measured) noexcept {
+    correct(kSpeed, innovation, total - covariance(kSpeed, kSpeed), measured);
+  }
   /// The coming correction teaches nothing of the inertia.
   void forgetInertiaCoupling() noexcept;
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.
@@ -48,7 +56,9 @@ struct CrankBelief {
   void drawFactor(const BlowPrior& prior) noexcept;
 };
 
-/// Covariance of (angle, speed, acceleration); torque_part of the torque's deviation counts.
-Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, double torque_part) noexcept;
+/// Covariance of (angle, speed, acceleration) where the belief's is `covariance`; torque_part of the torque's deviation
+/// counts.
+Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, const ShaftMatrix& covariance,
+                                 double torque_part) noexcept;
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// How the crank moves when nobody measures it: the mechanism's own equation of motion.
+/// How the crank moves by itself: the mechanism's own equation of motion.
 #pragma once
 
 #include <Eigen/Core>

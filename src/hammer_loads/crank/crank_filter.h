@@ -6,10 +6,12 @@
 
 #include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
+#include "hammer_loads/crank/contact_rival.h"
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/crank/timing_noise.h"
+#include "hammer_loads/crank/weighed_sample.h"
 
 namespace hammer_loads {
 
@@ -30,22 +32,17 @@ struct CrankFilterSettings {
   double blow_deviation{0.25};         ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
 };
 
-/// Extended Kalman filter, state: angle, speed, net torque, drive inertia (model.md 6), factor of the last blow on the
-/// crank's speed. The step between samples and its linearisation are advance()'s, through the blow as well.
+/// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
+/// speed. The step between samples and its linearisation are advance()'s, through the blow as well. Steps (1) to (10)
+/// of model.md 6.
 ///
 /// Learned beside the state: drive inertia within a few turns; encoder count, noise of measured speeds and jitter of
-/// the stamps within some hundred samples. An angle's variance is count^2/12 + noise^2 + (w sigma_t)^2.
+/// the stamps within some hundred samples; what the blows do within ten of them.
 ///
-/// An angle that the model cannot explain within 5 standard deviations widens the filter's uncertainty until it can: a
-/// supply that behaves otherwise than a slow random walk is followed with less smoothing, not refused, and teaches
-/// nothing of the inertia. Where such angles are frequent, on either side, a single one is rather its stamp's fault and
-/// gets less trust. A speed that far off is not used. Where following the angle would change the speed by a third, the
-/// sample is an outlier; a second one in a row that agrees with it is believed, and begins anew without the speed it
-/// tells. Near the blow neither is an outlier: the tool may be met some degrees early or take most of the speed.
-///
-/// At each blow a second belief goes on without contact: a rocker that finds no tool passes the dead centre onto the
-/// mirrored branch and comes back a turn later. Both take the same samples until one is far more likely; the likelier
-/// one is the estimate.
+/// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
+/// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
+/// row that agrees with it is believed, and begins anew. Near the blow it is none: the tool may be met some degrees
+/// early or take most of the speed.
 class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
@@ -62,12 +59,12 @@ class CrankFilter final : public CrankTracker {
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
-    return consistency_.growth() * hammer_loads::motionCovariance(model_, now_, torque_part);
+    return hammer_loads::motionCovariance(model_, now_, grown(now_), torque_part);
   }
   bool hasSpeed() const noexcept override { return has_speed_; }
   bool isPlausible() const noexcept override;
   BlowFactor blowFactor() const noexcept override;
-  bool isDoubtful() const noexcept override { return rival_ && evidence_ > kDoubt; }
+  bool isDoubtful() const noexcept override { return rival_.isDoubtful(); }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }
 
@@ -80,38 +77,38 @@ class CrankFilter final : public CrankTracker {
   double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
   double consistency() const noexcept override { return consistency_.mean(); }
+  /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
+  const SensorErrors& sensorErrors() const noexcept { return errors_; }
   /// It began anew so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
+  /// Innovations stay far larger than the model explains, whatever the drive inertia.
+  bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
 
  private:
-  struct Innovation {
-    double value{}, total{}, variance{};  ///< measured less predicted, its variance, the measurement's part of that
-    double ratio() const noexcept { return value * value / total; }
-  };
-  static constexpr double kLost = 5.0;
-  static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
-  static constexpr double kDoubt = 6.0;                             // logarithm of odds of the other belief
+  static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
 
-  Innovation angleInnovation(double measured) const noexcept;
-  Innovation speedInnovation(double measured) const noexcept;
-  double angleVariance() const noexcept;
-  CrankSample ofCrank(const CrankSample& reading) noexcept;
+  ShaftMatrix grown(const CrankBelief& belief) const noexcept;
+  WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
-  void correctAngle(Innovation innovation) noexcept;
-  void doubtInertia(double dt) noexcept;
-  void correctSpeed(double measured) noexcept;
-  void settleSide(const CrankBelief& last, double dt, double measured, bool struck) noexcept;
-  void respectCount(double reading) noexcept;
-  void rememberBlow(const CrankBelief& last) noexcept;
-  void meetRival() noexcept;
-  void followRival(double dt, double measured, const CrankSample& sample) noexcept;
-  bool chooseBelief() noexcept;
-  bool meetsTool(double dt, const Innovation& angle, const CrankSample& sample) noexcept;
+  bool meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool isContradiction(double dt, const Innovation& innovation) const noexcept;
-  Tracking begin(double measured, const CrankSample& sample) noexcept;
+  std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,
+                                     const WeighedSample& sample) noexcept;
+  bool correct(const CrankBelief& last, double dt, bool struck, const Innovation& innovation,
+               const WeighedSample& sample, double reading) noexcept;
+  void correctAngle(Innovation innovation) noexcept;
+  void settleSide(const CrankBelief& last, double dt, const WeighedSample& sample, bool struck) noexcept;
+  void respectCount(double reading) noexcept;
+  void correctSpeed(const WeighedSample& sample) noexcept;
+  void meetRival(const CrankBelief& belief) noexcept;
+  void learnFrom(const Innovation& innovation, double ratio) noexcept;
+  void rememberBlow(const CrankBelief& last) noexcept;
+  void doubtInertia(double dt) noexcept;
+  Tracking begin(const WeighedSample& sample) noexcept;
+  void anchor(const WeighedSample& sample) noexcept;
   bool hasRunAway(const ShaftState& state) const noexcept;
-  void anchor(double measured, const CrankSample& sample) noexcept;
   double mostSpeed() const noexcept;
+  double mostTorque() const noexcept;
 
   ShaftModel model_;        ///< with the latest motion of the hull
   ShaftModel step_model_;   ///< with its mean over the step between the last two samples
@@ -123,21 +120,21 @@ class CrankFilter final : public CrankTracker {
   Encoder encoder_;
   TimingNoise timing_;
   Consistency consistency_;
+  SensorErrors errors_;
   BlowHistory blows_;
-  CrankBelief now_;                   ///< at the last sample, corrected by it
-  ShaftLoad load_;                    ///< there
-  CrankBelief before_;                ///< at the last but one sample
-  double step_{};                     ///< between these two [s]
-  std::optional<CrankBelief> rival_;  ///< the same samples with contact where now_ has none, or the other way round
-  bool mirrored_{};                   ///< now_ had no contact and is on the mirrored branch
-  double evidence_{};                 ///< logarithm of the odds of rival_ against now_
-  double fit_{};                      ///< logarithm of the last sample's likelihood by now_
-  double turns_with_{kTurnsWith}, turns_without_{kTurnsWithout};  ///< contact, so far
-  double speed_variance_;                                         ///< of measured speeds, as identified [rad2/s2]
+  CrankBelief now_;        ///< at the last sample, corrected by it
+  ShaftLoad load_;         ///< there
+  CrankBelief before_;     ///< at the last but one sample
+  double step_{};          ///< between these two [s]
+  ContactRival rival_;     ///< the same samples with contact where now_ has none, or the other way round
+  bool mirrored_{};        ///< now_ had no contact and is on the mirrored branch
+  double fit_{};           ///< logarithm of the last sample's likelihood by now_
+  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
   double outlier_{};       ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late
   double restart_load_{};  ///< beginnings since long, forgotten within some 2 s
+  double doubt_load_{};    ///< times that the inertia was doubted, forgotten within some 30 s
   bool has_speed_{};
 };
 

@@ -27,7 +27,7 @@ struct CrankEstimate {
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
-  double drive_inertia{};      ///< Jc, with which it tells the restitution [kg m2]; 0: not known
+  double drive_inertia{};      ///< Jc, with which it gives the restitution [kg m2]; 0: not known
   double inertia_deviation{};  ///< relative [-]
 };
 

@@ -13,7 +13,7 @@ namespace hammer_loads {
 /// An encoder counts down to the last whole count, so a reading means the middle of its count. The count is read off
 /// the readings: the largest whole part of a turn of which all their differences are multiples. Until enough of them
 /// have come the given count holds, else 2 pi/4096. Readings finer than 2 pi/65536 come from a sensor without counts:
-/// they are taken as they are, with the variance of the count assumed before, as nobody stated their noise.
+/// they are taken as they are, with the variance of the count assumed before, as their noise is not stated.
 class Encoder {
  public:
   /// given: count [rad]; 0: to be read off.

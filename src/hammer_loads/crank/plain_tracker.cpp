@@ -5,7 +5,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kFurthest = 200.0;  // [rad] between two samples: some 30 turns; nobody can tell further ones
+constexpr double kFurthest = 200.0;  // [rad] between two samples: some 30 turns; further ones look the same
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 /// A sensor's own clock, seen through the stamps that its samples got on their way.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace hammer_loads {
@@ -15,6 +16,8 @@ class SteadyClockFit {
   /// The next sample's stamp [ns]; its instant on the line so far [ns].
   std::int64_t add(std::int64_t stamp) noexcept;
   double interval() const noexcept { return interval_; }  ///< [ns]
+  /// Of stamps about the line, root of mean square [ns].
+  double scatter() const noexcept { return std::sqrt(end_square_); }
   /// Equal intervals explain the stamps: their scatter about the line does not grow beyond that of their steps.
   bool explains() const noexcept;
 

@@ -20,7 +20,7 @@ class TimingNoise {
     const double change = innovation - last_;
     last_ = innovation;
     const double squared_speed = speed * speed, lever = squared_speed / total;
-    if (!(squared_speed * kTellable > total - squared_speed * variance())) return;  // too slow to tell
+    if (!(squared_speed * kVisible > total - squared_speed * variance())) return;  // too slow to show it
     if (samples_++ == 0) information_ = lever * lever;
     const double gain = std::max(kGain, 1.0 / (samples_ + 50.0));
     information_ += gain * (lever * lever - information_);
@@ -42,7 +42,7 @@ class TimingNoise {
   static constexpr double kMostAtFirst = 4.0;  // so that a single surprise among them counts little
   static constexpr double kMost = 25.0;        // of innovation^2 over its variance
   static constexpr double kSeen = 3.0;         // standard deviations of the estimate above zero
-  static constexpr double kTellable = 9e-8;    // [s2]: a sample that could not see 0.3 ms is not asked
+  static constexpr double kVisible = 9e-8;     // [s2]: a sample that could not see 0.3 ms is not asked
   static constexpr double kLargest = 0.02;     // [s]: more is no jitter
   double variance_;
   double last_{};  ///< innovation [rad]

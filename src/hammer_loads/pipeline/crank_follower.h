@@ -47,6 +47,7 @@ class CrankFollower {
   const CrankEstimate& estimate() const noexcept { return estimate_; }
   const CrankStep& step() const noexcept { return step_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }
+  const StampSequence& stamps() const noexcept { return sequence_; }
   bool looksLikeDegrees() const noexcept { return unit_check_.looksLikeDegrees(); }
   bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
 

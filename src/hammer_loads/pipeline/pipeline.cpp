@@ -140,6 +140,13 @@ void Pipeline::restart(bool revised) noexcept {
   ++counts_.restarts;
 }
 
+const SampleResult& Pipeline::end() noexcept {
+  result_.turn_ends = 0;
+  result_.outputs.clear();
+  turn_.finishBlow(result_);
+  return result_;
+}
+
 SampleCounts Pipeline::counts() const noexcept {
   SampleCounts counts = counts_;
   counts.blows += turn_.blows();

@@ -40,6 +40,9 @@ class Pipeline {
   /// A crank sample. The result is valid until the next call. No allocation.
   const SampleResult& crankSample(StampNs header, const CrankSample& measured) noexcept;
 
+  /// No more samples come: a blow that is still being measured is among the result's ends, as it is known by now.
+  const SampleResult& end() noexcept;
+
   const SampleResult& result() const noexcept { return result_; }  ///< of the last sample
   SampleCounts counts() const noexcept;
   const HullModel& model() const noexcept { return model_; }

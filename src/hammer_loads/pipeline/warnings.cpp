@@ -1,5 +1,8 @@
 #include "hammer_loads/pipeline/warnings.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/util/format.h"
 
@@ -43,9 +46,49 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
                         true});
 }
 
+/// Instants: jitter of header stamps as it is learned, or stamps refitted by sequence.
+void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, std::vector<Warning>& warnings) {
+  constexpr double kJitter = 1e-4;      // [s]: from there on the wrench is some 0.2 % worse
+  constexpr double kCountSpeed = 60.0;  // [rad/s]: jitter below half a count's deviation at 30 rad/s is not judged
+  if (crank.stamps().isSteady())
+    warnings.push_back({"stamps",
+                        format("crank stamps repeat or change places and jitter by %.2g ms: samples are taken at equal "
+                               "intervals (crank_stamps); a constant delay is crank_latency_s",
+                               1e-6 * crank.stamps().fit().scatter()),
+                        true});
+  const double count = filter.encoder().resolution() / std::sqrt(12.0);
+  if (filter.timingNoise() > std::max(kJitter, count / kCountSpeed))
+    warnings.push_back({"jitter",
+                        format("crank stamps jitter by %.2g ms; stamps of the measurement's instant would be better",
+                               1e3 * filter.timingNoise()),
+                        true});
+}
+
+/// Where the encoder sits. An error that the innovations show is named with what else looks the same.
+void warnOfPlace(const SensorErrors& errors, std::vector<Warning>& warnings) {
+  constexpr double kDegree = kTwoPi / 360.0;
+  constexpr double kZero = 0.3 * kDegree;          // from there on the wrench is some 0.9 % worse
+  constexpr double kEccentricity = 0.5 * kDegree;  // likewise
+  constexpr double kDeviations = 2.0;
+  const SensorErrors::Vector &found = errors.estimate(), &deviation = errors.deviation();
+  if (std::abs(found[0]) > std::max(kZero, kDeviations * deviation[0]))
+    warnings.push_back({"zero",
+                        format("crank_zero_rad: the readings look as if the blow came at %.2g rad (%.2g deg, deviation "
+                               "%.1g deg) more than given; a tool met before the dead centre or a supply without oil "
+                               "compliance looks alike: run calibrate",
+                               found[0], found[0] / kDegree, deviation[0] / kDegree),
+                        true});
+  const double amount = std::hypot(found[1], found[2]), uncertain = std::max(deviation[1], deviation[2]);
+  if (amount > std::max(kEccentricity, kDeviations * uncertain))
+    warnings.push_back({"eccentricity",
+                        format("crank encoder: looks eccentric by %.2g deg (crank_eccentricity_1_rad: %.2g rad, "
+                               "deviation %.1g deg) more than given: run calibrate",
+                               amount / kDegree, amount, uncertain / kDegree),
+                        true});
+}
+
 /// What the filter's innovations look like.
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
-  constexpr double kJitter = 1e-4;        // [s]: from there on the wrench is some 0.2 % worse
   constexpr double kInconsistent = 3.0;   // times the variance; a clean machine has 0.9
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   const auto* filter = dynamic_cast<const CrankFilter*>(&pipeline.crank().tracker());
@@ -59,17 +102,15 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          format("crank_angle_resolution_rad: %.9g rad is given, the readings have %.9g rad; 0 reads it off",
                 pipeline.settings().crank_angle_resolution, filter->encoder().resolution()),
          true});
-  if (filter->timingNoise() > kJitter)
-    warnings.push_back({"jitter",
-                        format("crank stamps jitter by %.2g ms; stamps of the measurement's instant would be better",
-                               1e3 * filter->timingNoise()),
-                        true});
-  if (filter->consistency() > kInconsistent)
+  warnOfStamps(pipeline.crank(), *filter, warnings);
+  const bool inconsistent = filter->consistency() > kInconsistent;
+  if (inconsistent || filter->isUnexplained())
     warnings.push_back({"inconsistent",
-                        format("crank: readings differ from the model by %.2g times the expected variance; zero, "
-                               "eccentricity or a soft coupling: run calibrate",
-                               filter->consistency()),
+                        format("crank: readings differ from the model by %.2g times the expected variance: a soft "
+                               "coupling between crank and encoder, a wrong hammer file or a zero far off",
+                               inconsistent ? filter->consistency() : kInconsistent),
                         true});
+  if (!inconsistent) warnOfPlace(filter->sensorErrors(), warnings);
 }
 
 void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {

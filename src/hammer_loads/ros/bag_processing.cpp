@@ -59,6 +59,7 @@ class HammerRuns {
   }
 
   void end() {
+    flow_->end();
     ++report_.runs;
     report_.samples += samples_;
     add(flow_->pipeline().counts(), report_.crank);

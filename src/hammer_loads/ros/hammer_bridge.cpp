@@ -134,6 +134,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   const SampleResult& result =
       pipeline_->crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
   life_->follow(stampOf(message.header.stamp), record_time);
+  last_record_time_ = record_time;
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
@@ -142,6 +143,11 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   outputs_.mechanism.send(record_time);
   fillPinForces(result, outputs_.pin_forces.message);
   outputs_.pin_forces.send(record_time);
+}
+
+void HammerBridge::end() {
+  const SampleResult& result = pipeline_->end();
+  for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], last_record_time_);
 }
 
 void HammerBridge::send(const WrenchOutput& output, const ros::Time& record_time) {

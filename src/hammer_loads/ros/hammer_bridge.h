@@ -42,6 +42,8 @@ class HammerBridge {
   static std::vector<PressureTopic> pressureTopics(const Settings& settings, const std::string& prefix);
   /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
   bool needsTransforms() const { return frame_wrenches_.has_value(); }
+  /// No more inputs come: sends the blow that is still being measured, at the record time of the last crank message.
+  void end();
   /// A new run begins with the next input, in the state of a bridge just made; counts go on. For a time that jumped and
   /// for a log that is to be reproduced from its own inputs. Static transforms stay.
   void reset() { begin(Settings(settings_)); }
@@ -84,6 +86,7 @@ class HammerBridge {
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
   std::optional<FrameWrenches> frame_wrenches_;
   bool run_begun_{};
+  ros::Time last_record_time_;  ///< of a crank message
 };
 
 }  // namespace hammer_loads

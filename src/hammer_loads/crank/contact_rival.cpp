@@ -1,0 +1,51 @@
+#include "hammer_loads/crank/contact_rival.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kDecided = 12.0;  // logarithm of odds at which the less likely belief is given up
+constexpr double kChange = 9.0;    // likewise at which the other one becomes the estimate
+constexpr double kMostFit = 8.0;   // likewise that one sample may add: it may be an outlier
+constexpr double kOutlier = 25.0;  // innovation^2 over its variance
+
+}  // namespace
+
+void ContactRival::begin(const CrankBelief& belief) noexcept {
+  belief_ = belief;
+  evidence_ = std::log(turns_without_ / turns_with_);
+}
+
+void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
+                          double most_speed) noexcept {
+  CrankBelief& belief = *belief_;
+  const Innovation angle = sample.ofAngle(belief);
+  double own_fit = angle.logLikelihood();
+  const double jolt = angle.value * angle.value / kOutlier;
+  belief.correct(CrankBelief::kAngle, angle.value, std::max(angle.variance, jolt), angle.by_error);
+  if (sample.speed) {
+    const Innovation speed = sample.ofSpeed(belief, model);
+    own_fit += speed.logLikelihood();
+    if (speed.ratio() < kOutlier) belief.correctSpeed(speed.value, speed.total, speed.by_error);
+  }
+  evidence_ += std::clamp(own_fit - fit, -kMostFit, kMostFit) / growth;
+  if (!belief.isSound(most_speed)) drop();
+}
+
+bool ContactRival::choose(CrankBelief& estimate, bool& mirrored) noexcept {
+  const bool change = evidence_ > kChange;
+  if (change) {
+    std::swap(estimate, *belief_);
+    evidence_ = -evidence_;
+    mirrored = !mirrored;
+  }
+  if (evidence_ > -kDecided) return change;
+  (mirrored ? turns_without_ : turns_with_) += 1.0;
+  drop();
+  return change;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,39 @@
+/// Whether the rocker met the tool: a second belief for as long as it takes to know.
+#pragma once
+
+#include <optional>
+
+#include "hammer_loads/crank/weighed_sample.h"
+
+namespace hammer_loads {
+
+/// At each blow a second belief goes on without contact: a rocker that finds no tool passes the dead centre onto the
+/// mirrored branch and comes back a turn later. Both beliefs take the same samples until one is far more likely.
+class ContactRival {
+ public:
+  /// belief: about to pass the blow with contact.
+  void begin(const CrankBelief& belief) noexcept;
+  void drop() noexcept { belief_.reset(); }
+  bool isThere() const noexcept { return belief_.has_value(); }
+  /// The estimate may be of the wrong branch.
+  bool isDoubtful() const noexcept { return belief_ && evidence_ > kDoubt; }
+  /// Only where it is there.
+  CrankBelief& belief() noexcept { return *belief_; }
+
+  /// The rival, predicted to the sample, takes it too. Its own outliers and jolts count against it.
+  /// fit: logarithm of the sample's likelihood by the estimate; growth: of variances, by the consistency.
+  void follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
+              double most_speed) noexcept;
+  /// Exchanges the beliefs where the rival is far more likely: true. Gives it up where it is far less likely.
+  bool choose(CrankBelief& estimate, bool& mirrored) noexcept;
+
+ private:
+  static constexpr double kDoubt = 6.0;                             // logarithm of its odds
+  static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
+
+  std::optional<CrankBelief> belief_;
+  double evidence_{};                                             ///< logarithm of its odds against the estimate
+  double turns_with_{kTurnsWith}, turns_without_{kTurnsWithout};  ///< contact, so far
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,39 @@
+/// A sample as the filter takes it: of the crank, with the noise that it has.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "hammer_loads/crank/crank_belief.h"
+
+namespace hammer_loads {
+
+/// What a measurement says beyond the prediction.
+struct Innovation {
+  double value{};                                         ///< measured less predicted
+  double total{};                                         ///< its variance
+  double variance{};                                      ///< the measurement's part of that
+  SensorErrors::Row by_error{SensorErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
+
+  double ratio() const noexcept { return value * value / total; }
+  /// But for a constant.
+  double logLikelihood() const noexcept { return -0.5 * (ratio() + std::log(total)); }
+};
+
+struct WeighedSample {
+  double angle{};               ///< from the nearest blow [rad]
+  std::optional<double> speed;  ///< [rad/s]
+  double angle_variance{};      ///< of count and noise [rad2]
+  double timing_variance{};     ///< of the stamp [s2]
+  double speed_variance{};      ///< of the speed's noise [rad2/s2]
+
+  /// Variance of the angle about that at the stamp [rad2].
+  double angleVariance(double speed_there) const noexcept {
+    return angle_variance + speed_there * speed_there * timing_variance;
+  }
+  Innovation ofAngle(const CrankBelief& belief) const noexcept;
+  /// Only where a speed was measured.
+  Innovation ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,80 @@
+// Errors of the sensor's place: what the filter says they do to it, against a second filter that has them.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hammer_loads/crank/crank_filter.h"
+#include "support/mo100.h"
+#include "support/striking_crank.h"
+
+namespace hammer_loads {
+namespace {
+
+CrankFilterSettings settings() {
+  CrankFilterSettings s;
+  s.speed_noise = 0.3;
+  s.torque_walk = 74.0;
+  s.speed_walk = 0.3;
+  s.inertia_walk = 5e-4;
+  s.initial_torque_deviation = 300.0;
+  s.initial_inertia_deviation = 0.3;
+  s.max_speed = 300.0;
+  s.angle_resolution = kTwoPi / 65536.0;
+  s.angle_noise = 1e-3;
+  return s;
+}
+
+/// Angle of a sensor whose place is off by b, from the true one.
+double read(double angle, const SensorErrors::Vector& b) {
+  return angle + b[0] + b[1] * std::sin(angle) + b[2] * (std::cos(angle) - 1.0);
+}
+
+SensorErrors::Vector found(const SensorErrors::Vector& b) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  test::StrikingCrank crank(mechanism.linkage(), 0.737, 0.6);
+  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings());
+  std::mt19937 random(3);
+  std::normal_distribution<> noise(0.0, 1e-3);
+  for (int i = 1; i < 12000; ++i) {
+    crank.advanceTo(1e-3 * i);
+    const CrankSample sample{read(crank.angle(), b) + noise(random), std::nullopt};
+    i == 1 ? filter.start(sample) : static_cast<void>(filter.update(1e-3, sample));
+  }
+  return filter.sensorErrors().estimate();
+}
+
+TEST(SensorErrors, AreSeenInTheInnovations) {
+  const SensorErrors::Vector none = found(SensorErrors::Vector::Zero());
+  for (int i = 0; i < SensorErrors::kSize; ++i) EXPECT_NEAR(none[i], 0.0, 3e-3) << i;
+  for (int i = 0; i < SensorErrors::kSize; ++i) {
+    SensorErrors::Vector b = SensorErrors::Vector::Zero();
+    b[i] = 0.01;
+    const SensorErrors::Vector estimate = found(b) - none;
+    for (int k = 0; k < SensorErrors::kSize; ++k) EXPECT_NEAR(estimate[k], b[k], 2.5e-3) << i << ' ' << k;
+  }
+}
+
+TEST(SensorErrors, ReadingsDerivativeIsThatOfTheSensor) {
+  for (double offset = -3.1; offset < 3.1; offset += 0.05) {
+    const SensorErrors::Row by_error = SensorErrors::ofAngle(offset);
+    EXPECT_EQ(by_error[0], 1.0);
+    EXPECT_NEAR(by_error[1], std::sin(offset), 2e-3);
+    EXPECT_NEAR(by_error[2], std::cos(offset) - 1.0, 2e-3);
+    const SensorErrors::Row by_speed = SensorErrors::ofSpeed(offset, 30.0);
+    EXPECT_NEAR(by_speed[1], 30.0 * std::cos(offset), 0.05);
+    EXPECT_NEAR(by_speed[2], -30.0 * std::sin(offset), 0.05);
+  }
+}
+
+TEST(SensorErrors, NothingIsConcludedBeforeSomeTurns) {
+  SensorErrors errors;
+  for (int i = 0; i < 3; ++i) {
+    errors.learn(0.1, 1e-4, SensorErrors::ofAngle(0.5));
+    errors.endTurn(1.0);
+  }
+  EXPECT_EQ(errors.estimate(), SensorErrors::Vector::Zero());
+  EXPECT_EQ(errors.moment(), SensorErrors::Matrix::Zero());
+}
+
+}  // namespace
+}  // namespace hammer_loads

@@ -1,0 +1,127 @@
+// What the warnings say of simulated machines with one flaw each, and of machines without.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kDegree = kTwoPi / 360.0;
+
+simulation::MachineSettings machineAt(double rate, std::uint64_t seed) {
+  simulation::MachineSettings s = simulation::workingMo100();
+  s.duration = 12.0;
+  s.drive.stop_time = 20.0;
+  s.crank.rate = rate;
+  s.seed = seed;
+  return s;
+}
+
+struct Heard {
+  std::string keys;
+  std::vector<Warning> warnings;
+  double covered{};           ///< part of the errors of Fz within two deviations, from 4 s on
+  std::vector<double> blows;  ///< stamps [s]
+};
+
+Heard hear(const simulation::MachineSettings& machine) {
+  static const Settings settings = *load(configDirectory(), {}).value;
+  const simulation::Session session = simulation::recordSession(machine);
+  Pipeline pipeline(settings.mechanism, settings.pipeline);
+  Heard heard;
+  double judged = 0.0;
+  const auto take = [&](const SampleResult& result) {
+    for (std::size_t i = 0; i < result.turn_ends; ++i)
+      heard.blows.push_back(1e-9 * static_cast<double>(result.ends[i].stamp - machine.start_stamp));
+  };
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const simulation::CrankReading& reading = session.crank[i];
+    const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    take(result);
+    if (result.refusal || session.truth[i].time < 4.0) continue;
+    const double error = result.outputs.front().wrench.force_z - session.truth[i].load.force_z;
+    judged += 1.0;
+    heard.covered += std::abs(error) <= 2.0 * result.outputs.front().deviation.wrench.force_z;
+  }
+  take(pipeline.end());
+  heard.covered /= judged;
+  heard.warnings = warningsOf(pipeline);
+  for (const Warning& warning : heard.warnings) {
+    if (std::string(warning.key) != "pitch joints") heard.keys += std::string(warning.key) + ";";
+  }
+  return heard;
+}
+
+/// The hull stands still and upright, so that no joint needs to be heard.
+simulation::MachineSettings upright(simulation::MachineSettings s) {
+  for (simulation::JointMotion& joint : s.boom) joint.mean = joint.amplitude = 0.0;
+  return s;
+}
+
+TEST(SensorWarnings, MachinesWithoutAFlawRaiseNone) {
+  std::mt19937_64 random(21);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    const double rates[] = {100.0, 200.0, 500.0, 1000.0};
+    simulation::MachineSettings s = upright(machineAt(rates[i % 4], 300 + i));
+    s.crank.counts = i % 3 == 0 ? 1024 : 4096;
+    s.crank.speed = i % 2 == 0;
+    s.drive.inertia *= 0.8 + 0.4 * part(random);
+    s.drive.flow *= 0.8 + 0.4 * part(random);
+    s.blow.restitution_drawn = i % 2 == 1;
+    EXPECT_EQ(hear(s).keys, "") << i;
+  }
+}
+
+TEST(SensorWarnings, AZeroThatIsOffIsNamedWithItsSizeAndPartOfTheDeviations) {
+  for (const double off : {0.7, -0.7}) {
+    simulation::MachineSettings s = upright(machineAt(500.0, 40));
+    s.crank.zero = off * kDegree;
+    const Heard heard = hear(s);
+    ASSERT_EQ(heard.keys, "zero;") << off;
+    const std::string& text = heard.warnings.back().text;
+    const double named = std::stod(text.substr(text.find("at ") + 3));
+    EXPECT_NEAR(named, s.crank.zero, 0.25 * kDegree) << text;
+    EXPECT_GT(heard.covered, 0.88);  // without it less than half
+  }
+}
+
+TEST(SensorWarnings, AnEccentricEncoderIsNamed) {
+  simulation::MachineSettings s = upright(machineAt(500.0, 41));
+  s.crank.eccentricity[0] = {1.2 * kDegree, 0.7};
+  EXPECT_EQ(hear(s).keys, "eccentricity;");
+}
+
+TEST(SensorWarnings, JitterAndStampsThatRepeatAreNamed) {
+  simulation::MachineSettings s = upright(machineAt(500.0, 42));
+  s.crank.stamp_noise = 3e-4;
+  EXPECT_EQ(hear(s).keys, "jitter;");
+  simulation::MachineSettings bursts = upright(machineAt(1000.0, 43));
+  bursts.crank.burst = 10;
+  EXPECT_NE(hear(bursts).keys.find("stamps;"), std::string::npos);
+}
+
+TEST(SensorWarnings, ASoftCouplingIsNoZero) {
+  simulation::MachineSettings s = upright(machineAt(1000.0, 44));
+  s.drive.coupling_frequency = 50.0;
+  const std::string keys = hear(s).keys;
+  EXPECT_NE(keys.find("inconsistent;"), std::string::npos) << keys;
+  EXPECT_EQ(keys.find("zero;"), std::string::npos) << keys;
+}
+
+/// The samples end within the time that a blow takes to be measured.
+TEST(PipelineEnd, TheLastBlowIsGiven) {
+  simulation::MachineSettings s = upright(machineAt(1000.0, 45));
+  const std::vector<simulation::BlowTruth> blows = simulation::recordSession(s).blows;
+  s.duration = blows.back().time + 0.01;
+  const Heard heard = hear(s);
+  ASSERT_FALSE(heard.blows.empty());
+  EXPECT_NEAR(heard.blows.back(), blows.back().time, 2e-4);
+}
+
+}  // namespace
+}  // namespace hammer_loads
