@@ -133,7 +133,7 @@ Names topicsInReadme(const std::string& heading) {
 TEST(Readme, TablesHoldEveryTopicOfTheNodes) {
   HammerOutputs outputs;
   outputs.boom_wrench.emplace_back("boom_wrench/LINK");
-  EXPECT_EQ(topicsInReadme("## Topics"), topicsOf(outputs, {"crank", "joint_states", "hull_imu"}));
+  EXPECT_EQ(topicsInReadme("## Topics"), topicsOf(outputs, {"crank", "joint_states", "hull_imu", "cylinder_pressures"}));
   const Names grapple = topicsOf(GrappleOutputs{}, {"joint_states"});
   EXPECT_EQ(topicsInReadme("### Grapple\n"), grapple);
 }

@@ -1,6 +1,7 @@
 #include "hammer_loads/boom/boom.h"
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -114,6 +115,11 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
       vibration_(chain, cylinders_, parameters.vibration),
       steel_(chain, cylinders_, std::move(sections)) {
   const JointVector zero = JointVector::Zero(chain.joints());
+  const Eigen::Index joints = chain.joints(), cylinder_count = static_cast<Eigen::Index>(cylinders_.size());
+  response_.setZero(7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * cylinder_count,
+                    joints + 6);
+  difference_.setZero(response_.rows()), variance_.setZero(response_.rows());
+  response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }
 
@@ -121,6 +127,8 @@ void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept 
   joints_ = motion;
   g_B_ = g_B;
   forwardKinematics(chain_, joints_.position, pose_);
+  for (std::size_t i = 0; i < cylinders_.size(); ++i)
+    at_[i] = cylinders_[i].at(joints_.position[cylinders_[i].joint()]);
   weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
   motion_ = dynamics_.torqueOfMotion(motion);
 }
@@ -154,7 +162,7 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexc
   for (std::size_t i = 0; i < cylinders_.size(); ++i) {
     const Cylinder& cylinder = cylinders_[i];
     CylinderLoad& load = result.cylinder[i];
-    load = cylinder.load(cylinder.at(joints_.position[cylinder.joint()]), result.total[cylinder.joint()]);
+    load = cylinder.load(at_[i], result.total[cylinder.joint()]);
     finite = finite && (load.dead_centre || (std::isfinite(load.force) && std::isfinite(load.pressure)));
   }
   return finite;
@@ -163,7 +171,7 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexc
 bool Boom::steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
   JointMotion motion = joints_;
   if (!rigid) motion.acceleration += vibration_.acceleration();
-  return steel_.find({pose_, motion, g_B_, w_tip}, result);
+  return steel_.find({pose_, motion, g_B_, w_tip, at_.data()}, result);
 }
 
 RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {

@@ -72,7 +72,6 @@ class Boom {
   void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
 
   const ChainPose& pose() const noexcept { return pose_; }
-  const JointVector& position() const noexcept { return joints_.position; }  ///< of the joints, as last moved
   /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
   Eigen::Vector3d gravityAtTip() const noexcept { return pose_.tip().linear().transpose() * g_B_; }
   JointVector hammerTorque(const Wrench& w_tip) const noexcept { return jointTorqueOfTipLoad(pose_, w_tip); }
@@ -99,9 +98,10 @@ class Boom {
   /// Joint torques of the errors of a load: what VibrationSpread::advance() takes.
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
   /// How far loads() and steelLoads() may be off by the hammer's load and, unless rigid, the oil. Not by masses,
-  /// dimensions, weight and motion.
+  /// dimensions, weight and motion. For the pose within refresh_angle: what a difference does is found anew for each
+  /// such move of a joint.
   void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
-                  BoomDeviations& result) const noexcept;
+                  BoomDeviations& result) noexcept;
   /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
@@ -110,6 +110,8 @@ class Boom {
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 
   const Chain& chain() const noexcept { return chain_; }
+  /// Where a cylinder stands at this pose.
+  const CylinderPosition& cylinderPosition(std::size_t cylinder) const noexcept { return at_[cylinder]; }
   const std::vector<Cylinder>& cylinders() const noexcept { return cylinders_; }
   const std::vector<Section>& sections() const noexcept { return steel_.sections(); }
   const BoomParameters& parameters() const noexcept { return parameters_; }
@@ -129,6 +131,16 @@ class Boom {
   ChainPose pose_;
   JointMotion joints_;
   JointVector weight_, motion_;
+  std::array<CylinderPosition, kMaxJoints> at_;
+
+  void findResponse() noexcept;
+  void takeDeviations(BoomDeviations& result) const noexcept;
+  void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
+  /// Columns: joint accelerations, force and moment on the tip. Rows: joint torques, sections, joints (force and moment
+  /// of each), cylinders' forces on their rods' pins.
+  Eigen::MatrixXd response_;
+  JointVector response_at_;                ///< where it belongs; NaN: nowhere yet
+  Eigen::VectorXd difference_, variance_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

@@ -3,61 +3,95 @@
 #include "hammer_loads/boom/boom.h"
 
 namespace hammer_loads {
-namespace {
-
-void addSquares(const Wrench& w, double weight, Wrench& sum) noexcept {
-  sum.force += weight * w.force.cwiseAbs2();
-  sum.torque += weight * w.torque.cwiseAbs2();
-}
-
-void takeRoots(Wrench& w) noexcept {
-  w.force = w.force.cwiseSqrt();
-  w.torque = w.torque.cwiseSqrt();
-}
-
-}  // namespace
-
 LoadSpread Boom::spreadTorque(const WrenchSpread& w_tip) const noexcept {
   LoadSpread torque(chain_.joints(), w_tip.count);
   for (int i = 0; i < w_tip.count; ++i) torque.col(i) = hammerTorque(w_tip.part[static_cast<std::size_t>(i)]);
   return torque;
 }
 
+void Boom::storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept {
+  auto rows = response_.col(column);
+  Eigen::Index row = torque.size();
+  rows.head(row) = torque;
+  const auto append = [&](const Eigen::Vector3d& value) {
+    rows.segment<3>(row) = value;
+    row += 3;
+  };
+  for (std::size_t i = 0; i < sections().size(); ++i) append(load.section[i].force), append(load.section[i].torque);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(chain_.joints()); ++i)
+    append(load.joint[i].force), append(load.joint[i].torque);
+  for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].rod);
+}
+
 /// Every load is linear in wrench and accelerations: the difference of two states is the load of their difference.
-void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
-                      BoomDeviations& result) const noexcept {
-  const JointVector zero = JointVector::Zero(chain_.joints());
+void Boom::findResponse() noexcept {
+  if ((joints_.position - response_at_).cwiseAbs().maxCoeff() <= parameters_.vibration.refresh_angle) return;
+  response_at_ = joints_.position;
+  const Eigen::Index joints = chain_.joints();
+  const JointVector zero = JointVector::Zero(joints);
   const Eigen::Vector3d weightless = Eigen::Vector3d::Zero();
-  result.torque = zero;
-  result.cylinder = {};
-  const std::size_t sections = this->sections().size(), joints = static_cast<std::size_t>(chain_.joints());
-  for (std::size_t i = 0; i < sections; ++i) result.section[i] = {};
-  for (std::size_t i = 0; i < joints; ++i) result.joint[i] = {};
+  const Wrench none;
   SteelLoads load;
-  for (int run = rigid ? VibrationSpread::kLoads : 0; run < VibrationSpread::kLoads + w_tip.count; ++run) {
-    const double weight = VibrationSpread::weight(run);
-    const Wrench w =
-        run < VibrationSpread::kLoads ? Wrench{} : w_tip.part[static_cast<std::size_t>(run - VibrationSpread::kLoads)];
-    const bool follows = !rigid && vibration_.known() && run < spread.runs();
-    const JointMotion motion{joints_.position, zero, follows ? spread.accelerationDifference(run, vibration_) : zero};
-    steel_.find({pose_, motion, weightless, w}, load);
-    JointVector torque = hammerTorque(w);
-    if (follows) torque -= vibration_.modes().mass * motion.acceleration;
-    result.torque += weight * torque.cwiseAbs2();
-    for (std::size_t i = 0; i < sections; ++i) addSquares(load.section[i], weight, result.section[i]);
-    for (std::size_t i = 0; i < joints; ++i) addSquares(load.joint[i], weight, result.joint[i]);
-    for (std::size_t i = 0; i < cylinders_.size(); ++i) result.cylinder[i] += weight * load.pins[i].rod.squaredNorm();
+  JointMotion motion{joints_.position, zero, zero};
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    motion.acceleration = JointVector::Unit(joints, j);
+    steel_.find({pose_, motion, weightless, none, at_.data()}, load);
+    storeResponse(j, zero, load);
   }
-  result.torque = result.torque.cwiseSqrt();
-  for (std::size_t i = 0; i < sections; ++i) takeRoots(result.section[i]);
-  for (std::size_t i = 0; i < joints; ++i) takeRoots(result.joint[i]);
-  for (std::size_t i = 0; i < cylinders_.size(); ++i) result.cylinder[i] = std::sqrt(result.cylinder[i]);
+  motion.acceleration = zero;
+  for (int k = 0; k < 6; ++k) {
+    Wrench unit;
+    (k < 3 ? unit.force : unit.torque)[k % 3] = 1.0;
+    steel_.find({pose_, motion, weightless, unit, at_.data()}, load);
+    storeResponse(joints + k, hammerTorque(unit), load);
+  }
+}
+
+void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
+                      BoomDeviations& result) noexcept {
+  findResponse();
+  const Eigen::Index joints = chain_.joints();
+  const bool vibrates = !rigid && vibration_.known();
+  variance_.setZero();
+  for (int run = rigid ? VibrationSpread::kLoads : 0; run < VibrationSpread::kLoads + w_tip.count; ++run) {
+    difference_.setZero();
+    const auto add = [&](Eigen::Index column, double by) {
+      if (by != 0.0) difference_ += by * response_.col(column);
+    };
+    if (vibrates && run < spread.runs()) {
+      const JointVector acceleration = spread.accelerationDifference(run, vibration_);
+      for (Eigen::Index j = 0; j < joints; ++j) add(j, acceleration[j]);
+      difference_.head(joints) -= vibration_.modes().mass * acceleration;
+    }
+    if (run >= VibrationSpread::kLoads) {
+      const Wrench& w = w_tip.part[static_cast<std::size_t>(run - VibrationSpread::kLoads)];
+      for (int k = 0; k < 3; ++k) add(joints + k, w.force[k]), add(joints + 3 + k, w.torque[k]);
+    }
+    variance_ += VibrationSpread::weight(run) * difference_.cwiseAbs2();
+  }
+  takeDeviations(result);
+}
+
+/// From variance_.
+void Boom::takeDeviations(BoomDeviations& result) const noexcept {
+  Eigen::Index row = chain_.joints();
+  result.torque = variance_.head(row).cwiseSqrt();
+  const auto next = [&]() -> Eigen::Vector3d {
+    row += 3;
+    return variance_.segment<3>(row - 3).cwiseSqrt();
+  };
+  for (std::size_t i = 0; i < sections().size(); ++i)
+    result.section[i].force = next(), result.section[i].torque = next();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(chain_.joints()); ++i)
+    result.joint[i].force = next(), result.joint[i].torque = next();
+  result.cylinder = {};
+  for (std::size_t i = 0; i < cylinders_.size(); ++i) result.cylinder[i] = next().norm();
 }
 
 std::uint16_t Boom::flags(std::size_t cylinder, const BoomLoads& loads) const noexcept {
   const Cylinder& c = cylinders_[cylinder];
   const int joint = c.joint();
-  return cylinderFlags(c, c.at(joints_.position[joint]), loads.weight[joint] + loads.motion[joint], loads.total[joint]);
+  return cylinderFlags(c, at_[cylinder], loads.weight[joint] + loads.motion[joint], loads.total[joint]);
 }
 
 }  // namespace hammer_loads

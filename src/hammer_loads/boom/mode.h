@@ -66,9 +66,10 @@ struct ModeForce {
   double from{}, to{}, mean{};
 };
 
-/// State after step h [s], exact for that force; for no force its size never grows, whatever the step.
-inline ModeState advanced(const Mode& mode, const ModeState& now, const ModeForce& force, double h) noexcept {
-  const ModeResponse r = responseAt(mode, h);
+/// State after step h [s], exact for that force; for no force its size never grows, whatever the step. r =
+/// responseAt(mode, h).
+inline ModeState advanced(const Mode& mode, const ModeState& now, const ModeForce& force, double h,
+                          const ModeResponse& r) noexcept {
   const double bump = 6.0 * (force.mean - 0.5 * (force.from + force.to));
   const double slope = h > 0.0 ? (force.to - force.from + bump) / h : 0.0;
   const double bend = h > 0.0 ? -2.0 * bump / (h * h) : 0.0;
@@ -77,6 +78,28 @@ inline ModeState advanced(const Mode& mode, const ModeState& now, const ModeForc
   next.v += force.from * r.impulse + slope * r.step + bend * r.ramp;
   return next;
 }
+
+inline ModeState advanced(const Mode& mode, const ModeState& now, const ModeForce& force, double h) noexcept {
+  return advanced(mode, now, force, h, responseAt(mode, h));
+}
+
+/// responseAt() of one mode, kept as long as mode and step stay the same.
+class KeptResponse {
+ public:
+  const ModeResponse& at(const Mode& mode, double step) noexcept {
+    if (mode.omega != mode_.omega || mode.zeta != mode_.zeta || step != step_) {
+      response_ = responseAt(mode, step);
+      mode_ = mode;
+      step_ = step;
+    }
+    return response_;
+  }
+
+ private:
+  Mode mode_;
+  double step_{};
+  ModeResponse response_;
+};
 
 /// [m kg/s2] per sqrt(kg), for the force acting at that instant.
 inline double acceleration(const Mode& mode, const ModeState& state, double force) noexcept {

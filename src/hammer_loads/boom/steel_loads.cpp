@@ -133,7 +133,7 @@ void SteelLoadFinder::findCylinders(const ChainState& state, Working& working, S
     const auto joint = static_cast<std::size_t>(a.cylinder.joint()), beyond = static_cast<std::size_t>(a.beyond);
     const Wrench& load = working.beyond[beyond];
     const double torque = state.pose.axis_B[joint].dot(load.torque - state.pose.p_BJ_B[joint].cross(load.force));
-    const CylinderPosition at = a.cylinder.at(state.motion.position[a.cylinder.joint()]);
+    const CylinderPosition& at = state.cylinders[i];
     const Pose &X_BP = state.pose.X_BL[beyond - 1], &X_BL = state.pose.X_BL[beyond];
     const Eigen::Vector3d rod_B = X_BL * a.rod_L;
     const Eigen::Vector3d push = a.cylinder.load(at, torque).force * (rod_B - X_BP * a.base_P).normalized();

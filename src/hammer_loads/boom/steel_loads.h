@@ -33,9 +33,10 @@ struct SteelLoads {
 /// Accelerations and loads that the chain has at one instant.
 struct ChainState {
   const ChainPose& pose;
-  const JointMotion& motion;   ///< accelerations with those of the vibration
-  const Eigen::Vector3d& g_B;  ///< gravity in the root's axes [m/s2]
-  const Wrench& w_tip;         ///< BY the hammer ON the tip, as for Boom::loads()
+  const JointMotion& motion;          ///< accelerations with those of the vibration
+  const Eigen::Vector3d& g_B;         ///< gravity in the root's axes [m/s2]
+  const Wrench& w_tip;                ///< BY the hammer ON the tip, as for Boom::loads()
+  const CylinderPosition* cylinders;  ///< of each cylinder
 };
 
 /// Newton and Euler for everything beyond each cut. A cylinder's force is the one that leaves no moment about its

@@ -54,7 +54,8 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   const JointVector from = modalForce(modes_, torque.from), to = modalForce(modes_, torque.to);
   const JointVector mean = modalForce(modes_, torque.mean);
   for (int k = 0; k < modes_.count; ++k) {
-    const ModeState next = advanced(mode(k), {x_[k], v_[k]}, {from[k], to[k], mean[k]}, step);
+    const ModeResponse& r = response_[static_cast<std::size_t>(k)].at(mode(k), step);
+    const ModeState next = advanced(mode(k), {x_[k], v_[k]}, {from[k], to[k], mean[k]}, step, r);
     x_[k] = next.x;
     v_[k] = next.v;
   }

@@ -1,6 +1,7 @@
 /// The boom's vibration under the hammer: each mode advanced exactly from sample to sample.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -68,8 +69,9 @@ class Vibration {
   JointVector position_;  ///< where the modes belong
   JointVector last_;      ///< as last given
   bool posed_{};
-  JointVector x_, v_;   ///< modal displacements and velocities
-  JointVector torque_;  ///< of the load at the end of the last step
+  std::array<KeptResponse, kMaxJoints> response_;  ///< of each mode
+  JointVector x_, v_;                              ///< modal displacements and velocities
+  JointVector torque_;                             ///< of the load at the end of the last step
 };
 
 }  // namespace hammer_loads

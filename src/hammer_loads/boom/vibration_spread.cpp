@@ -51,7 +51,10 @@ void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadS
     const JointVector first = !error ? from : same ? force_[i] : last;
     const JointVector middle = error ? JointVector(0.5 * (first + last)) : mean;
     for (int k = 0; k < modes_.count; ++k) {
-      const ModeState next = advanced(mode(run, k), {x_[i][k], v_[i][k]}, {first[k], last[k], middle[k]}, step);
+      const Mode& m = mode(run, k);
+      const auto kept = static_cast<std::size_t>(std::min(run, kLoads));
+      const ModeResponse& r = response_[kept][static_cast<std::size_t>(k)].at(m, step);
+      const ModeState next = advanced(m, {x_[i][k], v_[i][k]}, {first[k], last[k], middle[k]}, step, r);
       x_[i][k] = next.x, v_[i][k] = next.v;
     }
     force_[i] = last;

@@ -52,6 +52,7 @@ class VibrationSpread {
   std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
   std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
   LoadSpread load_;
+  std::array<std::array<KeptResponse, kMaxJoints>, kLoads + 1> response_;  ///< as mode_
 };
 
 }  // namespace hammer_loads

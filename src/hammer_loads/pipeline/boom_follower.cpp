@@ -69,6 +69,7 @@ bool BoomFollower::takesCompliant() const noexcept {
 
 const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHistory& step) noexcept {
   state_.stamp = sample.stamp;
+  state_.at_blow.reset();
   state_.fault = joints_.at(sample.stamp, motion_);
   if (state_.fault) {
     known_ = false;
@@ -77,11 +78,12 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   }
   const Eigen::Vector3d g_B = gravityInRoot(sample.gravity, base_);
   if (follow_vibration_) {
-    const bool continued = known_ && step.count > 0;
+    const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
+    const bool continued = swung || (known_ && step.count > 0);
     if (!continued) boom_.vibration().rest(), spread_.rest();
     boom_.moveCompliant(motion_, g_B);
     spread_.follow(boom_.vibration());
-    if (continued) vibrate(step, sample.spread);
+    if (continued && !swung) vibrate(step, sample.spread);
     observe(sample, seconds(sample.stamp - last_stamp_));
   } else {
     boom_.move(motion_, g_B);
@@ -124,7 +126,7 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
     const Cylinder& cylinder = boom_.cylinders()[i];
     const int joint = cylinder.joint();
     const std::optional<ChamberPressures> p = pressures_.at(i, sample.stamp);
-    const CylinderPosition at = cylinder.at(motion_.position[joint]);
+    const CylinderPosition& at = boom_.cylinderPosition(i);
     if (!p || at.dead_centre) continue;
     const double total = -forceOf(cylinder, *p) * at.arm;
     state_.contact_torque[joint] = total - state_.loads.total[joint];
@@ -159,11 +161,29 @@ void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread
     torque_.mean = boom_.hammerTorque(onTip(piece.mean));
     boom_.vibration().advance(piece.duration, torque_);
     spread_.advance(piece.duration, torque_, errors);
-    if (!piece.ends_in_blow) continue;
-    const JointVector impulse = boom_.hammerTorque(onTip(piece.blow));
-    boom_.vibration().strike(impulse);
-    spread_.strike(impulse);
+    if (piece.ends_in_blow) strike(piece.blow);
   }
+}
+
+void BoomFollower::strike(const HullWrench& impulse) noexcept {
+  const Jacobian J = tipJacobian(boom_.pose());
+  const JointVector before = boom_.vibration().velocity(), torque = boom_.hammerTorque(onTip(impulse));
+  boom_.vibration().strike(torque);
+  spread_.strike(torque);
+  const Vector6 velocity = J * (0.5 * (before + boom_.vibration().velocity()));
+  state_.at_blow = TipVelocity{velocity[2], velocity[4]};
+}
+
+void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
+  if (!known_ || !follow_vibration_ || !(stamp > last_stamp_)) return;
+  WrenchHistory freely;
+  freely.count = 1;
+  state_.at_blow.reset();
+  freely.pieces[0].duration = seconds(stamp - last_stamp_);
+  vibrate(step.count > 0 ? step : freely, {});
+  last_stamp_ = stamp;
+  state_.stamp = stamp;
+  tellVibration();
 }
 
 void BoomFollower::tellVibration() noexcept {

@@ -37,6 +37,12 @@ struct BoomChoice {
   double rigid_tolerance{};   ///< [-]
 };
 
+/// Velocity of the tip, in its plane.
+struct TipVelocity {
+  double z{};     ///< of the tip's origin along its z [m/s]
+  double rate{};  ///< about its y [rad/s]
+};
+
 /// What one crank sample gave. Void but for stamp and fault when there is a fault.
 struct BoomState {
   StampNs stamp{};
@@ -46,16 +52,17 @@ struct BoomState {
   BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
   Eigen::Vector3d gravity_tip = Eigen::Vector3d::Zero();   ///< in the hull's axes [m/s2]
-  bool dead_centre{};               ///< a cylinder does not hold its joint: no modes, taken as rigid
-  JointVector frequency;            ///< natural frequencies, per mode [Hz]; none when vibration is not followed
-  JointVector frequency_deviation;  ///< standard [Hz]
-  JointVector damping;              ///< of each mode [-]
-  bool identified{};                ///< frequencies and damping follow the sensors
-  JointVector contact_torque;       ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
-  bool measured{};                  ///< the cylinders' forces are those of measured pressures
-  bool press_force_lost{};          ///< the rock does not press on the hull, by measured pressures
-  ReducedHull reduced;              ///< along hull z; infinite without modes
-  Boom::TipVibration tip;           ///< zero for a rigid boom
+  bool dead_centre{};                  ///< a cylinder does not hold its joint: no modes, taken as rigid
+  JointVector frequency;               ///< natural frequencies, per mode [Hz]; none when vibration is not followed
+  JointVector frequency_deviation;     ///< standard [Hz]
+  JointVector damping;                 ///< of each mode [-]
+  bool identified{};                   ///< frequencies and damping follow the sensors
+  JointVector contact_torque;          ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
+  bool measured{};                     ///< the cylinders' forces are those of measured pressures
+  bool press_force_lost{};             ///< the rock does not press on the hull, by measured pressures
+  ReducedHull reduced;                 ///< along hull z; infinite without modes
+  Boom::TipVibration tip;              ///< zero for a rigid boom
+  std::optional<TipVelocity> at_blow;  ///< by vibration, mean of before and after the step's last blow; none: no blow
   BoomChoice choice;
   std::optional<HoldDown> hold_down;  ///< against the mean press force of the last turn that had one
 };
@@ -79,6 +86,8 @@ class BoomFollower {
   /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
   /// until the next call.
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
+  /// Through a crank sample that gives no loads: the boom swings on, without pieces as if free.
+  void swing(StampNs stamp, const WrenchHistory& step) noexcept;
   /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
   /// 0.1 ms.
   void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept;
@@ -101,6 +110,7 @@ class BoomFollower {
   static Wrench onTip(const HullWrench& w) noexcept;
   bool takesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept;
+  void strike(const HullWrench& impulse) noexcept;
   void findLoads(const BoomSample& sample) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
   void takeMeasured(const BoomSample& sample) noexcept;

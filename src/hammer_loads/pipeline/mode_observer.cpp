@@ -63,7 +63,7 @@ void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures
     const std::optional<ChamberPressures> p = pressures.at(i, sample);
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
-    const CylinderPosition at = cylinder.at(boom.position()[j]);
+    const CylinderPosition& at = boom.cylinderPosition(i);
     if (!p || at.dead_centre || !boom.vibration().known()) continue;
     const double torque = -forceOf(cylinder, *p) * at.arm - loads.hammer[j] - loads.weight[j] - loads.motion[j];
     see(boom, kImuChannels + static_cast<int>(cylinders + i), jointTorqueReading(boom.vibration().modes(), j, torque),

@@ -18,6 +18,7 @@ class PendingBlow {
     time_ = time;
     position_ = at;
     blow_ = {};
+    hull_speed_ = 0.0;
     blow_.speed = speed;
     blow_.speed_deviation = speed_deviation;
   }
@@ -35,6 +36,9 @@ class PendingBlow {
   bool isMeasured(double time, const CrankPosition& now) const noexcept {
     return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > kLongEnough);
   }
+  /// The hull's own velocity at the striking point along z, at the blow [m/s].
+  void setHullSpeed(double speed) noexcept { hull_speed_ = speed; }
+  double hullSpeed() const noexcept { return hull_speed_; }
   double time() const noexcept { return time_; }                                  ///< of the blow [s]
   double crankSpeedAfter() const noexcept { return blow_.factor * blow_.speed; }  ///< [rad/s]
   const CrankBlow& take() noexcept {
@@ -49,6 +53,7 @@ class PendingBlow {
   double time_{};
   CrankPosition position_;
   CrankBlow blow_;
+  double hull_speed_{};
 };
 
 }  // namespace hammer_loads

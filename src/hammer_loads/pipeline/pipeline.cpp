@@ -59,10 +59,10 @@ const SampleResult& Pipeline::refuse(Refusal refusal) noexcept {
   return result_;
 }
 
-/// The crank has taken the sample, the rest has not: it goes on from the next one.
+/// The crank has taken the sample, the outputs have not: they go on from the next one.
 const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
-  boom_follows_ = false;
-  hull_.rest();
+  const bool believed = refusal == Refusal::kUnsettled && crank_.step().known();
+  swingOn(believed ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
   sampler_.forget();
   return refuse(refusal);
 }
@@ -107,6 +107,14 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   return result_;
 }
 
+/// The boom does not rest because a sample gives nothing.
+void Pipeline::swingOn(const WrenchHistory& step) noexcept {
+  if (!boom_follows_) return hull_.rest();
+  boom_->swing(result_.stamp, step);
+  if (boom_->state().at_blow) turn_.hullMovedAtBlow(*boom_->state().at_blow);
+  hull_.vibrates(&boom_->state());
+}
+
 /// Measured accelerations of the hull jump at a blow.
 void Pipeline::tellBlow() noexcept {
   for (const CrankStep::Passage& passage : crank_.step()) {
@@ -127,6 +135,7 @@ void Pipeline::followBoom() noexcept {
   result_.boom =
       &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp)}, step);
   boom_follows_ = true;
+  if (result_.boom->at_blow) turn_.hullMovedAtBlow(*result_.boom->at_blow);
   for (std::size_t i = 0; i < result_.turn_ends; ++i)
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
 }
@@ -136,7 +145,8 @@ void Pipeline::restart(bool revised) noexcept {
   if (!revised) turn_.finishBlow(result_);
   turn_.restart();
   sampler_.forget();
-  boom_follows_ = false;
+  if (revised) swingOn({});
+  boom_follows_ = boom_follows_ && revised;
   ++counts_.restarts;
 }
 

@@ -57,6 +57,7 @@ class Pipeline {
   void restart(bool revised) noexcept;
   void followBoom() noexcept;
   void tellBlow() noexcept;
+  void swingOn(const WrenchHistory& step) noexcept;
 
   Mechanism mechanism_;
   PipelineSettings settings_;

@@ -65,22 +65,26 @@ LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, co
   return impulse;
 }
 
-HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
-                        double to) noexcept {
+LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step,
+                         const HullPath& hull, double from, double to) noexcept {
   constexpr double kLongest = 1.25e-3;  // [s]
   const double node = std::sqrt(0.6);
   const struct { double place, weight; } nodes[] = {{-node, 5.0 / 18.0}, {0.0, 8.0 / 18.0}, {node, 5.0 / 18.0}};
-  HullWrench impulse;
-  const auto addedAt = [&](double time) noexcept {
+  LoadImpulse impulse;
+  const auto add = [&](double time, double weight) noexcept {
     const CrankEstimate crank = step.at(time);
-    return frameWrench(model, crank.position.angle, crank.speed, hull);
+    const HullMotion motion = hull.at(time);
+    const double drive_y = weight * drive.torque(0.0, motion.acceleration);
+    impulse.all = impulse.all + weight * frameWrench(model, crank.position.angle, crank.speed, motion) +
+                  HullWrench{0.0, 0.0, drive_y};
+    impulse.drive_y += drive_y;
   };
   forEachSmoothPart(step, from, to, [&](double start, const CrankEstimate&, double end, const CrankEstimate&) {
     const int parts = std::max(1, static_cast<int>(std::ceil((end - start) / kLongest)));
     const double half = 0.5 * (end - start) / parts;
     for (int i = 0; i < parts; ++i) {
       const double middle = start + (2 * i + 1) * half;
-      for (const auto& n : nodes) impulse = impulse + (2.0 * half * n.weight) * addedAt(middle + n.place * half);
+      for (const auto& n : nodes) add(middle + n.place * half, 2.0 * half * n.weight);
     }
   });
   return impulse;

@@ -1,6 +1,8 @@
 /// Impulse of the hull wrench over a step or a part of it: exact where momentum gives it, at any output rate.
 #pragma once
 
+#include <optional>
+
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/wrench_history.h"
@@ -19,10 +21,23 @@ struct LoadImpulse {
 LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step, double from,
                           double to) noexcept;
 
-/// Impulse over [from, to] of what weight and motion of the hull add (frameWrench). Gauss-Legendre of order 6 on pieces
-/// of at most 1.25 ms that end at the blow: forces of a hull at rest exact, moments to some 1e-11 of their size.
-HullWrench addedImpulse(const HullModel& model, const CrankStep& step, const HullMotion& hull, double from,
-                        double to) noexcept;
+/// The hull's motion over a step: on the line between those at its ends, but for a blow, at which it jumps.
+struct HullPath {
+  HullMotion from, to;
+  double length{};             ///< of the step [s]
+  std::optional<double> blow;  ///< [s] after its start
+
+  HullMotion at(double time) const noexcept {
+    if (blow) return time < *blow ? from : to;
+    return length > 0.0 ? blend(from, to, time / length) : to;
+  }
+};
+
+/// Impulse over [from, to] of what weight and motion of the hull add (frameWrench and the drive's part). Gauss-Legendre
+/// of order 6 on pieces of at most 1.25 ms that end at the blow: forces of a hull at rest exact, moments to some 1e-11
+/// of their size.
+LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step,
+                         const HullPath& hull, double from, double to) noexcept;
 
 /// The load of links and drive over the whole step as the boom takes it, blows included; pieces beyond those that a
 /// WrenchHistory holds are left out (a step of several turns).

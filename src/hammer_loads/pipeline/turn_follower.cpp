@@ -77,6 +77,10 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
 }
 
+void TurnFollower::hullMovedAtBlow(const TipVelocity& hull) noexcept {
+  pending_.setHullSpeed(hull.z + model_->mechanism().parameters().striking_distance * hull.rate);
+}
+
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!pending_.isWaiting()) return;
   if (tracker_->estimate().position.isMirrored()) {  // there was no tool
@@ -86,8 +90,10 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
     return;
   }
   turn_.correctBegin(linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
-  pending_end_.blow = measuredBlow(*model_, pending_.take());
-  pending_end_.mean_press_force *= pending_end_.blow.tool_impulse_z;
+  RockerBlow& blow = pending_end_.blow;
+  blow = measuredBlow(*model_, pending_.take());
+  blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull
+  pending_end_.mean_press_force *= blow.tool_impulse_z;
   if (result.turn_ends < result.ends.size()) result.ends[result.turn_ends++] = pending_end_;
 }
 

@@ -28,6 +28,9 @@ class TurnFollower {
   /// after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
 
+  /// Velocity of the hull by the boom's vibration at the blow that the last step ended with.
+  void hullMovedAtBlow(const TipVelocity& hull) noexcept;
+
   double peakForce() const noexcept { return peak_force_; }            ///< of the last whole turn [N], 0 before it
   std::uint64_t blows() const noexcept { return turns_; }              ///< since the start
   std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again

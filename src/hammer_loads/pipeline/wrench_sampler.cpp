@@ -34,13 +34,14 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
 void WrenchSampler::sample(SampleResult& result) noexcept {
   added_up_to_ = 0.0;
   drive_ = driveReaction(*model_, tracker_->driveInertia());
+  followHull(result.hull.motion);
   if (!begun_ && !begin(result)) return;
   StampNs stamp{};
   while (isDue(result.stamp, stamp)) {
     result.outputs.push_back(output(stamp, result));
     if (stamp == result.stamp) return;
   }
-  if (kind_ == OutputKind::kMean) addUpTo(step_->length(), result.hull.motion);
+  if (kind_ == OutputKind::kMean) addUpTo(step_->length());
 }
 
 /// Stamp of the next output, if it is not after the sample.
@@ -50,26 +51,34 @@ bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
   return stamp <= sample;
 }
 
-void WrenchSampler::addUpTo(double time, const HullMotion& hull) noexcept {
+void WrenchSampler::addUpTo(double time) noexcept {
   if (!(time > added_up_to_)) return;
   const LoadImpulse motion = motionImpulse(*model_, drive_, *step_, added_up_to_, time);
-  const double drive_y = drive_.torque(0.0, hull.acceleration) * (time - added_up_to_);
-  impulse_.all =
-      impulse_.all + motion.all + addedImpulse(*model_, *step_, hull, added_up_to_, time) + HullWrench{0, 0, drive_y};
-  impulse_.drive_y += motion.drive_y + drive_y;
+  const LoadImpulse added = addedImpulse(*model_, drive_, *step_, hull_, added_up_to_, time);
+  impulse_ = {impulse_.all + motion.all + added.all, impulse_.drive_y + motion.drive_y + added.drive_y};
   added_up_to_ = time;
 }
 
+/// Of the step that the sample ends.
+void WrenchSampler::followHull(const HullMotion& hull) noexcept {
+  hull_.from = hull_.to;
+  hull_.to = hull;
+  hull_.length = step_->length();
+  hull_.blow.reset();
+  for (const CrankStep::Passage& passage : *step_)
+    if (passage.strikes) hull_.blow = passage.time;
+}
+
 WrenchOutput WrenchSampler::output(StampNs stamp, const SampleResult& result) noexcept {
-  const HullMotion& hull = result.hull.motion;
   ++index_;
   const bool at_sample = stamp == result.stamp;
   const double time = at_sample ? step_->length() : seconds(stamp - step_->start());
+  const HullMotion hull = at_sample ? result.hull.motion : hull_.at(time);
   WrenchOutput output;
   output.stamp = stamp;
   output.crank = at_sample ? result.crank : step_->at(time);
   if (kind_ == OutputKind::kMean) {
-    addUpTo(time, hull);
+    addUpTo(time);
     output.interval = seconds(stamp - last_output_);
     output.wrench = (1.0 / output.interval) * impulse_.all;
     output.drive_reaction_y = impulse_.drive_y / output.interval;

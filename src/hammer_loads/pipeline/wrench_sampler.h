@@ -32,7 +32,8 @@ class WrenchSampler {
   bool begin(const SampleResult& result) noexcept;
   bool isDue(StampNs sample, StampNs& stamp) const noexcept;
   WrenchOutput output(StampNs stamp, const SampleResult& result) noexcept;
-  void addUpTo(double time, const HullMotion& hull) noexcept;
+  void addUpTo(double time) noexcept;
+  void followHull(const HullMotion& hull) noexcept;
   void addDeviation(const HullMotion& hull, bool at_sample, WrenchOutput& output) noexcept;
 
   const HullModel* model_;
@@ -48,6 +49,7 @@ class WrenchSampler {
   std::uint64_t index_{};  ///< of the next output on the grid
   StampNs last_output_{};
   double added_up_to_{};           ///< part of the step whose impulse is in impulse_ [s]
+  HullPath hull_;                  ///< over the step to the sample
   DriveReaction drive_;            ///< at the sample
   LoadImpulse impulse_;            ///< since the last output
   HullWrench momentum_deviation_;  ///< at the last output
