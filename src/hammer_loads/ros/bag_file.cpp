@@ -120,12 +120,22 @@ void BagFile::read(const BagChunk& chunk, const std::map<std::uint32_t, const Ba
   read.packed.resize(data_size);
   readInto(data_at + sizeof data_size, read.packed.data(), data_size);
   read.bytes.resize(size);
-  const rosbag::CompressionType packing = packingOf(fieldOf(header, "compression"));
-  if (packing == rosbag::compression::Uncompressed && data_size == size)
-    read.packed.swap(read.bytes);
-  else
-    streams_.getStream(packing)->decompress(read.bytes.data(), size, read.packed.data(), data_size);
+  unpack(packingOf(fieldOf(header, "compression")), read);
+  listMessages(wanted, read);
+}
 
+void BagFile::unpack(rosbag::CompressionType packing, ReadChunk& read) const {
+  const auto size = [](const std::vector<std::uint8_t>& bytes) { return static_cast<unsigned>(bytes.size()); };
+  if (packing == rosbag::compression::Uncompressed && size(read.packed) == size(read.bytes))
+    return read.packed.swap(read.bytes);
+  try {
+    streams_.getStream(packing)->decompress(read.bytes.data(), size(read.bytes), read.packed.data(), size(read.packed));
+  } catch (const rosbag::BagException& error) {
+    throw std::runtime_error(error.what());  // of an input: that class is for outputs
+  }
+}
+
+void BagFile::listMessages(const std::map<std::uint32_t, const BagConnection*>& wanted, ReadChunk& read) {
   read.messages.clear();
   std::string_view rest(reinterpret_cast<const char*>(read.bytes.data()), read.bytes.size());
   while (!rest.empty()) {

@@ -77,6 +77,8 @@ class BagFile {
   std::string bytesAt(std::uint64_t position, std::uint64_t size) const;
   void readInto(std::uint64_t position, std::uint8_t* to, std::size_t size) const;
   void readIndex(std::uint64_t position, std::uint32_t connections, std::uint32_t chunks);
+  void unpack(rosbag::CompressionType packing, ReadChunk& read) const;
+  static void listMessages(const std::map<std::uint32_t, const BagConnection*>& wanted, ReadChunk& read);
 
   int descriptor_;
   std::uint64_t size_{};
