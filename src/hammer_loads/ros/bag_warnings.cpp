@@ -93,8 +93,9 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warning
     list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + known->first + ")";
   }
   if (!list.empty())
-    addOnce(warnings, {"definitions",
-                       "messages of another version of this package: " + list + "; `rosbag fix` makes them readable"});
+    addOnce(warnings, {"definitions", "messages of another version of this package: " + list +
+                                          "; `rosbag fix -n " + inputs.names() + " NEW.bag " + configDirectory() +
+                                          "/../migration/hammer_loads.bmr` makes them readable"});
 }
 
 /// Topics that are wanted and did not come.
