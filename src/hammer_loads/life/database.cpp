@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -26,10 +27,9 @@ void Database::fail(const std::string& problem) {
 
 bool Database::check(int result) {
   if (result == SQLITE_OK || result == SQLITE_ROW || result == SQLITE_DONE) return true;
+  const int error = errno;  // sqlite3_system_errno() does not know that of a COMMIT
   std::string reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(result);
-  const int error = handle_ ? sqlite3_system_errno(handle_.get()) : 0;
-  const int kind = result & 0xFF;
-  if (error != 0 && (kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN)) reason += std::string(": ") + std::strerror(error);
+  if (error != 0 && (result & 0xFF) == SQLITE_IOERR) reason += std::string(": ") + std::strerror(error);
   fail(reason);
   return false;
 }

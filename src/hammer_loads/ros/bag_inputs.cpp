@@ -1,5 +1,6 @@
 #include "hammer_loads/ros/bag_inputs.h"
 
+#include <rosbag/exceptions.h>
 #include <sys/stat.h>
 
 #include <cerrno>
@@ -19,12 +20,12 @@ bool beginsAsBag(const std::string& file) {
 }
 
 /// Why it cannot be opened; empty if it was.
-std::string openProblem(rosbag::Bag& bag, const std::string& file) {
+std::string openProblem(std::unique_ptr<BagFile>& bag, const std::string& file) {
   struct stat found {};
   if (stat(file.c_str(), &found) != 0) return file + ": cannot be read: " + std::strerror(errno);
   if (!S_ISREG(found.st_mode)) return file + ": is no regular file, must be a bag";
   try {
-    bag.open(file, rosbag::bagmode::Read);
+    bag = std::make_unique<BagFile>(file);
     return {};
   } catch (const rosbag::BagUnindexedException&) {
     return file + ": the bag has no index, its recording did not end properly; `rosbag reindex " + file + "` makes one";
@@ -51,9 +52,9 @@ Checked<BagInputs> BagInputs::open(const std::vector<std::string>& files) {
   Checked<BagInputs> result;
   BagInputs inputs;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    auto bag = std::make_unique<rosbag::Bag>();
+    std::unique_ptr<BagFile> bag;
     const std::string problem =
-        isAmong(files, i, files[i]) ? files[i] + ": given twice, must be given once" : openProblem(*bag, files[i]);
+        isAmong(files, i, files[i]) ? files[i] + ": given twice, must be given once" : openProblem(bag, files[i]);
     if (!problem.empty()) {
       result.problems.push_back(problem);
       continue;
@@ -66,15 +67,12 @@ Checked<BagInputs> BagInputs::open(const std::vector<std::string>& files) {
   return result;
 }
 
-void BagInputs::addTopics(const rosbag::Bag& bag) {
-  rosbag::View view(bag);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    BagTopic& topic = topics_[connection->topic];
-    topic.types.insert(connection->datatype);
-    topic.definitions.insert(connection->md5sum);
-    if (!connection->header) continue;
-    const auto caller = connection->header->find("callerid");
-    if (caller != connection->header->end() && !caller->second.empty()) topic.publishers.insert(caller->second);
+void BagInputs::addTopics(const BagFile& bag) {
+  for (const auto& [id, connection] : bag.connections()) {
+    BagTopic& topic = topics_[connection.topic];
+    topic.types.insert(connection.type);
+    topic.definitions.insert(connection.md5sum);
+    if (!connection.publisher.empty()) topic.publishers.insert(connection.publisher);
   }
 }
 
@@ -93,8 +91,8 @@ std::string BagInputs::topicsOfType(const std::string& type) const {
   return list.empty() ? "none" : list;
 }
 
-void BagInputs::addTo(rosbag::View& view, const boost::function<bool(const rosbag::ConnectionInfo*)>& query) const {
-  for (const auto& bag : bags_) view.addQuery(*bag, query);
+BagMessages BagInputs::messagesOn(const std::set<std::string>& topics) const {
+  return messages([&topics](const BagConnection& connection) { return topics.count(connection.topic) != 0; });
 }
 
 }  // namespace hammer_loads

@@ -1,16 +1,13 @@
 /// Recorded bags as one input: the splits of a recording, in record order.
 #pragma once
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
 #include <map>
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "hammer_loads/ros/bag_messages.h"
 #include "hammer_loads/util/checked.h"
 
 namespace hammer_loads {
@@ -28,18 +25,6 @@ std::string typeOf() {
   return ros::message_traits::datatype<Message>();
 }
 
-/// Throws std::runtime_error where it is damaged or of another definition.
-template <typename Message>
-boost::shared_ptr<Message> messageOf(const rosbag::MessageInstance& item) {
-  std::string reason = "of another definition";
-  try {
-    if (const auto message = item.instantiate<Message>()) return message;
-  } catch (const rosbag::BagException& error) {
-    reason = error.what();
-  }
-  throw std::runtime_error("a message on " + item.getTopic() + " cannot be read: " + reason);
-}
-
 class BagInputs {
  public:
   /// Opens every bag; why that could not be, one line each.
@@ -53,13 +38,14 @@ class BagInputs {
   std::string topicsOfType(const std::string& type) const;
   /// The files' names, in one line.
   const std::string& names() const { return names_; }
-  /// Adds what the query takes of every bag to a view.
-  void addTo(rosbag::View& view, const boost::function<bool(const rosbag::ConnectionInfo*)>& query) const;
+  /// What the query takes of every bag, in record order. One reader at a time.
+  BagMessages messages(const BagQuery& query) const { return {bags_, query}; }
+  BagMessages messagesOn(const std::set<std::string>& topics) const;
 
  private:
-  void addTopics(const rosbag::Bag& bag);
+  void addTopics(const BagFile& bag);
 
-  std::vector<std::unique_ptr<rosbag::Bag>> bags_;
+  std::vector<std::unique_ptr<BagFile>> bags_;
   std::map<std::string, BagTopic> topics_;
   std::string names_;
 };

@@ -33,28 +33,23 @@ class HammerRuns {
     begin();
   }
 
-  void take(const rosbag::MessageInstance& item) {
-    while (next_ < runs_.size() && item.getTime() >= runs_[next_].from) {
+  void take(const BagMessage& item) {
+    while (next_ < runs_.size() && item.time >= runs_[next_].from) {
       end();
       begin();
     }
     const InputTopics& topics = flow_->settings().input_topics;
-    const std::string& topic = item.getTopic();
+    const std::string& topic = item.connection->topic;
+    if (topic == topics.crank || topic == topics.joint_states) return joints(item);
     if (topic == "/tf" || topic == "/tf_static") return transforms(item, topic == "/tf_static");
-    if (topic == topics.joint_states) {
-      joints_came_ = true;
-      flow_->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
+    if (topic == topics.hull_imu && flow_->needsImu()) {
+      item.to(imu_);
+      flow_->hullImu(imu_, item.time);
     }
-    if (topic == topics.crank) {
-      ++samples_;
-      flow_->crank(*messageOf<sensor_msgs::JointState>(item), item.getTime());
-    }
-    if (topic == topics.hull_imu && flow_->needsImu())
-      flow_->hullImu(*messageOf<sensor_msgs::Imu>(item), item.getTime());
     for (const HammerBridge::PressureTopic& pressure : pressures_) {
-      if (topic == pressure.name)
-        flow_->cylinderPressure(pressure.cylinder, pressure.chamber, *messageOf<sensor_msgs::FluidPressure>(item),
-                                item.getTime());
+      if (topic != pressure.name) continue;
+      item.to(pressure_);
+      flow_->cylinderPressure(pressure.cylinder, pressure.chamber, pressure_, item.time);
     }
   }
 
@@ -84,11 +79,25 @@ class HammerRuns {
     for (const auto& [time, message] : statics_) flow_->transforms(*message, true, time);
   }
 
-  void transforms(const rosbag::MessageInstance& item, bool is_static) {
+  /// Both may be on one topic.
+  void joints(const BagMessage& item) {
+    const InputTopics& topics = flow_->settings().input_topics;
+    item.to(joints_);
+    if (item.connection->topic == topics.joint_states) {
+      joints_came_ = true;
+      flow_->jointStates(joints_, item.time);
+    }
+    if (item.connection->topic != topics.crank) return;
+    ++samples_;
+    flow_->crank(joints_, item.time);
+  }
+
+  void transforms(const BagMessage& item, bool is_static) {
     if (!is_static && !flow_->needsTransforms()) return;
-    const auto message = messageOf<tf2_msgs::TFMessage>(item);
-    if (is_static) statics_.emplace_back(item.getTime(), message);
-    flow_->transforms(*message, is_static, item.getTime());
+    const auto message = boost::make_shared<tf2_msgs::TFMessage>();
+    item.to(*message);
+    if (is_static) statics_.emplace_back(item.time, message);
+    flow_->transforms(*message, is_static, item.time);
   }
 
   const std::vector<BagRun>& runs_;
@@ -100,6 +109,9 @@ class HammerRuns {
   std::uint64_t samples_{};  ///< messages with crank samples, likewise
   std::optional<HammerBridge> flow_;
   std::vector<HammerBridge::PressureTopic> pressures_;
+  sensor_msgs::JointState joints_;  ///< memory for messages
+  sensor_msgs::Imu imu_;
+  sensor_msgs::FluidPressure pressure_;
   std::vector<std::pair<ros::Time, tf2_msgs::TFMessage::ConstPtr>> statics_;
 };
 
@@ -140,8 +152,10 @@ struct Work {
   std::string slider_topic;  ///< empty: no grapple
 };
 
-void warnOfInputs(const Work& work, const std::vector<std::string>& topics, const std::set<std::string>& heard,
+void warnOfInputs(const Work& work, const std::set<std::string>& topics, const std::set<const BagConnection*>& connections,
                   std::vector<BagWarning>& warnings) {
+  std::set<std::string> heard;
+  for (const BagConnection* connection : connections) heard.insert(connection->topic);
   warnOfPublishers(work.inputs, topics, warnings);
   warnOfDefinitions(work.inputs, warnings);
   warnOfLostMessages(work.inputs, warnings);
@@ -158,19 +172,21 @@ void process(const Work& work, const Sinks& sinks, const std::function<void(doub
   }
 
   const Wanted wanted = wantedTopics(work.runs, work.hammer, work.slider_topic);
-  std::vector<std::string> topics;
-  for (const auto& [name, type] : wanted) topics.push_back(name);
-  std::set<std::string> heard;
-  rosbag::View view;
-  work.inputs.addTo(view, rosbag::TopicQuery(topics));
-  const double count = view.size();
+  std::set<std::string> topics;
+  for (const auto& [name, type] : wanted) topics.insert(name);
+  std::set<const BagConnection*> heard;
+  BagMessages messages = work.inputs.messagesOn(topics);
+  const auto count = static_cast<double>(messages.size());
   double done = 0.0;
-  for (const rosbag::MessageInstance& item : view) {
+  sensor_msgs::JointState slider;
+  while (const BagMessage* item = messages.next()) {
     progress(++done / count);
-    heard.insert(item.getTopic());
-    if (hammer) hammer->take(item);
-    if (grapple && item.getTopic() == work.slider_topic)
-      grapple->jointStates(*messageOf<sensor_msgs::JointState>(item), item.getTime());
+    heard.insert(item->connection);
+    if (hammer) hammer->take(*item);
+    if (grapple && item->connection->topic == work.slider_topic) {
+      item->to(slider);
+      grapple->jointStates(slider, item->time);
+    }
     if (sinks.tables != nullptr && !sinks.tables->problem().empty()) return;
   }
   if (hammer) hammer->end();

@@ -37,19 +37,21 @@ bool isRepeated(const std::vector<RecordedRun>& runs, const RunInfo& info) {
 
 RunInfos readRunInfos(const BagInputs& inputs, std::vector<BagWarning>& warnings) {
   RunInfos found;
-  rosbag::View view;
-  inputs.addTo(view, rosbag::TypeQuery(ros::message_traits::datatype<RunInfo>()));
-  for (const rosbag::MessageInstance& item : view) {
-    const auto info = item.instantiate<RunInfo>();
-    if (!info) {
-      addOnce(warnings, {"definitions", item.getTopic() + ": hammer_loads/RunInfo of another definition (MD5 " +
-                                            item.getMD5Sum() + ", here " + ros::message_traits::md5sum<RunInfo>() +
+  BagMessages messages =
+      inputs.messages([](const BagConnection& connection) { return connection.type == typeOf<RunInfo>(); });
+  RunInfo info;
+  while (const BagMessage* item = messages.next()) {
+    const std::string& topic = item->connection->topic;
+    if (!item->is<RunInfo>()) {
+      addOnce(warnings, {"definitions", topic + ": hammer_loads/RunInfo of another definition (MD5 " +
+                                            item->connection->md5sum + ", here " + ros::message_traits::md5sum<RunInfo>() +
                                             "), is not used"});
       continue;
     }
-    if (!isOfHammer(*info)) continue;
-    found.topics.insert(item.getTopic());
-    if (!isRepeated(found.runs, *info)) found.runs.push_back({item.getTime(), *info});
+    item->to(info);
+    if (!isOfHammer(info)) continue;
+    found.topics.insert(topic);
+    if (!isRepeated(found.runs, info)) found.runs.push_back({item->time, info});
   }
   return found;
 }
@@ -102,10 +104,9 @@ Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, 
 
 /// First record time of an input of the run; nothing if there is none.
 std::optional<ros::Time> firstInput(const BagInputs& inputs, const InputTopics& topics) {
-  rosbag::View view;
-  inputs.addTo(view, rosbag::TopicQuery({topics.crank, topics.joint_states, topics.hull_imu}));
-  if (view.size() == 0) return std::nullopt;
-  return view.getBeginTime();
+  BagMessages messages = inputs.messagesOn({topics.crank, topics.joint_states, topics.hull_imu});
+  const BagMessage* first = messages.next();
+  return first == nullptr ? std::nullopt : std::make_optional(first->time);
 }
 
 Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob& job, const RunInfos& infos) {

@@ -31,11 +31,11 @@ const std::map<std::string, std::string>& definitions() {
 std::string jointsOn(const BagInputs& inputs, const std::string& topic) {
   constexpr std::size_t kMost = 20;
   std::set<std::string> names;
-  rosbag::View view;
-  inputs.addTo(view, rosbag::TopicQuery(topic));
-  for (const rosbag::MessageInstance& item : view) {
-    const auto message = messageOf<sensor_msgs::JointState>(item);
-    for (const std::string& name : message->name) names.insert(onOneLine(name));
+  BagMessages messages = inputs.messagesOn({topic});
+  sensor_msgs::JointState message;
+  while (const BagMessage* item = messages.next()) {
+    item->to(message);
+    for (const std::string& name : message.name) names.insert(onOneLine(name));
     if (names.size() > kMost) break;
   }
   std::string list;
@@ -56,7 +56,7 @@ void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, s
   for (const Warning& warning : bridge.life().warnings()) addOnce(warnings, {warning.key, warning.text, run});
 }
 
-void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
+void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics,
                       std::vector<BagWarning>& warnings) {
   for (const std::string& name : topics) {
     const auto found = inputs.topics().find(name);
@@ -72,10 +72,12 @@ void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnin
   for (const auto& [name, topic] : inputs.topics()) {
     if (!isGapTopic(name) || topic.types.count(typeOf<diagnostic_msgs::DiagnosticStatus>()) == 0) continue;
     std::uint64_t lost = 0;
-    rosbag::View view;
-    inputs.addTo(view, rosbag::TopicQuery(name));
-    for (const rosbag::MessageInstance& item : view)
-      lost += lostMessages(*messageOf<diagnostic_msgs::DiagnosticStatus>(item));
+    BagMessages messages = inputs.messagesOn({name});
+    diagnostic_msgs::DiagnosticStatus gap;
+    while (const BagMessage* item = messages.next()) {
+      item->to(gap);
+      lost += lostMessages(gap);
+    }
     if (lost > 0)
       addOnce(warnings, {"lost messages", name + ": the log lost " + std::to_string(lost) +
                                               " messages; where an input is among them, the outputs differ from those "
@@ -91,8 +93,9 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warning
     list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + known->first + ")";
   }
   if (!list.empty())
-    addOnce(warnings, {"definitions",
-                       "messages of another version of this package: " + list + "; `rosbag fix` makes them readable"});
+    addOnce(warnings, {"definitions", "messages of another version of this package: " + list +
+                                          "; `rosbag fix -n " + inputs.names() + " NEW.bag " + configDirectory() +
+                                          "/../migration/hammer_loads.bmr` makes them readable"});
 }
 
 /// Topics that are wanted and did not come.

@@ -19,7 +19,7 @@ void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run,
                std::vector<BagWarning>& warnings);
 
 /// Several nodes on one of these topics. Transforms come from several as a rule.
-void warnOfPublishers(const BagInputs& inputs, const std::vector<std::string>& topics,
+void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics,
                       std::vector<BagWarning>& warnings);
 
 /// What the log that made the bags could not keep.

@@ -1,0 +1,65 @@
+/// Records of a bag: a header of named fields, then data.
+#pragma once
+
+#include <ros/time.h>
+
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+
+namespace hammer_loads {
+
+/// Number in the bytes' first places, little end first as every machine that ROS runs on.
+template <typename T>
+T numberIn(std::string_view bytes) {
+  if (bytes.size() < sizeof(T)) throw std::runtime_error("a field or record is cut short");
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  return value;
+}
+
+/// Takes a length and as many bytes from the beginning of `bytes`.
+inline std::string_view takePiece(std::string_view& bytes) {
+  const auto size = numberIn<std::uint32_t>(bytes);
+  bytes.remove_prefix(sizeof size);
+  if (size > bytes.size()) throw std::runtime_error("a record reaches beyond the end");
+  const std::string_view piece = bytes.substr(0, size);
+  bytes.remove_prefix(size);
+  return piece;
+}
+
+/// Value of a field; empty where there is none.
+inline std::string_view fieldOf(std::string_view header, std::string_view name) {
+  while (!header.empty()) {
+    const std::string_view field = takePiece(header);
+    if (field.size() > name.size() && field[name.size()] == '=' && field.compare(0, name.size(), name) == 0)
+      return field.substr(name.size() + 1);
+  }
+  return {};
+}
+
+template <typename T>
+T numberOf(std::string_view header, std::string_view name) {
+  return numberIn<T>(fieldOf(header, name));
+}
+
+inline ros::Time timeIn(std::string_view header, std::string_view name) {
+  const std::string_view field = fieldOf(header, name);
+  return {numberIn<std::uint32_t>(field), numberIn<std::uint32_t>(field.substr(sizeof(std::uint32_t)))};
+}
+
+struct BagRecord {
+  enum Kind : std::uint8_t { kMessage = 2, kBag = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
+
+  std::string_view header, data;
+
+  Kind kind() const { return static_cast<Kind>(numberOf<std::uint8_t>(header, "op")); }
+  /// Takes one from the beginning of `bytes`.
+  static BagRecord take(std::string_view& bytes) {
+    const std::string_view header = takePiece(bytes);
+    return {header, takePiece(bytes)};
+  }
+};
+
+}  // namespace hammer_loads

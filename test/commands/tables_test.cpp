@@ -1,0 +1,293 @@
+/// process_bag --db as its user runs it: the tables say what the output bag says, the same bytes each time, and the file
+/// is whole or not there.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "commands/bag_files.h"
+#include "hammer_loads/Blow.h"
+#include "hammer_loads/HullLoads.h"
+#include "hammer_loads/Pulse.h"
+#include "hammer_loads/life/database.h"
+
+namespace hammer_loads {
+namespace {
+
+namespace fs = std::filesystem;
+using life::Database;
+using test::contentOf;
+using test::kSession;
+
+class Tables : public test::BagFiles {
+ protected:
+  /// First column of each row, "NULL" for nothing.
+  std::vector<std::string> ask(const std::string& file, const std::string& sql) const {
+    Database database(path(file), Database::Use::kRead, 0);
+    std::vector<std::string> rows;
+    Database::Statement query(database, sql.c_str());
+    while (query.step()) rows.push_back(query.isNull(0) ? "NULL" : query.text(0));
+    EXPECT_EQ(database.problem(), "") << sql;
+    return rows;
+  }
+  double number(const std::string& file, const std::string& sql) const { return std::stod(ask(file, sql).at(0)); }
+  test::Outcome tables(const std::string& bags, const std::string& file, const std::string& options = "") const {
+    return run("--no-bag " + bags + " --db " + path(file) + " " + options);
+  }
+};
+
+/// Column by column: what a reader of the bag sees. NaN is NULL.
+TEST_F(Tables, SayWhatTheOutputBagSays) {
+  const test::Outcome outcome = run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  Database database(path("out.sqlite"), Database::Use::kRead, 0);
+  Database::Statement turns(database, "SELECT stamp_ns, amplitude_N, turn, half_sine_rms_error FROM turns");
+  Database::Statement blows(database, "SELECT stamp_ns, energy_J, turn, mean_press_force_N FROM blows");
+  const auto expect_row = [](Database::Statement& row, const ros::Time& stamp, double value, std::uint64_t turn,
+                             double last) {
+    ASSERT_TRUE(row.step());
+    EXPECT_EQ(row.integer(0), static_cast<std::int64_t>(stamp.toNSec()));
+    EXPECT_EQ(row.number(1), value);
+    EXPECT_EQ(row.integer(2), static_cast<std::int64_t>(turn));
+    EXPECT_TRUE(std::isnan(last) ? row.isNull(3) : row.number(3) == last);
+  };
+  std::uint64_t samples = 0, not_known = 0;
+  rosbag::Bag bag(path("out.bag"));
+  for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
+    if (const auto p = item.instantiate<Pulse>())
+      expect_row(turns, p->header.stamp, p->amplitude_N, p->turn, p->half_sine_rms_error);
+    if (const auto b = item.instantiate<Blow>()) {
+      expect_row(blows, b->header.stamp, b->energy_J, b->turn, b->mean_press_force_N);
+      not_known += std::isnan(b->mean_press_force_N);
+    }
+    samples += item.isType<HullLoads>();
+  }
+  EXPECT_FALSE(turns.step());
+  EXPECT_FALSE(blows.step());
+  EXPECT_GT(not_known, 0U);
+  EXPECT_EQ(number("out.sqlite", "SELECT published FROM runs"), static_cast<double>(samples));
+  EXPECT_EQ(number("out.sqlite", "SELECT turns FROM runs"), number("out.sqlite", "SELECT count(*) FROM turns"));
+  EXPECT_EQ(number("out.sqlite", "SELECT blows FROM runs"), number("out.sqlite", "SELECT count(*) FROM blows"));
+  EXPECT_NEAR(number("out.sqlite", "SELECT duration_s FROM runs"), 29.8, 0.2);
+}
+
+TEST_F(Tables, SameInputGivesTheSameBytesWithAndWithoutABag) {
+  ASSERT_EQ(tables(kSession, "one.sqlite").exit_code, 0);
+  ASSERT_EQ(run(kSession + " " + path("out.bag") + " --db " + path("two.sqlite")).exit_code, 0);
+  // Under another name, in another directory, from another one.
+  fs::create_directory(path("elsewhere"));
+  const std::string other = copy(kSession, "elsewhere/renamed.bag");
+  const test::Outcome third = test::runCommand("cd " + path("elsewhere") + " && " HAMMER_LOADS_PROCESS_BAG,
+                                               "--no-bag renamed.bag --db ../three.sqlite");
+  ASSERT_EQ(third.exit_code, 0) << third.err;
+  EXPECT_TRUE(contentOf(path("one.sqlite")) == contentOf(path("two.sqlite")));
+  EXPECT_TRUE(contentOf(path("one.sqlite")) == contentOf(path("three.sqlite")));
+}
+
+TEST_F(Tables, KnowInputParametersAndMachine) {
+  const test::TemporaryFile level("level: linkage\n"), inertia("drive_inertia_kg_m2: 0.7\n");
+  ASSERT_EQ(tables(kSession, "shipped.sqlite").exit_code, 0);
+  ASSERT_EQ(tables(kSession, "level.sqlite", "--params " + level.path()).exit_code, 0);
+  const std::string sha = test::runCommand("sha256sum", kSession).out.substr(0, 64);
+  EXPECT_EQ(ask("shipped.sqlite", "SELECT input_sha256 FROM runs"), std::vector<std::string>{sha});
+  const auto both = [&](const char* column) {
+    const std::string sql = std::string("SELECT ") + column + " FROM runs";
+    return std::make_pair(ask("shipped.sqlite", sql), ask("level.sqlite", sql));
+  };
+  EXPECT_EQ(both("machine").first, both("machine").second);
+  EXPECT_NE(both("parameters_sha256").first, both("parameters_sha256").second);
+  EXPECT_NE(both("run_key").first, both("run_key").second);
+  const std::string changed = "SELECT key || ' ' || value || ' ' || shipped FROM parameters WHERE value <> shipped";
+  EXPECT_EQ(ask("shipped.sqlite", changed), std::vector<std::string>{});
+  EXPECT_EQ(ask("level.sqlite", changed), std::vector<std::string>{"level linkage rocker"});
+  EXPECT_EQ(ask("level.sqlite", "SELECT level FROM runs"), std::vector<std::string>{"linkage"});
+  EXPECT_EQ(ask("shipped.sqlite", "SELECT value FROM parameters WHERE key = 'pitch_joints'"),
+            std::vector<std::string>{"[boom_joint, arm_joint, hammer_joint]"});
+  const std::string yaml = ask("shipped.sqlite", "SELECT parameters_yaml FROM runs").at(0);
+  EXPECT_NE(yaml.find("crank_length_m: "), std::string::npos);
+  for (const char* part : {"/tmp", ".bag", "mo100_100hz"})
+    EXPECT_EQ(contentOf(path("shipped.sqlite")).find(part), std::string::npos) << part;
+}
+
+TEST_F(Tables, RefusalsAndWarningsAreThoseOnTheConsole) {
+  {
+    rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);
+    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
+      if (item.getTopic() == "/joint_states") return;
+      bag.write(item.getTopic(), item.getTime(), item);
+      if (item.getTime().toSec() - 1.7e9 > 10.0 && item.getTime().toSec() - 1.7e9 < 10.1)
+        bag.write(item.getTopic(), item.getTime(), item);  // as often as there are samples in 0.1 s
+    });
+  }
+  const test::Outcome outcome = tables(path("in.bag"), "out.sqlite");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<std::string> refused = ask("out.sqlite", "SELECT reason || ': ' || count FROM refusals");
+  ASSERT_EQ(refused.size(), 1U);
+  EXPECT_NE(outcome.err.find("crank samples without a wrench, " + refused[0] + "\n"), std::string::npos) << outcome.err;
+  const std::vector<std::string> warnings = ask("out.sqlite", "SELECT text FROM warnings ORDER BY place");
+  ASSERT_GE(warnings.size(), 2U);
+  for (const std::string& text : warnings) EXPECT_NE(outcome.err.find("warning: " + text), std::string::npos) << text;
+}
+
+TEST_F(Tables, TracesAreSamplesOfTheirTurn) {
+  ASSERT_EQ(tables(kSession, "out.sqlite").exit_code, 0);
+  EXPECT_EQ(ask("out.sqlite", "SELECT DISTINCT kind FROM traces ORDER BY kind"),
+            (std::vector<std::string>{"typical", "worst"}));
+  EXPECT_EQ(ask("out.sqlite", "SELECT DISTINCT turn FROM traces WHERE kind = 'worst'"),
+            ask("out.sqlite", "SELECT turn FROM turns ORDER BY amplitude_N DESC LIMIT 1"));
+  // The typical turn lies in the middle half of all.
+  EXPECT_NEAR(number("out.sqlite",
+                     "SELECT avg(t.amplitude_N <= (SELECT amplitude_N FROM turns WHERE turn = "
+                     "(SELECT turn FROM traces WHERE kind = 'typical'))) FROM turns t"),
+              0.5, 0.25);
+  for (const char* kind : {"typical", "worst"}) {
+    const std::string of_kind = std::string(" FROM traces JOIN turns USING(run_id, turn) WHERE kind = '") + kind + "'";
+    EXPECT_EQ(number("out.sqlite", "SELECT sum(time_s <= 0.0 OR time_s > period_s)" + of_kind), 0.0);
+    // Samples 10 ms apart; a sample is at most the peak, which is found between samples.
+    EXPECT_NEAR(number("out.sqlite", "SELECT count(*) * 0.01 - period_s" + of_kind), 0.0, 0.011);
+    EXPECT_LE(number("out.sqlite", "SELECT max(force_z_N) / amplitude_N" + of_kind), 1.0 + 1e-9);
+    EXPECT_GT(number("out.sqlite", "SELECT max(force_z_N) / amplitude_N" + of_kind), 0.5);
+  }
+}
+
+/// The splits of a recording are one run; their hash is that of the bytes in their order.
+TEST_F(Tables, SeveralBagsAreOneRecording) {
+  const std::string a = path("a.bag"), b = path("b.bag");
+  {
+    rosbag::Bag first(a, rosbag::bagmode::Write), second(b, rosbag::bagmode::Write);
+    int i = 0;
+    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
+      (i++ < 2000 ? first : second).write(item.getTopic(), item.getTime(), item);
+    });
+  }
+  ASSERT_EQ(tables(kSession, "whole.sqlite").exit_code, 0);
+  ASSERT_EQ(tables(a + " " + b, "parts.sqlite").exit_code, 0);
+  const std::string sha = test::runCommand("sh -c 'cat $0 $1 | sha256sum'", a + " " + b).out.substr(0, 64);
+  EXPECT_EQ(ask("parts.sqlite", "SELECT input_sha256 FROM runs"), std::vector<std::string>{sha});
+  const std::string turns = "SELECT turn || ' ' || stamp_ns || ' ' || amplitude_N FROM turns";
+  EXPECT_EQ(ask("parts.sqlite", turns), ask("whole.sqlite", turns));
+}
+
+/// Each run_info of a node is a run with its own parameters.
+TEST_F(Tables, EachRunInfoIsARow) {
+  ASSERT_EQ(run(kSession + " " + path("first.bag")).exit_code, 0);
+  RunInfo info;
+  rosbag::Bag made(path("first.bag"));
+  for (const rosbag::MessageInstance& item : rosbag::View(made, rosbag::TopicQuery("/hammer_loads/run_info")))
+    info = *item.instantiate<RunInfo>();
+  {
+    rosbag::Bag bag(path("log.bag"), rosbag::bagmode::Write);
+    int i = 0;
+    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
+      if (i == 0 || i == 2000) {
+        info.header.stamp = item.getTime();
+        const std::size_t level = info.parameters_yaml.find("level: ");
+        const std::size_t end = info.parameters_yaml.find('\n', level);
+        info.parameters_yaml.replace(level, end - level, i == 0 ? "level: \"rocker\"" : "level: \"linkage\"");
+        bag.write("/node/run_info", item.getTime(), info);
+      }
+      ++i;
+      bag.write(item.getTopic(), item.getTime(), item);
+    });
+  }
+  const test::Outcome outcome = tables(path("log.bag"), "out.sqlite");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(ask("out.sqlite", "SELECT run_id || ' ' || level FROM runs ORDER BY run_id"),
+            (std::vector<std::string>{"1 rocker", "2 linkage"}));
+  EXPECT_EQ(ask("out.sqlite", "SELECT count(DISTINCT run_key) FROM runs"), std::vector<std::string>{"2"});
+  for (const char* table : {"turns", "blows", "parameters", "traces"})
+    EXPECT_EQ(ask("out.sqlite", std::string("SELECT DISTINCT run_id FROM ") + table + " ORDER BY 1"),
+              (std::vector<std::string>{"1", "2"}))
+        << table;
+}
+
+TEST_F(Tables, ABagWithoutAnyWrenchLeavesNoFile) {
+  {
+    rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);
+    sensor_msgs::JointState m;
+    m.name = {"hammer_crank_joint"};
+    m.position = {std::nan("")};
+    for (int i = 1; i < 50; ++i) bag.write("/hammer/crank", m.header.stamp = ros::Time(1.0 + 0.01 * i), m);
+  }
+  expectRefused(tables(path("in.bag"), "out.sqlite"), {"no wrench", "not finite 49"});
+  EXPECT_EQ(names(), std::vector<std::string>{"in.bag"});
+}
+
+TEST_F(Tables, ForceReplacesTheirOwnKindAlone) {
+  ASSERT_EQ(tables(kSession, "out.sqlite").exit_code, 0);
+  const std::string bytes = contentOf(path("out.sqlite"));
+  expectRefused(tables(kSession, "out.sqlite"), {path("out.sqlite"), "exists", "--force"});
+  ASSERT_EQ(tables(kSession, "out.sqlite", "--force").exit_code, 0);
+  EXPECT_TRUE(contentOf(path("out.sqlite")) == bytes);
+  Database(path("other.sqlite"), Database::Use::kWrite, 0).run("CREATE TABLE notes(text)");
+  std::ofstream(path("notes.sqlite")) << "not to be lost\n";
+  fs::create_symlink(path("out.sqlite"), path("link.sqlite"));
+  fs::create_directory(path("directory.sqlite"));
+  const std::string in = copy(kSession, "in.bag");
+  for (const char* name : {"other.sqlite", "notes.sqlite", "link.sqlite", "directory.sqlite", "in.bag"}) {
+    const std::string before = fs::is_regular_file(path(name)) ? contentOf(path(name)) : "";
+    expectRefused(tables(in, name, "--force"), {path(name)});
+    EXPECT_TRUE(before.empty() || contentOf(path(name)) == before) << name;
+  }
+  EXPECT_EQ(names().size(), 6U) << "nothing left behind";
+}
+
+TEST_F(Tables, WrongUsageIsNamed) {
+  EXPECT_EQ(run("--no-bag " + kSession).exit_code, 2) << "nothing to write";
+  EXPECT_EQ(run(kSession + " --db " + path("out.sqlite")).exit_code, 2) << "no OUT.bag, and not said so";
+  EXPECT_EQ(run(kSession + " " + path("out") + " --db " + path("out")).exit_code, 2) << "one name for two files";
+  EXPECT_EQ(tables(kSession, "out.sqlite", "--pins").exit_code, 2) << "pin forces are in a bag alone";
+  EXPECT_EQ(names().size(), 0U);
+}
+
+TEST_F(Tables, AFullDiskIsOneLineAndLeavesNothing) {
+  ASSERT_EQ(tables(kSession, "whole.sqlite").exit_code, 0);
+  const auto blocks = fs::file_size(path("whole.sqlite")) / 512;
+  for (const std::uintmax_t limit : {std::uintmax_t{2}, blocks / 2, blocks - 8}) {
+    const test::Outcome outcome =
+        test::runCommand("ulimit -f " + std::to_string(limit) + "; " HAMMER_LOADS_PROCESS_BAG,
+                         "--no-bag " + kSession + " --db " + path("out.sqlite"));
+    expectRefused(outcome, {path("out.sqlite"), "cannot be written", "File too large"});
+    EXPECT_EQ(names(), std::vector<std::string>{"whole.sqlite"}) << limit;
+  }
+  fs::create_directory(path("disk"));
+  if (mount("tmpfs", path("disk").c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "only root mounts";
+  const test::Outcome outcome = tables(kSession, "disk/out.sqlite");
+  const bool empty = fs::is_empty(path("disk"));
+  umount(path("disk").c_str());
+  expectRefused(outcome, {path("disk/out.sqlite"), "cannot be written", "full"});
+  EXPECT_TRUE(empty);
+}
+
+TEST_F(Tables, AnInterruptionLeavesNothing) {
+  {
+    rosbag::Bag bag(path("long.bag"), rosbag::bagmode::Write);
+    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
+      for (int i = 0; i < 40; ++i) bag.write(item.getTopic(), item.getTime() + ros::Duration(100.0 * i), item);
+    });
+  }
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGINT, SIG_DFL);
+    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+    execl(HAMMER_LOADS_PROCESS_BAG, "process_bag", "--no-bag", path("long.bag").c_str(), "--db",
+          path("out.sqlite").c_str(), nullptr);
+    _exit(127);
+  }
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (names().size() < 2 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  ASSERT_EQ(names().size(), 2U) << "the unfinished file";
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_EQ(names(), std::vector<std::string>{"long.bag"});
+}
+
+}  // namespace
+}  // namespace hammer_loads

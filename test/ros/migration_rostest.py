@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Bags of older message definitions: process_bag names them, rosbag fix makes them readable."""
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import genpy.dynamic
+import rosbag
+import roslib.packages
+import rospkg
+import rospy
+import rostest
+from hammer_loads.msg import Blow, BoomVibration, HullLoads, JointLoads
+from sensor_msgs.msg import JointState
+
+DATA = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'data')
+RULES = os.path.join(DATA, '..', '..', 'migration', 'hammer_loads.bmr')
+RULE = '=' * 80
+PARTS = (RULE + '\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n' +
+         RULE + '\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n')
+
+
+def old_class(name):
+    """A message as version 0.1.0 had it."""
+    with open(os.path.join(DATA, 'old_messages', name + '.msg')) as definition:
+        return genpy.dynamic.generate_dynamic('hammer_loads/' + name, definition.read() + PARTS)['hammer_loads/' + name]
+
+
+def number_all(message, start):
+    """Every number different, so that none can be taken for another."""
+    for i, (name, kind) in enumerate(zip(message.__slots__, message._slot_types)):
+        if kind == 'float64':
+            setattr(message, name, start + i)
+        elif kind == 'float64[]':
+            setattr(message, name, [start + i, start + i + 0.5])
+        elif kind == 'string[]':
+            setattr(message, name, [name + '_a', name + '_b'])
+        elif kind in ('uint8', 'uint64'):
+            setattr(message, name, 5)
+        elif kind == 'geometry_msgs/Vector3':
+            getattr(message, name).y = start + i
+    message.header.stamp = rospy.Time(100, 7)
+    message.header.frame_id = 'hammer_hull'
+    return message
+
+
+def text_of(message, field):
+    value = getattr(message, field)
+    return str(list(value) if isinstance(value, tuple) else value)
+
+
+class Migration(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+        self.old = self.path('old.bag')
+        self.messages = {}
+        with rosbag.Bag(self.old, 'w') as bag:
+            for i, name in enumerate(('Blow', 'BoomVibration', 'HullLoads', 'JointLoads')):
+                message = number_all(old_class(name)(), 1000.0 * (i + 1))
+                self.messages[name] = message
+                bag.write('/hammer_loads/' + name, message, rospy.Time(100 + i))
+
+    def path(self, name):
+        return os.path.join(self.directory, name)
+
+    def run_command(self, *arguments):
+        done = subprocess.run(arguments, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        return done.returncode, done.stdout
+
+    def fix(self):
+        """Messages of the new bag by the last part of their topic."""
+        code, text = self.run_command('rosbag', 'fix', '-n', self.old, self.path('new.bag'), RULES)
+        self.assertEqual(code, 0, text)
+        found = {}
+        with rosbag.Bag(self.path('new.bag')) as bag:
+            for topic, message, time in bag.read_messages():
+                found[topic.split('/')[-1]] = message
+                self.assertEqual(time, rospy.Time(100 + len(found) - 1))
+        return found
+
+    def test_fix_keeps_what_was_recorded(self):
+        found = self.fix()
+        for kind in (Blow, BoomVibration, HullLoads, JointLoads):
+            name = kind._type.split('/')[1]
+            self.assertEqual(found[name]._md5sum, kind._md5sum)
+            for field in self.messages[name].__slots__:
+                self.assertEqual(text_of(found[name], field), text_of(self.messages[name], field), field)
+
+    def test_what_was_not_recorded_is_not_a_number(self):
+        found = self.fix()
+        self.assertEqual(str(found['Blow'].restitution_deviation), 'nan')
+        self.assertEqual(str(found['HullLoads'].consistency), 'nan')
+        self.assertEqual(found['HullLoads'].drive_reaction_y_Nm, 0.0)
+        self.assertEqual(found['HullLoads'].sample_stamp, rospy.Time(100, 7))
+        self.assertEqual(str(found['JointLoads'].cylinder_force_deviation_N), '(nan, nan)')
+        self.assertEqual(found['JointLoads'].cylinder_flags, (0, 0))
+        self.assertEqual(str(found['BoomVibration'].damping_ratio), '(nan, nan)')
+
+    def test_process_bag_names_them_and_the_command(self):
+        with rosbag.Bag(os.path.join(DATA, 'mo100_100hz.bag')) as session, rosbag.Bag(self.old, 'a') as bag:
+            for topic, message, time in session.read_messages(raw=True):
+                bag.write(topic, message, time, raw=True)
+        process_bag = roslib.packages.find_node('hammer_loads', 'process_bag')[0]
+        code, text = self.run_command(process_bag, '--no-bag', self.old, '--db', self.path('out.sqlite'))
+        self.assertEqual(code, 0, text)
+        warning = [line for line in text.splitlines() if 'another version' in line]
+        self.assertEqual(len(warning), 1, text)
+        for name in self.messages:
+            self.assertIn('/hammer_loads/%s (hammer_loads/%s)' % (name, name), warning[0])
+        # The command that it names is the one that helps.
+        fix = warning[0].split('`')[1].replace('NEW.bag', self.path('new.bag'))
+        code, text = self.run_command(*fix.split())
+        self.assertEqual(code, 0, text)
+        code, text = self.run_command('rosbag', 'check', '-n', self.path('new.bag'))
+        self.assertIn('not need any migrations', text)
+
+    def test_the_package_exports_its_rules(self):
+        export = rospkg.RosPack().get_manifest('hammer_loads').get_export('rosbag', 'migration_rule_file')
+        self.assertEqual(export, ['migration/hammer_loads.bmr'])
+        self.assertTrue(os.path.isfile(os.path.join(rospkg.RosPack().get_path('hammer_loads'), export[0])))
+
+
+if __name__ == '__main__':
+    rostest.rosrun('hammer_loads', 'migration', Migration)
