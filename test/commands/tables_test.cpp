@@ -7,12 +7,15 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <numeric>
 #include <thread>
 
 #include "commands/bag_files.h"
 #include "hammer_loads/Blow.h"
 #include "hammer_loads/HullLoads.h"
+#include "hammer_loads/LoadCycles.h"
 #include "hammer_loads/Pulse.h"
+#include "hammer_loads/TurnLoads.h"
 #include "hammer_loads/life/database.h"
 
 namespace hammer_loads {
@@ -73,6 +76,42 @@ TEST_F(Tables, SayWhatTheOutputBagSays) {
   EXPECT_EQ(number("out.sqlite", "SELECT turns FROM runs"), number("out.sqlite", "SELECT count(*) FROM turns"));
   EXPECT_EQ(number("out.sqlite", "SELECT blows FROM runs"), number("out.sqlite", "SELECT count(*) FROM blows"));
   EXPECT_NEAR(number("out.sqlite", "SELECT duration_s FROM runs"), 29.8, 0.2);
+}
+
+/// Loads of turns and counted cycles, as their messages have them.
+TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
+  ASSERT_EQ(run(kSession + " " + path("out.bag") + " --db " + path("out.sqlite")).exit_code, 0);
+  TurnLoads turn;
+  LoadCycles cycles;
+  std::size_t whole = 0;
+  rosbag::Bag bag(path("out.bag"));
+  for (const rosbag::MessageInstance& item : rosbag::View(bag)) {
+    if (const auto t = item.instantiate<TurnLoads>(); t && t->whole) turn = *t, ++whole;
+    if (const auto c = item.instantiate<LoadCycles>()) cycles = *c;
+  }
+  ASSERT_GT(whole, 100U);
+  ASSERT_FALSE(cycles.channel.empty());
+  EXPECT_EQ(number("out.sqlite", "SELECT count(*) FROM turn_loads"), static_cast<double>(whole * turn.channel.size()));
+  for (std::size_t i = 0; i < turn.channel.size(); ++i) {
+    const std::string where = " FROM turn_loads JOIN channels USING(run_id, channel) WHERE name = '" + turn.channel[i] +
+                              "' AND turn = " + std::to_string(turn.turn);
+    EXPECT_EQ(number("out.sqlite", "SELECT maximum" + where), turn.maximum[i]) << turn.channel[i];
+    EXPECT_EQ(number("out.sqlite", "SELECT mean" + where), turn.mean[i]) << turn.channel[i];
+  }
+  EXPECT_EQ(ask("out.sqlite", "SELECT unit FROM channels WHERE name = 'hull_wrench/torque_y_Nm'"),
+            std::vector<std::string>{"Nm"});
+  for (const ChannelCycles& channel : cycles.channel) {
+    const auto of_channel = [&](const std::string& table) {
+      return " FROM " + table + " JOIN channels c USING(run_id, channel) WHERE c.counted AND name = '" + channel.name + "'";
+    };
+    EXPECT_EQ(number("out.sqlite", "SELECT samples FROM channels WHERE name = '" + channel.name + "'"),
+              static_cast<double>(channel.samples));
+    EXPECT_EQ(number("out.sqlite", "SELECT sum(count)" + of_channel("cycles")),
+              static_cast<double>(std::accumulate(channel.count.begin(), channel.count.end(), std::uint64_t{0})));
+    std::vector<std::string> residue;
+    for (const std::uint32_t turning_point : channel.residue) residue.push_back(std::to_string(turning_point));
+    EXPECT_EQ(ask("out.sqlite", "SELECT class" + of_channel("residues") + " ORDER BY place"), residue);
+  }
 }
 
 TEST_F(Tables, SameInputGivesTheSameBytesWithAndWithoutABag) {

@@ -25,6 +25,7 @@ RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
   record.version = packageVersion();
   record.revision = packageRevision();
   record.parameters_yaml = settings.yaml;
+  record.equivalent_cycles_per_hour = settings.life.equivalent_cycles_per_hour;
   record.level = nameOf(settings.pipeline.level);
   for (const ParameterText& parameter : parameters)
     record.parameters.push_back({parameter.key, parameter.value, parameter.shipped});
@@ -63,6 +64,7 @@ void BagTables::begin(HammerBridge& bridge) {
   records_.push_back(recordOf(bridge.settings(), input_sha256_));
   traces_ = {};
   longest_step_ = bridge.settings().pipeline.stale_after;
+  life_.begin(bridge, run());
   HammerOutputs& outputs = bridge.outputs();
   outputs.hull_loads.attach([this](const HullLoads& message, const ros::Time&) { takeSample(message); });
   outputs.pulse.attach([this](const Pulse& message, const ros::Time&) { takePulse(message); });
@@ -97,6 +99,7 @@ void BagTables::end(const HammerBridge& bridge, std::uint64_t samples) {
   addCounts(bridge.pipeline().counts(), record);
   addLearned(bridge.pipeline().crank().tracker(), record);
   writer_.traces(run(), traces_);
+  life_.end(bridge);
 }
 
 void BagTables::finish(const std::vector<BagWarning>& warnings) {

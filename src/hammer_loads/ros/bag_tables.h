@@ -7,6 +7,7 @@
 
 #include "hammer_loads/ros/bag_report.h"
 #include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/life_tables.h"
 #include "hammer_loads/ros/number_fields.h"
 #include "hammer_loads/tables/table_writer.h"
 
@@ -35,6 +36,7 @@ class BagTables {
   std::string input_sha256_;
   NumberFields pulse_, blow_;
   TableWriter writer_;
+  LifeTables life_{writer_};
   std::vector<RunRecord> records_;  ///< the last one is of the run at work
   TurnTraces traces_;
   double longest_step_{};  ///< between samples of one piece [s]

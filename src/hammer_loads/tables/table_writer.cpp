@@ -44,10 +44,35 @@ TableWriter::TableWriter(const std::string& file, std::vector<TableColumn> turn,
   database_.run(beginTablesSql(turn, blow).c_str());
   turns_.emplace(database_, "turns", std::move(turn));
   blows_.emplace(database_, "blows", std::move(blow));
+  turn_load_.emplace(database_, insertSql("turn_loads", 6).c_str());
 }
 
 void TableWriter::turn(std::int64_t run, const TurnRow& row) { turns_->add(run, row); }
 void TableWriter::blow(std::int64_t run, const TurnRow& row) { blows_->add(run, row); }
+
+void TableWriter::turnLoad(std::int64_t run, const TurnLoad& load) {
+  turn_load_->run(run, load.turn, load.channel, finite(load.minimum), finite(load.maximum), finite(load.mean));
+}
+
+void TableWriter::channel(std::int64_t run, std::int64_t number, const ChannelRecord& record) {
+  if (record.count) return count(run, number, record);
+  Statement(database_, "INSERT INTO channels(run_id, channel, name, unit, counted) VALUES(?1, ?2, ?3, ?4, 0)")
+      .run(run, number, record.name, record.unit());
+}
+
+void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRecord& record) {
+  const ChannelCount& c = *record.count;
+  Statement(database_, insertSql("channels", 21).c_str())
+      .run(run, channel, record.name, record.unit(), std::int64_t{1}, finite(c.least), finite(c.greatest), c.classes,
+           c.samples, c.skipped, c.below, c.above, c.gaps, finite(c.minimum), finite(c.maximum),
+           finite(c.mean_deviation), finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope),
+           finite(c.sn_slope_below), finite(c.mean_stress_sensitivity));
+  Statement cycle(database_, insertSql("cycles", 5).c_str());
+  for (std::size_t i = 0; i < c.count.size(); ++i) cycle.run(run, channel, c.steps[i], c.low[i], c.count[i]);
+  Statement residue(database_, insertSql("residues", 4).c_str());
+  std::int64_t place = 0;
+  for (const std::uint32_t turning_point : c.residue) residue.run(run, channel, place++, turning_point);
+}
 
 void TableWriter::traces(std::int64_t run, const TurnTraces& traces) {
   if (const TurnTrace* typical = traces.typical()) trace(run, "typical", *typical);
@@ -84,6 +109,7 @@ void TableWriter::run(std::int64_t run, const RunRecord& r) {
 void TableWriter::finish() {
   turns_.reset();
   blows_.reset();
+  turn_load_.reset();
   database_.run("COMMIT");
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hammer_loads/life/database.h"
+#include "hammer_loads/tables/channel_record.h"
 #include "hammer_loads/tables/run_record.h"
 #include "hammer_loads/tables/table_schema.h"
 #include "hammer_loads/tables/turn_traces.h"
@@ -29,6 +30,9 @@ class TableWriter {
   /// Run numbers begin with 1. The columns `turn` are the rows' own.
   void turn(std::int64_t run, const TurnRow& row);
   void blow(std::int64_t run, const TurnRow& row);
+  void turnLoad(std::int64_t run, const TurnLoad& load);
+  /// number: as in the turns' loads.
+  void channel(std::int64_t run, std::int64_t number, const ChannelRecord& record);
   void traces(std::int64_t run, const TurnTraces& traces);
   void run(std::int64_t run, const RunRecord& record);
   /// Ends the transaction: all of the file is written.
@@ -46,10 +50,12 @@ class TableWriter {
     Statement insert;
   };
 
+  void count(std::int64_t run, std::int64_t channel, const ChannelRecord& record);
   void trace(std::int64_t run, const std::string& kind, const TurnTrace& trace);
 
   life::Database database_;
   std::optional<TurnTable> turns_, blows_;
+  std::optional<Statement> turn_load_;
 };
 
 }  // namespace hammer_loads

@@ -1,0 +1,32 @@
+/// Turn loads and load cycles of a recording as tables.
+#pragma once
+
+#include <hammer_loads/LoadCycles.h>
+#include <hammer_loads/TurnLoads.h>
+
+#include <cstdint>
+
+#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/tables/table_writer.h"
+
+namespace hammer_loads {
+
+class LifeTables {
+ public:
+  /// The writer must outlive it.
+  explicit LifeTables(TableWriter& writer) : writer_(&writer) {}
+
+  /// A run of this number begins; the bridge must outlive it.
+  void begin(HammerBridge& bridge, std::int64_t run);
+  /// It has ended.
+  void end(const HammerBridge& bridge);
+
+ private:
+  void takeTurn(const TurnLoads& message);
+
+  TableWriter* writer_;
+  std::int64_t run_{};
+  LoadCycles cycles_;  ///< the last message: all of the run so far
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,41 @@
+/// What the tables say of one load channel of a run.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/tables/run_record.h"
+
+namespace hammer_loads {
+
+/// Figures of counting and S-N curve; NaN where there is none of them.
+struct ChannelCount {
+  double least{}, greatest{};  ///< the grid's ends, in the channel's unit
+  std::uint64_t classes{};
+  std::uint64_t samples{}, skipped{}, below{}, above{}, gaps{};
+  double minimum{}, maximum{}, mean_deviation{};
+  double sn_knee_range{RunRecord::kUnknown};  ///< [MPa]
+  double sn_knee_cycles{RunRecord::kUnknown}, sn_slope{RunRecord::kUnknown}, sn_slope_below{RunRecord::kUnknown};
+  double mean_stress_sensitivity{RunRecord::kUnknown};
+  std::vector<std::uint32_t> steps, low;  ///< of closed cycles
+  std::vector<std::uint64_t> count;
+  std::vector<std::uint32_t> residue;  ///< classes of turning points in time order
+};
+
+struct ChannelRecord {
+  std::string name;  ///< topic/field or topic/name/field, stress/NAME_MPa of a hot spot; its end is its unit
+  std::optional<ChannelCount> count;
+
+  std::string unit() const { return name.substr(name.rfind('_') + 1); }
+};
+
+/// Extremes and mean of one channel in one turn.
+struct TurnLoad {
+  std::uint64_t turn{};
+  std::int64_t channel{};
+  double minimum{}, maximum{}, mean{};
+};
+
+}  // namespace hammer_loads
