@@ -136,9 +136,9 @@ void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
 }
 
 void HammerLoadsNode::switchLog(bool on) {
+  if (on != log_->isRecording()) bridge_.finishCount();
   if (!on) log_->stop();
   if (on && !log_->isRecording()) {
-    bridge_.finishCount();
     const std::vector<std::string> problems = log_->start();
     for (const std::string& problem : problems) ROS_ERROR("%s", problem.c_str());
     on = problems.empty();
