@@ -10,8 +10,11 @@
 #include <cstring>
 #include <numeric>
 
+#include "hammer_loads/life/count_state.h"
+#include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/pipeline/unit_check.h"
+#include "hammer_loads/settings/channel_names.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -57,10 +60,20 @@ PipelineSettings settingsOf(Bytes& bytes) {
   return settings;
 }
 
+life::LifeSettings counted() {
+  life::LifeSettings settings;
+  const life::LoadGrid grid = life::LoadGrid::make(-20000.0, 20000.0, 64).value.value();
+  for (const std::string& channel : channelNames(nullptr)) settings.channels.push_back({channel, grid});
+  settings.period = 1000000000;
+  settings.equivalent_cycles_per_hour = 3600.0;
+  return settings;
+}
+
 class Session {
  public:
   explicit Session(Bytes bytes) : bytes_(bytes), settings_(settingsOf(bytes_)) {
     pipeline_.emplace(shipped().mechanism, settings_);
+    life_.emplace(*pipeline_, counted());
   }
 
   void run() {
@@ -75,6 +88,7 @@ class Session {
     if (operation == 255) {
       const SampleCounts counts = pipeline_->counts();
       pipeline_.emplace(shipped().mechanism, settings_, std::nullopt, counts);
+      life_.emplace(*pipeline_, counted());
       return;
     }
     switch (operation % 8) {
@@ -140,6 +154,7 @@ class Session {
       require(std::isfinite(end.blow.energy) && std::isfinite(end.blow.support_impulse_z));
       if (end.pulse) require(std::isfinite(end.pulse->amplitude) && std::isfinite(end.pulse->half_sine_rms_error));
     }
+    count(loads);
     if (loads.refusal) return;
     require(std::isfinite(loads.wrench.force_x) && std::isfinite(loads.wrench.force_z) &&
             std::isfinite(loads.wrench.torque_y) && std::isfinite(loads.crank.speed) &&
@@ -147,9 +162,23 @@ class Session {
     require(std::abs(loads.crank.position.angle.offset) < 3.2);
   }
 
+  void count(const SampleResult& loads) {
+    if (life_->due()) {
+      for (const life::CycleCount& count : life_->take().counts) require(life::isPossible(count));
+    }
+    life_->follow();
+    for (std::size_t i = 0; i < loads.turn_ends; ++i) {
+      const life::TurnLoads* turn = life_->turnLoads(loads.ends[i]);
+      if (turn == nullptr) continue;
+      require(turn->start <= turn->end);
+      for (std::size_t k = 0; k < turn->mean.size(); ++k) require(!(turn->minimum[k] > turn->maximum[k]));
+    }
+  }
+
   Bytes bytes_;
   PipelineSettings settings_;
   std::optional<Pipeline> pipeline_;
+  std::optional<LifeFollower> life_;
   UnitCheck check_{300.0};
   std::uint64_t stamp_{1700000000000000000}, messages_{};
 };

@@ -139,8 +139,8 @@ TEST(LoadCycles, ComeEachPeriodOfStampsAndAtTheEnd) {
   bridge.outputs().load_cycles.attach([&](const LoadCycles& count, const ros::Time&) { counts.push_back(count); });
   play(bridge, 1000.0, true, kNothing);
   EXPECT_EQ(counts.size(), 3U) << "of 8 s, the last period is not over";
-  bridge.finishCount();
-  bridge.finishCount();
+  bridge.finishRun();
+  bridge.finishRun();
   ASSERT_EQ(counts.size(), 4U);
   ASSERT_EQ(notes.pieces.size(), 4U);
   EXPECT_EQ(notes.ended, 1U);

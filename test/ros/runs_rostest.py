@@ -21,7 +21,7 @@ from node_session import (NodeSession, START, active_bags, bags, closed_bags, en
 from process_rostest import eventually
 
 OUTPUTS = ['blow', 'boom_vibration', 'boom_wrench/arm_link', 'boom_wrench/gauge', 'hull_loads', 'hull_wrench',
-           'joint_loads', 'mechanism', 'pulse', 'run_info']
+           'joint_loads', 'joint_reactions', 'load_cycles', 'mechanism', 'pulse', 'run_info', 'section_loads', 'turn_loads']
 FIRST, REWOUND = 0, 2  # which bag holds what
 
 

@@ -12,8 +12,9 @@
 
 namespace hammer_loads {
 
-/// Takes what a pipeline's samples gave: every channel at each accepted sample, the hull wrench between them where it is
-/// extreme and on both sides of a blow, in time order. Beside the pipeline, which does not know of it. How a run goes:
+/// Takes what a pipeline's samples gave: every channel at each accepted sample, the hull wrench between them where it
+/// is extreme and on both sides of a blow, in time order. Beside the pipeline, which does not know of it. How a run
+/// goes:
 ///
 ///     const SampleResult& result = pipeline.crankSample(...);
 ///     if (follower.due()) use(follower.take());
@@ -30,6 +31,8 @@ class LifeFollower {
   life::LifePiece take();
   /// Takes the pipeline's last sample; once. No allocation.
   void follow() noexcept;
+  /// Takes the ends of Pipeline::end().
+  void end() noexcept { confirmTurns(pipeline_->result()); }
   /// Loads of a turn that the last sample's result has among its ends; null where no sample near its blow was accepted.
   const life::TurnLoads* turnLoads(const TurnEnd& end) const noexcept;
 

@@ -58,7 +58,7 @@ void HammerBridge::prepareOutputs() {
 }
 
 void HammerBridge::begin(const Settings& settings) {
-  finishCount();
+  if (pipeline_) finishRun();
   settings_ = settings;
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
   pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
@@ -75,9 +75,14 @@ void HammerBridge::begin(const Settings& settings) {
 void HammerBridge::beginCount() { life_.emplace(*pipeline_, settings_, outputs_, pieces_); }
 
 void HammerBridge::finishCount() {
-  if (!life_ || !life_->begun()) return;
+  if (!life_->begun()) return;
   life_->finish();
   beginCount();
+}
+
+void HammerBridge::finishRun() {
+  end();
+  finishCount();
 }
 
 void HammerBridge::keepPieces(life::PieceSink& pieces) {
@@ -147,6 +152,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
 
 void HammerBridge::end() {
   const SampleResult& result = pipeline_->end();
+  life_->end();
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], last_record_time_);
 }
 

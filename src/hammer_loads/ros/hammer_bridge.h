@@ -55,6 +55,8 @@ class HammerBridge {
   void keepPieces(life::PieceSink& pieces);
   /// Ends the count of the run at work: its last ~load_cycles and piece. What follows begins a new one.
   void finishCount();
+  /// end() and finishCount(): what a run and its log end with.
+  void finishRun();
 
   HammerOutputs& outputs() { return outputs_; }
   const HammerOutputs& outputs() const { return outputs_; }

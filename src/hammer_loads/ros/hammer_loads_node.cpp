@@ -20,7 +20,7 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
       diagnostics_(node, private_node, bridge_, *log_, ledger_.get()),
       reconfigure_(reconfigure_mutex_, private_node),
       log_services_(
-          private_node, *log_, [this] { bridge_.finishCount(); }, [this] { beginRun(); }, [this] { logSwitched(); }) {
+          private_node, *log_, [this] { bridge_.finishRun(); }, [this] { beginRun(); }, [this] { logSwitched(); }) {
   if (ledger_) bridge_.keepPieces(*ledger_);
   attachToNode(bridge_.outputs(), private_node, *log_);
   announceRun();
@@ -31,7 +31,7 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
 }
 
 HammerLoadsNode::~HammerLoadsNode() {
-  bridge_.finishCount();
+  bridge_.finishRun();
   if (!ledger_) return;
   const std::optional<std::string> problem = ledger_->close();
   if (!problem) return;
@@ -136,9 +136,9 @@ void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
 }
 
 void HammerLoadsNode::switchLog(bool on) {
+  if (on != log_->isRecording()) bridge_.finishRun();
   if (!on) log_->stop();
   if (on && !log_->isRecording()) {
-    bridge_.finishCount();
     const std::vector<std::string> problems = log_->start();
     for (const std::string& problem : problems) ROS_ERROR("%s", problem.c_str());
     on = problems.empty();

@@ -30,7 +30,7 @@ class HammerLoadsNode final {
   /// log: started already where settings.log.enabled.
   HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
                   std::unique_ptr<BagLog> log);
-  /// Ends the count, and writes to log and ledger what is not there yet.
+  /// Ends the run, and writes to log and ledger what is not there yet.
   ~HammerLoadsNode();
 
  private:

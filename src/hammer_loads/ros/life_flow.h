@@ -22,6 +22,8 @@ class LifeFlow {
 
   /// Takes what the pipeline made of a crank message with this header stamp; the first one names the run.
   void follow(StampNs header, const ros::Time& record_time);
+  /// Takes the ends of Pipeline::end().
+  void end() { follower_.end(); }
   /// Of one of the ends of the result just followed.
   void sendTurn(const TurnEnd& end, const ros::Time& record_time);
   /// Sends what has been counted, at the record time of the last message; nothing may follow.

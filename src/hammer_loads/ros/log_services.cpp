@@ -36,6 +36,7 @@ void LogServices::start(Response& response) {
 void LogServices::stop(Response& response) {
   response.success = log_.isRecording();
   response.message = response.success ? "stopped" : "was not recording";
+  if (response.success) finish_();
   log_.stop();
   if (response.success) switched_();
 }

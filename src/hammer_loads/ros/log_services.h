@@ -15,8 +15,8 @@ namespace hammer_loads {
 /// names the log is written comes from the parameters alone. The answer says what was done or why not.
 class LogServices {
  public:
-  /// finish: called before a log begins or goes on in a new file, so that what ends a run is not in the next one's
-  /// file. begin: called when a log begins or goes on in a new file, so that the file holds a run from its beginning.
+  /// finish: called before a log begins, goes on in a new file or ends: what ends a run belongs into the file that holds
+  /// it. begin: called when a log begins or goes on in a new file, so that the file holds a run from its beginning.
   /// switched: called when the log has been started or stopped. The log must outlive this.
   LogServices(ros::NodeHandle private_node, BagLog& log, std::function<void()> finish, std::function<void()> begin,
               std::function<void()> switched);

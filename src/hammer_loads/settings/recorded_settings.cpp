@@ -21,6 +21,16 @@ bool dropUnknown(const std::vector<std::string>& problems, ParameterMap& paramet
   return dropped;
 }
 
+/// The keys of life.yaml where not one of them was recorded: a version that counted nothing.
+ParameterMap lifeOfNoCount(const std::string& config_directory, const ParameterMap& recorded) {
+  std::vector<std::string> ignored;
+  ParameterMap life;
+  addFiles({config_directory + "/life.yaml"}, life, ignored);
+  for (const auto& [key, parameter] : life)
+    if (recorded.count(key) != 0) return {};
+  return life;
+}
+
 }  // namespace
 
 std::optional<ParameterMap> recordedParameters(const std::string& parameters_yaml, std::vector<std::string>& problems) {
@@ -43,8 +53,10 @@ Checked<Settings> loadRecorded(const std::string& config_directory, const std::s
   if (!result.value) return result;
   std::vector<std::string> ignored;
   const std::optional<ParameterMap> in_force = recordedParameters(result.value->yaml, ignored);
+  const ParameterMap life = lifeOfNoCount(config_directory, *given);
+  if (!life.empty()) notes.push_back("load cycles: not recorded what to count, the shipped life.yaml is used");
   for (const auto& [key, parameter] : in_force.value_or(ParameterMap{})) {
-    if (given->count(key) == 0)
+    if (given->count(key) == 0 && life.count(key) == 0)
       notes.push_back(key + ": not recorded, the shipped value is used: " + describe(parameter.value));
   }
   result.notes = std::move(notes);
