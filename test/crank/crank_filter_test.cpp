@@ -237,7 +237,7 @@ TEST(Encoder, TakesAFinerSensorAsItIs) {
 }
 
 TEST(PlainTracker, TakesSpeedsAndTheirDifferenceAsTheyAre) {
-  PlainTracker tracker(PlainTracker::Acceleration::kDifference, kCount);
+  PlainTracker tracker(PlainTracker::Acceleration::kDifference, kCount, 0.6, {});
   tracker.start({6.2, 30.0});
   EXPECT_EQ(tracker.update(1e-2, {6.2 + 0.305 - kTwoPi, 31.0}), Tracking::kContinued);
   EXPECT_DOUBLE_EQ(tracker.estimate().speed, 31.0);
@@ -247,7 +247,7 @@ TEST(PlainTracker, TakesSpeedsAndTheirDifferenceAsTheyAre) {
 }
 
 TEST(PlainTracker, AssumesNoAccelerationAsThePaper) {
-  PlainTracker tracker(PlainTracker::Acceleration::kZero, kCount);
+  PlainTracker tracker(PlainTracker::Acceleration::kZero, kCount, 0.6, {});
   tracker.start({1.0, std::nullopt});
   EXPECT_FALSE(tracker.hasSpeed());
   tracker.update(1e-2, {1.3, std::nullopt});
