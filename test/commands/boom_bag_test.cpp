@@ -58,6 +58,14 @@ class InputBag {
       write("/hammer/crank", m.header.stamp, m);
     }
   }
+  void writePressures(const ros::Time& stamp, const std::string& cylinder, double bore, double rod) {
+    sensor_msgs::FluidPressure m;
+    m.header.stamp = stamp;
+    m.fluid_pressure = bore;
+    write("/machine/oil/" + cylinder + "/bore", stamp, m);
+    m.fluid_pressure = rod;
+    write("/machine/oil/" + cylinder + "/rod", stamp, m);
+  }
   void writeImu(const ros::Time& stamp, const ImuReading& reading) {
     sensor_msgs::Imu m;
     m.header.stamp = stamp;
@@ -111,7 +119,8 @@ class BoomBag : public testing::Test {
   test::Recorded live(const std::string& parameters, const std::string& imu_topic = {}) const {
     const test::TemporaryFile given(parameters);
     const Settings settings = *loadFiles(configDirectory(), {kBoomFile, given.path()}, test::textOf(kUrdf)).value;
-    const InputTopics topics{"/hammer/crank", "/joint_states", imu_topic.empty() ? "/hammer/hull_imu" : imu_topic};
+    const InputTopics topics{"/hammer/crank", "/joint_states", imu_topic.empty() ? "/hammer/hull_imu" : imu_topic,
+                             "/hammer/cylinder_pressures"};
     return test::recordedLive(path("in.bag"), withInputTopics(settings, topics), imu_topic);
   }
 
@@ -127,14 +136,17 @@ std::map<std::string, std::size_t> countsOf(const test::Recorded& recorded) {
 TEST_F(BoomBag, HoldsEveryOutputAsTheLiveFlowGivesItAndIsByteIdenticalOnASecondRun) {
   const simulation::Session session = simulation::recordSession(machine(true));
   InputBag(path("in.bag"), session);
-  const std::string parameters = "boom_wrench_links: [arm_link, strain_gauge]\nboom: compliant\nhull_motion: model\n";
+  // The session's hull stands still: the model's motion and the drive's reaction together would contradict it.
+  const std::string parameters =
+      "boom_wrench_links: [arm_link, strain_gauge]\nboom: compliant\nhull_motion: model\ndrive_reaction_ratio: 0.0\n";
   const test::Outcome outcome = process("out.bag", parameters);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const test::Recorded written = test::recordedIn(path("out.bag"));
   auto counts = countsOf(written);
   const std::size_t samples = session.crank.size();
   // Before the first joint states and beyond the last transform nothing is known: 20 ms at most each.
-  for (const char* topic : {"boom_wrench/arm_link", "joint_loads", "boom_vibration", "boom_wrench/strain_gauge"}) {
+  for (const char* topic : {"boom_wrench/arm_link", "joint_loads", "section_loads", "joint_reactions", "boom_vibration",
+                            "boom_wrench/strain_gauge"}) {
     EXPECT_GE(counts[topic], samples - 40) << topic;
     EXPECT_LT(counts[topic], samples) << topic;
   }
@@ -142,7 +154,7 @@ TEST_F(BoomBag, HoldsEveryOutputAsTheLiveFlowGivesItAndIsByteIdenticalOnASecondR
   EXPECT_GE(counts["blow"], 8U);
   EXPECT_EQ(counts["pulse"], counts["blow"] - 1);
   EXPECT_EQ(counts["run_info"], 1U);
-  EXPECT_EQ(counts.size(), 11U);
+  EXPECT_EQ(counts.size(), 13U);
 
   const test::Recorded right = live(parameters);
   EXPECT_EQ(countsOf(right), counts);
@@ -197,7 +209,7 @@ TEST_F(BoomBag, ReadsTheHullsImu) {
   ASSERT_EQ(process("again.bag", imu, "--imu-topic /machine/imu").exit_code, 0);
   EXPECT_TRUE(test::contentOf(path("out.bag")) == test::contentOf(path("again.bag")));
   const test::Recorded written = test::recordedIn(path("out.bag"));
-  EXPECT_EQ(written.size(), 11U);
+  EXPECT_EQ(written.size(), 13U);
   EXPECT_TRUE(written == live(imu, "/machine/imu"));
 
   // At rest it says what pitch says, but from the first sample on: compared once the pitch joints have been heard too.
@@ -211,6 +223,35 @@ TEST_F(BoomBag, ReadsTheHullsImu) {
   }
   const auto loads = test::messagesIn<HullLoads>(path("out.bag"), "/hammer_loads/hull_loads");
   for (const HullLoads& m : loads) ASSERT_TRUE(m.flags & HullLoads::FLAG_HULL_MOTION) << m.header.stamp;
+}
+
+TEST_F(BoomBag, ReadsTheCylindersPressures) {
+  const simulation::Session session = simulation::recordSession(machine(false));
+  constexpr double kBore = 6e6, kRod = 2e6;
+  {
+    InputBag in(path("in.bag"), session);
+    for (int i = -2; i < 510; ++i) {
+      for (const char* cylinder : {"boom_cylinder", "arm_cylinder", "hammer_cylinder"})
+        in.writePressures(timeOf(machine(false).start_stamp) + ros::Duration(0.005 * i), cylinder, kBore, kRod);
+    }
+  }
+  ASSERT_EQ(process("without.bag", "boom: compliant\n").exit_code, 0);
+  const test::Outcome outcome = process("with.bag", "boom: compliant\n", "--pressures-topic /machine/oil");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const double area = 0.25 * 3.14159265358979323846 * 0.080 * 0.080;
+  const double rod_area = area - 0.25 * 3.14159265358979323846 * 0.050 * 0.050;
+  const auto with = test::messagesIn<JointLoads>(path("with.bag"), "/hammer_loads/joint_loads");
+  const auto without = test::messagesIn<JointLoads>(path("without.bag"), "/hammer_loads/joint_loads");
+  ASSERT_EQ(with.size(), without.size());
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    ASSERT_TRUE(with[i].flags & JointLoads::FLAG_MEASURED);
+    ASSERT_FALSE(without[i].flags & JointLoads::FLAG_MEASURED);
+    ASSERT_NEAR(with[i].cylinder_force_N[2], kBore * area - kRod * rod_area, 1e-6);
+    for (std::size_t j = 0; j < 4; ++j) {
+      ASSERT_NEAR(with[i].total_torque_Nm[j], without[i].total_torque_Nm[j] + with[i].contact_torque_Nm[j], 1e-6);
+      ASSERT_EQ(without[i].contact_torque_Nm[j], 0.0);
+    }
+  }
 }
 
 }  // namespace

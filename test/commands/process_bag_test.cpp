@@ -49,9 +49,12 @@ struct Truth {
 Truth truthOf(const std::string& session) {
   Truth truth;
   const test::Csv samples = test::dataCsv(session + "_truth.csv"), blows = test::dataCsv(session + "_blows.csv");
-  for (std::size_t i = 0; i < samples.size(); ++i)
+  constexpr double kDriveInertia = 0.6;  // [kg m2] of the session's machine, on the crank's shaft
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double drive = -kDriveInertia * samples.number(i, "crank_accel_rad_s2");
     truth.wrenches.push_back({samples.number(i, "t_s"), samples.number(i, "hull_force_x_N"),
-                              samples.number(i, "hull_force_z_N"), samples.number(i, "hull_torque_y_Nm")});
+                              samples.number(i, "hull_force_z_N"), samples.number(i, "hull_torque_y_Nm") + drive});
+  }
   for (std::size_t i = 0; i < blows.size(); ++i)
     truth.blows.push_back({blows.number(i, "t_s"), blows.number(i, "blow_energy_J"), blows.number(i, "tool_impulse_Ns"),
                            blows.number(i, "turn_peak_force_z_N"), blows.number(i, "turn_impulse_z_Ns")});

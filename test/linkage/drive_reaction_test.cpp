@@ -26,8 +26,8 @@ TEST(DriveReaction, IsTheRotorsChangeOfAngularMomentum) {
 
 TEST(DriveReaction, OfALevelThatCountsTheCrankAsDriveHasItsInertiaAtOne) {
   const HammerParameters p = test::mo100LinkageParameters();
-  const double crank = p.crank_inertia_about_com + p.crank_mass * (p.crank_com_along * p.crank_com_along +
-                                                                   p.crank_com_across * p.crank_com_across);
+  const double crank = p.crank_inertia_about_com +
+                       p.crank_mass * (p.crank_com_along * p.crank_com_along + p.crank_com_across * p.crank_com_across);
   const DriveReaction reaction = driveReaction(hammerWith(0.25), Level::kRocker, 0.6);
   EXPECT_NEAR(reaction.by_crank, 0.25 * (0.6 - crank) + crank, 1e-15);
   EXPECT_NEAR(reaction.by_hull, 0.0625 * (0.6 - crank) + crank, 1e-15);

@@ -20,7 +20,8 @@ TEST(DrivesPart, OfMeansIsTheRotorsChangeOfSpeedBetweenTheBlows) {
   player.playTo(kSessionEnd, [&](double, const SampleResult& result) {
     ASSERT_FALSE(result.refusal);
     if (first) begin = result.crank.speed;
-    for (const WrenchOutput& output : result.outputs) impulse += first ? 0.0 : output.drive_reaction_y * output.interval;
+    for (const WrenchOutput& output : result.outputs)
+      impulse += first ? 0.0 : output.drive_reaction_y * output.interval;
     for (const CrankStep::Passage& passage : player.pipeline.crank().step())
       if (!first) jumps += passage.speed_after - passage.speed_before;
     first = false;
@@ -39,8 +40,7 @@ TEST(DrivesPart, IsThatOfTheEstimateAndNothingElse) {
   with.playTo(kSessionEnd, [&](double time, const SampleResult& result) {
     for (const WrenchOutput& output : result.outputs) {
       torque.push_back(output.wrench.torque_y), part.push_back(output.drive_reaction_y);
-      EXPECT_EQ(output.drive_reaction_y,
-                -with.pipeline.crank().tracker().driveInertia() * output.crank.acceleration);
+      EXPECT_EQ(output.drive_reaction_y, -with.pipeline.crank().tracker().driveInertia() * output.crank.acceleration);
       if (time > kSessionWorks) largest = std::max(largest, std::abs(output.drive_reaction_y));
     }
   });

@@ -43,7 +43,8 @@ TEST(PipelineWithBoom, AllocatesNothingPerSample) {
   std::free(block);
   ASSERT_GT(test::allocations, before_control) << "the counter must see an allocation";
   for (const char* motion : {"fixed", "imu", "model"}) {
-    const Settings settings = settingsWith(std::string("drive_reaction_ratio: 0.0\nboom: compliant\nhull_motion: ") + motion + "\n");
+    const Settings settings =
+        settingsWith(std::string("drive_reaction_ratio: 0.0\nboom: compliant\nhull_motion: ") + motion + "\n");
     Player player(settings);
     player.imu = test::atRest(0.0, settings.pipeline.imu);
     double sum = 0.0;

@@ -79,6 +79,33 @@ TEST_F(Messages, HoldTheStateInItsOrder) {
   }
 }
 
+TEST_F(Messages, HoldWhatTheSteelCarries) {
+  sample(kStamp - 1000000);
+  sample(kStamp);
+  const BoomState& state = follower_.state();
+  SectionLoads sections;
+  prepareSections(follower_.boom(), sections);
+  fillSections(state, sections);
+  EXPECT_EQ(sections.section_name, (Names{"boom_foot", "boom_middle", "arm_middle"}));
+  ASSERT_EQ(sections.load.size(), 3U);
+  ASSERT_EQ(sections.load_deviation.size(), 3U);
+  EXPECT_EQ(sections.load[1].torque.y, state.steel.section[1].torque.y());
+  EXPECT_EQ(sections.load[2].force.x, state.steel.section[2].force.x());
+  EXPECT_TRUE(std::isnan(sections.load_deviation[0].force.z)) << "the crank's errors are not known here";
+  JointReactions reactions;
+  prepareReactions(follower_.boom(), reactions);
+  fillReactions(state, reactions);
+  EXPECT_EQ(reactions.joint_name, kFour);
+  EXPECT_EQ(reactions.load[3].force.z, state.steel.joint[3].force.z());
+  EXPECT_EQ(reactions.cylinder_name, (Names{"boom_cylinder", "arm_cylinder", "hammer_cylinder"}));
+  EXPECT_EQ(reactions.base_force_N[0].x, state.steel.pins[0].base.x());
+  EXPECT_EQ(reactions.rod_force_N[2].z, state.steel.pins[2].rod.z());
+  EXPECT_EQ(jointLoads().cylinder_flags[0], state.cylinder_flags[0]);
+  EXPECT_EQ(vibration().damping_ratio[0], 0.05);
+  EXPECT_FALSE(vibration().identified);
+  EXPECT_NEAR(vibration().natural_frequency_deviation_Hz[1], 0.15 * state.frequency[1], 1e-12);
+}
+
 TEST_F(Messages, TellTheVibrationAndWhy) {
   sample(kStamp - 1000000);
   sample(kStamp);

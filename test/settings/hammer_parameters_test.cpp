@@ -94,6 +94,19 @@ TEST(HammerParameters, KeysAreTheContracts) {
                    "rod_inertia_about_com_kg_m2", "drive_inertia_kg_m2"}));
 }
 
+TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
+  const TemporaryFile without(hammerYaml()), with(hammerYaml() + "drive_reaction_ratio: -0.2\n");
+  const Checked<Settings> absent = loadFiles(configDirectory(), {without.path()});
+  const Checked<Settings> given = loadFiles(configDirectory(), {with.path()});
+  ASSERT_TRUE(absent.value && given.value);
+  EXPECT_EQ(absent.value->mechanism.parameters().drive_reaction_ratio, 1.0);
+  ASSERT_EQ(absent.notes.size(), 1U);
+  EXPECT_TRUE(beginsWith(absent.notes[0], "drive_reaction_ratio: not given, counts as 1")) << absent.notes[0];
+  EXPECT_EQ(given.value->mechanism.parameters().drive_reaction_ratio, -0.2);
+  EXPECT_TRUE(given.notes.empty());
+  EXPECT_EQ(problemsWith({}, "drive_reaction_ratio: 1e9\n").size(), 1U);
+}
+
 TEST(HammerParameters, RefusesAnImpossibleLinkageWithItsNumbers) {
   const Lines problems = problemsWith({{"rod_length_m", "0.151"}});
   ASSERT_EQ(problems.size(), 1U);

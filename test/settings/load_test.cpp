@@ -195,6 +195,10 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
       {"pitch_joints: [a]", "pitch_joints: [a, a]", "pitch_joints: (a list), must be a list of different names"},
       {"hull_pitch_rad: -0.5", "hull_pitch_rad: steep", "hull_pitch_rad: steep rad, must be a finite number"},
       {"gravity_m_s2: 0", "gravity_m_s2: -9.8", "gravity_m_s2: -9.8 m/s2, must be a finite number >= 0"},
+      {"base_roll_rad: -0.1", "base_roll_rad: 2", "base_roll_rad: 2 rad, must be a number in [-1.0, 1.0]"},
+      {"boom_stiffness: given", "boom_stiffness: identified",
+       "boom_stiffness: identified, must be given without a boom on its cylinders' oil (boom: compliant or auto, and a "
+       "boom file)"},
       {"crank_angle_noise_rad: 0", "crank_angle_noise_rad: .nan",
        "crank_angle_noise_rad: .nan rad, must be a finite number >= 0"},
       {"stale_after_s: 1", "stale_after_s: 0", "stale_after_s: 0 s, must be a finite number > 0"},
@@ -315,6 +319,14 @@ TEST_F(LoadBoom, AnotherMachinesDescriptionIsANoteUnlessABoomIsAskedFor) {
   expectOne(loaded(foreign, rigid_), "robot_description: link hammer_hull: not in the model");
   // What cannot be read is no other machine's.
   expectOne(loaded(other, "boom: auto\n"), "robot_description: cannot be read: ");
+}
+
+TEST_F(LoadBoom, DifferencesOfVelocitiesAreForARigidBoom) {
+  const std::string difference = "boom_acceleration: difference\n";
+  EXPECT_EQ(loaded(urdf_, boom_, difference + "boom: rigid").problems, Lines{});
+  for (const char* model : {"boom: compliant", "boom: auto"})
+    expectOne(loaded(urdf_, boom_, difference + model), "boom_acceleration: difference, must be none with a boom");
+  EXPECT_EQ(loaded(urdf_, boom_, "boom_stiffness: identified\nboom: compliant").problems, Lines{});
 }
 
 TEST_F(LoadBoom, NoneIsNone) {

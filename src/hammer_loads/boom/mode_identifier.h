@@ -57,6 +57,7 @@ class ModeIdentifier {
   void observe(int channel, const VibrationReading& reading) noexcept;
 
   int modes() const noexcept { return count_; }
+  int channels() const noexcept { return channels_; }  ///< that have had a reading
   /// Over the given frequency [-].
   double frequencyRatio(int mode) const noexcept { return ratio_[static_cast<std::size_t>(mode)]; }
   /// Ratio of damping [-].

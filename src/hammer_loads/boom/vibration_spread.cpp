@@ -3,13 +3,21 @@
 #include <cmath>
 
 namespace hammer_loads {
+namespace {
+
+/// What an identified mode still lacks: its shape is that of the given stiffness, the links move in the hull.
+constexpr OilDeviation kLeft{0.005, 0.1};
+
+}  // namespace
 
 void VibrationSpread::follow(const Vibration& vibration) noexcept {
   const BoomModes& now = vibration.modes();
+  const bool same = now.count == modes_.count && now.count > 0 && now.shape == modes_.shape;
+  if (same && !vibration.identifier()) return;  // as it was
   if (now.count != modes_.count) {
     modes_ = now;
     rest();
-  } else if (now.shape != modes_.shape) {
+  } else if (!same && now.count > 0) {
     for (std::size_t run = 0; run < kMaxRuns; ++run) {
       for (auto* values : {&x_, &v_, &force_}) (*values)[run] = modalOf(now, jointsOf(modes_, (*values)[run]));
     }
@@ -20,8 +28,10 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
     OilDeviation& deviation = deviation_[i];
     deviation = given_;
     if (vibration.identifier()) {
-      deviation.frequency = std::min(given_.frequency, vibration.identifier()->frequencyDeviation(k));
-      deviation.damping = std::min(given_.damping, vibration.identifier()->dampingDeviation(k));
+      const auto known = [](double identified, double left) { return std::hypot(identified, left); };
+      const ModeIdentifier& found = *vibration.identifier();
+      deviation.frequency = std::min(given_.frequency, known(found.frequencyDeviation(k), kLeft.frequency));
+      deviation.damping = std::min(given_.damping, known(found.dampingDeviation(k), kLeft.damping));
     }
     for (auto& modes : mode_) modes[i] = vibration.mode(k);
     const double stiffer = std::exp(deviation.frequency);

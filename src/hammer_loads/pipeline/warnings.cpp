@@ -127,6 +127,14 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
 
 void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   const SampleResult& result = pipeline.result();
+  if (pipeline.boom() && pipeline.counts().accepted > 0) {
+    const auto& identifier = pipeline.boom()->boom().vibration().identifier();
+    if (identifier && identifier->channels() == 0)
+      warnings.push_back({"boom stiffness",
+                          "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
+                          "cylinder_pressures came: as the boom file gives it",
+                          true});
+  }
   if (result.boom == nullptr || !result.boom->fault) return;
   warnings.push_back({"boom joints",
                       "boom joints: no loads for " + count(pipeline.boom()->faults()) +

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
@@ -103,8 +104,12 @@ Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, 
 }
 
 /// First record time of an input of the run; nothing if there is none.
-std::optional<ros::Time> firstInput(const BagInputs& inputs, const InputTopics& topics) {
-  BagMessages messages = inputs.messagesOn({topics.crank, topics.joint_states, topics.hull_imu});
+std::optional<ros::Time> firstInput(const BagInputs& inputs, const Settings& settings) {
+  const InputTopics& topics = settings.input_topics;
+  std::set<std::string> names{topics.crank, topics.joint_states, topics.hull_imu};
+  for (const auto& pressure : HammerBridge::pressureTopics(settings, topics.cylinder_pressures))
+    names.insert(pressure.name);
+  BagMessages messages = inputs.messagesOn(names);
   const BagMessage* first = messages.next();
   return first == nullptr ? std::nullopt : std::make_optional(first->time);
 }
@@ -129,7 +134,7 @@ Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob&
     return result;
   }
   // A node that ran already when the recording began: its run goes on. Otherwise what came before it is a run as well.
-  const std::optional<ros::Time> first = firstInput(inputs, runs.front().settings.input_topics);
+  const std::optional<ros::Time> first = firstInput(inputs, runs.front().settings);
   if (first && infos.runs.front().info.header.stamp > *first) runs.insert(runs.begin(), runs.front());
   runs.front().from = ros::Time();
   result.value = std::move(runs);

@@ -12,7 +12,7 @@ namespace hammer_loads {
 /// Resolved names; empty: not known.
 struct InputTopics {
   std::string crank, joint_states, hull_imu;
-  std::string cylinder_pressures;  ///< prefix: its topics are /NAME/bore and /NAME/rod below it, per cylinder
+  std::string cylinder_pressures{};  ///< prefix: its topics are /NAME/bore and /NAME/rod below it, per cylinder
 };
 
 /// Takes the keys `input_topic_crank`, `input_topic_joint_states`, `input_topic_hull_imu` and
