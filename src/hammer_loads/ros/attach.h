@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "hammer_loads/log/bag_log.h"
-#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/bag_writer.h"
 #include "hammer_loads/ros/output.h"
 
 namespace hammer_loads {
@@ -38,14 +38,14 @@ void attachToNode(Outputs& outputs, ros::NodeHandle& private_node, BagLog& log) 
 
 /// Topics below a prefix (without / at its end). on_request: outputs of that delivery as well.
 template <typename Outputs>
-void attachToBag(Outputs& outputs, rosbag::Bag& bag, const std::string& prefix, bool on_request) {
+void attachToBag(Outputs& outputs, BagWriter& bag, const std::string& prefix, bool on_request) {
   outputs.forEach([&](auto& output) {
     using Message = typename std::decay_t<decltype(output)>::Message;
     const std::string topic = prefix + "/" + output.name();
     if (output.delivery() == Delivery::kOnRequest && !on_request) return;
     const bool latched = output.delivery() == Delivery::kLatched || output.delivery() == Delivery::kLast;
     output.attach([&bag, topic, latched](const Message& message, const ros::Time& time) {
-      latched ? writeLatched(bag, topic, time, message) : bag.write(topic, time, message);
+      bag.write(topic, time, message, latched);
     });
   });
 }

@@ -9,12 +9,6 @@
 namespace hammer_loads {
 namespace {
 
-/// Bags that are never destroyed.
-std::vector<std::unique_ptr<rosbag::Bag>>& keptBags() {
-  static auto* bags = new std::vector<std::unique_ptr<rosbag::Bag>>;
-  return *bags;
-}
-
 bool beginsWith(const std::string& text, const std::string& beginning) {
   return text.compare(0, beginning.size(), beginning) == 0;
 }
@@ -28,22 +22,6 @@ bool isOutput(const std::string& topic, const BagTopic& found, const std::string
 }
 
 }  // namespace
-
-BagOutput::BagOutput() : bag_(std::make_unique<rosbag::Bag>()) {}
-
-void BagOutput::open(const std::string& file) {
-  bag_->open(file, rosbag::bagmode::Write);
-  bag_->setCompression(rosbag::compression::LZ4);
-}
-
-BagOutput::~BagOutput() {
-  if (bag_) keptBags().push_back(std::move(bag_));
-}
-
-void BagOutput::close() {
-  bag_->close();
-  bag_.reset();
-}
 
 std::string whyBagMustStay(const std::string& file, const std::vector<std::string>& input_topics) {
   const Checked<BagInputs> bag = BagInputs::open({file});

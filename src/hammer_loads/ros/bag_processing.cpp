@@ -1,11 +1,10 @@
 #include "hammer_loads/ros/bag_processing.h"
 
-#include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include "hammer_loads/ros/attach.h"
 #include "hammer_loads/ros/bag_inputs.h"
-#include "hammer_loads/ros/bag_output.h"
+#include "hammer_loads/ros/bag_writer.h"
 #include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/bag_warnings.h"
@@ -21,7 +20,7 @@ using Wanted = std::map<std::string, std::string>;
 
 /// Where results go; null: not wanted.
 struct Sinks {
-  rosbag::Bag* bag;
+  BagWriter* bag;
   BagTables* tables;
 };
 
@@ -197,7 +196,7 @@ void process(const Work& work, const Sinks& sinks, const std::function<void(doub
 }
 
 /// Into the tables alone, or beside a bag; what went wrong in one line, empty if nothing did.
-std::string writeTables(const Work& work, rosbag::Bag* bag, const std::function<void(double)>& progress,
+std::string writeTables(const Work& work, BagWriter* bag, const std::function<void(double)>& progress,
                         BagReport& report) {
   std::optional<BagTables> tables;
   if (!work.job.tables.empty()) tables.emplace(work.job.tables, work.job.inputs);
@@ -210,15 +209,13 @@ std::string writeTables(const Work& work, rosbag::Bag* bag, const std::function<
 /// Into the output files; what went wrong in one line, empty if nothing did.
 std::string write(const Work& work, const std::function<void(double)>& progress, BagReport& report) {
   if (work.job.output.empty()) return writeTables(work, nullptr, progress, report);
-  BagOutput output;
-  errno = 0;
   try {
-    output.open(work.job.output);
-    const std::string problem = writeTables(work, &output.bag(), progress, report);
-    output.close();
+    BagWriter bag(work.job.output);
+    const std::string problem = writeTables(work, &bag, progress, report);
+    bag.close();
     return problem;
-  } catch (const rosbag::BagException& error) {  // what goes wrong with an input is none
-    return work.job.output + ": cannot be written: " + onOneLine(errno != 0 ? std::strerror(errno) : error.what());
+  } catch (const std::system_error& error) {  // what goes wrong with an input is none
+    return work.job.output + ": cannot be written: " + error.code().message();
   }
 }
 

@@ -1,0 +1,178 @@
+#include "hammer_loads/ros/bag_writer.h"
+
+#include <fcntl.h>
+#include <roslz4/lz4s.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "hammer_loads/ros/bag_record.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr char kMagic[] = "#ROSBAG V2.0\n";
+constexpr std::size_t kChunk = 768 * 1024;  // as rosbag's
+constexpr std::uint32_t kBagHeader = 4096;  // padded, so that it can be written again at the end
+constexpr int kBlock = 6;                   // of LZ4, as rosbag's: 1 MB
+
+[[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
+
+template <typename T>
+std::string bytesOf(T number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+
+std::string bytesOf(const ros::Time& time) { return bytesOf(time.sec) + bytesOf(time.nsec); }
+
+void addField(std::string& header, const std::string& name, const std::string& value) {
+  header += bytesOf(static_cast<std::uint32_t>(name.size() + 1 + value.size())) + name + "=" + value;
+}
+
+std::string headerOf(BagRecord::Kind kind) {
+  std::string header;
+  addField(header, "op", std::string(1, static_cast<char>(kind)));
+  return header;
+}
+
+/// A length and as many bytes.
+std::string pieceOf(const std::string& bytes) { return bytesOf(static_cast<std::uint32_t>(bytes.size())) + bytes; }
+
+}  // namespace
+
+BagWriter::BagWriter(const std::string& file)
+    : descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail();
+  writeBytes(kMagic);
+  writeBagHeader(0);
+  chunks_.emplace_back();
+}
+
+BagWriter::~BagWriter() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void BagWriter::writeBytes(const std::string& bytes) {
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail();
+    done += static_cast<std::size_t>(count);
+  }
+  position_ += bytes.size();
+}
+
+/// 0: the index is not written yet.
+void BagWriter::writeBagHeader(std::uint64_t index_position) {
+  std::string header = headerOf(BagRecord::kBag);
+  addField(header, "index_pos", bytesOf(index_position));
+  addField(header, "conn_count", bytesOf(static_cast<std::uint32_t>(connections_.size())));
+  addField(header, "chunk_count", bytesOf(static_cast<std::uint32_t>(chunks_.size())));
+  writeBytes(pieceOf(header) + pieceOf(std::string(kBagHeader - header.size(), ' ')));
+}
+
+std::uint32_t BagWriter::addConnection(Connection connection) {
+  const auto number = static_cast<std::uint32_t>(connections_.size());
+  numbers_[connection.topic] = number;
+  connections_.push_back(std::move(connection));
+  chunk_ += recordOf(number);
+  return number;
+}
+
+std::string BagWriter::recordOf(std::uint32_t number) const {
+  const Connection& connection = connections_[number];
+  std::string header = headerOf(BagRecord::kConnection), data;
+  addField(header, "conn", bytesOf(number));
+  addField(header, "topic", connection.topic);
+  addField(data, "topic", connection.topic);
+  addField(data, "type", connection.type);
+  addField(data, "md5sum", connection.md5sum);
+  addField(data, "message_definition", connection.definition);
+  if (connection.latched) addField(data, "latching", "1");
+  return pieceOf(header) + pieceOf(data);
+}
+
+/// The header of a message has always the same length.
+std::uint8_t* BagWriter::beginMessage(std::uint32_t connection, const ros::Time& time, std::uint32_t size) {
+  ChunkInfo& chunk = chunks_.back();
+  if (chunk.counts.empty()) chunk.first = chunk.last = time;
+  chunk.first = std::min(chunk.first, time);
+  chunk.last = std::max(chunk.last, time);
+  ++chunk.counts[connection];
+  index_[connection].emplace_back(time, static_cast<std::uint32_t>(chunk_.size()));
+
+  static const std::string kPattern = [] {
+    std::string header = headerOf(BagRecord::kMessage);
+    addField(header, "conn", bytesOf(std::uint32_t{0}));
+    addField(header, "time", bytesOf(std::uint64_t{0}));
+    return pieceOf(header);
+  }();
+  constexpr std::size_t kConnectionFromEnd = 8 + 5 + 4 + 4, kTimeFromEnd = 8;
+  chunk_ += kPattern;
+  char* end = chunk_.data() + chunk_.size();
+  std::memcpy(end - kConnectionFromEnd, &connection, sizeof connection);
+  std::memcpy(end - kTimeFromEnd, &time.sec, sizeof time.sec);
+  std::memcpy(end - kTimeFromEnd + sizeof time.sec, &time.nsec, sizeof time.nsec);
+  chunk_ += bytesOf(size);
+  chunk_.resize(chunk_.size() + size);
+  return reinterpret_cast<std::uint8_t*>(chunk_.data() + chunk_.size() - size);
+}
+
+void BagWriter::endMessage() {
+  if (chunk_.size() >= kChunk) writeChunk();
+}
+
+void BagWriter::writeChunk() {
+  packed_.resize(chunk_.size() + chunk_.size() / 64 + 4096);
+  auto size = static_cast<unsigned>(packed_.size());
+  if (roslz4_buffToBuffCompress(chunk_.data(), static_cast<unsigned>(chunk_.size()), packed_.data(), &size, kBlock) !=
+      ROSLZ4_OK)
+    throw std::runtime_error("LZ4 cannot pack a chunk");
+  packed_.resize(size);
+  chunks_.back().position = position_;
+  std::string header = headerOf(BagRecord::kChunk);
+  addField(header, "compression", "lz4");
+  addField(header, "size", bytesOf(static_cast<std::uint32_t>(chunk_.size())));
+  writeBytes(pieceOf(header) + bytesOf(size));
+  writeBytes(packed_);
+  for (auto& [connection, places] : index_) {
+    if (places.empty()) continue;
+    std::string index = headerOf(BagRecord::kIndex), data;
+    addField(index, "ver", bytesOf(std::uint32_t{1}));
+    addField(index, "conn", bytesOf(connection));
+    addField(index, "count", bytesOf(static_cast<std::uint32_t>(places.size())));
+    std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [time, offset] : places) data += bytesOf(time) + bytesOf(offset);
+    writeBytes(pieceOf(index) + pieceOf(data));
+    places.clear();
+  }
+  chunk_.clear();
+  chunks_.emplace_back();
+}
+
+void BagWriter::close() {
+  if (!chunk_.empty()) writeChunk();
+  chunks_.pop_back();
+  const std::uint64_t index_position = position_;
+  std::string index;
+  for (std::uint32_t i = 0; i < connections_.size(); ++i) index += recordOf(i);
+  for (const ChunkInfo& chunk : chunks_) {
+    std::string header = headerOf(BagRecord::kChunkInfo), data;
+    addField(header, "ver", bytesOf(std::uint32_t{1}));
+    addField(header, "chunk_pos", bytesOf(chunk.position));
+    addField(header, "start_time", bytesOf(chunk.first));
+    addField(header, "end_time", bytesOf(chunk.last));
+    addField(header, "count", bytesOf(static_cast<std::uint32_t>(chunk.counts.size())));
+    for (const auto& [connection, count] : chunk.counts) data += bytesOf(connection) + bytesOf(count);
+    index += pieceOf(header) + pieceOf(data);
+  }
+  writeBytes(index);
+  if (lseek(descriptor_, sizeof kMagic - 1, SEEK_SET) < 0) fail();
+  writeBagHeader(index_position);
+  const int descriptor = std::exchange(descriptor_, -1);
+  if (::close(descriptor) != 0) fail();
+}
+
+}  // namespace hammer_loads
