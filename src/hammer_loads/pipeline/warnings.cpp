@@ -104,13 +104,12 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          true});
   warnOfStamps(pipeline.crank(), *filter, warnings);
   const bool inconsistent = filter->consistency() > kInconsistent;
-  if (inconsistent || filter->isUnexplained())
-    warnings.push_back({"inconsistent",
-                        format("crank: readings differ from the model by %.2g times the expected variance: a soft "
-                               "coupling between crank and encoder, a wrong hammer file or a zero far off",
-                               inconsistent ? filter->consistency() : kInconsistent),
-                        true});
-  if (!inconsistent) warnOfPlace(filter->sensorErrors(), warnings);
+  if (!inconsistent && !filter->isUnexplained()) return warnOfPlace(filter->sensorErrors(), warnings);
+  warnings.push_back({"inconsistent",
+                      format("crank: readings differ from the model by %s%.2g times the expected variance: a soft "
+                             "coupling between crank and encoder, a wrong hammer file or a zero far off",
+                             inconsistent ? "" : "at times ", inconsistent ? filter->consistency() : kInconsistent),
+                      true});
 }
 
 void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
