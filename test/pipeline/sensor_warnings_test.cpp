@@ -83,8 +83,8 @@ TEST(SensorWarnings, AZeroThatIsOffIsNamedWithItsSizeAndPartOfTheDeviations) {
     s.crank.zero = off * kDegree;
     const Heard heard = hear(s);
     ASSERT_EQ(heard.keys, "zero;") << off;
-    const std::string& text = heard.warnings.back().text;
-    const double named = std::stod(text.substr(text.find("at ") + 3));
+    const std::string& text = heard.warnings.front().text;
+    const double named = std::stod(text.substr(text.find("came at ") + 8));
     EXPECT_NEAR(named, s.crank.zero, 0.25 * kDegree) << text;
     EXPECT_GT(heard.covered, 0.88);  // without it less than half
   }
