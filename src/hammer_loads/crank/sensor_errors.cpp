@@ -1,6 +1,8 @@
 #include "hammer_loads/crank/sensor_errors.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <utility>
 
 namespace hammer_loads {
 namespace {
@@ -13,6 +15,8 @@ constexpr double kUnmodelled[3] = {1.7e-3, 2e-3, 4e-3};  // [rad] what a clean m
 constexpr double kUnmodelledDeviations = 2.5;            // likewise, where it is seen less well
 constexpr double kUnseenDeviations = 0.6;                // of what is not seen: 88 to 99 % of the wrench's errors
                                                          // then lie within two deviations (simulated machines)
+constexpr double kSamplesToFollow = 20.0;                // a turn: with fewer of them a supply that follows the crank's
+                                                         // speed looks more like b, at 50 Hz twice as much
 
 double square(double x) noexcept { return x * x; }
 
@@ -24,13 +28,16 @@ void SensorErrors::forget() noexcept {
 }
 
 void SensorErrors::endTurn(double growth) noexcept {
+  const int samples = std::exchange(samples_, 0);
   if (++turns_ == kFirstTurns) forget();
   if (turns_ < kTurnsToKnow) return;
   const Matrix covariance = information_.inverse();
   estimate_ = covariance * score_;
+  const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
   Vector certain;  // what remains after the deviation
   for (int i = 0; i < kSize; ++i) {
-    deviation_[i] = std::sqrt(square(kUnmodelled[i]) + square(kUnmodelledDeviations) * growth * covariance(i, i));
+    const double seen = square(kUnmodelledDeviations) * growth * covariance(i, i);
+    deviation_[i] = std::sqrt(square(unmodelled * kUnmodelled[i]) + seen);
     const double excess = square(estimate_[i]) - square(deviation_[i]);
     certain[i] = excess > 0.0 ? std::copysign(std::sqrt(excess), estimate_[i]) : 0.0;
   }

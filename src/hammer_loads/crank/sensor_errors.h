@@ -34,6 +34,7 @@ class SensorErrors {
 
   /// innovation of an angle, its variance and its derivative by b.
   void learn(double innovation, double variance, const Row& by_error) noexcept {
+    ++samples_;
     const double ratio = innovation * innovation / variance;
     const double weight = (ratio > kMostRatio ? kMostRatio / ratio : 1.0) / variance;
     information_.noalias() += (weight * by_error.transpose()) * by_error;
@@ -63,7 +64,7 @@ class SensorErrors {
   Vector score_;
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()};
-  int turns_{};
+  int turns_{}, samples_{};  ///< samples: of this turn
 };
 
 }  // namespace hammer_loads
