@@ -18,7 +18,7 @@ HullGravity gravityWith(const std::string& keys, bool with_boom) {
 
 TEST(HullGravity, TakesTheBasesPitchLikeAJoints) {
   for (const bool with_boom : {false, true}) {
-    HullGravity level = gravityWith("", with_boom), leans = gravityWith("base_pitch_rad: 0.3\n", with_boom);
+    HullGravity level = gravityWith("base_pitch_rad: 0.0\n", with_boom), leans = gravityWith("base_pitch_rad: 0.3\n", with_boom);
     level.joints(kFour, {0.0, -0.2, 1.2, -0.8});
     leans.joints(kFour, {0.0, -0.2, 0.9, -0.8});
     EXPECT_NEAR(level.gravity().x, kG * std::sin(0.2), 1e-12);

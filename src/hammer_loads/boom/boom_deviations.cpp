@@ -67,7 +67,11 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
       const Wrench& w = w_tip.part[static_cast<std::size_t>(run - VibrationSpread::kLoads)];
       for (int k = 0; k < 3; ++k) add(joints + k, w.force[k]), add(joints + 3 + k, w.torque[k]);
     }
-    variance_ += VibrationSpread::weight(run) * difference_.cwiseAbs2();
+    if (run == VibrationSpread::kSofter) {
+      variance_ = variance_.cwiseMax(difference_.cwiseAbs2());  // stiffer and softer exclude each other
+    } else {
+      variance_ += difference_.cwiseAbs2();
+    }
   }
   takeDeviations(result);
 }

@@ -36,8 +36,6 @@ class VibrationSpread {
   /// Of a mode: as given or, where that is less, as identified.
   const OilDeviation& deviation(int mode) const noexcept { return deviation_[static_cast<std::size_t>(mode)]; }
   int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }
-  /// Weight of a run's squared difference in the variance: the two of the stiffness count half each.
-  static double weight(int run) noexcept { return run == kStiffer || run == kSofter ? 0.5 : 1.0; }
   /// By what the joints' accelerations of a run differ from those of the vibration, at the same instant [rad/s2].
   JointVector accelerationDifference(int run, const Vibration& vibration) const noexcept;
 
