@@ -35,9 +35,11 @@ Tables documented() {
 
 Tables made() {
   const test::TemporaryFile file("", ".sqlite");
-  TableWriter writer(file.path(), numberFieldsOf<Pulse>().columns(), numberFieldsOf<Blow>().columns());
-  writer.finish();
-  EXPECT_EQ(writer.problem(), "");
+  {
+    TableWriter writer(file.path(), numberFieldsOf<Pulse>().columns(), numberFieldsOf<Blow>().columns());
+    writer.finish();
+    EXPECT_EQ(writer.problem(), "");
+  }
   Tables tables;
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement columns(

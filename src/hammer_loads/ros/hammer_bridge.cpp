@@ -144,9 +144,10 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   if (result.refusal) return;
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
   if (result.boom != nullptr && !result.boom->fault) sendBoom(record_time);
-  fillMechanism(result, outputs_.mechanism.message);
+  // Pure functions of the result: nothing else depends on them.
+  if (outputs_.mechanism.attached()) fillMechanism(result, outputs_.mechanism.message);
   outputs_.mechanism.send(record_time);
-  fillPinForces(result, outputs_.pin_forces.message);
+  if (outputs_.pin_forces.attached()) fillPinForces(result, outputs_.pin_forces.message);
   outputs_.pin_forces.send(record_time);
 }
 
