@@ -47,7 +47,9 @@ def boom_loads(subject, charts):
         rows.append([name, shown] + [number(scaled(v, factor)) for v in
                                      (tally[1], tally[2] / tally[0], tally[3])] + [tally[0]])
         choices.append((name, shown, segments.thinned(MOST_POINTS)))
-    choices.sort(key=lambda choice: not choice[0].startswith(("joint_loads", "section_loads")))
+    strongest = max(bands, key=lambda key: key[0].startswith("joint_loads") and key[1] == "Nm" and
+                    bands[key][0][3] - bands[key][0][1])
+    choices.sort(key=lambda choice: choice[0] != strongest[0])
     content = table("Loads over all turns", ["Channel", "Unit", "Least", "Mean of turns", "Greatest", "Turns"], rows)
     if not any(name.startswith("section_loads/") for name, _ in bands):
         content += paragraph("No sections: the boom file names none, or there was no robot description.")
