@@ -37,7 +37,13 @@ class Tables : public test::BagFiles {
     EXPECT_EQ(database.problem(), "") << sql;
     return rows;
   }
-  double number(const std::string& file, const std::string& sql) const { return std::stod(ask(file, sql).at(0)); }
+  /// First number of the first row, with every digit.
+  double number(const std::string& file, const std::string& sql) const {
+    Database database(path(file), Database::Use::kRead, 0);
+    Database::Statement query(database, sql.c_str());
+    EXPECT_TRUE(query.step()) << sql << ": " << database.problem();
+    return query.number(0);
+  }
   test::Outcome tables(const std::string& bags, const std::string& file, const std::string& options = "") const {
     return run("--no-bag " + bags + " --db " + path(file) + " " + options);
   }
@@ -93,10 +99,10 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
   ASSERT_FALSE(cycles.channel.empty());
   EXPECT_EQ(number("out.sqlite", "SELECT count(*) FROM turn_loads"), static_cast<double>(whole * turn.channel.size()));
   for (std::size_t i = 0; i < turn.channel.size(); ++i) {
-    const std::string where = " FROM turn_loads JOIN channels USING(run_id, channel) WHERE name = '" + turn.channel[i] +
+    const std::string where = " FROM turn_loads t JOIN channels USING(run_id, channel) WHERE name = '" + turn.channel[i] +
                               "' AND turn = " + std::to_string(turn.turn);
-    EXPECT_EQ(number("out.sqlite", "SELECT maximum" + where), turn.maximum[i]) << turn.channel[i];
-    EXPECT_EQ(number("out.sqlite", "SELECT mean" + where), turn.mean[i]) << turn.channel[i];
+    EXPECT_EQ(number("out.sqlite", "SELECT t.maximum" + where), turn.maximum[i]) << turn.channel[i];
+    EXPECT_EQ(number("out.sqlite", "SELECT t.mean" + where), turn.mean[i]) << turn.channel[i];
   }
   EXPECT_EQ(ask("out.sqlite", "SELECT unit FROM channels WHERE name = 'hull_wrench/torque_y_Nm'"),
             std::vector<std::string>{"Nm"});
