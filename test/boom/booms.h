@@ -10,6 +10,7 @@
 #include <string>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/read_boom.h"
 #include "hammer_loads/util/format.h"
 
@@ -28,6 +29,23 @@ inline std::string textOf(const std::string& path) {
 }
 
 inline std::string shippedUrdf() { return textOf(sourceFile("urdf/eo2621_mo100.urdf")); }
+
+/// A boom alone, from its description and files. Unknown keys are problems.
+inline Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {
+  Checked<Boom> result;
+  ParameterMap parameters;
+  addFiles(files, parameters, result.problems);
+  if (!result.problems.empty()) return result;
+  ParameterReader reader(std::move(parameters));
+  const BoomParameters given = readBoomParameters(reader);
+  reader.reportUnknownKeys();
+  if (reader.problems().empty()) {
+    result = Boom::make(urdf_text, given);
+    for (const std::string& problem : result.problems) reader.addProblem(problem);
+  }
+  result.problems = reader.problems();
+  return result;
+}
 
 inline BoomParameters shippedBoomParameters() {
   const std::string file = sourceFile("config/boom_eo2621.yaml");

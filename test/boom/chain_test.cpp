@@ -54,7 +54,6 @@ TEST(Chain, KnowsItsLinksAndJoints) {
   EXPECT_FALSE(chain.linkIndex("beside"));
   EXPECT_EQ(chain.jointIndex("hinge"), 2);
   EXPECT_FALSE(chain.jointIndex("end"));
-  EXPECT_EQ(chain.linkBefore(1), 1);
   EXPECT_EQ(chain.linkBeyond(1), 2);
   EXPECT_TRUE(std::isinf(chain.lower()[0]));
   EXPECT_EQ(chain.lower()[1], -1.0);

@@ -24,7 +24,7 @@ class Cylinders : public testing::Test {
     q[joint] = angle;
     ChainPose pose;
     forwardKinematics(chain_, q, pose);
-    const Eigen::Vector3d base = pose.link(chain_.linkBefore(joint)) * Eigen::Vector3d(p.base_x, 0.0, p.base_z);
+    const Eigen::Vector3d base = pose.link(chain_.linkBeyond(joint) - 1) * Eigen::Vector3d(p.base_x, 0.0, p.base_z);
     const Eigen::Vector3d rod = pose.link(chain_.linkBeyond(joint)) * Eigen::Vector3d(p.rod_x, 0.0, p.rod_z);
     return (rod - base).norm();
   }

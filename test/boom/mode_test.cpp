@@ -8,13 +8,13 @@
 #include <random>
 #include <vector>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
-constexpr double kPi = 3.14159265358979323846;
 
 /// Impulse, step, ramp and parabola by the closed forms in 50 digits.
 std::array<double, 4> exactResponse(const Mode& mode, double time) {

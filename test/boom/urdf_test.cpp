@@ -77,7 +77,7 @@ TEST_F(Model, PinsMeetAllAroundTheTurn) {
   };
   const KDL::Frame X_hull = frame("hammer_hull").Inverse();
   for (int degree = 0; degree <= 720; degree += 3) {
-    const double phi = degree * test::kPi / 180.0;
+    const double phi = degree * kPi / 180.0;
     const LinkMotion motion = linkMotion(mechanism.linkage(), CrankAngle::fromAngle(phi));
     const double psi = rockerAngle(motion.rocker), beta = rodAngle(motion);
     const std::map<std::string, double> angles{
@@ -125,11 +125,11 @@ TEST_F(Model, HasThePublishedFigures) {
   // Moving links count once: in the hull.
   for (const char* link : {"hammer_crank", "hammer_carrier", "hammer_rod", "hammer_rocker"}) EXPECT_EQ(mass(link), 0.0);
   const urdf::JointLimitsSharedPtr swing = model_->getJoint("swing_joint")->limits;
-  EXPECT_NEAR(swing->upper - swing->lower, 160.0 * test::kPi / 180.0, 1e-3);
+  EXPECT_NEAR(swing->upper - swing->lower, 160.0 * kPi / 180.0, 1e-3);
   // Deepest: boom down, arm and hammer straight below.
-  const double boom = model_->getJoint("boom_joint")->limits->upper, arm = 0.5 * test::kPi - boom;
+  const double boom = model_->getJoint("boom_joint")->limits->upper, arm = 0.5 * kPi - boom;
   const KDL::Frame tool =
-      frame("hammer_tool", {{"boom_joint", boom}, {"arm_joint", arm}, {"hammer_joint", -0.5 * test::kPi}});
+      frame("hammer_tool", {{"boom_joint", boom}, {"arm_joint", arm}, {"hammer_joint", -0.5 * kPi}});
   EXPECT_LE(tool.p.z(), -3.4);
   EXPECT_GE(tool.p.z(), -4.25);
   EXPECT_LE(arm, model_->getJoint("arm_joint")->limits->upper);

@@ -11,7 +11,6 @@
 namespace hammer_loads {
 namespace {
 
-using test::kPi;
 using test::PlanarChain;
 
 /// Pitch joints of the shipped boom as the hand-made planar chain; KDL only tells the figures.

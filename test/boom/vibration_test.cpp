@@ -4,11 +4,11 @@
 
 #include "boom/booms.h"
 #include "hammer_loads/boom/rigid_error.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 const JointVector kZero = JointVector::Zero(4);
 
 class ShippedBoom : public testing::Test {

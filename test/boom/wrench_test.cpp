@@ -58,6 +58,19 @@ TEST(WrenchShift, ThereAndBackIsTheSame) {
   EXPECT_LT(worst, 1e-15);
 }
 
+/// The shift as a matrix on (force, torque): [R 0; [p]x R  R].
+Eigen::Matrix<double, 6, 6> shiftMatrix(const Pose& X_QP) {
+  const Eigen::Matrix3d R = X_QP.linear();
+  const Eigen::Vector3d p = X_QP.translation();
+  Eigen::Matrix3d p_cross;
+  p_cross << 0.0, -p.z(), p.y(), p.z(), 0.0, -p.x(), -p.y(), p.x(), 0.0;
+  Eigen::Matrix<double, 6, 6> shift = Eigen::Matrix<double, 6, 6>::Zero();
+  shift.topLeftCorner<3, 3>() = R;
+  shift.bottomRightCorner<3, 3>() = R;
+  shift.bottomLeftCorner<3, 3>() = p_cross * R;
+  return shift;
+}
+
 TEST(WrenchShift, EqualsTheMatrixAndConservesPower) {
   std::mt19937 random(3);
   for (int i = 0; i < 1000; ++i) {

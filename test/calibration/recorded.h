@@ -7,10 +7,10 @@
 
 #include "hammer_loads/calibration/calibration.h"
 #include "hammer_loads/simulation/session.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::test {
 
-constexpr double kDegree = kTwoPi / 360.0;
 
 inline simulation::MachineSettings atWork(double seconds, double rate) {
   simulation::MachineSettings s = simulation::workingMo100();

@@ -14,7 +14,7 @@ struct Angles {
   double theta2{}, theta5{};
 };
 
-double apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * test::kPi)); }
+double apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * kPi)); }
 
 bool contains(const Branches& branches, const Angles& expected, double tolerance) {
   return std::any_of(branches.branch.begin(), branches.branch.begin() + branches.count, [&](const auto& b) {
@@ -57,7 +57,7 @@ TEST(Branches, ClaimsSetHasTwoModesBetweenItsFoldsAndNoneBeyond) {
   const LeverGroup group(p);
   for (int i = -1800; i < 1800; ++i) {
     const double degrees = 0.1 * i + 0.05;
-    const Branches found = enumerateBranches(group, pinA(p, degrees * test::kPi / 180.0));
+    const Branches found = enumerateBranches(group, pinA(p, degrees * kPi / 180.0));
     const bool inside = degrees > -176.87 && degrees < -3.13;
     ASSERT_EQ(found.count, inside ? 2 : 0) << degrees;
     if (inside) {
@@ -85,7 +85,7 @@ TEST(Branches, EveryPoseClosesAndNoPoseIsListedTwice) {
   for (int i = 0; i < 20000; ++i) {
     const GrappleParameters p = test::randomLinkage(random);
     const LeverGroup group(p);
-    const Planar a = pinA(p, random(-test::kPi, test::kPi));
+    const Planar a = pinA(p, random(-kPi, kPi));
     const Branches found = enumerateBranches(group, a);
     EXPECT_FALSE(found.self_motion);
     EXPECT_EQ(found.count % 2, 0) << i;  // modes are born in pairs
@@ -120,7 +120,7 @@ int modesByScan(const GrappleParameters& p, double distance, int samples) {
     };
     double before = miss(0.0);
     for (int i = 1; i <= samples; ++i) {
-      const double now = miss(2.0 * test::kPi * i / samples);
+      const double now = miss(2.0 * kPi * i / samples);
       modes += before * now < 0.0;
       before = now;
     }
@@ -133,7 +133,7 @@ TEST(Branches, AsManyAsAScanOfTheConfigurationCurveFinds) {
   int with_six = 0, differing = 0;
   for (int i = 0; i < 3000; ++i) {
     const GrappleParameters p = test::randomLinkage(random);
-    const Planar a = pinA(p, random(-test::kPi, test::kPi));
+    const Planar a = pinA(p, random(-kPi, kPi));
     const Branches found = enumerateBranches(LeverGroup(p), a);
     with_six += found.count == 6;
     // A scan overlooks pairs closer than its step and pairs across the end of a side: look closer before judging.
@@ -156,10 +156,10 @@ TEST(Branches, SpecialTrianglesLoseNoMode) {
       p.oe = scale * p.ac;
       p.doe = kind == 1 ? -p.bac : p.bac;  // 1: mirrored
     } else {
-      p.bac = random.coin() ? 0.0 : test::kPi;
-      p.doe = random.coin() ? 0.0 : test::kPi;
+      p.bac = random.coin() ? 0.0 : kPi;
+      p.doe = random.coin() ? 0.0 : kPi;
     }
-    const Planar a = pinA(p, random(-test::kPi, test::kPi));
+    const Planar a = pinA(p, random(-kPi, kPi));
     const Branches found = enumerateBranches(LeverGroup(p), a);
     EXPECT_FALSE(found.self_motion);
     const int scanned = modesByScan(p, norm(a), 2000);

@@ -67,8 +67,8 @@ TEST(DesignFigures, ClaimsSetReproducesWhatCanBeReproduced) {
   EXPECT_GT(f.straight_share_band, 0.8);                     // a band of 3 % holds more than the claimed 80 %
   EXPECT_EQ(f.straight_share_off, 1.0);
   EXPECT_NEAR(f.opening, 4.0067, 1e-4);  // 4 m, not 200 mm
-  EXPECT_NEAR(f.least_transmission.value * 180.0 / test::kPi, 46.0, 0.5);
-  EXPECT_NEAR(f.most_transmission.value * 180.0 / test::kPi, 117.0, 0.5);
+  EXPECT_NEAR(f.least_transmission.value * 180.0 / kPi, 46.0, 0.5);
+  EXPECT_NEAR(f.most_transmission.value * 180.0 / kPi, 117.0, 0.5);
   EXPECT_NEAR(f.least_determinant.value, 0.092, 5e-4);
   EXPECT_EQ(f.least_determinant.slider, 0.656);
 }

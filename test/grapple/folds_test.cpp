@@ -48,7 +48,7 @@ TEST(Folds, OfTheClaimsSet) {
   EXPECT_NEAR(edge.im, -2.1372154339, 1e-10);
   const BranchEnd lower = findBranchEnd(group, rocker, start, -1, 7.0);
   ASSERT_EQ(lower.kind, BranchEnd::Kind::kFold);
-  EXPECT_NEAR(lower.point.theta1 * 180.0 / test::kPi, -176.87, 5e-3);
+  EXPECT_NEAR(lower.point.theta1 * 180.0 / kPi, -176.87, 5e-3);
   EXPECT_EQ(findBranchEnd(group, rocker, start, +1, 0.1).kind, BranchEnd::Kind::kNone);
 }
 
@@ -75,16 +75,16 @@ TEST(Folds, OfRandomLinkagesAreSingularAndEndTheBranch) {
     const GrappleParameters p = test::randomLinkage(random);
     const LeverGroup group(p);
     const FirstRocker rocker = rockerOf(p);
-    const double theta1 = random(-test::kPi, test::kPi);
+    const double theta1 = random(-kPi, kPi);
     const Branches all = enumerateBranches(group, rocker.o1 + rocker.armAt(theta1));
     if (all.count == 0) continue;
     const auto& branch = all.branch[static_cast<std::size_t>(random(0.0, all.count))];
     const int sense = random.coin() ? 1 : -1;
-    const BranchEnd end = findBranchEnd(group, rocker, {theta1, branch.theta2, branch.theta5}, sense, 2.0 * test::kPi);
+    const BranchEnd end = findBranchEnd(group, rocker, {theta1, branch.theta2, branch.theta5}, sense, 2.0 * kPi);
     singular += end.kind == BranchEnd::Kind::kSingular;
     if (end.kind == BranchEnd::Kind::kNone) {
       ++full_turns;
-      EXPECT_GE(sense * (end.point.theta1 - theta1), 2.0 * test::kPi);
+      EXPECT_GE(sense * (end.point.theta1 - theta1), 2.0 * kPi);
     }
     if (end.kind != BranchEnd::Kind::kFold) continue;
     ++folds;

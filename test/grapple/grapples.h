@@ -9,10 +9,9 @@
 
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::test {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 /// Published ten lengths and the angles fitted to the paper's claims; the same numbers as config/grapple_claims.yaml.
 inline GrappleParameters claimsParameters() {

@@ -23,14 +23,14 @@ TEST(GebelsFormulas, FailWhereTheErrataSay) {
   EXPECT_NEAR(norm(inverted), 1.716755653163, 1e-12);
   EXPECT_NEAR(norm(inverted), norm(m.a), 1e-15);
   const GrappleMotion at_45 = *grapple.at(0.178894907739);
-  EXPECT_NEAR(at_45.theta5, -test::kPi / 4, 1e-11);
+  EXPECT_NEAR(at_45.theta5, -kPi / 4, 1e-11);
   EXPECT_GT(std::abs(at_45.determinant), 0.1);  // nothing is singular there but the printed matrix
   // phi_O1A = arccos(...) + phi_HO1A lacks the direction of O1G and the sign of the closure.
   const Planar g = m.g - p.o1;
   const double bracket = std::acos((p.o1h * p.o1h + squaredNorm(g) - p.gh * p.gh) / (2.0 * norm(g) * p.o1h));
   EXPECT_NEAR(bracket, 1.301980, 5e-7);
   EXPECT_NEAR(angleOf(m.h - p.o1), 0.268816, 5e-7);
-  EXPECT_NEAR(test::kPi / 2 - bracket, angleOf(m.h - p.o1), 1e-14);
+  EXPECT_NEAR(kPi / 2 - bracket, angleOf(m.h - p.o1), 1e-14);
   // arctg instead of atan2: off by pi while P lies inside of B or A.
   const GrappleMotion closed = *grapple.at(0.008);
   EXPECT_NEAR(angleOf(closed.p - closed.b), -2.626708, 5e-7);

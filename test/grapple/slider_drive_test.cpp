@@ -65,7 +65,7 @@ TEST(SliderDrive, ReachEndsInTheDeadPoints) {
   EXPECT_NEAR(upper->high, 0.89, 1e-15);  // |O1G| = gh + o1h
   EXPECT_TRUE(drive.at(-0.2699999));
   // The root of the distance: 1e-12 m from the dead point theta1 is some 1e-6 rad from its value there.
-  EXPECT_NEAR(drive.theta1(-0.27 + 1e-12) * 180.0 / test::kPi, -147.2958, 2e-4);
+  EXPECT_NEAR(drive.theta1(-0.27 + 1e-12) * 180.0 / kPi, -147.2958, 2e-4);
   EXPECT_FALSE(drive.at(-0.2701));
   EXPECT_FALSE(drive.at(0.8901));
   EXPECT_FALSE(drive.reachAround(-0.9));

@@ -31,7 +31,7 @@ double medianTime(int batches, int calls, const Call& call) {
 std::vector<double> swing(const GrappleParameters& p) {
   std::vector<double> sliders;
   const double middle = 0.5 * (p.slider_closed + p.slider_open), half = 0.5 * (p.slider_open - p.slider_closed);
-  for (int i = 0; i < 2000; ++i) sliders.push_back(middle + half * std::cos(2.0 * test::kPi * i / 2000.0));
+  for (int i = 0; i < 2000; ++i) sliders.push_back(middle + half * std::cos(2.0 * kPi * i / 2000.0));
   return sliders;
 }
 

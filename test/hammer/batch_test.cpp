@@ -187,7 +187,7 @@ TEST(Batch, TakesAnyWinding) {
   const HullModel model(mechanism, Level::kRocker);
   Table table;
   for (double turns : {-1e7, -1e3, -3.0, -1.0, 0.0, 1.0, 2.0, 1e3, 1e7}) {
-    for (double offset : {-3.0, -0.3, -1e-9, 1e-9, 0.2, 3.1}) table.add(turns * 2.0 * test::kPi + offset, 25.0, 100.0);
+    for (double offset : {-3.0, -0.3, -1e-9, 1e-9, 0.2, 3.1}) table.add(turns * 2.0 * kPi + offset, 25.0, 100.0);
   }
   table.compute(model, false);
   for (std::size_t i = 0; i < table.size(); ++i) {

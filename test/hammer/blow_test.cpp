@@ -105,8 +105,8 @@ TEST(Blow, JointLiesWhereTheLinkageHasIt) {
   // Pin C at psi = 0 is at D + l3 along xi; model.md 1 maps (xi, eta) to (x, z) = -(c xi + s eta), -s xi + c eta.
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const StrikingRocker rocker = strikingRocker(mechanism, Level::kLinkage);
-  EXPECT_NEAR(rocker.rod_joint.x, -0.120 * std::cos(50.0 * test::kPi / 180.0), 1e-15);
-  EXPECT_NEAR(rocker.rod_joint.z, -0.120 * std::sin(50.0 * test::kPi / 180.0), 1e-15);
+  EXPECT_NEAR(rocker.rod_joint.x, -0.120 * std::cos(50.0 * kPi / 180.0), 1e-15);
+  EXPECT_NEAR(rocker.rod_joint.z, -0.120 * std::sin(50.0 * kPi / 180.0), 1e-15);
   EXPECT_EQ(rocker.com.x, -0.106);
   EXPECT_EQ(rocker.striking_point.z, 0.0);
 }

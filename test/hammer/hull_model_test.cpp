@@ -10,7 +10,6 @@
 namespace hammer_loads {
 namespace {
 
-using test::kPi;
 
 TEST(HullModel, GivesEachLevelItsOwnWrench) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());

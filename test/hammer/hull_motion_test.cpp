@@ -89,7 +89,7 @@ TEST_P(HullMotionTest, ShaftTurnsAsInTheFreeSystem) {
     const ShaftState state{
         {0, run.state().crank}, run.state().crank_speed, run.torque(), mechanism_.parameters().drive_inertia};
     e.add(acceleration(load, state), right.acceleration[3]);
-    drive.add(driveTorque(load, state.speed, right.acceleration[3]), run.torque() - right.flywheel_torque);
+    drive.add(test::driveTorque(load, state.speed, right.acceleration[3]), run.torque() - right.flywheel_torque);
   });
   EXPECT_GT(e.size, 500.0);
   EXPECT_LT(e.relative(), 1e-11);

@@ -13,7 +13,6 @@
 namespace hammer_loads {
 namespace {
 
-using test::kPi;
 using test::Real;
 constexpr Gravity kGravity{3.1, -9.3};
 

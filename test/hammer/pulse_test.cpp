@@ -12,7 +12,6 @@ namespace hammer_loads {
 namespace {
 
 using test::kPaperSpeed;
-using test::kPi;
 
 ConstantSpeedPulse paperPulse() {
   return pulseAtConstantSpeed(test::mechanismOf(test::mo100Parameters()), Level::kRocker, kPaperSpeed, {});

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/util/constants.h"
 #include "life/astm_reference.h"
 
 namespace hammer_loads::life {
 namespace {
 
 using namespace test;
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<RangeMean> kFigure6{{3, -0.5, 0.5}, {4, -1, 0.5}, {4, 1, 1},    {6, 1, 0.5},

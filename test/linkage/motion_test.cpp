@@ -8,7 +8,6 @@
 namespace hammer_loads {
 namespace {
 
-using test::kPi;
 using test::Real;
 
 double relativeError(double value, const Real& exact) {

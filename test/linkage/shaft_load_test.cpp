@@ -11,7 +11,6 @@
 namespace hammer_loads {
 namespace {
 
-using test::kPi;
 constexpr Gravity kGravity{3.1, -9.3};
 
 TEST(ShaftLoad, EnergyAndWeightEqualTheReference) {
@@ -86,7 +85,7 @@ TEST(ShaftLoad, DriveTorqueEqualsTheReferenceTables) {
       const double g = csv.number(i, "gravity_m_s2"), pitch = csv.number(i, "hull_pitch_rad");
       const ShaftLoad load = shaftLoad(mechanism, level, CrankAngle::fromAngle(csv.number(i, "crank_angle_rad")),
                                        {g * std::sin(pitch), -g * std::cos(pitch)});
-      EXPECT_NEAR(driveTorque(load, csv.number(i, "crank_speed_rad_s"), csv.number(i, "crank_accel_rad_s2")),
+      EXPECT_NEAR(test::driveTorque(load, csv.number(i, "crank_speed_rad_s"), csv.number(i, "crank_accel_rad_s2")),
                   csv.number(i, "drive_torque_y_Nm"), 1e-12 * peak)
           << name << ' ' << i;
     }

@@ -11,7 +11,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMaxSpeed = 300.0;
-constexpr double kDegrees = 180.0 / test::kPi;
+constexpr double kDegrees = 180.0 / kPi;
 
 struct Sensor {
   double angle_unit{1.0}, speed_unit{1.0};

@@ -35,10 +35,10 @@ class Draw {
     p.lengths.rod += 0.999e-3 * between(-1.0, 1.0) * p.lengths.crank;
     return p;
   }
-  CrankAngle angle() { return CrankAngle::fromOffset(between(-test::kPi, test::kPi)); }
+  CrankAngle angle() { return CrankAngle::fromOffset(between(-kPi, kPi)); }
   CrankMotion crank() { return {angle(), between(-60.0, 60.0), between(-2000.0, 2000.0)}; }
   Gravity gravity() {
-    const double pitch = between(-test::kPi, test::kPi);
+    const double pitch = between(-kPi, kPi);
     return {9.81 * std::sin(pitch), -9.81 * std::cos(pitch)};
   }
 
@@ -134,7 +134,7 @@ TEST(RandomMachines, DrivePowerIsTheRateOfEnergyLessThePowerOfWeight) {
     const double size = std::abs(rate) + std::abs(weight) + std::abs(crank.speed) * links.kinetic_energy;
     const double pins =
         pinForces(mechanism, Level::kLinkage, crank, gravity, NearBlow(0.01)).drive_torque * crank.speed;
-    const double shaft = crank.speed * driveTorque(shaftLoad(mechanism, Level::kLinkage, crank.angle, gravity),
+    const double shaft = crank.speed * test::driveTorque(shaftLoad(mechanism, Level::kLinkage, crank.angle, gravity),
                                                    crank.speed, crank.acceleration);
     // Next to the blow the pin forces lose digits with the sine of half the crank angle.
     const double sine = std::abs(std::sin(0.5 * crank.angle.offset));

@@ -26,7 +26,7 @@ class BoomFile : public testing::Test {
     EXPECT_NE(at, std::string::npos) << piece;
     text.replace(at, piece.size(), by);
     std::ofstream(file_) << text;
-    const Checked<Boom> made = loadBoom(urdf_, {file_.string()});
+    const Checked<Boom> made = test::loadBoom(urdf_, {file_.string()});
     EXPECT_EQ(made.value.has_value(), made.problems.empty());
     return made.problems;
   }
@@ -92,7 +92,7 @@ TEST_F(BoomFile, EachFaultOfASectionIsOneLine) {
 TEST_F(BoomFile, SectionsMayBeLeftOut) {
   yaml_.erase(yaml_.find("sections: ["));
   EXPECT_TRUE(problems("damping_ratio", "damping_ratio").empty());
-  const Checked<Boom> made = loadBoom(urdf_, {file_.string()});
+  const Checked<Boom> made = test::loadBoom(urdf_, {file_.string()});
   EXPECT_TRUE(made.value->sections().empty());
   EXPECT_TRUE(problems("rigid_tolerance:", "sections: []\nrigid_tolerance:").empty());
 }
@@ -100,7 +100,7 @@ TEST_F(BoomFile, SectionsMayBeLeftOut) {
 TEST_F(BoomFile, ALinkOfUnknownPartsIsAUniformBarWithANote) {
   yaml_.erase(yaml_.find("arm_middle_section_mass_beyond_kg"));  // and what follows it
   ASSERT_TRUE(problems("damping_ratio", "damping_ratio").empty());
-  const Checked<Boom> made = loadBoom(urdf_, {file_.string()});
+  const Checked<Boom> made = test::loadBoom(urdf_, {file_.string()});
   ASSERT_EQ(made.notes.size(), 1U);
   EXPECT_EQ(made.notes[0],
             "arm_middle_section_mass_beyond_kg: not given, arm_link counts as a uniform bar between its joints");

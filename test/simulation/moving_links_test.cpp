@@ -8,11 +8,11 @@
 #include "hammer_loads/linkage/motion.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/simulation/machine_settings.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kPi = 3.141592653589793238;
 constexpr Gravity kTilted{0.8, -9.7};
 
 /// MO-100 with plausible masses of crank and rod.

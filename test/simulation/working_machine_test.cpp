@@ -6,10 +6,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kPi = 3.141592653589793238;
 
 /// Shorter than the standard session: 6 s, stop at 5 s.
 MachineSettings shortRun() {

@@ -6,10 +6,11 @@
 #include <stdexcept>
 
 #include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/linkage/shaft_load.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::test {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPaperSpeed = 31.416;  ///< [rad/s], P0
 
 /// P0's figures; crank and rod massless; an arbitrary drive inertia.
@@ -68,6 +69,11 @@ inline HammerParameters randomParameters(std::mt19937& random) {
   p.rod_inertia_about_com = p.rod_mass * p.lengths.rod * p.lengths.rod * between(0.02, 0.2);
   p.drive_inertia = p.rocker_inertia_about_pivot * between(0.1, 2.0);
   return p;
+}
+
+/// Drive torque on the crank, about hull +y, that gives it an acceleration, without motor and flywheel [N m].
+inline double driveTorque(const ShaftLoad& load, double speed, double acceleration) {
+  return load.inertia * acceleration + load.half_inertia_slope * speed * speed - load.weight_torque;
 }
 
 }  // namespace hammer_loads::test

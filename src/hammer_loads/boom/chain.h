@@ -61,8 +61,7 @@ class Chain {
   std::optional<int> jointIndex(const std::string& name) const noexcept;
   std::optional<int> linkIndex(const std::string& name) const noexcept;
   int tip() const noexcept { return links() - 1; }
-  /// Link before and beyond a joint.
-  int linkBefore(int joint) const noexcept { return data_->link_beyond[static_cast<std::size_t>(joint)] - 1; }
+  /// Link beyond a joint; the one before has the index below it.
   int linkBeyond(int joint) const noexcept { return data_->link_beyond[static_cast<std::size_t>(joint)]; }
 
   const JointVector& lower() const noexcept { return data_->lower; }  ///< [rad], -infinity for a continuous joint

@@ -5,12 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Beyond these no figure of a cylinder lies, and no product of figures overflows.
 constexpr double kMostLength = 1e3, kLeastLength = 1e-6;   // [m]
 constexpr double kMostVolume = 1e6, kLeastVolume = 1e-12;  // [m3]

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads {
 
 struct Mode {
@@ -109,7 +111,6 @@ inline double acceleration(const Mode& mode, const ModeState& state, double forc
 /// State at time t >= 0 after rest, under the half-sine pulse amplitude sin(mu t), 0 < t < pi/mu, and free after it.
 /// Closed form; zeta > 0 or omega != mu. Error some 1e-15/(zeta + |1 - omega/mu|) of the response's size.
 inline ModeState halfSineResponse(const Mode& mode, double amplitude, double mu, double t) noexcept {
-  constexpr double kPi = 3.14159265358979323846;
   const double length = kPi / mu, pulse_time = std::fmin(t, length);
   const double difference = (mode.omega - mu) * (mode.omega + mu);
   const double damping = 2.0 * mode.zeta * mode.omega * mu;

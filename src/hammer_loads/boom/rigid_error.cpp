@@ -6,12 +6,12 @@
 #include <limits>
 
 #include "hammer_loads/boom/mode.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 
 double rigidError(const BoomModes& modes, double damping_ratio, const JointVector& peak_torque,
                   double pulse_length) noexcept {
-  constexpr double kPi = 3.14159265358979323846;
   if (!peak_torque.allFinite()) return std::numeric_limits<double>::infinity();
   const double peak = peak_torque.size() > 0 ? peak_torque.cwiseAbs().maxCoeff() : 0.0;
   if (modes.count == 0 || !(peak > 0.0) || !(pulse_length > 0.0)) return 0.0;
@@ -33,7 +33,7 @@ double rigidError(const BoomModes& modes, double damping_ratio, const JointVecto
       state[static_cast<std::size_t>(k)] = halfSineResponse(mode(k), amplitude[k], mu, pulse_length * i / kSamples);
     look(i == kSamples ? 0.0 : std::sin(kPi * i / kSamples));
   }
-  const double slowest = 2.0 * kPi / modes.omega[0], fastest = 2.0 * kPi / modes.omega[modes.count - 1];
+  const double slowest = kTwoPi / modes.omega[0], fastest = kTwoPi / modes.omega[modes.count - 1];
   const int after = std::clamp(static_cast<int>(32.0 * slowest / fastest), kSamples, 100 * kSamples);
   std::array<ModeResponse, kMaxJoints> step;
   for (int k = 0; k < modes.count; ++k) step[static_cast<std::size_t>(k)] = responseAt(mode(k), slowest / after);

@@ -24,17 +24,4 @@ inline Wrench shifted(const Pose& X_QP, const Wrench& w_P) noexcept {
   return w_Q;
 }
 
-/// The shift as a matrix on (force, torque): [R 0; [p]x R  R].
-inline Eigen::Matrix<double, 6, 6> shiftMatrix(const Pose& X_QP) noexcept {
-  const Eigen::Matrix3d R = X_QP.linear();
-  const Eigen::Vector3d p = X_QP.translation();
-  Eigen::Matrix3d p_cross;
-  p_cross << 0.0, -p.z(), p.y(), p.z(), 0.0, -p.x(), -p.y(), p.x(), 0.0;
-  Eigen::Matrix<double, 6, 6> shift = Eigen::Matrix<double, 6, 6>::Zero();
-  shift.topLeftCorner<3, 3>() = R;
-  shift.bottomRightCorner<3, 3>() = R;
-  shift.bottomLeftCorner<3, 3>() = p_cross * R;
-  return shift;
-}
-
 }  // namespace hammer_loads

@@ -6,13 +6,13 @@
 
 #include "hammer_loads/calibration/first_guess.h"
 #include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
 constexpr std::size_t kLeastBlows = 12;
-constexpr double kDegree = kTwoPi / 360.0;
 constexpr int kCurveParts = 72;
 constexpr double kStrong = 0.9;
 constexpr double kUnknownAngleNoise = 5e-4;  // [rad] of a sensor without counts, first guess

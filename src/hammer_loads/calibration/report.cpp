@@ -5,12 +5,12 @@
 
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kDegree = kTwoPi / 360.0;
 
 /// With the same in degrees where it is an angle.
 std::string shown(double value, const std::string& unit) {

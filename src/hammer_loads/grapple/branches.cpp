@@ -5,10 +5,11 @@
 #include <cmath>
 #include <complex>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSamples = 8;  ///< > 6: a polynomial of degree 3 in cos and sin needs seven
 constexpr double kNearlyReal =
     1e-4;                           ///< |Im tan(alpha/2)| of a root that may be real: a double root splits by sqrt(eps)
@@ -60,7 +61,7 @@ bool halfAngleRoots(const std::array<double, kSamples>& samples, double scale, d
       std::max_element(samples.begin(), samples.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
   if (!(std::abs(*largest) > scale)) return false;
   const int j0 = static_cast<int>(largest - samples.begin()) + kSamples / 2;
-  alpha0 = 2.0 * kPi / kSamples * j0;
+  alpha0 = kTwoPi / kSamples * j0;
 
   // Fourier coefficients about alpha0: F = sum over k = -3..3 of h_k e(k (alpha - alpha0)), h_-k = conj h_k.
   std::array<std::complex<double>, 4> h{};
@@ -102,7 +103,7 @@ class Collector {
   }
 
   void collectAt(double alpha) {
-    if (result.self_motion && std::abs(std::remainder(alpha, 2.0 * kPi)) < kBesideSelfMotion) return;
+    if (result.self_motion && std::abs(std::remainder(alpha, kTwoPi)) < kBesideSelfMotion) return;
     const LinearPair l = linearPair(group_, distance_squared_, direction(alpha));
     const double determinant = cross(l.w1, l.w2);
     const double n1 = norm(l.w1), n2 = norm(l.w2);
@@ -127,13 +128,13 @@ class Collector {
     GroupPose pose = group_.pose(a_, theta2, theta2 + alpha);
     Closure closure;
     if (!group_.solve(a_, kPolishing, pose, closure) || result.count == 6) return;
-    const Branches::Branch found{std::remainder(pose.theta2, 2.0 * kPi), std::remainder(pose.theta5, 2.0 * kPi),
+    const Branches::Branch found{std::remainder(pose.theta2, kTwoPi), std::remainder(pose.theta5, kTwoPi),
                                  closure.determinant};
     for (int i = 0; i < result.count; ++i) {
       const Branches::Branch& other = result.branch[static_cast<std::size_t>(i)];
       const bool same_side = std::signbit(other.determinant) == std::signbit(found.determinant);
-      if (same_side && std::abs(std::remainder(other.theta2 - found.theta2, 2.0 * kPi)) < kSamePose &&
-          std::abs(std::remainder(other.theta5 - found.theta5, 2.0 * kPi)) < kSamePose)
+      if (same_side && std::abs(std::remainder(other.theta2 - found.theta2, kTwoPi)) < kSamePose &&
+          std::abs(std::remainder(other.theta5 - found.theta5, kTwoPi)) < kSamePose)
         return;
     }
     result.branch[static_cast<std::size_t>(result.count++)] = found;

@@ -3,12 +3,12 @@
 
 #include "hammer_loads/grapple/branches.h"
 #include "hammer_loads/grapple/grapple.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kReferenceTolerance = 0.05;  ///< of the reference pose's angles [rad]: distinguishes poses, no more
 constexpr double kClosedTolerance = 1e-9;     ///< by which P may lie beyond the axis when closed [m]
 constexpr double kSameTheta1 = 1e-6;          ///< [rad]: distinguishes the drive's two assemblies
@@ -56,7 +56,7 @@ void checkNumbers(const GrappleParameters& p, std::vector<std::string>& problems
   if (std::abs(p.drive_sign) != 1) problems.push_back(format("drive_sign: %d, must be 1 or -1", p.drive_sign));
 }
 
-double apart(double angle, double other) { return std::abs(std::remainder(angle - other, 2.0 * kPi)); }
+double apart(double angle, double other) { return std::abs(std::remainder(angle - other, kTwoPi)); }
 
 }  // namespace
 
@@ -146,8 +146,8 @@ bool Grapple::findReference(std::vector<std::string>& problems) {
 void Grapple::findLimits() {
   const FirstRocker rocker{parameters_.o1, parameters_.o1a};
   const CurvePoint start{drive_.theta1(reference_.slider), reference_.theta2, reference_.theta5};
-  const std::array<BranchEnd, 2> ends = {findBranchEnd(group_, rocker, start, -1, 2.0 * kPi),
-                                         findBranchEnd(group_, rocker, start, +1, 2.0 * kPi)};
+  const std::array<BranchEnd, 2> ends = {findBranchEnd(group_, rocker, start, -1, kTwoPi),
+                                         findBranchEnd(group_, rocker, start, +1, kTwoPi)};
   const Reach reach = *drive_.reachAround(reference_.slider);
   lower_ = limit(reach, ends, -1);
   upper_ = limit(reach, ends, +1);

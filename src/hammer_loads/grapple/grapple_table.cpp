@@ -2,12 +2,12 @@
 
 #include <utility>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;  // [rad]
 
 std::optional<std::string> printRows(const Grapple& grapple, double from, double to, int steps, std::ostream& out) {
   out << motionCsvHeader() << '\n';

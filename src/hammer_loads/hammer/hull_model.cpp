@@ -1,12 +1,12 @@
 #include "hammer_loads/hammer/hull_model.h"
 
 #include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 
 HullModel::HullModel(const Mechanism& mechanism, Level level) : mechanism_(&mechanism), level_(level) {
   if (level != Level::kPulse) return;
-  constexpr double kPi = 3.14159265358979323846;
   const HalfSinePulse nominal = pulseAtConstantSpeed(mechanism, Level::kRocker, 1.0, {}).pulse;
   if (!(nominal.frequency > 0.0)) return;
   pulse_ = {nominal.amplitude, nominal.frequency, kPi / nominal.frequency};

@@ -8,10 +8,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// A lobe of Fz counts when it reaches this part of the peak.
 constexpr double kLeastLobe = 0.1;
 

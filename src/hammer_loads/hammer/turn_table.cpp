@@ -6,13 +6,12 @@
 
 #include "hammer_loads/hammer/batch.h"
 #include "hammer_loads/hammer/evaluate.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180.0;  // [rad]
 
 /// Results of several states, column by column.
 struct Columns {
@@ -35,7 +34,7 @@ struct Columns {
 /// Weight along the tool on a half-sine in crank angle; angles are counted back from the blow. S as in HalfSinePulse.
 ConstantSpeedPulse pulseOfHalfSine(const TurnTable& table) {
   const NominalPulse& nominal = table.model.nominalPulse();
-  const double w = table.speed, turn = 2.0 * kPi;
+  const double w = table.speed, turn = kTwoPi;
   const double sine = nominal.amplitude * w * w;
   const double weight = table.model.mechanism().parameters().rocker_mass * table.gravity.z;
   const auto impulseFrom = [&](double left) {

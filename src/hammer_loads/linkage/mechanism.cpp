@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -58,7 +59,6 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
   const Checked<CrankRocker> linkage = CrankRocker::make(p.lengths);
   result.problems = linkage.problems;
   result.notes = linkage.notes;
-  constexpr double kDegree = 3.14159265358979323846 / 180.0;
   for (const Rule& rule :
        {Rule{"rocker_com_distance_m", p.rocker_com_distance, "m", Sign::kPositive},
         Rule{"rocker_com_angle_deg", p.rocker_com_angle / kDegree, "deg", Sign::kAny},

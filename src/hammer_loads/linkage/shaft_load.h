@@ -75,10 +75,4 @@ HAMMER_LOADS_INLINE ShaftLoad shaftLoad(const Mechanism& mechanism, Level level,
   return load;
 }
 
-/// Drive torque on the crank, about hull +y, that gives it an acceleration [N m]; inertia of motor and flywheel not
-/// included. From the balance of power, so it stays finite and exact where pin forces do not.
-HAMMER_LOADS_INLINE double driveTorque(const ShaftLoad& load, double speed, double acceleration) noexcept {
-  return load.inertia * acceleration + load.half_inertia_slope * speed * speed - load.weight_torque;
-}
-
 }  // namespace hammer_loads

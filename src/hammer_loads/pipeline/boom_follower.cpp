@@ -10,7 +10,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kPi = 0.5 * kTwoPi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastContact = 0.02;  // of the boom's weight: pressures tell no smaller force
 constexpr std::size_t kEdges = 4;
@@ -90,7 +89,6 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   }
   known_ = true;
   last_stamp_ = sample.stamp;
-  state_.gravity_tip = boom_.gravityAtTip();
   state_.choice.compliant = takesCompliant();
   findLoads(sample);
   if (follow_vibration_) tellVibration();

@@ -51,7 +51,6 @@ struct BoomState {
   SteelLoads steel;           ///< sections and joints as Boom orders them
   BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
-  Eigen::Vector3d gravity_tip = Eigen::Vector3d::Zero();   ///< in the hull's axes [m/s2]
   bool dead_centre{};                  ///< a cylinder does not hold its joint: no modes, taken as rigid
   JointVector frequency;               ///< natural frequencies, per mode [Hz]; none when vibration is not followed
   JointVector frequency_deviation;     ///< standard [Hz]

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -46,7 +47,6 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   HammerParameters parameters;
   // Signs and what keys demand of each other are the mechanism's to judge.
   for (const HammerKey& key : kHammerKeys) key.field(parameters) = reader.number(key.key, key.unit, NumberRule::any());
-  constexpr double kDegree = 3.14159265358979323846 / 180.0;
   parameters.rocker_com_angle *= kDegree;
 
   if (reader.given(kRatioKey))

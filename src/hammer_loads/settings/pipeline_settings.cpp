@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hammer_loads/settings/parameter_reader.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -93,7 +94,6 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.initial_torque_deviation = reader.number("initial_torque_deviation_rad_s2", "rad/s2", kPositive);
   s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", kNotNegative);
   s.torque_deviation_part = reader.number("torque_deviation_part", "", NumberRule::within(0.0, 1.0));
-  constexpr double kDegree = 3.14159265358979323846 / 180.0;
   s.near_blow = kDegree * reader.number("near_blow_deg", "deg", NumberRule::within(0.0, 89.0));
   s.stale_after = reader.number("stale_after_s", "s", kPositive);
   s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", kPositive);

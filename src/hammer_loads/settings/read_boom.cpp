@@ -93,20 +93,4 @@ bool hasBoomKey(const ParameterMap& parameters) {
   return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return parameters.count(key) != 0; });
 }
 
-Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {
-  Checked<Boom> result;
-  ParameterMap parameters;
-  addFiles(files, parameters, result.problems);
-  if (!result.problems.empty()) return result;
-  ParameterReader reader(std::move(parameters));
-  const BoomParameters given = readBoomParameters(reader);
-  reader.reportUnknownKeys();
-  if (reader.problems().empty()) {
-    result = Boom::make(urdf_text, given);
-    for (const std::string& problem : result.problems) reader.addProblem(problem);
-  }
-  result.problems = reader.problems();
-  return result;
-}
-
 }  // namespace hammer_loads

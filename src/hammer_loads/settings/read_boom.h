@@ -20,8 +20,4 @@ BoomParameters readBoomParameters(ParameterReader& reader);
 /// Whether any key of a boom file is there that is not a cylinder's own.
 bool hasBoomKey(const ParameterMap& parameters);
 
-/// A boom alone from the text of its description and files; a later file's key replaces an earlier one's. Unknown keys
-/// are problems.
-Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files);
-
 }  // namespace hammer_loads

@@ -6,10 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kPi = 3.141592653589793238;
 constexpr std::uint64_t kBlowSeed = 0x9e3779b97f4a7c15;  // draws of the blows leave the sensors' noise as it is
 
 Mechanism checked(const HammerParameters& parameters) {

@@ -1,9 +1,10 @@
 #include "hammer_loads/simulation/machine_settings.h"
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kDegree = 3.141592653589793238 / 180.0;
 
 /// P0, MO-100. Crank and rod are massless there.
 HammerParameters mo100() {
