@@ -14,7 +14,6 @@ namespace {
 using test::atWork;
 using test::basisOf;
 using test::find;
-using test::kDegree;
 using test::mechanismOf;
 using test::recorded;
 

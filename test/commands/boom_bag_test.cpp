@@ -154,7 +154,7 @@ TEST_F(BoomBag, HoldsEveryOutputAsTheLiveFlowGivesItAndIsByteIdenticalOnASecondR
   EXPECT_GE(counts["blow"], 8U);
   EXPECT_EQ(counts["pulse"], counts["blow"] - 1);
   EXPECT_EQ(counts["run_info"], 1U);
-  EXPECT_EQ(counts.size(), 13U);
+  EXPECT_EQ(counts.size(), 15U);
 
   const test::Recorded right = live(parameters);
   EXPECT_EQ(countsOf(right), counts);
@@ -209,7 +209,7 @@ TEST_F(BoomBag, ReadsTheHullsImu) {
   ASSERT_EQ(process("again.bag", imu, "--imu-topic /machine/imu").exit_code, 0);
   EXPECT_TRUE(test::contentOf(path("out.bag")) == test::contentOf(path("again.bag")));
   const test::Recorded written = test::recordedIn(path("out.bag"));
-  EXPECT_EQ(written.size(), 13U);
+  EXPECT_EQ(written.size(), 15U);
   EXPECT_TRUE(written == live(imu, "/machine/imu"));
 
   // At rest it says what pitch says, but from the first sample on: compared once the pitch joints have been heard too.

@@ -59,6 +59,7 @@ inline Recorded recordedLive(const std::string& path, const Settings& settings, 
       flow.transforms(*item.instantiate<tf2_msgs::TFMessage>(), topic == "/tf_static", time);
     if (topic == imu_topic) flow.hullImu(*item.instantiate<sensor_msgs::Imu>(), time);
   }
+  flow.finishRun();
   for (auto topic = recorded.begin(); topic != recorded.end();)
     topic = topic->second.empty() ? recorded.erase(topic) : std::next(topic);
   return recorded;

@@ -19,8 +19,8 @@ Topics in (remap them with NAME:=TOPIC)
   /tf, /tf_static  where boom_wrench_links names frames outside the boom's chain
 
 Topics out (private: below the node's name)
-  ~hull_wrench ~hull_loads ~boom_wrench/LINK ~joint_loads ~section_loads ~joint_reactions ~boom_vibration ~mechanism ~pin_forces ~pulse ~blow
-  ~turn_loads ~load_cycles (latched) ~run_info (latched)  /diagnostics
+  ~hull_wrench ~hull_loads ~boom_wrench/LINK ~joint_loads ~section_loads ~joint_reactions ~boom_vibration
+  ~mechanism ~pin_forces ~pulse ~blow ~turn_loads ~load_cycles (latched) ~run_info (latched)  /diagnostics
 
 Services
   ~log/start ~log/stop ~log/split  std_srvs/Trigger

@@ -76,6 +76,7 @@ class CrankFilter final : public CrankTracker {
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
   double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
+  bool isProven() const noexcept override { return !std::isnan(consistency()); }
   double consistency() const noexcept override { return consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
   const SensorErrors& sensorErrors() const noexcept { return errors_; }

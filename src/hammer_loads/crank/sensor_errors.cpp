@@ -16,7 +16,8 @@ constexpr double kUnmodelledDeviations = 2.5;            // likewise, where it i
 constexpr double kUnseenDeviations = 0.6;                // of what is not seen: 88 to 99 % of the wrench's errors
                                                          // then lie within two deviations (simulated machines)
 constexpr double kSamplesToFollow = 20.0;                // a turn: with fewer of them a supply that follows the crank's
-                                                         // speed looks more like b, at 50 Hz twice as much
+                                                         // speed looks more like b, at 50 Hz twice as much, and
+                                                         // the torque's walk holds more of what is not seen
 
 double square(double x) noexcept { return x * x; }
 
@@ -41,7 +42,7 @@ void SensorErrors::endTurn(double growth) noexcept {
     const double excess = square(estimate_[i]) - square(deviation_[i]);
     certain[i] = excess > 0.0 ? std::copysign(std::sqrt(excess), estimate_[i]) : 0.0;
   }
-  moment_ = square(kUnseenDeviations) * growth * covariance + certain * certain.transpose();
+  moment_ = square(kUnseenDeviations / unmodelled) * growth * covariance + certain * certain.transpose();
   information_ *= 1.0 - 1.0 / kMemory;
   score_ *= 1.0 - 1.0 / kMemory;
 }

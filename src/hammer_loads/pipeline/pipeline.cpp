@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMostForce = 3.0;  // times the peak of the nominal turn at constant speed, itself above any real one
+constexpr double kMostForce = 3.0;  // times the nominal turn's peak, once readings and model agree; before that 1
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
 }  // namespace
@@ -22,8 +22,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_(settings_, boom),
       turn_(model_, crank_.step(), crank_.tracker()),
       sampler_(model_, crank_.step(), crank_.tracker(), settings_),
-      most_force_(kMostForce *
-                  pulseAtConstantSpeed(mechanism_, settings_.level, kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
+      nominal_force_(pulseAtConstantSpeed(mechanism_, settings_.level, kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings_, mechanism.parameters().striking_distance);
   result_.outputs.reserve(std::min(sampler_.mostOutputs(), kMostOutputs));
@@ -92,7 +91,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
 
   const HullWrench wrench = hullWrench(model_, motionOf(result_.crank), hull_.motion().motion);
-  if (!(std::hypot(wrench.force_x, wrench.force_z) <= most_force_)) return withhold(Refusal::kImplausible);
+  const double most_force = (crank_.tracker().isProven() ? kMostForce : 1.0) * nominal_force_;
+  if (!(std::hypot(wrench.force_x, wrench.force_z) <= most_force)) return withhold(Refusal::kImplausible);
   followBoom();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();

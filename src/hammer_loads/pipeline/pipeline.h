@@ -67,7 +67,8 @@ class Pipeline {
   TurnFollower turn_;
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
-  double most_force_;    ///< a larger one is not published: degrees that are not recognised yet, for instance [N]
+  double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; a much larger one is not published: degrees
+                          ///< that are not recognised yet, for instance
   bool boom_follows_{};  ///< the boom has had every step since the last restart
   SampleCounts counts_;
   SampleResult result_;
