@@ -28,7 +28,7 @@ struct Estimate {
   bool determined() const { return deviation <= limit; }
 };
 
-/// Two parameters that the recording hardly tells apart.
+/// Two parameters that the recording can hardly separate.
 struct Correlation {
   std::string first, second;
   double value{};

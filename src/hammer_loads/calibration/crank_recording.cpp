@@ -32,7 +32,7 @@ double commonPart(double a, double b) {
 
 /// Of all steps between readings, as a whole part of the turn; 0 when there is none above the finest.
 double commonCount(const std::vector<RecordedSample>& samples) {
-  double common = 0.0, most = 1.0;  // multiples: the more of them a step has, the better it tells the count
+  double common = 0.0, most = 1.0;  // multiples: the more of them a step has, the better it shows the count
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step = std::abs(CrankAngle::wrapToPi(samples[i].reading - samples[i - 1].reading));
     if (step < 0.1 * kFinest) continue;

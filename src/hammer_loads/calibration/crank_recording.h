@@ -35,7 +35,7 @@ struct CrankPoint {
 
 struct CrankTrack {
   std::vector<CrankPoint> points;
-  std::vector<std::size_t> starts;  ///< first points after gaps, 0 included; unwrapping begins anew there
+  std::vector<std::size_t> starts;  ///< first points after gaps, 0 included; unwrapping restarts there
   SensorFacts facts;
   int direction{1};
 };

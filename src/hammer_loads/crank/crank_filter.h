@@ -41,7 +41,7 @@ struct CrankFilterSettings {
 ///
 /// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
 /// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
-/// row that agrees with it is believed, and begins anew. Near the blow it is none: the tool may be met some degrees
+/// row that agrees with it is believed, and restarts the filter. Near the blow it is none: the tool may be met some degrees
 /// early or take most of the speed.
 class CrankFilter final : public CrankTracker {
  public:
@@ -80,7 +80,7 @@ class CrankFilter final : public CrankTracker {
   double consistency() const noexcept override { return consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
   const SensorErrors& sensorErrors() const noexcept { return errors_; }
-  /// It began anew so often that the model does not fit: contradictions are then followed with little trust instead.
+  /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Innovations stay far larger than the model explains, whatever the drive inertia.
   bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }

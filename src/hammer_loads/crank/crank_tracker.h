@@ -34,7 +34,7 @@ struct BlowFactor {
 /// How a sample was taken.
 enum class Tracking {
   kContinued,  ///< agrees with what came before
-  kRestarted,  ///< began anew at this sample: what lies between is not known
+  kRestarted,  ///< restarted at this sample: what lies between is not known
   kRevised,    ///< goes on, but what came before was otherwise than thought: a turn without contact, or with it
   kOutlier,    ///< contradicts what came before and was ignored; a second one like it restarts
 };

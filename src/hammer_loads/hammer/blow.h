@@ -73,7 +73,7 @@ HullPoint idealCentreOfMass(const StrikingRocker& rocker, double speed_before) n
 /// from u(2 pi -) w to u(0 +) w (model.md 1).
 RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double crank_speed) noexcept;
 
-/// The blow that a factor on the crank's speed tells of. Restitution, speeds of the rocker, tool impulse and energy are
+/// The blow by its factor on the crank's speed. Restitution, speeds of the rocker, tool impulse and energy are
 /// those of rocker and tool, before the linkage takes the rocker up (BlowInertia); the support's impulse is that of the
 /// links' whole change of momentum, to u+ k w-. Level pulse: as rocker.
 RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept;

@@ -28,7 +28,7 @@ struct BlowInertia {
   double freeRocker() const noexcept { return rocker - coupling * coupling / crank; }
   /// Crank speed after over before for a restitution R of rocker on tool.
   double factor(double restitution) const noexcept { return withoutRebound() + restitution * perRestitution(); }
-  /// Restitution that a factor tells; at level rocker R = (k (Jc + I u+^2) - Jc)/(I u+ |u-|).
+  /// Restitution by a factor; at level rocker R = (k (Jc + I u+^2) - Jc)/(I u+ |u-|).
   double restitution(double factor) const noexcept { return (factor - withoutRebound()) / perRestitution(); }
   /// Factor of the rebound that lets the rocker go straight onto its new branch: 1 without a rod's mass.
   double smoothFactor() const noexcept { return (crank + coupling * u_before) / (crank + coupling * u_after); }

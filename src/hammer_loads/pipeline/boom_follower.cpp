@@ -11,7 +11,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLeastContact = 0.02;  // of the boom's weight: pressures tell no smaller force
+constexpr double kLeastContact = 0.02;  // of the boom's weight: pressures show no smaller force
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -91,7 +91,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   last_stamp_ = sample.stamp;
   state_.choice.compliant = takesCompliant();
   findLoads(sample);
-  if (follow_vibration_) tellVibration();
+  if (follow_vibration_) fillVibration();
   return state_;
 }
 
@@ -136,7 +136,7 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
   findContact();
 }
 
-/// Three cylinders in a plane tell the force; of others the torques alone are known.
+/// Three cylinders in a plane give the force; of others the torques alone are known.
 void BoomFollower::findContact() noexcept {
   state_.press_force_lost = false;
   if (!state_.measured || boom_.cylinders().size() != 3) return;
@@ -181,14 +181,14 @@ void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
   vibrate(step.count > 0 ? step : freely, {});
   last_stamp_ = stamp;
   state_.stamp = stamp;
-  tellVibration();
+  fillVibration();
 }
 
-void BoomFollower::tellVibration() noexcept {
+void BoomFollower::fillVibration() noexcept {
   const BoomModes& modes = boom_.vibration().modes();
   state_.dead_centre = modes.dead_centre;
   state_.frequency = modes.omega / kTwoPi;
-  tellModes();
+  fillModes();
   state_.reduced = boom_.reducedHull(Eigen::Vector3d::UnitZ());
   if (state_.choice.compliant) {
     state_.tip = boom_.tipVibration();
@@ -197,7 +197,7 @@ void BoomFollower::tellVibration() noexcept {
   }
 }
 
-void BoomFollower::tellModes() noexcept {
+void BoomFollower::fillModes() noexcept {
   const Vibration& vibration = boom_.vibration();
   const auto& identifier = vibration.identifier();
   const auto count = state_.frequency.size();

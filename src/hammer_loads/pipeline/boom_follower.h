@@ -114,8 +114,8 @@ class BoomFollower {
   void observe(const BoomSample& sample, double step) noexcept;
   void takeMeasured(const BoomSample& sample) noexcept;
   void findContact() noexcept;
-  void tellVibration() noexcept;
-  void tellModes() noexcept;
+  void fillVibration() noexcept;
+  void fillModes() noexcept;
 
   Boom boom_;
   VibrationSpread spread_;

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 
 /// What a blow did to the crank shows in the samples after it: its factor is taken when the crank has turned on by a
-/// radian, or what is known of it when the crank stops before, begins anew or strikes again.
+/// radian, or what is known of it when the crank stops before, restarts or strikes again.
 class PendingBlow {
  public:
   /// time: of the blow [s]; speed of the crank just before and its standard deviation [rad/s].

@@ -1,4 +1,4 @@
-"""What a user is told when something cannot be done."""
+"""One line for the user when something cannot be done."""
 
 
 class Problem(Exception):
