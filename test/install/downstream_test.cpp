@@ -40,6 +40,10 @@ class DownstreamTest : public ::testing::Test {
     const Answer installed = run("cmake --install " HAMMER_LOADS_BUILD, fs::path(HAMMER_LOADS_BUILD) / "install.log");
     ASSERT_EQ(installed.status, 0) << installed.text;
   }
+  /// Below the package roslaunch would find each launch file twice.
+  static void TearDownTestSuite() {
+    if (kPrefix.string().rfind(HAMMER_LOADS_BUILD, 0) == 0) fs::remove_all(kPrefix);
+  }
 
   void SetUp() override {
     if (kPrefix.string().rfind(HAMMER_LOADS_BUILD, 0) != 0) GTEST_SKIP() << kPrefix << " is not of this build";
