@@ -4,6 +4,7 @@
 
 #include "hammer_loads/crank/plain_tracker.h"
 #include "hammer_loads/simulation/session.h"
+#include "support/filter_settings.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -11,18 +12,7 @@ namespace {
 
 constexpr double kCount = kTwoPi / 4096;
 
-CrankFilterSettings settings() {
-  CrankFilterSettings s;
-  s.angle_resolution = kCount;
-  s.speed_noise = 0.3;
-  s.torque_walk = 74.0;
-  s.speed_walk = 0.3;
-  s.inertia_walk = 5e-4;
-  s.initial_torque_deviation = 300.0;
-  s.initial_inertia_deviation = 0.3;
-  s.max_speed = 300.0;
-  return s;
-}
+CrankFilterSettings settings() { return test::filterSettings(kCount); }
 
 simulation::Session shortSession(bool speed, double rate, double true_inertia, std::uint64_t seed = 5) {
   simulation::MachineSettings machine = simulation::workingMo100();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"
 
@@ -34,17 +35,7 @@ struct Machine {
   unsigned seed{1};
 };
 
-CrankFilterSettings settings() {
-  CrankFilterSettings s;
-  s.speed_noise = 0.3;
-  s.torque_walk = 74.0;
-  s.speed_walk = 0.3;
-  s.inertia_walk = 5e-4;
-  s.initial_torque_deviation = 300.0;
-  s.initial_inertia_deviation = 0.3;
-  s.max_speed = 300.0;
-  return s;
-}
+CrankFilterSettings settings() { return test::filterSettings(); }
 
 /// Eight seconds, judged from the third on. The truth is that at the stamp.
 Record follow(const Machine& machine) {

@@ -5,6 +5,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/hammer/hull_wrench.h"
+#include "support/filter_settings.h"
 #include "support/free_run.h"
 #include "support/imu_on_hull.h"
 #include "support/mo100.h"
@@ -15,18 +16,7 @@ namespace {
 constexpr double kCount = kTwoPi / 4096;
 constexpr StampNs kMs = 1000000;
 
-CrankFilterSettings settings() {
-  CrankFilterSettings s;
-  s.angle_resolution = kCount;
-  s.speed_noise = 0.3;
-  s.torque_walk = 74.0;
-  s.speed_walk = 0.3;
-  s.inertia_walk = 5e-4;
-  s.initial_torque_deviation = 300.0;
-  s.initial_inertia_deviation = 0.3;
-  s.max_speed = 300.0;
-  return s;
-}
+CrankFilterSettings settings() { return test::filterSettings(kCount); }
 
 enum class Known { kPitch, kImu, kAll };
 

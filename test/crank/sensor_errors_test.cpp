@@ -4,25 +4,14 @@
 #include <random>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"
 
 namespace hammer_loads {
 namespace {
 
-CrankFilterSettings settings() {
-  CrankFilterSettings s;
-  s.speed_noise = 0.3;
-  s.torque_walk = 74.0;
-  s.speed_walk = 0.3;
-  s.inertia_walk = 5e-4;
-  s.initial_torque_deviation = 300.0;
-  s.initial_inertia_deviation = 0.3;
-  s.max_speed = 300.0;
-  s.angle_resolution = kTwoPi / 65536.0;
-  s.angle_noise = 1e-3;
-  return s;
-}
+CrankFilterSettings settings() { return test::filterSettings(kTwoPi / 65536.0, 1e-3); }
 
 /// Angle of a sensor whose place is off by b, from the true one.
 double read(double angle, const SensorErrors::Vector& b) {

@@ -6,10 +6,9 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
+#include "fuzz/bytes.h"
 #include "hammer_loads/life/count_state.h"
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/util/format.h"
@@ -17,28 +16,8 @@
 namespace hammer_loads::life {
 namespace {
 
-class Bytes {
- public:
-  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  bool empty() const { return size_ == 0; }
-  template <typename T>
-  T take() {
-    T value{};
-    const std::size_t count = std::min(sizeof(T), size_);
-    std::memcpy(&value, data_, count);
-    data_ += count;
-    size_ -= count;
-    return value;
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t size_;
-};
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
+using test::Bytes;
+using test::require;
 
 class Session {
  public:

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <numeric>
 
+#include "fuzz/bytes.h"
 #include "hammer_loads/life/count_state.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
@@ -22,28 +21,8 @@ namespace {
 
 constexpr std::uint64_t kLastStamp = 4294967295999999999;  // of ros::Time [ns]
 
-class Bytes {
- public:
-  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  bool empty() const { return size_ == 0; }
-  template <typename T>
-  T take() {
-    T value{};
-    const std::size_t count = std::min(sizeof(T), size_);
-    std::memcpy(&value, data_, count);
-    data_ += count;
-    size_ -= count;
-    return value;
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t size_;
-};
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
+using test::Bytes;
+using test::require;
 
 const Settings& shipped() {
   static const Settings settings = *loadFiles(configDirectory(), {}).value;
