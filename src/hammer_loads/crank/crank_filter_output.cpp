@@ -28,17 +28,20 @@ bool CrankFilter::hasRunAway(const ShaftState& state) const noexcept {
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   ShaftState state = before_.state, back = now_.state;
-  ShaftLoad load = step_model_(state.position.angle), back_load = step_model_(back.position.angle);
+  ShaftLoad load = step_model_(state.position.angle);
   const bool contact = !before_.state.position.isMirrored() && !now_.state.position.isMirrored();
   const Passing passing{before_.tool_met ? 1.0 : now_.factor, contact};
   advance(step_model_, dt, passing, state, load);
-  advance(step_model_, dt - step_, passing, back, back_load);
   const double part = dt / step_;
   if (hasRunAway(state)) {
     state = before_.state;
     state.position.turn(part * difference(now_.state.position, before_.state.position));
   }
-  if (hasRunAway(back)) back = state;
+  if (part > 0.0) {
+    ShaftLoad back_load = step_model_(back.position.angle);
+    advance(step_model_, dt - step_, passing, back, back_load);
+  }
+  if (!(part > 0.0) || hasRunAway(back)) back = state;  // at the step's begin the way back does not count
   const double apart = part * difference(back.position, state.position);
   const Side forward_side = state.position.angle.side, back_side = back.position.angle.side;
   const bool smooth = forward_side == back_side || state.position.isMirrored() || back.position.isMirrored();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "hammer_loads/crank/crank_tracker.h"
@@ -40,6 +41,10 @@ class CrankStep {
   bool known() const noexcept { return known_; }
   StampNs start() const noexcept { return start_; }
   double length() const noexcept { return length_; }
+  /// Of an instant so long after the start [s].
+  StampNs stampAt(double time) const noexcept {
+    return start_ + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
+  }
   CrankEstimate at(double time) const noexcept { return tracker_->between(time); }
   double driveInertia() const noexcept { return tracker_->driveInertia(); }  ///< at its end [kg m2]
   /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.

@@ -76,18 +76,15 @@ void LifeFollower::follow() noexcept {
 
 void LifeFollower::followStep(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
-  const auto stampOf = [&](double time) {
-    return step.start() + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
-  };
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   forEachStepWrench(
       StepLoad{pipeline_->model(), drive, result.hull.motion}, step,
       [&](double time, const HullWrench& wrench) {
         wrenchValues(wrench, between_.data());
-        recorder_.between(stampOf(time), between_.data());
-        turn_.between(stampOf(time), between_.data());
+        recorder_.between(step.stampAt(time), between_.data());
+        turn_.between(step.stampAt(time), between_.data());
       },
-      [&](double time) { endTurn(stampOf(time)); });
+      [&](double time) { endTurn(step.stampAt(time)); });
 }
 
 /// Whether it was a blow shows later.

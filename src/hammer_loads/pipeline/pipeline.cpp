@@ -78,9 +78,9 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (taken == CrankFollower::Taken::kRefused) return refuse(Refusal::kImplausible);
   result_.crank = crank_.estimate();
   result_.consistency = crank_.tracker().consistency();
-  if (taken == CrankFollower::Taken::kContinued) tellBlow();
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(stamp);
   if (taken == CrankFollower::Taken::kContinued) {
+    passBlows();
     turn_.follow(hull_.motion().motion, result_);
   } else {
     restart(taken == CrankFollower::Taken::kRevised);
@@ -90,14 +90,14 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (crank_.tracker().isDoubtful()) return withhold(Refusal::kUnsettled);
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
 
-  const HullWrench wrench = hullWrench(model_, motionOf(result_.crank), hull_.motion().motion);
+  const CrankMotion motion = motionOf(result_.crank);
+  const HullWrench wrench = hullWrench(model_, motion, hull_.motion().motion);
   const double most_force = (crank_.tracker().isProven() ? kMostForce : 1.0) * nominal_force_;
   if (!(std::hypot(wrench.force_x, wrench.force_z) <= most_force)) return withhold(Refusal::kImplausible);
   followBoom();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
-  const CrankMotion motion = motionOf(result_.crank);
   result_.links = linkState(model_, motion);
   result_.wrench =
       hullWrench(model_, driveReaction(model_, crank_.tracker().driveInertia()), motion, result_.hull.motion);
@@ -116,12 +116,9 @@ void Pipeline::swingOn(const WrenchHistory& step) noexcept {
 }
 
 /// Measured accelerations of the hull jump at a blow.
-void Pipeline::tellBlow() noexcept {
-  for (const CrankStep::Passage& passage : crank_.step()) {
-    if (!passage.strikes) continue;
-    const StampNs after = static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
-    hull_.struck(crank_.step().start() + after, result_.stamp);
-  }
+void Pipeline::passBlows() noexcept {
+  for (const CrankStep::Passage& passage : crank_.step())
+    if (passage.strikes) hull_.struck(crank_.step().stampAt(passage.time), result_.stamp);
 }
 
 void Pipeline::followBoom() noexcept {

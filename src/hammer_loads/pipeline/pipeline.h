@@ -56,7 +56,7 @@ class Pipeline {
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
   void followBoom() noexcept;
-  void tellBlow() noexcept;
+  void passBlows() noexcept;
   void swingOn(const WrenchHistory& step) noexcept;
 
   Mechanism mechanism_;

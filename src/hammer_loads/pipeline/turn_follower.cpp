@@ -63,7 +63,7 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
 void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd& end = pending_end_;
   end = {};
-  end.stamp = step_->start() + static_cast<StampNs>(std::llround(passage.time / kSecondsPerNs));
+  end.stamp = step_->stampAt(passage.time);
   end.turn = ++turns_;
   const double time = seconds(step_->start() - epoch_) + passage.time;
   end.pulse = turn_.end(instant(time, step_->besides(passage, Side::kBeforeBlow)));
