@@ -57,6 +57,19 @@ TEST_F(EarlierRunsTest, StayAsShipped) {
   for (const std::string& file : foreign_) EXPECT_TRUE(exists(file)) << file;
 }
 
+/// With 200 kB unclosed the limit of 350 kB leaves room for the last bag alone, without them for two more.
+TEST_F(EarlierRunsTest, UnclosedOnesCountButStay) {
+  const auto ownBags = [this] {
+    const LogHealth health = record(settings_);
+    return health.files_closed - health.files_deleted;
+  };
+  writeFile(earlier_[3], std::string(200'000, 'x'));
+  EXPECT_EQ(ownBags(), 1u);
+  EXPECT_TRUE(exists(earlier_[3]));
+  std::filesystem::remove(earlier_[3]);
+  EXPECT_EQ(ownBags(), 3u);
+}
+
 TEST_F(EarlierRunsTest, AreDeletedFirstIfThatIsWanted) {
   settings_.prune_earlier_runs = true;
   const LogHealth health = record(settings_);

@@ -230,7 +230,8 @@ std::vector<std::string> BagLog::unfinishedBags() const {
 
 std::string BagLog::recoveryHint(const std::string& path) {
   const std::string bag = path.substr(0, path.rfind(".active"));
-  return path + " was not closed; to recover it: mv '" + path + "' '" + bag + "' && rosbag reindex '" + bag + "'";
+  return path + " was not closed; to recover it: mv '" + path + "' '" + bag + "' && rosbag reindex '" + bag +
+         "'; until then it counts for log_total_mb";
 }
 
 LogHealth BagLog::health() const {

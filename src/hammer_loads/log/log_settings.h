@@ -15,7 +15,8 @@ struct LogSettings {
   std::string node;                ///< name of the node that logs, not from a file: see forNode()
   std::uint64_t split_size{};      ///< a bag larger than this is closed and a new one begun [byte], > 0
   std::uint64_t total_size{};      ///< of all bags together; beyond it the oldest is deleted [byte], 0: no limit
-  bool prune_earlier_runs{};       ///< bags of earlier runs with this prefix count for total_size and are deleted first
+  bool prune_earlier_runs{};       ///< bags of earlier runs with this prefix count for total_size and are deleted first;
+                                   ///< without it only the unclosed ones count, and none is deleted
   std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
   /// Messages waiting for the disk, and again as much for latched ones; beyond it they are dropped and counted [byte],
   /// > 0.

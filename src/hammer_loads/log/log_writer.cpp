@@ -114,7 +114,7 @@ void LogWriter::carryOut(LogOrder& order) {
       session_ = order.session;
       directory_ = order.directory;
       next_number_ = order.next_number;
-      if (settings_.prune_earlier_runs) findEarlierRuns();
+      findEarlierRuns();
       return begin(std::move(*order.name));
     case LogOrder::Kind::kStop:
       writeLast(order);
@@ -243,11 +243,18 @@ void LogWriter::settle() {
   ++totals_.files_closed;
 }
 
-/// With log_prune_earlier_runs: every bag of this prefix that is not being written counts, the oldest first.
+/// Bags of this prefix that are not being written. As shipped the unclosed ones only count: power cut after power cut
+/// would fill the disk. With log_prune_earlier_runs all count and may go, the oldest first.
 void LogWriter::findEarlierRuns() {
+  std::vector<FoundLog> found = findLogs(directory_, filePrefix(settings_));
+  unclosed_size_ = 0;
+  if (!settings_.prune_earlier_runs) {
+    for (const FoundLog& log : found) unclosed_size_ += log.is_unfinished ? log.size : 0;
+    return;
+  }
   closed_.clear();
   closed_size_ = 0;
-  for (FoundLog& log : findLogs(directory_, filePrefix(settings_))) {
+  for (FoundLog& log : found) {
     closed_size_ += log.size;
     closed_.push_back({std::move(log.path), log.size});
   }
@@ -257,7 +264,8 @@ void LogWriter::findEarlierRuns() {
 /// others may still be wanted.
 void LogWriter::deleteOldest() {
   if (settings_.total_size == 0) return;
-  while (!closed_.empty() && closed_size_ + settings_.split_size > settings_.total_size) {
+  const std::uint64_t kept = unclosed_size_ + settings_.split_size;
+  while (!closed_.empty() && closed_size_ + kept > settings_.total_size) {
     if (unlink(closed_.front().path.c_str()) == 0) ++totals_.files_deleted;
     closed_size_ -= closed_.front().size;
     closed_.pop_front();

@@ -102,6 +102,7 @@ class LogWriter {
   std::vector<Latched> latched_;
   std::deque<ClosedFile> closed_;  // oldest first
   std::uint64_t closed_size_{};    // of them together [byte]
+  std::uint64_t unclosed_size_{};  // of bags that earlier runs left unclosed and that must stay [byte]
   LogStatus totals_;               // only its sums
 
   std::atomic<std::uint64_t> faulty_session_{};
