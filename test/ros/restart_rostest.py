@@ -106,6 +106,18 @@ class RestartTest(unittest.TestCase):
         self.assertIn("log_directory: '/proc', must be writable", err)
         self.assertIn('the node runs without a log', err)
 
+    def test_4_a_bag_that_was_not_closed(self):
+        """The console has the command that recovers it."""
+        bag = os.path.join(self.directory, 'unclosed_2026-01-02-00-00-00_0.bag')
+        with open(bag + '.active', 'w') as file:
+            file.write('cut off')
+        node = NodeProcess('unclosed', {'log_directory': self.directory, 'log_min_free_mb': 0})
+        self.assertTrue(eventually(lambda: '/unclosed/hull_wrench' in dict(rosgraph.Master('/t').getTopicTypes())))
+        code, _, err = node.end()
+        self.assertEqual(code, 0, err)
+        self.assertIn("mv '%s.active' '%s' && rosbag reindex '%s'" % (bag, bag, bag), err)
+        self.assertTrue(os.path.exists(bag + '.active'))
+
 
 if __name__ == '__main__':
     rospy.init_node('restart_rostest')
