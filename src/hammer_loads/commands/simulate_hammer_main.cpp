@@ -1,4 +1,4 @@
-/// simulate_hammer: a working machine on topics `crank` and `joint_states`. Parameters: config/simulated_machine.yaml.
+/// simulate_hammer: a working machine on topics. Parameters: config/simulated_machine.yaml.
 #include <ros/init.h>
 
 #include <iostream>
@@ -19,6 +19,8 @@ Usage: rosrun hammer_loads simulate_hammer [NAME:=TOPIC]... [_KEY:=VALUE]...
 Topics out
   crank         sensor_msgs/JointState  crank angle [rad] and speed [rad/s]
   joint_states  sensor_msgs/JointState  angles [rad] and speeds [rad/s] of the boom's joints
+  hull_imu      sensor_msgs/Imu         with hull_on_boom: acceleration less gravity [m/s2], turning rate [rad/s]
+  cylinder_pressures/NAME/bore, .../rod  sensor_msgs/FluidPressure  with hull_on_boom: gauge pressures [Pa]
   /clock        rosgraph_msgs/Clock     with publish_clock
 
 Parameters (private; SI units, each explained in its file in the package's directory config)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 namespace hammer_loads {
@@ -46,6 +47,26 @@ MachinePlayer::MachinePlayer(ros::NodeHandle node, const simulation::SimulatorSe
   crank_message_.position.resize(1);
   crank_message_.velocity.resize(settings_.machine.crank.speed ? 1 : 0);
   joint_message_.name.assign(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+  if (settings_.machine.on_boom.on) advertiseHull(node);
+}
+
+void MachinePlayer::advertiseHull(ros::NodeHandle& node) {
+  const simulation::OnBoomSettings& sensors = settings_.machine.on_boom;
+  if (sensors.imu.rate > 0.0) imu_publisher_ = node.advertise<sensor_msgs::Imu>("hull_imu", kQueueSize);
+  imu_message_.header.frame_id = "hammer_hull";
+  imu_message_.orientation_covariance[0] = -1.0;  // it has no orientation
+  for (std::size_t i = 0; i < 3; ++i) {
+    imu_message_.linear_acceleration_covariance[4 * i] = std::pow(sensors.imu.acceleration_noise, 2);
+    imu_message_.angular_velocity_covariance[4 * i] = std::pow(sensors.imu.rate_noise, 2);
+  }
+  pressure_message_.variance = std::pow(sensors.pressures.noise, 2);
+  if (!(sensors.pressures.rate > 0.0)) return;
+  for (const char* cylinder : simulation::kBoomCylinders) {
+    for (const char* chamber : {"/bore", "/rod"}) {
+      const std::string topic = std::string("cylinder_pressures/") + cylinder + chamber;
+      pressure_publishers_.push_back(node.advertise<sensor_msgs::FluidPressure>(topic, kQueueSize));
+    }
+  }
 }
 
 void MachinePlayer::run() {
@@ -67,7 +88,7 @@ void MachinePlayer::run() {
     }
     latest = std::max(latest, time - last);
     publishClock(time);
-    session.crank.clear(), session.truth.clear(), session.joints.clear(), session.blows.clear();
+    session = {};
     stream_->advanceTo(time, session);
     publish(session);
     last = time;
@@ -119,14 +140,21 @@ double MachinePlayer::elapsed() const {
   return source_ == TimeSource::kOwnClock ? steady * settings_.play.clock_factor : steady;
 }
 
-/// In the order of the stamps.
+/// What stands before a crank sample in time, then the sample.
 void MachinePlayer::publish(const Session& session) {
   auto joints = session.joints.begin();
+  auto imu = session.imu.begin();
+  auto pressures = session.pressures.begin();
+  const auto publishUntil = [&](std::int64_t stamp) {
+    for (; joints != session.joints.end() && joints->stamp <= stamp; ++joints) publishJoints(*joints);
+    for (; imu != session.imu.end() && imu->stamp <= stamp; ++imu) publishImu(*imu);
+    for (; pressures != session.pressures.end() && pressures->stamp <= stamp; ++pressures) publishPressures(*pressures);
+  };
   for (const CrankReading& crank : session.crank) {
-    for (; joints != session.joints.end() && joints->stamp <= crank.stamp; ++joints) publishJoints(*joints);
+    publishUntil(crank.stamp);
     publishCrank(crank);
   }
-  for (; joints != session.joints.end(); ++joints) publishJoints(*joints);
+  publishUntil(std::numeric_limits<std::int64_t>::max());
   crank_count_ += session.crank.size();
   joint_count_ += session.joints.size();
   blow_count_ += session.blows.size();
@@ -144,6 +172,24 @@ void MachinePlayer::publishJoints(const JointReading& reading) {
   joint_message_.position.assign(reading.position.begin(), reading.position.end());
   joint_message_.velocity.assign(reading.velocity.begin(), reading.velocity.end());
   joint_publisher_.publish(joint_message_);
+}
+
+void MachinePlayer::publishImu(const simulation::HullImuReading& reading) {
+  imu_message_.header.stamp = stampOf(reading.stamp);
+  const auto fill = [](geometry_msgs::Vector3& to, const std::array<double, 3>& from) {
+    to.x = from[0], to.y = from[1], to.z = from[2];
+  };
+  fill(imu_message_.linear_acceleration, reading.specific_force);
+  fill(imu_message_.angular_velocity, reading.rate);
+  imu_publisher_.publish(imu_message_);
+}
+
+void MachinePlayer::publishPressures(const simulation::PressureReading& reading) {
+  pressure_message_.header.stamp = stampOf(reading.stamp);
+  for (std::size_t i = 0; i < pressure_publishers_.size(); ++i) {
+    pressure_message_.fluid_pressure = (i % 2 == 0 ? reading.bore : reading.rod)[i / 2];
+    pressure_publishers_[i].publish(pressure_message_);
+  }
 }
 
 }  // namespace hammer_loads

@@ -3,18 +3,22 @@
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <sensor_msgs/FluidPressure.h>
+#include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
 
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "hammer_loads/simulation/machine_parameters.h"
 #include "hammer_loads/simulation/session.h"
 
 namespace hammer_loads {
 
-/// Topics: crank (hammer_crank_joint) and joint_states, both sensor_msgs/JointState; stamps are the instants of
+/// Topics: crank (hammer_crank_joint) and joint_states, both sensor_msgs/JointState; of a hull on its boom hull_imu,
+/// sensor_msgs/Imu, and cylinder_pressures/NAME/bore and /rod, sensor_msgs/FluidPressure. Stamps are the instants of
 /// sampling. Published in batches a millisecond long, so a sample is at most about that old when it is sent. Time
 /// follows
 /// - the steady clock from the wall time of the start on, without /use_sim_time;
@@ -30,6 +34,7 @@ class MachinePlayer {
   enum class TimeSource { kSteadyClock, kClockTopic, kOwnClock };
   using SteadyTime = std::chrono::steady_clock::time_point;
 
+  void advertiseHull(ros::NodeHandle& node);
   void waitForSubscribers();
   void waitForTime();
   void start();
@@ -38,11 +43,16 @@ class MachinePlayer {
   void publish(const simulation::Session& session);
   void publishCrank(const simulation::CrankReading& reading);
   void publishJoints(const simulation::JointReading& reading);
+  void publishImu(const simulation::HullImuReading& reading);
+  void publishPressures(const simulation::PressureReading& reading);
 
   simulation::SimulatorSettings settings_;
   TimeSource source_;
-  ros::Publisher crank_publisher_, joint_publisher_, clock_publisher_;
+  ros::Publisher crank_publisher_, joint_publisher_, clock_publisher_, imu_publisher_;
+  std::vector<ros::Publisher> pressure_publishers_;  ///< bore and rod of each cylinder in turn
   sensor_msgs::JointState crank_message_, joint_message_;
+  sensor_msgs::Imu imu_message_;
+  sensor_msgs::FluidPressure pressure_message_;
   std::optional<simulation::SessionStream> stream_;
   SteadyTime steady_start_;
   std::uint64_t crank_count_{}, joint_count_{}, blow_count_{};

@@ -3,76 +3,50 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <complex>
 #include <vector>
 
-#include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/simulation/moving_links.h"
+#include "hammer_loads/simulation/normal_noise.h"
+#include "hammer_loads/simulation/oil_boom.h"
+#include "hammer_loads/simulation/working_machine.h"
 
 namespace hammer_loads::simulation {
 
-/// A place in a vertical plane, x + i z [m]; a turn by q about +y is e^(-iq).
-using PlanePoint = std::complex<double>;
-
-/// A link from its joint on, in its own axes.
-struct OilBoomLink {
-  PlanePoint to_next;  ///< next joint; of the last link: the rocker's pivot D
-  PlanePoint com;
-  double mass{};     ///< [kg]
-  double inertia{};  ///< about the centre of mass, about y [kg m2]
-};
-
-/// Cylinder of a joint; anchors from the joint: base in the axes of the link before, rod in those of the link beyond.
-struct OilCylinder {
-  PlanePoint base, rod;
-  double bore_area{}, rod_area{};                             ///< [m2]
-  double closed_length{}, stroke{}, bore_hose{}, rod_hose{};  ///< [m], [m], [m3], [m3]
-};
-
-/// Boom, arm, bracket with hull; the hull's mass and inertia include those of the moving links and of the rotor.
-struct OilBoom {
-  std::array<OilBoomLink, 3> links;
-  std::array<OilCylinder, 3> cylinders;
-  std::array<double, 3> pose;  ///< of the joints [rad]
-  double bulk_modulus{};       ///< [Pa]
-  double damping{};            ///< ratio of every mode
-  PlanePoint cut;              ///< of the first link
-  OilBoomLink beyond_cut;      ///< of that link's own part beyond it; to_next not used
-};
-
-/// Excavator EO-2621 at work, cut in the middle of its boom; figures by hand from its description.
-OilBoom oilBoomEo2621();
-
 /// What there is to know at one instant.
-struct OnBoomTruth {
-  double time{}, angle{}, speed{}, acceleration{};  ///< of the crank: [s], in [0, 2 pi) [rad], [rad/s], [rad/s2]
-  Load load;                     ///< BY links and rotor ON the hull about D, hull axes, weight included
-  double drive_reaction_y{};     ///< part of its moment [N m]
+struct OnBoomTruth : CrankTruth {
+  Eigen::Vector3d angles;        ///< of the joints [rad]
+  Eigen::Vector3d rates;         ///< [rad/s]
+  Eigen::Vector3d displacement;  ///< of the joints from where the operator holds them [rad]
   Eigen::Vector3d hold;          ///< BY the cylinders ON the joints [N m]
-  Eigen::Vector3d displacement;  ///< of the joints by vibration [rad]
-  Load cut;                      ///< BY what lies beyond the cut ON what lies before it, about it, axes of the link
-  double imu_x{}, imu_z{};       ///< specific force at D, hull axes [m/s2]
+  std::array<Load, 3> cut;       ///< BY the steel beyond each cut ON that before it, about it, axes of the link
+  double imu_x{}, imu_z{};       ///< specific force at the unit, in its axes [m/s2]
   double imu_rate{};             ///< about +y [rad/s]
-  std::array<double, 3> bore_pressure{}, rod_pressure{};  ///< gauge [Pa]; the unloaded chamber at 0 when at rest
+  std::array<double, 3> bore_pressure{}, rod_pressure{};  ///< gauge [Pa]
 };
 
-/// One blow: the rocker leaves the tool as its linkage lets it, without an impulse within the linkage.
-struct OnBoomBlow {
-  double time{};
-  double energy{};        ///< given to the tool, which rests on the rock [J]
-  double tool_impulse{};  ///< BY the tool ON the rocker along +z of the hull [N s]
-};
-
-/// Coordinates: three joint angles and the crank's. Kinetic energy by the places of all bodies, forces of inertia by
-/// differences of the mass matrix, accelerations of bodies by differences in time. Runge-Kutta of order 4.
-/// Level rocker; the joints' own slow motion is left out.
+/// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, forces of
+/// inertia by differences of the mass matrix, accelerations of bodies by differences in time. Runge-Kutta of order 4.
+/// The operator's valves move the point at which the oil holds each joint along settings.boom; the oil about it is a
+/// linear spring, as stiff as at that place.
+///
+/// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
+/// impulse within the linkage, or with a restitution that is drawn. The rock holds the tool and nothing else: what a
+/// hull that is pressed down would put on it is left out, and so is the boom's swing about the vertical. Of BlowTruth
+/// force and impulses of the turn are not followed: not-a-number.
 class HammerOnBoom {
  public:
+  /// Level rocker, rigid coupling; throws std::invalid_argument when the hammer's linkage is impossible.
   HammerOnBoom(const MachineSettings& machine, const OilBoom& boom);
+  explicit HammerOnBoom(const MachineSettings& machine) : HammerOnBoom(machine, oilBoomEo2621()) {}
 
+  /// time >= now [s].
   void advanceTo(double time);
   OnBoomTruth truth() const;
-  const std::vector<OnBoomBlow>& blows() const noexcept { return blows_; }
+  /// Hands over the blows since the last call.
+  std::vector<BlowTruth> takeBlows();
+  /// Natural frequencies at the present pose, lowest first [Hz].
+  Eigen::Vector3d frequencies() const;
+  const MachineSettings& settings() const noexcept { return machine_; }
 
  private:
   using Vector4 = Eigen::Vector4d;
@@ -80,7 +54,8 @@ class HammerOnBoom {
   struct State {
     double time{};
     bool before_blow{};
-    Vector4 x, v;       ///< joints' displacements, crank's offset from its nearest dead centre
+    bool resting{};     ///< the crank turned back onto the tool: held at the dead centre, as by a brake
+    Vector4 x, v;       ///< angles of the joints, crank's offset from its nearest dead centre
     double pressure{};  ///< at the motor [Pa]
   };
   /// A moving body: its place, and what each coordinate does to place and angle.
@@ -92,30 +67,45 @@ class HammerOnBoom {
   };
   using Bodies = std::array<Body, 4>;  ///< links, then the rocker
 
-  Bodies bodies(const State& s) const;
+  void takeMovingPartsOffTheHull();
+  State heldAt(double time) const;
+  using Links = std::array<OilBoomLink, 3>;
+
+  Bodies bodies(const State& s, const Links& links) const;
+  Bodies bodies(const State& s) const { return bodies(s, boom_.links); }
   Matrix4 massMatrix(const State& s) const;
   Vector4 weight(const State& s) const;
+  Eigen::Vector3d stiffness(const State& held) const;
+  Eigen::Vector3d holding(const State& s) const;
   Vector4 force(const State& s, const Vector4& inertia) const;
   Vector4 acceleration(const State& s) const;
-  double pressureRate(const State& s) const;
   State stepped(const State& s, double dt) const;
+  double timeToDeadCentre(double dt) const;
+  void letGo();
+  void passDeadCentre();
   void blow();
-  Eigen::Vector3d holding(const State& s) const;
-  double lengthOf(int cylinder, double angle) const;
-  double arm(int cylinder, double angle) const;
-  double hullAngle(const State& s) const;
-  PlanePoint jointPlace(const State& s, int joint) const;
-  Load loadOf(const State& s, const Vector4& a, int first, PlanePoint about, double axes) const;
+
+  static double angleBefore(const State& s, std::size_t joint);
+  static double hullAngle(const State& s) { return angleBefore(s, 3); }
+  PlanePoint jointPlace(const State& s, std::size_t joint) const;
+  PlanePoint imuPlace(const State& s) const;
   State along(const State& s, const Vector4& a, double dt) const;
+  /// Of the bodies from `first` on, without what holds them, about a place in axes turned by an angle.
+  Load loadOf(const Vector4& a, const Links& links, std::size_t first, PlanePoint about, double axes) const;
+  Load cutLoad(const OnBoomTruth& t, const Vector4& a, const OilBoomCut& cut) const;
+  void readCylinders(OnBoomTruth& t) const;
 
   MachineSettings machine_;
   OilBoom boom_;
   MovingLinks links_;
   double rotor_{}, ratio_{};  ///< Jc [kg m2], drive_reaction_ratio
-  Eigen::Vector3d stiffness_, hold_;
   Eigen::Matrix3d damping_;
   State now_;
-  std::vector<OnBoomBlow> blows_;
+  std::int64_t turn_{};
+  double last_blow_{}, released_{-1.0};  ///< [s]
+  bool whole_turn_{};
+  NormalNoise draws_;
+  std::vector<BlowTruth> blows_;
 };
 
 }  // namespace hammer_loads::simulation

@@ -94,6 +94,37 @@ CrankSensorSettings readCrankSensor(ParameterReader& reader) {
   return s;
 }
 
+OnBoomSettings readOnBoom(ParameterReader& reader) {
+  OnBoomSettings s;
+  s.on = reader.boolean("hull_on_boom");
+  s.oil_stiffness = reader.number("oil_stiffness_factor", "", kPositive);
+  s.damping = reader.number("boom_damping_ratio", "", NumberRule::within(0.0, 0.99));
+  s.step = reader.number("boom_step_s", "s", kPositive);
+  s.imu.rate = reader.number("imu_rate_Hz", "Hz", kNotNegative);
+  s.imu.x = reader.number("imu_x_m", "m", kAny);
+  s.imu.z = reader.number("imu_z_m", "m", kAny);
+  s.imu.pitch = reader.number("imu_pitch_rad", "rad", kAny);
+  s.imu.acceleration_noise = reader.number("imu_acceleration_noise_m_s2", "m/s2", kNotNegative);
+  s.imu.rate_noise = reader.number("imu_rate_noise_rad_s", "rad/s", kNotNegative);
+  s.pressures.rate = reader.number("pressure_rate_Hz", "Hz", kNotNegative);
+  s.pressures.noise = reader.number("pressure_noise_Pa", "Pa", kNotNegative);
+  s.pressures.preload = reader.number("cylinder_preload_Pa", "Pa", kNotNegative);
+  return s;
+}
+
+/// What a hull on its boom does not go with.
+void checkOnBoom(ParameterReader& reader, const MachineSettings& machine) {
+  if (!machine.on_boom.on) return;
+  if (machine.level != Level::kRocker) reader.addProblem("level: must be rocker with hull_on_boom: true");
+  const auto mustBeZero = [&](const char* key, double value) {
+    if (value > 0.0) reader.addProblem(format("%s: %.9g, must be 0 with hull_on_boom: true", key, value));
+  };
+  mustBeZero("coupling_frequency_Hz", machine.drive.coupling_frequency);
+  mustBeZero("blow_crank_loss", machine.blow.crank_loss);
+  mustBeZero("tool_early_rad", machine.blow.tool_early);
+  mustBeZero("blank_share", machine.blow.blank_share);
+}
+
 JointMotion readJoint(ParameterReader& reader, const std::string& joint) {
   JointMotion motion;
   motion.mean = reader.number(joint + "_mean_rad", "rad", kAny);
@@ -124,11 +155,15 @@ MachineSettings readMachine(ParameterReader& reader) {
   machine.boom = {readJoint(reader, "swing"), readJoint(reader, "boom"), readJoint(reader, "arm"),
                   readJoint(reader, "hammer")};
   machine.joint_rate = reader.number("joint_rate_Hz", "Hz", kPositive);
+  machine.joint_noise = reader.number("joint_noise_rad", "rad", kNotNegative);
+  machine.joint_speed_noise = reader.number("joint_speed_noise_rad_s", "rad/s", kNotNegative);
+  machine.on_boom = readOnBoom(reader);
   machine.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
   machine.start_angle = reader.number("start_angle_rad", "rad", NumberRule::within(1e-9, kTwoPi - 1e-9));
   machine.step = reader.number("integration_step_s", "s", kPositive);
   machine.seed = static_cast<std::uint64_t>(reader.integer("seed", "", 0, kLargestSeed));
   readTimes(reader, machine);
+  checkOnBoom(reader, machine);
   return machine;
 }
 

@@ -86,8 +86,39 @@ struct JointMotion {
   double phase{};      ///< [rad]
 };
 
+double positionOf(const JointMotion& motion, double time) noexcept;  ///< [rad]
+double velocityOf(const JointMotion& motion, double time) noexcept;  ///< [rad/s]
+
+/// Inertial unit on a hull that hangs on its boom: place from the rocker's pivot D, axes those of the hull turned about y.
+struct HullImuSensor {
+  double rate{};                ///< [Hz]; 0: none
+  double x{}, z{}, pitch{};     ///< [m], [m], [rad]
+  double acceleration_noise{};  ///< standard deviation of each axis [m/s2]
+  double rate_noise{};          ///< standard deviation of each axis [rad/s]
+};
+
+/// Gauge pressure in both chambers of each cylinder.
+struct PressureSensors {
+  double rate{};     ///< [Hz]; 0: none
+  double noise{};    ///< standard deviation [Pa]
+  double preload{};  ///< in the unloaded chamber at rest [Pa]
+};
+
+/// Hull and boom that move on the oil of their cylinders; all dimensions in oil_boom.h.
+struct OnBoomSettings {
+  bool on{};                  ///< else the hull has no motion but its pitch, and no sensors
+  double oil_stiffness{1.0};  ///< over that of a bulk modulus of 1e9 Pa [-], > 0
+  double damping{0.05};       ///< ratio of every mode [-], in [0, 1)
+  double step{4e-4};          ///< longest integration step [s], > 0
+  HullImuSensor imu;
+  PressureSensors pressures;
+};
+
 /// Order of the boom's joints in this folder; hull pitch = boom + arm + hammer (contract).
 constexpr std::array<const char*, 4> kBoomJoints{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+
+/// Draws of the blows leave the sensors' noise as it is.
+constexpr std::uint64_t kBlowSeed = 0x9e3779b97f4a7c15;
 
 struct MachineSettings {
   HammerParameters hammer;      ///< drive_inertia in it is not used: see drive.inertia
@@ -96,7 +127,10 @@ struct MachineSettings {
   BlowSettings blow;
   CrankSensorSettings crank;
   std::array<JointMotion, 4> boom;
+  OnBoomSettings on_boom;
   double joint_rate{};         ///< of the boom joints' samples [Hz], > 0
+  double joint_noise{};        ///< standard deviation of their angles [rad]
+  double joint_speed_noise{};  ///< and of their speeds [rad/s]
   double gravity{};            ///< [m/s2]
   double start_angle{};        ///< crank at t = 0, at rest [rad], in (0, 2 pi)
   double duration{};           ///< [s]

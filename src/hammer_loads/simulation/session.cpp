@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hammer_loads::simulation {
@@ -9,7 +10,14 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586232;
 constexpr double kJointLag = 0.005;  // first joint sample [s], so that the two streams do not coincide
-constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9;
+constexpr double kImuLag = 0.0004, kPressureLag = 0.0007;  // theirs, so that no two of them do
+constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9, kJointSeed = 0x94d049bb133111eb;
+constexpr std::uint64_t kImuSeed = 0xd6e8feb86659fd93, kPressureSeed = 0xa0761d6478bd642f;
+
+std::variant<WorkingMachine, HammerOnBoom> machineOf(const MachineSettings& settings) {
+  if (settings.on_boom.on) return HammerOnBoom(settings);
+  return WorkingMachine(settings);
+}
 
 bool isPlain(const CrankSensorSettings& sensor) noexcept {
   return sensor.zero == 0.0 && sensor.direction == 1 && sensor.ratio == 1.0 && sensor.eccentricity[0].amount == 0.0 &&
@@ -38,15 +46,28 @@ Encoded encoded(const CrankSensorSettings& sensor, double angle, double speed) n
 
 }  // namespace
 
+double SessionStream::Ticks::next() const noexcept {
+  return rate > 0.0 ? first + static_cast<double>(count) / rate : std::numeric_limits<double>::infinity();
+}
+
 SessionStream::SessionStream(const MachineSettings& settings)
-    : machine_(settings), noise_(settings.seed), message_draws_(settings.seed ^ kMessageSeed) {
+    : settings_(settings),
+      machine_(machineOf(settings)),
+      noise_(settings.seed),
+      message_draws_(settings.seed ^ kMessageSeed),
+      joint_noise_(settings.seed ^ kJointSeed),
+      imu_noise_(settings.seed ^ kImuSeed),
+      pressure_noise_(settings.seed ^ kPressureSeed),
+      joints_{kJointLag, settings.joint_rate, 0},
+      imu_{kImuLag, settings.on_boom.on ? settings.on_boom.imu.rate : 0.0, 0},
+      pressures_{kPressureLag, settings.on_boom.on ? settings.on_boom.pressures.rate : 0.0, 0} {
   planSample();
 }
 
 /// Instant and errors of the next crank sample. Draws the same numbers whatever is measured or lost, so that such
 /// settings do not change the rest of the noise. Instants are whole nanoseconds, hence exact in a stamp.
 void SessionStream::planSample() noexcept {
-  const CrankSensorSettings& sensor = machine_.settings().crank;
+  const CrankSensorSettings& sensor = settings_.crank;
   ++samples_;
   const double jitter = std::clamp(sensor.jitter * noise_() * sensor.rate, -0.45, 0.45);
   next_sample_ = std::round((static_cast<double>(samples_) + jitter) / sensor.rate * 1e9) * 1e-9;
@@ -55,35 +76,58 @@ void SessionStream::planSample() noexcept {
   speed_error_ = sensor.speed_noise * noise_();
 }
 
+void SessionStream::moveTo(double time) {
+  std::visit([&](auto& machine) { machine.advanceTo(time); }, machine_);
+}
+
 void SessionStream::advanceTo(double time, Session& session) {
-  const MachineSettings& settings = machine_.settings();
-  const auto joint_time = [&] { return kJointLag + static_cast<double>(joint_samples_) / settings.joint_rate; };
-  while (std::min(next_sample_, joint_time()) <= time) {
-    if (joint_time() <= next_sample_) {
-      session.joints.push_back(readJoints(joint_time()));
-      ++joint_samples_;
-      continue;
+  for (;;) {
+    const double joints = joints_.next(), imu = imu_.next(), pressures = pressures_.next();
+    const double due = std::min({joints, imu, pressures, next_sample_});
+    if (due > time) break;
+    if (due == joints) {
+      session.joints.push_back(readJoints(due));
+      ++joints_.count;
+    } else if (due == imu) {
+      session.imu.push_back(readImu(due));
+      ++imu_.count;
+    } else if (due == pressures) {
+      session.pressures.push_back(readPressures(due));
+      ++pressures_.count;
+    } else {
+      takeCrank(session);
     }
-    const auto& lost = settings.crank.drop_outs;
-    const bool dropped = std::any_of(lost.begin(), lost.end(), [&](const CrankSensorSettings::Interval& interval) {
-      return next_sample_ >= interval.from && next_sample_ < interval.to;
-    });
-    if (!dropped) {
-      machine_.advanceTo(next_sample_);
-      take(session);
-    }
-    planSample();
   }
-  machine_.advanceTo(time);
-  const std::vector<BlowTruth> blows = machine_.takeBlows();
+  moveTo(time);
+  const auto blows = std::visit([](auto& machine) { return machine.takeBlows(); }, machine_);
   session.blows.insert(session.blows.end(), blows.begin(), blows.end());
+}
+
+void SessionStream::takeCrank(Session& session) {
+  const auto& lost = settings_.crank.drop_outs;
+  const bool dropped = std::any_of(lost.begin(), lost.end(), [&](const CrankSensorSettings::Interval& interval) {
+    return next_sample_ >= interval.from && next_sample_ < interval.to;
+  });
+  if (!dropped) {
+    moveTo(next_sample_);
+    take(session);
+  }
+  planSample();
 }
 
 /// Whole bursts arrive at once, with the stamp of their last sample.
 void SessionStream::take(Session& session) {
-  const CrankSensorSettings& sensor = machine_.settings().crank;
-  const CrankTruth truth = machine_.truth();
-  burst_.push_back({read(truth, stamp_error_, speed_error_), truth, message_draws_.uniform() < sensor.duplicate_share});
+  const CrankSensorSettings& sensor = settings_.crank;
+  Taken taken;
+  if (const HammerOnBoom* machine = std::get_if<HammerOnBoom>(&machine_)) {
+    taken.on_boom = machine->truth();
+    taken.truth = *taken.on_boom;
+  } else {
+    taken.truth = std::get<WorkingMachine>(machine_).truth();
+  }
+  taken.reading = read(taken.truth, stamp_error_, speed_error_);
+  taken.twice = message_draws_.uniform() < sensor.duplicate_share;
+  burst_.push_back(taken);
   if (static_cast<int>(burst_.size()) < sensor.burst) return;
   for (Taken& sample : burst_) {
     sample.reading.stamp = burst_.back().reading.stamp;
@@ -91,13 +135,14 @@ void SessionStream::take(Session& session) {
       session.crank.push_back(sample.reading);
       session.truth.push_back(sample.truth);
       session.taken.push_back(sample.truth.time);
+      if (sample.on_boom) session.on_boom.push_back(*sample.on_boom);
     }
   }
   burst_.clear();
 }
 
 CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, double speed_error) const noexcept {
-  const CrankSensorSettings& sensor = machine_.settings().crank;
+  const CrankSensorSettings& sensor = settings_.crank;
   CrankReading reading;
   reading.stamp = stampAt(truth.time + sensor.latency + stamp_error);
   if (sensor.stamp_step > 0.0) {
@@ -127,20 +172,52 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
   return reading;
 }
 
-JointReading SessionStream::readJoints(double time) const noexcept {
+/// The sensors of a boom on its oil see it vibrate.
+JointReading SessionStream::readJoints(double time) {
   JointReading reading;
   reading.stamp = stampAt(time);
-  const auto& boom = machine_.settings().boom;
-  for (std::size_t i = 0; i < boom.size(); ++i) {
-    const double rate = kTwoPi / boom[i].period, angle = rate * time + boom[i].phase;
-    reading.position[i] = boom[i].mean + boom[i].amplitude * std::sin(angle);
-    reading.velocity[i] = boom[i].amplitude * rate * std::cos(angle);
+  for (std::size_t i = 0; i < settings_.boom.size(); ++i) {
+    const JointMotion& joint = settings_.boom[i];
+    const double rate = kTwoPi / joint.period, angle = rate * time + joint.phase;
+    reading.position[i] = joint.mean + joint.amplitude * std::sin(angle);
+    reading.velocity[i] = joint.amplitude * rate * std::cos(angle);
   }
+  if (HammerOnBoom* machine = std::get_if<HammerOnBoom>(&machine_)) {
+    machine->advanceTo(time);
+    const OnBoomTruth truth = machine->truth();
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i + 1);
+      reading.position[k] = truth.angles[i], reading.velocity[k] = truth.rates[i];
+    }
+  }
+  for (double& angle : reading.position) angle += settings_.joint_noise * joint_noise_();
+  for (double& speed : reading.velocity) speed += settings_.joint_speed_noise * joint_noise_();
+  return reading;
+}
+
+HullImuReading SessionStream::readImu(double time) {
+  HammerOnBoom& machine = std::get<HammerOnBoom>(machine_);
+  machine.advanceTo(time);
+  const OnBoomTruth truth = machine.truth();
+  const HullImuSensor& imu = settings_.on_boom.imu;
+  HullImuReading reading{stampAt(time), {truth.imu_x, 0.0, truth.imu_z}, {0.0, truth.imu_rate, 0.0}};
+  for (double& force : reading.specific_force) force += imu.acceleration_noise * imu_noise_();
+  for (double& rate : reading.rate) rate += imu.rate_noise * imu_noise_();
+  return reading;
+}
+
+PressureReading SessionStream::readPressures(double time) {
+  HammerOnBoom& machine = std::get<HammerOnBoom>(machine_);
+  machine.advanceTo(time);
+  const OnBoomTruth truth = machine.truth();
+  PressureReading reading{stampAt(time), truth.bore_pressure, truth.rod_pressure};
+  for (auto* chambers : {&reading.bore, &reading.rod})
+    for (double& pressure : *chambers) pressure += settings_.on_boom.pressures.noise * pressure_noise_();
   return reading;
 }
 
 std::int64_t SessionStream::stampAt(double time) const noexcept {
-  return machine_.settings().start_stamp + static_cast<std::int64_t>(std::llround(time * 1e9));
+  return settings_.start_stamp + static_cast<std::int64_t>(std::llround(time * 1e9));
 }
 
 /// Visits the instants in their order in time.
@@ -149,11 +226,14 @@ std::vector<CrankTruth> truthAt(const MachineSettings& settings, const std::vect
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
   std::vector<CrankTruth> truth(times.size());
-  WorkingMachine machine(settings);
-  for (const std::size_t i : order) {
-    machine.advanceTo(times[i]);
-    truth[i] = machine.truth();
-  }
+  auto any = machineOf(settings);
+  const auto visit = [&](auto& machine) {
+    for (const std::size_t i : order) {
+      machine.advanceTo(times[i]);
+      truth[i] = machine.truth();
+    }
+  };
+  std::visit(visit, any);
   return truth;
 }
 

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
+#include "hammer_loads/simulation/hammer_on_boom.h"
 #include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/simulation/normal_noise.h"
 #include "hammer_loads/simulation/working_machine.h"
@@ -26,16 +28,32 @@ struct JointReading {
   std::array<double, 4> velocity{};  ///< [rad/s]
 };
 
+/// One message on `hull_imu`, in the unit's axes.
+struct HullImuReading {
+  std::int64_t stamp{};                    ///< [ns]
+  std::array<double, 3> specific_force{};  ///< acceleration less gravity [m/s2]
+  std::array<double, 3> rate{};            ///< [rad/s]
+};
+
+/// The messages below `cylinder_pressures` of one instant; order of kBoomCylinders.
+struct PressureReading {
+  std::int64_t stamp{};               ///< [ns]
+  std::array<double, 3> bore{}, rod{};  ///< gauge [Pa]
+};
+
 struct Session {
   std::vector<CrankReading> crank;  ///< in the order of arrival
   std::vector<CrankTruth> truth;    ///< one per crank reading; at which instant: see who made it
   std::vector<double> taken;        ///< instants of the crank readings [s since start]
   std::vector<JointReading> joints;
+  std::vector<HullImuReading> imu;
+  std::vector<PressureReading> pressures;
   std::vector<BlowTruth> blows;
+  std::vector<OnBoomTruth> on_boom;  ///< of a hull on its boom: at the instants `taken`
 };
 
-/// Runs the machine and reads its sensors. Same settings, same readings, however the time is cut into pieces. The truth
-/// is that of the instants at which readings are taken.
+/// Runs the machine, with its hull at rest or on its boom, and reads its sensors. Same settings, same readings, however
+/// the time is cut into pieces. The truth is that of the instants at which readings are taken.
 class SessionStream {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
@@ -43,27 +61,39 @@ class SessionStream {
 
   /// Appends everything up to and including `time` [s since start].
   void advanceTo(double time, Session& session);
-  const WorkingMachine& machine() const noexcept { return machine_; }
 
  private:
   /// A sample that waits for the last one of its burst.
   struct Taken {
     CrankReading reading;
     CrankTruth truth;
+    std::optional<OnBoomTruth> on_boom;
     bool twice{};
   };
+  /// A sensor that is read at equal intervals.
+  struct Ticks {
+    double first{}, rate{};  ///< [s], [Hz]; 0: never
+    std::int64_t count{};
+    double next() const noexcept;
+  };
 
+  void moveTo(double time);
   void planSample() noexcept;
+  void takeCrank(Session& session);
   void take(Session& session);
   CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) const noexcept;
-  JointReading readJoints(double time) const noexcept;
+  JointReading readJoints(double time);
+  HullImuReading readImu(double time);
+  PressureReading readPressures(double time);
   std::int64_t stampAt(double time) const noexcept;
 
-  WorkingMachine machine_;
+  MachineSettings settings_;
+  std::variant<WorkingMachine, HammerOnBoom> machine_;
   NormalNoise noise_;
-  NormalNoise message_draws_;
+  NormalNoise message_draws_, joint_noise_, imu_noise_, pressure_noise_;
   std::vector<Taken> burst_;
-  std::int64_t samples_{}, joint_samples_{};
+  std::int64_t samples_{};
+  Ticks joints_, imu_, pressures_;
   double next_sample_{}, stamp_error_{}, speed_error_{};
 };
 

@@ -6,12 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "hammer_loads/simulation/drive.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::simulation {
 namespace {
-
-constexpr std::uint64_t kBlowSeed = 0x9e3779b97f4a7c15;  // draws of the blows leave the sensors' noise as it is
 
 Mechanism checked(const HammerParameters& parameters) {
   const Checked<Mechanism> made = Mechanism::make(parameters);
@@ -19,12 +18,6 @@ Mechanism checked(const HammerParameters& parameters) {
   std::string all;
   for (const std::string& problem : made.problems) all += (all.empty() ? "" : "; ") + problem;
   throw std::invalid_argument(all);
-}
-
-/// 0 before, 1 after, with a continuous slope in between.
-double rise(double time, double from, double length) noexcept {
-  const double x = std::clamp((time - from) / length, 0.0, 1.0);
-  return x * x * (3.0 - 2.0 * x);
 }
 
 /// Largest value of the parabola through three points with the largest in the middle.
@@ -61,10 +54,7 @@ WorkingMachine::WorkingMachine(const MachineSettings& settings)
 
 double WorkingMachine::hullPitch(double time) const noexcept {
   double pitch = 0.0;
-  for (std::size_t i = 1; i < settings_.boom.size(); ++i) {
-    const JointMotion& joint = settings_.boom[i];
-    pitch += joint.mean + joint.amplitude * std::sin(2.0 * kPi * time / joint.period + joint.phase);
-  }
+  for (std::size_t i = 1; i < settings_.boom.size(); ++i) pitch += positionOf(settings_.boom[i], time);
   return pitch;
 }
 
@@ -73,27 +63,10 @@ Gravity WorkingMachine::gravityAt(double time) const noexcept {
   return {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)};
 }
 
-double WorkingMachine::supplyFlow(double time) const noexcept {
-  const DriveSettings& d = settings_.drive;
-  const double open = rise(time, d.start_time, d.start_ramp) * (1.0 - rise(time, d.stop_time, d.stop_ramp));
-  return d.flow * open *
-         (1.0 + d.flow_variation * std::sin(2.0 * kPi * time / d.flow_variation_period) +
-          d.ripple * std::sin(2.0 * kPi * d.ripple_frequency * time));
-}
-
-/// Leakage, relief valve, bypass; below zero pressure a check valve refills the line.
-double WorkingMachine::valveFlow(double time, double pressure) const noexcept {
-  const DriveSettings& d = settings_.drive;
-  const double bypass = pressure < 0.0 ? d.bypass : d.bypass * rise(time, d.stop_time, d.stop_ramp);
-  return (d.leakage + bypass) * pressure + d.relief_slope * std::max(0.0, pressure - d.relief_pressure);
-}
-
 /// Motor less friction.
 double WorkingMachine::netTorque(const State& state) const noexcept {
-  const DriveSettings& d = settings_.drive;
-  const double w = flexible() ? state.y[kMotorSpeed] : state.y[kSpeed];
-  return d.motor_displacement * state.y[kPressure] - d.coulomb_friction * std::tanh(w / d.friction_speed) -
-         d.viscous_friction * w;
+  return simulation::netTorque(settings_.drive, state.y[kPressure],
+                               flexible() ? state.y[kMotorSpeed] : state.y[kSpeed]);
 }
 
 /// What reaches the crank.
@@ -114,7 +87,7 @@ WorkingMachine::Vector WorkingMachine::rate(const State& state) const noexcept {
       (torque + shaft.weight_torque - 0.5 * shaft.inertia_slope * w * w) / (crank_side_inertia_ + shaft.inertia);
   if (state.resting) acceleration = 0.0;
   const Load load = links_.load(links, w, acceleration, gravity);
-  const double flow = supplyFlow(state.time), valves = valveFlow(state.time, p);
+  const double flow = supplyFlow(d, state.time), valves = valveFlow(d, state.time, p);
   Vector r{};
   r[kOffset] = w;
   r[kSpeed] = acceleration;

@@ -110,8 +110,6 @@ class WorkingMachine {
     bool blank{};
   };
 
-  double supplyFlow(double time) const noexcept;
-  double valveFlow(double time, double pressure) const noexcept;
   bool flexible() const noexcept { return settings_.drive.coupling_frequency > 0.0; }
   double netTorque(const State& state) const noexcept;
   double shaftTorque(const State& state) const noexcept;

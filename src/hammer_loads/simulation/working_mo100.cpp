@@ -1,10 +1,11 @@
 #include "hammer_loads/simulation/machine_settings.h"
 
+#include <cmath>
+
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::simulation {
 namespace {
-
 
 /// P0, MO-100. Crank and rod are massless there.
 HammerParameters mo100() {
@@ -45,6 +46,15 @@ DriveSettings drive() {
 }
 
 }  // namespace
+
+double positionOf(const JointMotion& motion, double time) noexcept {
+  return motion.mean + motion.amplitude * std::sin(2.0 * kPi * time / motion.period + motion.phase);
+}
+
+double velocityOf(const JointMotion& motion, double time) noexcept {
+  const double rate = 2.0 * kPi / motion.period;
+  return motion.amplitude * rate * std::cos(rate * time + motion.phase);
+}
 
 MachineSettings workingMo100() {
   MachineSettings s;

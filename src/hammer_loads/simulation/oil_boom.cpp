@@ -1,0 +1,49 @@
+#include "hammer_loads/simulation/oil_boom.h"
+
+#include "hammer_loads/util/constants.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+double areaOf(double diameter) { return 0.25 * kPi * diameter * diameter; }
+
+}  // namespace
+
+double OilCylinder::length(double angle) const { return std::abs(std::polar(1.0, -angle) * rod - base); }
+
+double OilCylinder::arm(double angle) const { return (length(angle + 1e-5) - length(angle - 1e-5)) / 2e-5; }
+
+double OilCylinder::boreShare(double angle) const {
+  return bore_area / (bore_hose + bore_area * (length(angle) - closed_length));
+}
+
+double OilCylinder::rodShare(double angle) const {
+  return rod_area / (rod_hose + rod_area * (closed_length + stroke - length(angle)));
+}
+
+OilBoom oilBoomEo2621() {
+  OilBoom b;
+  const PlanePoint bracket(0.03, -0.06), hull(0.10 - 0.08, -0.55 + 0.05),
+      both = (50.0 * bracket + 350.0 * hull) / 400.0;
+  b.links[0] = {{2.60, 0.0}, {1.20, 0.08}, 400.0, 229.4};
+  b.links[1] = {{1.70, 0.0}, {0.70, 0.06}, 230.0, 86.03};
+  b.links[2] = {
+      {0.10, -0.55}, both, 400.0, 1.104 + 29.9 + 50.0 * std::norm(bracket - both) + 350.0 * std::norm(hull - both)};
+  const auto cylinder = [](PlanePoint base, PlanePoint rod, double bore, double rod_diameter, double closed,
+                           double stroke, double hose) {
+    return OilCylinder{base, rod, areaOf(bore), areaOf(bore) - areaOf(rod_diameter), closed, stroke, hose, hose};
+  };
+  const PlanePoint foot(0.25, 0.40);
+  b.cylinders[0] = cylinder(PlanePoint(0.138, -0.159) - foot, {0.90, -0.10}, 0.110, 0.063, 0.79, 0.65, 0.0008);
+  b.cylinders[1] =
+      cylinder(PlanePoint(1.30, 0.30) - b.links[0].to_next, {-0.371, 0.197}, 0.100, 0.056, 1.00, 0.73, 0.0010);
+  b.cylinders[2] =
+      cylinder(PlanePoint(0.50, 0.28) - b.links[1].to_next, {0.277, 0.115}, 0.080, 0.050, 0.99, 0.53, 0.0012);
+  b.cuts = {{{0, {0.50, 0.08}, {{}, {1.482, 0.08}, 308.7, 114.3}},
+             {0, {1.10, 0.08}, {{}, {1.813, 0.08}, 208.2, 40.3}},
+             {1, {0.80, 0.06}, {{}, {1.255, 0.06}, 101.6, 7.42}}}};
+  b.bulk_modulus = 1.0e9;
+  return b;
+}
+
+}  // namespace hammer_loads::simulation

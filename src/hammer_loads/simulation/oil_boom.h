@@ -1,0 +1,54 @@
+/// Boom, arm and hull on the oil of their cylinders, in a vertical plane: dimensions, independent of boom/.
+#pragma once
+
+#include <array>
+#include <complex>
+
+namespace hammer_loads::simulation {
+
+/// A place in a vertical plane, x + i z [m]; a turn by q about +y is e^(-iq).
+using PlanePoint = std::complex<double>;
+
+/// A link from its joint on, in its own axes.
+struct OilBoomLink {
+  PlanePoint to_next;  ///< next joint; of the last link: the rocker's pivot D
+  PlanePoint com;
+  double mass{};     ///< [kg]
+  double inertia{};  ///< about the centre of mass, about y [kg m2]
+};
+
+/// Cylinder of a joint; anchors from the joint: base in the axes of the link before, rod in those of the link beyond.
+struct OilCylinder {
+  PlanePoint base, rod;
+  double bore_area{}, rod_area{};                             ///< [m2]
+  double closed_length{}, stroke{}, bore_hose{}, rod_hose{};  ///< [m], [m], [m3], [m3]
+
+  double length(double angle) const;  ///< [m]
+  double arm(double angle) const;     ///< what the joint's angle does to it [m/rad]
+  /// Pressure in a chamber over the rod's way out at a place of the joint, per bulk modulus [1/m].
+  double boreShare(double angle) const;
+  double rodShare(double angle) const;
+};
+
+/// A cut across a link, x > 0 beyond it in the link's axes.
+struct OilBoomCut {
+  std::size_t link{};
+  PlanePoint place;    ///< from the link's joint
+  OilBoomLink beyond;  ///< the link's own part beyond it; to_next not used
+};
+
+/// Boom, arm, bracket with hull; the hull's mass and inertia include those of the moving links and of the rotor.
+struct OilBoom {
+  std::array<OilBoomLink, 3> links;
+  std::array<OilCylinder, 3> cylinders;
+  std::array<OilBoomCut, 3> cuts;
+  double bulk_modulus{};  ///< [Pa]
+};
+
+/// Excavator EO-2621; figures by hand from its description and boom file, cuts in the order of the file's sections.
+OilBoom oilBoomEo2621();
+
+/// Names of the cylinders in its boom file.
+constexpr std::array<const char*, 3> kBoomCylinders{"boom_cylinder", "arm_cylinder", "hammer_cylinder"};
+
+}  // namespace hammer_loads::simulation

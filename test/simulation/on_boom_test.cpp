@@ -1,0 +1,205 @@
+// Hull and boom on oil: against the machine with a hull at rest, against statics by hand, and what its sensors say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kGravity = 9.80665;
+
+MachineSettings onBoom() {
+  MachineSettings m = workingMo100();
+  m.hammer.drive_reaction_ratio = 1.0;
+  m.duration = 4.0;
+  m.drive.start_time = 0.7;
+  m.drive.stop_time = 9.0;
+  m.on_boom.on = true;
+  m.on_boom.imu = {500.0, 0.1, 0.2, 0.3, 0.0, 0.0};
+  m.on_boom.pressures = {100.0, 0.0, 5e6};
+  return m;
+}
+
+void holdStill(MachineSettings& m) {
+  for (JointMotion& joint : m.boom) joint.amplitude = 0.0;
+}
+
+/// Natural frequencies times 50, 0.2 to 1.4 kHz: nearly at rest.
+MachineSettings onSteel() {
+  MachineSettings m = onBoom();
+  holdStill(m);
+  m.drive.start_time = 0.2;
+  m.on_boom.oil_stiffness = 2500.0;
+  m.on_boom.step = 5e-5;
+  return m;
+}
+
+TEST(OnBoom, OilAsStiffAsSteelIsAHullAtRest) {
+  const MachineSettings m = onSteel();
+  HammerOnBoom on_oil(m);
+  WorkingMachine at_rest(m);
+  double peak = 0.0, worst = 0.0, drive = 0.0, worst_drive = 0.0;
+  for (int i = 1; i <= 1900; ++i) {
+    on_oil.advanceTo(0.001 * i);
+    at_rest.advanceTo(0.001 * i);
+    const OnBoomTruth a = on_oil.truth();
+    const CrankTruth b = at_rest.truth();
+    if (std::abs(std::remainder(b.angle, 6.283185307179586)) < 0.3) continue;  // the blow shakes the stiff oil too
+    peak = std::max(peak, std::abs(b.load.force_z)), drive = std::max(drive, std::abs(b.drive_reaction_y));
+    worst = std::max(worst, std::abs(a.load.force_z - b.load.force_z));
+    worst_drive = std::max(worst_drive, std::abs(a.drive_reaction_y - b.drive_reaction_y));
+  }
+  const auto blows = on_oil.takeBlows(), blows_at_rest = at_rest.takeBlows();
+  ASSERT_EQ(blows.size(), blows_at_rest.size());
+  ASSERT_GT(blows.size(), 2U);
+  for (std::size_t i = 0; i < blows.size(); ++i) {
+    EXPECT_NEAR(blows[i].time, blows_at_rest[i].time, 2e-4);
+    EXPECT_NEAR(blows[i].strike.energy / blows_at_rest[i].strike.energy, 1.0, 0.01);
+    EXPECT_NEAR(blows[i].strike.rocker_speed_before / blows_at_rest[i].strike.rocker_speed_before, 1.0, 0.01);
+  }
+  EXPECT_LT(worst, 0.02 * peak);
+  EXPECT_LT(worst_drive, 0.02 * drive);
+}
+
+/// Links' masses and places as in the robot description, arms of the cylinders from triangles.
+TEST(OnBoom, AtRestItHoldsItsWeight) {
+  MachineSettings m = onBoom();
+  holdStill(m);
+  m.drive.start_time = 100.0;
+  m.boom[1].mean = -0.45, m.boom[2].mean = 1.0, m.boom[3].mean = -0.5;
+  HammerOnBoom machine(m);
+  machine.advanceTo(0.01);
+  const double q1 = -0.45, q2 = 0.55, q3 = 0.05;
+  const auto x_of = [](double q, double x, double z) { return x * std::cos(q) + z * std::sin(q); };
+  const double arm_at = x_of(q1, 2.60, 0.0), hull_at = arm_at + x_of(q2, 1.70, 0.0);
+  const double bracket_and_hull = 50.0 * x_of(q3, 0.03, -0.06) + 350.0 * x_of(q3, 0.02, -0.50);
+  const double about_boom = kGravity * (400.0 * x_of(q1, 1.20, 0.08) + 230.0 * (arm_at + x_of(q2, 0.70, 0.06)) +
+                                        400.0 * hull_at + bracket_and_hull);
+  EXPECT_NEAR(machine.truth().hold[0], -about_boom, 0.005 * about_boom) << "but for the rocker's place";
+}
+
+TEST(OnBoom, CrankRestsOnTheToolUntilThePressureRises) {
+  MachineSettings m = onBoom();
+  m.start_angle = 0.2;
+  HammerOnBoom machine(m);
+  machine.advanceTo(0.65);
+  EXPECT_EQ(machine.truth().speed, 0.0);
+  EXPECT_EQ(machine.truth().angle, 0.0);
+  machine.advanceTo(3.0);
+  const auto blows = machine.takeBlows();
+  ASSERT_GT(blows.size(), 4U);
+  EXPECT_FALSE(blows.front().whole_turn);
+  EXPECT_TRUE(blows.back().whole_turn);
+  EXPECT_NEAR(blows.back().turn_period, 0.21, 0.02);
+}
+
+TEST(OnBoom, RestitutionIsTheToolsSpeedOverTheRockers) {
+  MachineSettings m = onSteel();
+  m.blow.restitution_drawn = true, m.blow.restitution_low = m.blow.restitution_high = 0.25;
+  HammerOnBoom machine(m);
+  machine.advanceTo(1.9);
+  const MovingLinks links(*Mechanism::make(m.hammer).value, Level::kRocker);
+  for (const BlowTruth& blow : machine.takeBlows()) {
+    const Strike at_rest = links.strike(blow.crank_speed, 0.25, m.drive.inertia);
+    EXPECT_NEAR(-blow.strike.rocker_speed_after / blow.strike.rocker_speed_before, 0.25, 0.01);
+    EXPECT_NEAR(blow.strike.crank_speed_after / at_rest.crank_speed_after, 1.0, 0.02);
+    EXPECT_NEAR(blow.strike.energy / at_rest.energy, 1.0, 0.02);
+    EXPECT_GT(blow.strike.linkage_loss, 0.0);
+  }
+}
+
+TEST(OnBoomSession, SameSeedSameReadingsHoweverTimeIsCut) {
+  MachineSettings m = onBoom();
+  m.on_boom.imu.acceleration_noise = 0.1, m.on_boom.pressures.noise = 1e4, m.joint_noise = 1e-4;
+  m.duration = 2.0;
+  const Session whole = recordSession(m);
+  SessionStream stream(m);
+  Session pieces;
+  for (int i = 1; i <= 400; ++i) stream.advanceTo(0.005 * i, pieces);
+  ASSERT_EQ(whole.imu.size(), 1000U);
+  ASSERT_EQ(whole.pressures.size(), 200U);
+  ASSERT_EQ(whole.joints.size(), 100U);
+  ASSERT_EQ(whole.on_boom.size(), whole.crank.size());
+  ASSERT_EQ(pieces.imu.size(), whole.imu.size());
+  for (std::size_t i = 0; i < whole.imu.size(); ++i) {
+    ASSERT_EQ(whole.imu[i].stamp, pieces.imu[i].stamp);
+    ASSERT_NEAR(whole.imu[i].specific_force[2], pieces.imu[i].specific_force[2], 1e-3);
+    ASSERT_NEAR(whole.imu[i].specific_force[1], pieces.imu[i].specific_force[1], 1e-12) << "noise alone";
+  }
+  const Session again = recordSession(m);
+  for (std::size_t i = 0; i < whole.pressures.size(); ++i) {
+    ASSERT_EQ(whole.pressures[i].bore, again.pressures[i].bore);
+    ASSERT_EQ(whole.pressures[i].rod, again.pressures[i].rod);
+  }
+  for (std::size_t i = 0; i < whole.joints.size(); ++i)
+    ASSERT_EQ(whole.joints[i].position, again.joints[i].position);
+}
+
+/// The unit is turned by 0.3 rad; force less force of the chambers is what holds the joint.
+TEST(OnBoomSession, SensorsAtRestShowTheWeight) {
+  MachineSettings m = onBoom();
+  holdStill(m);
+  m.duration = 0.2;
+  m.start_angle = 1e-9;
+  m.joint_speed_noise = 0.01;
+  const Session session = recordSession(m);
+  const auto& q = session.joints.back().position;
+  const double pitch = q[1] + q[2] + q[3] + 0.3;
+  for (const HullImuReading& imu : session.imu) {
+    ASSERT_NEAR(imu.specific_force[0], -kGravity * std::sin(pitch), 0.3);
+    ASSERT_NEAR(imu.specific_force[2], kGravity * std::cos(pitch), 0.3);
+  }
+  const OilCylinder boom = oilBoomEo2621().cylinders[0];
+  const PressureReading& p = session.pressures.back();
+  const double push = boom.bore_area * p.bore[0] - boom.rod_area * p.rod[0];
+  EXPECT_NEAR(push * boom.arm(q[1]), session.on_boom.back().hold[0], 0.01 * std::abs(session.on_boom.back().hold[0]));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::min(p.bore[i], p.rod[i]), 5e6, 0.05e6);
+  double squares = 0.0;
+  for (const JointReading& joints : session.joints)
+    for (const double speed : joints.velocity) squares += speed * speed / (4.0 * static_cast<double>(session.joints.size()));
+  EXPECT_NEAR(std::sqrt(squares), 0.01, 0.004);
+}
+
+/// Where the operator holds the joints and what the vibration adds: the sensors of the joints see both.
+TEST(OnBoomSession, JointSensorsSeeTheVibration) {
+  MachineSettings m = onBoom();
+  m.joint_rate = 400.0;
+  const Session session = recordSession(m);
+  double largest = 0.0;
+  for (const JointReading& joints : session.joints) {
+    const double time = 1e-9 * static_cast<double>(joints.stamp - m.start_stamp);
+    largest = std::max(largest, std::abs(joints.position[1] - positionOf(m.boom[1], time)));
+    ASSERT_NEAR(joints.position[0], positionOf(m.boom[0], time), 1e-12) << "the swing is held";
+  }
+  EXPECT_GT(largest, 1e-3);
+  EXPECT_LT(largest, 1e-2);
+}
+
+TEST(OnBoom, SectionsCarryWhatTheirCylindersDoNot) {
+  MachineSettings m = onBoom();
+  holdStill(m);
+  m.drive.start_time = 100.0;
+  HammerOnBoom machine(m);
+  machine.advanceTo(0.01);
+  const OnBoomTruth t = machine.truth();
+  const OilBoom b = oilBoomEo2621();
+  // Boom foot: moments about the cut of all weight beyond it and of the boom cylinder's push, which crosses it.
+  const double q = t.angles[0];
+  const double push = t.hold[0] / b.cylinders[0].arm(q);
+  const PlanePoint turned = std::polar(1.0, -q), rod = turned * b.cylinders[0].rod;
+  const PlanePoint direction = (rod - b.cylinders[0].base) / std::abs(rod - b.cylinders[0].base);
+  const PlanePoint cut = turned * b.cuts[0].place;
+  // All weights about the boom's joint are -hold; those about the cut lack the part before it.
+  const PlanePoint before_com = turned * ((400.0 * b.links[0].com - 308.7 * b.cuts[0].beyond.com) / (400.0 - 308.7));
+  const double weight_beyond = kGravity * (1030.0 - (400.0 - 308.7));
+  const double about_joint = -t.hold[0] - kGravity * (400.0 - 308.7) * before_com.real();
+  const double weights = about_joint - weight_beyond * cut.real();
+  const PlanePoint r = rod - cut, f = push * direction;
+  const double expected = weights + r.imag() * f.real() - r.real() * f.imag();
+  EXPECT_NEAR(t.cut[0].torque_y, expected, 0.01 * std::abs(t.hold[0]));
+}
+
+}  // namespace
+}  // namespace hammer_loads::simulation
