@@ -108,7 +108,8 @@ void BoomFollower::findLoads(const BoomSample& sample) noexcept {
 /// Frequencies and damping as sensors show them.
 void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
-  if (sample.imu) observer_.imu(boom_, motion_, *sample.imu);
+  observer_.follow(motion_, step);
+  if (sample.imu) observer_.imu(boom_, *sample.imu);
   observer_.joints(boom_, sample.stamp, step, joints_);
   if (pressures_.accepted() == 0) return;
   boom_.loads(onTip(sample.motion_wrench), true, state_.loads);

@@ -1,5 +1,6 @@
 #include "hammer_loads/pipeline/mode_observer.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hammer_loads {
@@ -13,8 +14,9 @@ constexpr Doubt kAcceleration{0.3, 0.3, 0.05};    // [m/s2]
 constexpr Doubt kRate{0.005, 0.02, 0.005};        // [rad/s]
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};        // [rad]
 constexpr Doubt kTorque{0.004, 0.02, 0.002};      // of the torque that the cylinder's relief valve allows
-constexpr double kSlowest = 0.01, kMemory = 0.5;  // [s] between joint states; of a joint's mean speed
-constexpr double kStands = 0.005, kMoved = 0.02;  // [rad/s], [rad]: a joint that is slower stands; a jump
+constexpr double kSlowest = 0.01, kMoved = 0.02;  // [s] between joint states; [rad] a jump
+constexpr double kFast = 0.05, kRest = 2.0;       // [rad/s]: its acceleration hides the vibration; [s] to wait then
+constexpr double kMemory = 0.5, kLost = 0.5;      // of each filter [s]; of an angle that winds or came back [rad]
 
 void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, double size = 1.0) noexcept {
   reading.noise = size * doubt.noise;
@@ -25,9 +27,26 @@ void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, 
 
 }  // namespace
 
-void ModeObserver::imu(Boom& boom, const JointMotion& motion, const ImuReading& reading) noexcept {
+void ModeObserver::follow(const JointMotion& motion, double step) noexcept {
+  const bool lost = first_.size() != motion.position.size() || !(step < kMemory) ||
+                    (motion.position - first_).cwiseAbs().maxCoeff() > kLost;
+  if (lost) {
+    first_ = slow_ = motion.position;
+    unrest_ = kRest;
+    return;
+  }
+  const double part = step / kMemory;
+  first_ += part * (motion.position - first_);
+  slow_ += part * (first_ - slow_);
+  unrest_ = slowRate().cwiseAbs().maxCoeff() > kFast ? kRest : std::max(0.0, unrest_ - step);
+}
+
+JointVector ModeObserver::slowRate() const noexcept { return (first_ - slow_) / kMemory; }
+
+void ModeObserver::imu(Boom& boom, const ImuReading& reading) noexcept {
+  if (unrest_ > 0.0) return;
   const Jacobian J = tipJacobian(boom.pose());
-  const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * motion.velocity;
+  const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * slowRate();
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
   see(boom, 0, tipAccelerationReading(J, imu_position_, x, g_T, reading.specific_force.x()), kAcceleration);
   see(boom, 1, tipAccelerationReading(J, imu_position_, z, g_T, reading.specific_force.z()), kAcceleration);
@@ -36,21 +55,21 @@ void ModeObserver::imu(Boom& boom, const JointMotion& motion, const ImuReading& 
 
 void ModeObserver::joints(Boom& boom, StampNs sample, double step, const JointBuffer& joints) noexcept {
   const int count = boom.chain().joints();
+  const JointVector slow_rate = slowRate();
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const int joint = boom.cylinders()[i].joint();
     const std::optional<JointBuffer::Reading> now = joints.newest(joint);
     JointTrack& track = joints_[i];
     if (!now || now->stamp == track.stamp) continue;
-    const double interval = seconds(now->stamp - track.stamp), moved = now->position - track.position;
-    const bool jumped = !(interval > 0.0) || interval > kSlowest || std::abs(moved) > kMoved;
+    const double interval = seconds(now->stamp - track.stamp), ahead = seconds(now->stamp - sample);
+    const bool jumped = !(interval > 0.0) || interval > kSlowest || std::abs(now->position - track.position) > kMoved;
     track.stamp = now->stamp, track.position = now->position;
-    if (jumped) {
-      track.speed = 2.0 * kStands;
-      continue;
-    }
-    track.speed += std::min(1.0, interval / kMemory) * (moved / interval - track.speed);
-    if (std::abs(track.speed) > kStands || std::abs(seconds(sample - now->stamp)) > 0.75 * step) continue;
-    see(boom, kImuChannels + static_cast<int>(i), jointAngleReading(count, joint, now->position), kAngle);
+    if (jumped || unrest_ > 0.0 || std::abs(ahead) > 0.75 * step) continue;
+    VibrationReading reading = jointAngleReading(count, joint, now->position - slow_[joint]);
+    reading.velocity[joint] = ahead;
+    Doubt doubt = kAngle;
+    doubt.walk += std::abs(slow_rate[joint]);
+    see(boom, kImuChannels + static_cast<int>(i), reading, doubt);
   }
 }
 

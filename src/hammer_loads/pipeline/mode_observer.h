@@ -11,15 +11,19 @@
 
 namespace hammer_loads {
 
-/// Each reading is given once, at the crank sample that follows it. Joint angles count above 100 Hz and while the joint
-/// stands: a moving one hides its vibration. No allocation.
+/// Each reading is given once, at the crank sample that follows it. Joint sensors see the vibration too: what the
+/// operator does is taken as what is left of their angles below some 0.3 Hz. Joint angles count above 100 Hz; the faster
+/// a joint moves, the less. While the operator drives a joint fast, 2 s after that and at the start only pressures
+/// count. No allocation.
 class ModeObserver {
  public:
   /// imu_position: from D, axes of hammer_hull [m].
   explicit ModeObserver(const Eigen::Vector3d& imu_position) : imu_position_(imu_position) {}
 
+  /// The joints as they are measured, a step [s] after the call before; first of all at each sample.
+  void follow(const JointMotion& motion, double step) noexcept;
   /// The unit's reading at the sample in the hull's axes, if a new one has come.
-  void imu(Boom& boom, const JointMotion& motion, const ImuReading& reading) noexcept;
+  void imu(Boom& boom, const ImuReading& reading) noexcept;
   void joints(Boom& boom, StampNs sample, double step, const JointBuffer& joints) noexcept;
   /// loads: those of the sample, rigid or not.
   void pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures, const BoomLoads& loads) noexcept;
@@ -27,11 +31,15 @@ class ModeObserver {
  private:
   struct JointTrack {
     StampNs stamp{};
-    double position{}, speed{};  ///< speed: mean over some 0.5 s [rad/s]
+    double position{};
   };
   static constexpr int kImuChannels = 3;
 
+  JointVector slowRate() const noexcept;
+
   Eigen::Vector3d imu_position_;
+  JointVector first_, slow_;  ///< angles through one and two filters of the first order [rad]
+  double unrest_{};           ///< so long the operator's last fast move, or its not being known, still counts [s]
   std::array<JointTrack, kMaxJoints> joints_;
   std::array<std::uint64_t, kMaxJoints> pressures_{};  ///< CylinderPressures::count() at the last sample
 };

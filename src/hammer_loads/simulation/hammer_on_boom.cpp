@@ -65,8 +65,8 @@ void HammerOnBoom::takeMovingPartsOffTheHull() {
   hull.com = com;
 }
 
-Eigen::Vector3d HammerOnBoom::frequencies() const {
-  const State held = heldAt(now_.time);
+Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
+  const State held = heldAt(time);
   const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>(), K = stiffness(held).asDiagonal();
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> modes(K, M, Eigen::EigenvaluesOnly);
   return modes.eigenvalues().cwiseSqrt() / (2.0 * kPi);

@@ -44,8 +44,8 @@ class HammerOnBoom {
   OnBoomTruth truth() const;
   /// Hands over the blows since the last call.
   std::vector<BlowTruth> takeBlows();
-  /// Natural frequencies at the present pose, lowest first [Hz].
-  Eigen::Vector3d frequencies() const;
+  /// Natural frequencies where the operator holds the boom at a time, by the oil alone; lowest first [Hz].
+  Eigen::Vector3d frequencies(double time) const;
   const MachineSettings& settings() const noexcept { return machine_; }
 
  private:
