@@ -20,7 +20,7 @@ Topics out
   crank         sensor_msgs/JointState  crank angle [rad] and speed [rad/s]
   joint_states  sensor_msgs/JointState  angles [rad] and speeds [rad/s] of the boom's joints
   hull_imu      sensor_msgs/Imu         with hull_on_boom: acceleration less gravity [m/s2], turning rate [rad/s]
-  cylinder_pressures/NAME/bore, .../rod  sensor_msgs/FluidPressure  with hull_on_boom: gauge pressures [Pa]
+  cylinder_pressures  sensor_msgs/FluidPressure  with hull_on_boom: gauge pressures [Pa] on NAME/bore and NAME/rod below it
   /clock        rosgraph_msgs/Clock     with publish_clock
 
 Parameters (private; SI units, each explained in its file in the package's directory config)

@@ -61,11 +61,11 @@ void MachinePlayer::advertiseHull(ros::NodeHandle& node) {
   }
   pressure_message_.variance = std::pow(sensors.pressures.noise, 2);
   if (!(sensors.pressures.rate > 0.0)) return;
-  for (const char* cylinder : simulation::kBoomCylinders) {
-    for (const char* chamber : {"/bore", "/rod"}) {
-      const std::string topic = std::string("cylinder_pressures/") + cylinder + chamber;
-      pressure_publishers_.push_back(node.advertise<sensor_msgs::FluidPressure>(topic, kQueueSize));
-    }
+  const std::string prefix = node.resolveName("cylinder_pressures") + "/";
+  for (const std::string cylinder : simulation::kBoomCylinders) {
+    for (const char* chamber : {"/bore", "/rod"})
+      pressure_publishers_.push_back(
+          node.advertise<sensor_msgs::FluidPressure>(prefix + cylinder + chamber, kQueueSize));
   }
 }
 
