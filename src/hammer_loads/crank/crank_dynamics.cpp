@@ -39,7 +39,7 @@ Path along(const Path& start, const Path& derivative, double dt) noexcept {
 
 /// first: the derivative at the start.
 Path rungeKutta(const Shaft& shaft, const Path& start, const Path& first, double dt) noexcept {
-  const auto derivative = [&](const Path& at) { return rate(shaft, at.h, shaft.model({at.offset, shaft.side})); };
+  const auto derivative = [&](const Path& at) { return rate(shaft, at.h, shaft.model.withoutSlopes({at.offset, shaft.side})); };
   const Path k2 = derivative(along(start, first, 0.5 * dt));
   const Path k3 = derivative(along(start, k2, 0.5 * dt));
   const Path k4 = derivative(along(start, k3, dt));
@@ -131,9 +131,10 @@ struct Piece {
   bool at_blow;
 };
 
-/// One smooth piece of the way, ending at dt or at the blow.
+/// One smooth piece of the way, ending at dt or at the blow. total: null where no linearisation is wanted; loads are
+/// without slopes then.
 Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state, ShaftLoad& load,
-                   ShaftTransition& total) noexcept {
+                   ShaftTransition* total) noexcept {
   const Shaft shaft{model, state.position.angle.side, state.torque, state.drive_inertia};
   const Path start{state.position.angle.offset, std::sqrt(state.drive_inertia + load.inertia) * state.speed};
   const Path first = rate(shaft, start.h, load);
@@ -145,14 +146,35 @@ Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState&
     end = rungeKutta(shaft, start, first, piece.used);
     end.offset = 0.0;
   }
-  const ShaftLoad load_end = model({end.offset, shaft.side});
+  const CrankAngle angle_end{end.offset, shaft.side};
+  const ShaftLoad load_end = total != nullptr ? model(angle_end) : model.withoutSlopes(angle_end);
   const double speed_end = end.h / std::sqrt(state.drive_inertia + load_end.inertia);
-  total = chained(transition(shaft, piece.used, state.speed, load, speed_end, load_end), total);
+  if (total != nullptr)
+    *total = chained(transition(shaft, piece.used, state.speed, load, speed_end, load_end), *total);
   state.position.angle.offset = end.offset;
   state.position.renormalise();
   state.speed = speed_end;
   load = load_end;
   return piece;
+}
+
+/// Forward blows passed; total as in advancePiece().
+int advanceAll(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state, ShaftLoad& load,
+               ShaftTransition* total) noexcept {
+  int blows = 0;
+  double left = dt;
+  for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
+    const double steps_needed = std::ceil(std::abs(left * state.speed) / kMaxStepAngle);
+    const double steps = std::clamp(steps_needed, 1.0, static_cast<double>(kMaxSteps - i));
+    const Piece piece = advancePiece(model, left / steps, passing.contact, state, load, total);
+    left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
+    if (!piece.at_blow) continue;
+    const bool strikes = state.speed > 0.0;
+    ShaftTransition unused = ShaftTransition::Identity();
+    passBlow(model, dt > 0.0 ? passing.factor : 1.0 / passing.factor, state, load, total != nullptr ? *total : unused);
+    blows += strikes;
+  }
+  return blows;
 }
 
 }  // namespace
@@ -190,19 +212,13 @@ void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLo
 Advance advance(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
                 ShaftLoad& load) noexcept {
   Advance result{ShaftTransition::Identity()};
-  ShaftTransition& total = result.transition;
-  double left = dt;
-  for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
-    const double steps_needed = std::ceil(std::abs(left * state.speed) / kMaxStepAngle);
-    const double steps = std::clamp(steps_needed, 1.0, static_cast<double>(kMaxSteps - i));
-    const Piece piece = advancePiece(model, left / steps, passing.contact, state, load, total);
-    left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
-    if (!piece.at_blow) continue;
-    const bool strikes = state.speed > 0.0;
-    passBlow(model, dt > 0.0 ? passing.factor : 1.0 / passing.factor, state, load, total);
-    result.blows += strikes;
-  }
+  result.blows = advanceAll(model, dt, passing, state, load, &result.transition);
   return result;
+}
+
+void advanceState(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state) noexcept {
+  ShaftLoad load = model.withoutSlopes(state.position.angle);
+  advanceAll(model, dt, passing, state, load, nullptr);
 }
 
 }  // namespace hammer_loads

@@ -16,7 +16,16 @@ class ShaftModel {
       : mechanism_(&mechanism), level_(level), own_(crankWithinDrive(mechanism, level)) {}
   void setHullMotion(const HullMotion& hull) noexcept { hull_ = hull; }
   const HullMotion& hullMotion() const noexcept { return hull_; }
-  ShaftLoad operator()(CrankAngle angle) const noexcept {
+  ShaftLoad operator()(CrankAngle angle) const noexcept { return at(angle); }
+  /// The same with zero for the slopes, whose arithmetic the compiler then leaves out: a path's rates need none.
+  ShaftLoad withoutSlopes(CrankAngle angle) const noexcept {
+    ShaftLoad load = at(angle);
+    load.half_inertia_slope = load.weight_torque_slope = 0.0;
+    return load;
+  }
+
+ private:
+  HAMMER_LOADS_INLINE ShaftLoad at(CrankAngle angle) const noexcept {
     ShaftLoad load = shaftLoad(*mechanism_, level_, angle, hull_);
     const double r = mechanism_->parameters().drive_reaction_ratio;
     load.weight_torque -= (1.0 - r) * own_ * load.hull_acceleration;
@@ -24,7 +33,6 @@ class ShaftModel {
     return load;
   }
 
- private:
   const Mechanism* mechanism_;
   Level level_;
   double own_;  ///< crankWithinDrive()
@@ -79,5 +87,7 @@ void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLo
 /// order 2 per step, within 1 % of finite differences at 1 kHz (test).
 Advance advance(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
                 ShaftLoad& load) noexcept;
+/// The same without its linearisation, which costs as much as the state.
+void advanceState(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state) noexcept;
 
 }  // namespace hammer_loads

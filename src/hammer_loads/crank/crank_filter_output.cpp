@@ -11,7 +11,8 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  const auto deviation = [&](CrankBelief::Row row) { return std::sqrt(grown(now_)(row, row)); };
+  const ShaftMatrix covariance = grown(now_);
+  const auto deviation = [&](CrankBelief::Row row) { return std::sqrt(covariance(row, row)); };
   return {now_.factor, deviation(CrankBelief::kFactor), now_.state.drive_inertia, deviation(CrankBelief::kInertia)};
 }
 
@@ -28,19 +29,15 @@ bool CrankFilter::hasRunAway(const ShaftState& state) const noexcept {
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   ShaftState state = before_.state, back = now_.state;
-  ShaftLoad load = step_model_(state.position.angle);
   const bool contact = !before_.state.position.isMirrored() && !now_.state.position.isMirrored();
   const Passing passing{before_.tool_met ? 1.0 : now_.factor, contact};
-  advance(step_model_, dt, passing, state, load);
+  advanceState(step_model_, dt, passing, state);
   const double part = dt / step_;
   if (hasRunAway(state)) {
     state = before_.state;
     state.position.turn(part * difference(now_.state.position, before_.state.position));
   }
-  if (part > 0.0) {
-    ShaftLoad back_load = step_model_(back.position.angle);
-    advance(step_model_, dt - step_, passing, back, back_load);
-  }
+  if (part > 0.0) advanceState(step_model_, dt - step_, passing, back);
   if (!(part > 0.0) || hasRunAway(back)) back = state;  // at the step's begin the way back does not count
   const double apart = part * difference(back.position, state.position);
   const Side forward_side = state.position.angle.side, back_side = back.position.angle.side;

@@ -20,10 +20,8 @@ HullWrench deviationAtSample(const Pipeline& pipeline) noexcept {
     const WrenchOutput& last = result.outputs.back();
     if (last.stamp == result.stamp && last.interval == 0.0) return last.deviation.wrench;
   }
-  const CrankTracker& tracker = pipeline.crank().tracker();
-  const DriveReaction drive = driveReaction(pipeline.model(), tracker.driveInertia());
-  const auto covariance = tracker.motionCovariance(pipeline.settings().torque_deviation_part);
-  return hullDeviation(pipeline.model(), drive, result.crank, result.hull.motion, covariance).wrench;
+  const DriveReaction drive = driveReaction(pipeline.model(), pipeline.crank().tracker().driveInertia());
+  return hullDeviation(pipeline.model(), drive, result.crank, result.hull.motion, result.crank_covariance).wrench;
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   const HullWrench wrench = hullWrench(model_, motion, hull_.motion().motion);
   const double most_force = (crank_.tracker().isProven() ? kMostForce : 1.0) * nominal_force_;
   if (!(std::hypot(wrench.force_x, wrench.force_z) <= most_force)) return withhold(Refusal::kImplausible);
+  result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
   followBoom();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();
@@ -127,8 +128,7 @@ void Pipeline::followBoom() noexcept {
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
   const HullWrench motion = motionWrench(model_, drive, motionOf(result_.crank));
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
-  const Eigen::Matrix3d covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
-  const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, covariance);
+  const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, result_.crank_covariance);
   result_.boom =
       &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp)}, step);
   boom_follows_ = true;

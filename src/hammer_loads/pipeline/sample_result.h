@@ -41,7 +41,8 @@ struct SampleResult {
   StampNs sample_stamp{};          ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
   CrankEstimate crank;
-  double consistency{};  ///< CrankTracker::consistency()
+  Eigen::Matrix3d crank_covariance;  ///< of angle, speed and acceleration; zero where the estimator has none
+  double consistency{};              ///< CrankTracker::consistency()
   LinkState links;
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad

@@ -5,6 +5,10 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kNear = 1e-3;    // of the span: where slopes are looked at
+constexpr double kClearly = 1.5;  // 1 would do were slopes along the span on a line
+constexpr double kHardly = 1e-3;  // of a component: a change so small decides nothing
+
 using Components = std::array<double, kHullChannels>;
 
 /// Where in (0, 1) the cubic with these values at 0 and 1 and slopes of opposite signs has its extreme.
@@ -18,25 +22,52 @@ double extremeOfCubic(double value_0, double value_1, double slope_0, double slo
   return s > 0.0 && s < 1.0 ? s : q / a;
 }
 
+/// Further along by its own motion; the angle stays on its side of a blow.
+CrankEstimate moved(CrankEstimate crank, double time, double jerk) noexcept {
+  crank.position.angle.offset += time * crank.speed;
+  crank.speed += time * crank.acceleration;
+  crank.acceleration += time * jerk;
+  return crank;
+}
+
 void insert(double time, ExtremeInstants& sorted) noexcept {
   std::size_t place = sorted.count++;
   for (; place > 0 && sorted.time[place - 1] > time; --place) sorted.time[place] = sorted.time[place - 1];
   sorted.time[place] = time;
 }
 
+/// Whether every component clearly rises or falls all along a span: its values, and those a little within by the motion
+/// at its ends alone. What a sample corrects on the way adds nearly the same to both slopes, which is what the
+/// components rise more than the slopes say.
+bool risesOrFalls(const Components& from, const Components& after, const Components& before,
+                  const Components& to) noexcept {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double slope_0 = (after[i] - from[i]) / kNear, slope_1 = (to[i] - before[i]) / kNear;
+    const double rise = to[i] - from[i], corrected = rise - 0.5 * (slope_0 + slope_1);
+    const double doubt = std::abs(slope_1 - slope_0) + std::abs(corrected) + kHardly * std::abs(to[i]);
+    if (!(std::abs(rise) >= kClearly * doubt)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 ExtremeInstants extremeInstants(const StepLoad& load, const CrankStep& step, const SmoothSpan& span) noexcept {
-  constexpr double kNear = 1e-3;  // of the span: where slopes are looked at
-  const double length = span.to - span.from;
+  const double length = span.to - span.from, near = kNear * length;
   const auto at = [&](const CrankEstimate& crank) {
     Components values;
     wrenchValues(load.at(crank), values.data());
     return values;
   };
-  const Components from = at(span.begin), after = at(step.at(span.from + kNear * length));
-  const Components before = at(step.at(span.to - kNear * length)), to = at(span.finish);
+  const Components from = at(span.begin), to = at(span.finish);
   ExtremeInstants result;
+  const double jerk = (span.finish.acceleration - span.begin.acceleration) / length;
+  const bool at_blow = span.begin.position.angle.offset == 0.0 || span.finish.position.angle.offset == 0.0;
+  const bool turns_on = span.begin.speed * span.finish.speed > 0.0;
+  if (turns_on && !at_blow &&
+      risesOrFalls(from, at(moved(span.begin, near, jerk)), at(moved(span.finish, -near, jerk)), to))
+    return result;
+  const Components after = at(step.at(span.from + near)), before = at(step.at(span.to - near));
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double slope_0 = (after[i] - from[i]) / kNear, slope_1 = (to[i] - before[i]) / kNear;
     if (!(slope_0 * slope_1 < 0.0)) continue;

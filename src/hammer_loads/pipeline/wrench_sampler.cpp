@@ -88,15 +88,16 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const SampleResult& result) no
     output.drive_reaction_y = drive_.torque(output.crank.acceleration, hull.acceleration);
   }
   last_output_ = stamp;
-  output.near_blow = linkState(*model_, motionOf(output.crank)).transmission_angle < near_blow_;
-  addDeviation(hull, at_sample, output);
+  const LinkState links = at_sample ? result.links : linkState(*model_, motionOf(output.crank));
+  output.near_blow = links.transmission_angle < near_blow_;
+  const Eigen::Matrix3d covariance =
+      at_sample ? result.crank_covariance : tracker_->covarianceBetween(time, torque_part_);
+  addDeviation(hull, covariance, output);
   return output;
 }
 
-void WrenchSampler::addDeviation(const HullMotion& hull, bool at_sample, WrenchOutput& output) noexcept {
-  const Eigen::Matrix3d covariance =
-      at_sample ? tracker_->motionCovariance(torque_part_)
-                : tracker_->covarianceBetween(seconds(output.stamp - step_->start()), torque_part_);
+void WrenchSampler::addDeviation(const HullMotion& hull, const Eigen::Matrix3d& covariance,
+                                 WrenchOutput& output) noexcept {
   output.deviation = hullDeviation(*model_, drive_, output.crank, hull, covariance);
   if (kind_ != OutputKind::kMean) return;
   const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, covariance);

@@ -34,7 +34,7 @@ class WrenchSampler {
   WrenchOutput output(StampNs stamp, const SampleResult& result) noexcept;
   void addUpTo(double time) noexcept;
   void followHull(const HullMotion& hull) noexcept;
-  void addDeviation(const HullMotion& hull, bool at_sample, WrenchOutput& output) noexcept;
+  void addDeviation(const HullMotion& hull, const Eigen::Matrix3d& covariance, WrenchOutput& output) noexcept;
 
   const HullModel* model_;
   const CrankStep* step_;
