@@ -130,7 +130,7 @@ void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept 
   for (std::size_t i = 0; i < cylinders_.size(); ++i)
     at_[i] = cylinders_[i].at(joints_.position[cylinders_[i].joint()]);
   weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
-  motion_ = dynamics_.torqueOfMotion(motion);
+  motion_ = dynamics_.torqueOfMotion(pose_, motion);
 }
 
 void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
@@ -140,7 +140,8 @@ void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) 
 
 Boom::TipVibration Boom::tipVibration() const noexcept {
   const Jacobian J = tipJacobian(pose_);
-  return {J * vibration_.displacement(), J * vibration_.velocity(), J * vibration_.acceleration()};
+  return {J.lazyProduct(vibration_.displacement()), J.lazyProduct(vibration_.velocity()),
+          J.lazyProduct(vibration_.acceleration())};
 }
 
 ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {

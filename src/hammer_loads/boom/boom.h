@@ -134,7 +134,7 @@ class Boom {
   std::array<CylinderPosition, kMaxJoints> at_;
 
   void findResponse() noexcept;
-  void takeDeviations(BoomDeviations& result) const noexcept;
+  void takeDeviations(BoomDeviations& result) noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   /// Columns: joint accelerations, force and moment on the tip. Rows: joint torques, sections, joints (force and moment
   /// of each), cylinders' forces on their rods' pins.

@@ -52,6 +52,7 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
   findResponse();
   const Eigen::Index joints = chain_.joints();
   const bool vibrates = !rigid && vibration_.known();
+  const JointVector vibration = vibration_.acceleration();
   variance_.setZero();
   for (int run = rigid ? VibrationSpread::kLoads : 0; run < VibrationSpread::kLoads + w_tip.count; ++run) {
     difference_.setZero();
@@ -59,9 +60,9 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
       if (by != 0.0) difference_ += by * response_.col(column);
     };
     if (vibrates && run < spread.runs()) {
-      const JointVector acceleration = spread.accelerationDifference(run, vibration_);
+      const JointVector acceleration = spread.accelerationDifference(run, vibration);
       for (Eigen::Index j = 0; j < joints; ++j) add(j, acceleration[j]);
-      difference_.head(joints) -= vibration_.modes().mass * acceleration;
+      difference_.head(joints) -= vibration_.modes().mass.lazyProduct(acceleration);
     }
     if (run >= VibrationSpread::kLoads) {
       const Wrench& w = w_tip.part[static_cast<std::size_t>(run - VibrationSpread::kLoads)];
@@ -77,12 +78,14 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
 }
 
 /// From variance_.
-void Boom::takeDeviations(BoomDeviations& result) const noexcept {
+void Boom::takeDeviations(BoomDeviations& result) noexcept {
+  Eigen::VectorXd& deviation = difference_;
+  deviation = variance_.cwiseSqrt();
   Eigen::Index row = chain_.joints();
-  result.torque = variance_.head(row).cwiseSqrt();
-  const auto next = [&]() -> Eigen::Vector3d {
+  result.torque = deviation.head(row);
+  const auto next = [&] {
     row += 3;
-    return variance_.segment<3>(row - 3).cwiseSqrt();
+    return deviation.segment<3>(row - 3);
   };
   for (std::size_t i = 0; i < sections().size(); ++i)
     result.section[i].force = next(), result.section[i].torque = next();

@@ -59,17 +59,23 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
 }
 
 JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) noexcept {
-  JointVector force = JointVector::Zero(modes.count);
-  for (int i = 0; i < modes.count; ++i) {
-    force += joint_torque[modes.joint[static_cast<std::size_t>(i)]] * modes.shape.row(i).transpose();
+  JointVector force(modes.count);
+  for (int k = 0; k < modes.count; ++k) {
+    double sum = 0.0;
+    for (int i = 0; i < modes.count; ++i)
+      sum += joint_torque[modes.joint[static_cast<std::size_t>(i)]] * modes.shape(i, k);
+    force[k] = sum;
   }
   return force;
 }
 
 JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept {
   JointVector joints = JointVector::Zero(modes.mass.rows());
-  for (int i = 0; i < modes.count; ++i)
-    joints[modes.joint[static_cast<std::size_t>(i)]] = modes.shape.row(i).dot(modal);
+  for (int i = 0; i < modes.count; ++i) {
+    double sum = modes.shape(i, 0) * modal[0];
+    for (int k = 1; k < modes.count; ++k) sum += modes.shape(i, k) * modal[k];
+    joints[modes.joint[static_cast<std::size_t>(i)]] = sum;
+  }
   return joints;
 }
 

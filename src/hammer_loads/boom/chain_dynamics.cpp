@@ -1,28 +1,24 @@
 #include "hammer_loads/boom/chain_dynamics.h"
 
 #include <kdl/chaindynparam.hpp>
-#include <kdl/chainidsolver_recursive_newton_euler.hpp>
+
+#include "hammer_loads/boom/body_motion.h"
 
 namespace hammer_loads {
 
 struct ChainDynamics::Solvers {
   explicit Solvers(const Chain& given)
       : chain(given),
-        newton_euler(chain.kdl(), KDL::Vector::Zero()),
         composite_bodies(chain.kdl(), KDL::Vector::Zero()),
         position(chain.kdl().getNrOfJoints()),
-        velocity(chain.kdl().getNrOfJoints()),
-        acceleration(chain.kdl().getNrOfJoints()),
-        torque(chain.kdl().getNrOfJoints()),
         mass(chain.kdl().getNrOfJoints()),
-        no_wrenches(chain.kdl().getNrOfSegments(), KDL::Wrench::Zero()) {}
+        bodies(bodiesOf(given)) {}
 
   Chain chain;  ///< keeps alive what the solvers refer to
-  KDL::ChainIdSolver_RNE newton_euler;
   KDL::ChainDynParam composite_bodies;
-  KDL::JntArray position, velocity, acceleration, torque;
+  KDL::JntArray position;
   KDL::JntSpaceInertiaMatrix mass;
-  KDL::Wrenches no_wrenches;
+  std::vector<RigidBody> bodies;
 };
 
 ChainDynamics::ChainDynamics(const Chain& chain) : solvers_(std::make_unique<Solvers>(chain)) {}
@@ -32,14 +28,23 @@ ChainDynamics& ChainDynamics::operator=(const ChainDynamics& other) { return *th
 ChainDynamics::ChainDynamics(ChainDynamics&&) noexcept = default;
 ChainDynamics& ChainDynamics::operator=(ChainDynamics&&) noexcept = default;
 
-JointVector ChainDynamics::torqueOfMotion(const JointMotion& motion) noexcept {
-  Solvers& s = *solvers_;
-  if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return JointVector::Zero(s.chain.joints());
-  s.position.data = motion.position;
-  s.velocity.data = motion.velocity;
-  s.acceleration.data = motion.acceleration;
-  s.newton_euler.CartToJnt(s.position, s.velocity, s.acceleration, s.no_wrenches, s.torque);
-  return -s.torque.data;
+JointVector ChainDynamics::torqueOfMotion(const ChainPose& pose, const JointMotion& motion) const noexcept {
+  const Chain& chain = solvers_->chain;
+  JointVector torque = JointVector::Zero(chain.joints());
+  if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return torque;
+  BodyMotions links;
+  findMotions(chain, pose, motion, Eigen::Vector3d::Zero(), links);
+  Wrench load;
+  for (int i = chain.links() - 1; i > 0; --i) {
+    const auto here = static_cast<std::size_t>(i);
+    load = load + bodyLoad(solvers_->bodies[here], pose.link(i), links[here]);
+    const ChainLink& link = chain.link(i);
+    if (link.joint < 0) continue;
+    const auto j = static_cast<std::size_t>(link.joint);
+    torque[link.joint] = link.prismatic ? pose.axis_B[j].dot(load.force)
+                                        : pose.axis_B[j].dot(load.torque - pose.p_BJ_B[j].cross(load.force));
+  }
+  return torque;
 }
 
 JointMatrix ChainDynamics::massMatrix(const JointVector& position) noexcept {

@@ -1,9 +1,9 @@
-/// What moving masses demand of the joints: KDL's recursions with their arrays made once.
+/// What moving masses demand of the joints.
 #pragma once
 
 #include <memory>
 
-#include "hammer_loads/boom/chain.h"
+#include "hammer_loads/boom/chain_pose.h"
 
 namespace hammer_loads {
 
@@ -18,11 +18,11 @@ class ChainDynamics {
   ChainDynamics& operator=(ChainDynamics&&) noexcept;
 
   /// Torque on the joints from the links' inertia as the boom moves: -(M q'' + c(q, q')) [N m], without weight.
-  /// Positive drives the joint forward, as in jointTorqueOfTipLoad(). Recursive Newton-Euler; nothing is computed at
-  /// rest.
-  JointVector torqueOfMotion(const JointMotion& motion) noexcept;
+  /// Positive drives the joint forward, as in jointTorqueOfTipLoad(). pose: of motion.position. Recursive Newton-Euler;
+  /// nothing is computed at rest.
+  JointVector torqueOfMotion(const ChainPose& pose, const JointMotion& motion) const noexcept;
 
-  /// Mass matrix M(q) [kg m2], symmetric, positive definite. Composite rigid bodies.
+  /// Mass matrix M(q) [kg m2], symmetric, positive definite. KDL's composite rigid bodies, its arrays made once.
   JointMatrix massMatrix(const JointVector& position) noexcept;
 
  private:

@@ -2,37 +2,13 @@
 
 #include <utility>
 
+#include "hammer_loads/boom/body_motion.h"
+
 namespace hammer_loads {
 namespace {
 
 /// No product of it with lengths and levers of a chain that could be built overflows [N], [N m].
 constexpr double kMostLoad = 1e200;
-
-/// How a link moves in the root's axes; the root accelerates against gravity, which stands for the weight.
-struct LinkState {
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();                  ///< [rad/s]
-  Eigen::Vector3d angular_acceleration = Eigen::Vector3d::Zero();  ///< [rad/s2]
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();          ///< of its origin less gravity [m/s2]
-
-  Eigen::Vector3d accelerationAt(const Eigen::Vector3d& r) const noexcept {
-    return acceleration + angular_acceleration.cross(r) + rate.cross(rate.cross(r));
-  }
-};
-
-/// Weight and inertia of a body as a load on what holds it, in the root's frame.
-Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const LinkState& link) noexcept {
-  const Eigen::Matrix3d& R = X_BL.linear();
-  const Eigen::Vector3d r = R * body.com;
-  const Eigen::Vector3d rate_L = R.transpose() * link.rate;
-  const Eigen::Vector3d moment_L =
-      body.inertia * (R.transpose() * link.angular_acceleration) + rate_L.cross(body.inertia * rate_L);
-  Wrench load;
-  load.force = -body.mass * link.accelerationAt(r);
-  load.torque = (X_BL.translation() + r).cross(load.force) - R * moment_L;
-  return load;
-}
-
-Wrench sum(const Wrench& a, const Wrench& b) noexcept { return {a.force + b.force, a.torque + b.torque}; }
 
 Wrench forceAt(const Eigen::Vector3d& p, const Eigen::Vector3d& force) noexcept { return {force, p.cross(force)}; }
 
@@ -41,32 +17,17 @@ Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& R, const Wrench& 
   return {R.transpose() * w_B.force, R.transpose() * (w_B.torque - p.cross(w_B.force))};
 }
 
-RigidBody bodyOf(const KDL::Segment& segment) {
-  KDL::RigidBodyInertia given = segment.getInertia();  // its RefPoint() is not const
-  RigidBody body;
-  body.mass = given.getMass();
-  const KDL::Vector com = given.getCOG();
-  body.com = {com.x(), com.y(), com.z()};
-  const KDL::RotationalInertia about_com = given.RefPoint(com).getRotationalInertia();
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) body.inertia(r, c) = about_com.data[3 * r + c];
-  }
-  return body;
-}
-
 }  // namespace
 
 struct SteelLoadFinder::Working {
-  std::array<LinkState, kMaxLinks> link;
+  BodyMotions link;                         ///< less gravity
   std::array<Wrench, kMaxLinks> beyond;     ///< hammer, weight, inertia of this link and all beyond
   std::array<Wrench, kMaxJoints> cylinder;  ///< ON the link beyond, by each cylinder
 };
 
 SteelLoadFinder::SteelLoadFinder(const Chain& chain, const std::vector<Cylinder>& cylinders,
                                  std::vector<Section> sections)
-    : chain_(chain), sections_(std::move(sections)) {
-  body_.emplace_back();  // the root's own load goes into the ground
-  for (const KDL::Segment& segment : chain_.kdl().segments) body_.push_back(bodyOf(segment));
+    : chain_(chain), body_(bodiesOf(chain)), sections_(std::move(sections)) {
   for (const Cylinder& cylinder : cylinders) {
     const CylinderParameters& p = cylinder.parameters();
     anchors_.push_back(
@@ -93,34 +54,14 @@ bool SteelLoadFinder::find(const ChainState& state, SteelLoads& result) const no
 }
 
 bool SteelLoadFinder::addInertiaAndWeight(const ChainState& state, Working& working) const noexcept {
-  working.link[0].acceleration = -state.g_B;
-  const int links = chain_.links();
-  for (int i = 1; i < links; ++i) {
-    const auto here = static_cast<std::size_t>(i);
-    const LinkState& before = working.link[here - 1];
-    LinkState& now = working.link[here];
-    now = before;
-    now.acceleration =
-        before.accelerationAt(state.pose.X_BL[here].translation() - state.pose.X_BL[here - 1].translation());
-    const int joint = chain_.link(i).joint;
-    if (joint < 0) continue;
-    const Eigen::Vector3d& axis = state.pose.axis_B[static_cast<std::size_t>(joint)];
-    const Eigen::Vector3d velocity = axis * state.motion.velocity[joint];
-    const Eigen::Vector3d acceleration = axis * state.motion.acceleration[joint];
-    if (state.pose.prismatic[static_cast<std::size_t>(joint)]) {
-      now.acceleration += acceleration + 2.0 * before.rate.cross(velocity);
-    } else {
-      now.rate += velocity;
-      now.angular_acceleration += acceleration + before.rate.cross(velocity);
-    }
-  }
+  findMotions(chain_, state.pose, state.motion, -state.g_B, working.link);
   const Pose& X_BT = state.pose.tip();
   Wrench load{X_BT.linear() * state.w_tip.force, X_BT.linear() * state.w_tip.torque};
   load.torque += X_BT.translation().cross(load.force);
   bool finite = true;
-  for (int i = links - 1; i > 0; --i) {
+  for (int i = chain_.links() - 1; i > 0; --i) {
     const auto here = static_cast<std::size_t>(i);
-    load = sum(load, bodyLoad(body_[here], state.pose.X_BL[here], working.link[here]));
+    load = load + bodyLoad(body_[here], state.pose.X_BL[here], working.link[here]);
     working.beyond[here] = load;
     finite = finite && load.force.cwiseAbs().sum() < kMostLoad && load.torque.cwiseAbs().sum() < kMostLoad;
   }
@@ -147,7 +88,7 @@ void SteelLoadFinder::findJoints(const ChainState& state, const Working& working
     const int beyond = chain_.linkBeyond(j);
     Wrench load = working.beyond[static_cast<std::size_t>(beyond)];
     for (std::size_t i = 0; i < anchors_.size(); ++i) {
-      if (anchors_[i].cylinder.joint() == j) load = sum(load, working.cylinder[i]);
+      if (anchors_[i].cylinder.joint() == j) load = load + working.cylinder[i];
     }
     const Pose& X_BP = state.pose.link(beyond - 1);
     result.joint[static_cast<std::size_t>(j)] = seenAt(X_BP * chain_.link(beyond).origin, X_BP.linear(), load);
@@ -159,8 +100,8 @@ void SteelLoadFinder::findSections(const ChainState& state, const Working& worki
     const Section& section = sections_[k];
     const auto link = static_cast<std::size_t>(section.link());
     const Pose& X_BL = state.pose.X_BL[link];
-    Wrench load = sum(working.beyond[link + 1], bodyLoad(section.part(), X_BL, working.link[link]));
-    for (std::size_t i : crossing_[k]) load = sum(load, working.cylinder[i]);
+    Wrench load = working.beyond[link + 1] + bodyLoad(section.part(), X_BL, working.link[link]);
+    for (std::size_t i : crossing_[k]) load = load + working.cylinder[i];
     const Pose& X_LC = section.poseInLink();
     result.section[k] = seenAt(X_BL * X_LC.translation(), X_BL.linear() * X_LC.linear(), load);
   }

@@ -54,25 +54,31 @@ void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadS
   const JointVector from = modalForce(modes_, torque.from), end = modalForce(modes_, torque.to);
   const JointVector mean = modalForce(modes_, torque.mean);
   load_ = to;
-  for (int run = 0; run < runs(); ++run) {
-    const auto i = static_cast<std::size_t>(run);
-    const bool error = run >= kLoads;
-    const JointVector last = error ? modalForce(modes_, to.col(run - kLoads)) : end;
-    const JointVector first = !error ? from : same ? force_[i] : last;
-    const JointVector middle = error ? JointVector(0.5 * (first + last)) : mean;
-    for (int k = 0; k < modes_.count; ++k) {
-      const Mode& m = mode(run, k);
-      const auto kept = static_cast<std::size_t>(std::min(run, kLoads));
-      const ModeResponse& r = response_[kept][static_cast<std::size_t>(k)].at(m, step);
-      const ModeState next = advanced(m, {x_[i][k], v_[i][k]}, {first[k], last[k], middle[k]}, step, r);
-      x_[i][k] = next.x, v_[i][k] = next.v;
-    }
-    force_[i] = last;
-    if (!x_[i].allFinite() || !v_[i].allFinite() || !last.allFinite()) {
-      rest();
-      return;
-    }
+  bool finite = end.allFinite();
+  for (int run = 0; run < kLoads; ++run) finite = advanceRun(run, step, from, end, mean) && finite;
+  for (int run = kLoads; run < runs(); ++run) {
+    const JointVector last = modalForce(modes_, to.col(run - kLoads));
+    const JointVector first = same ? force_[static_cast<std::size_t>(run)] : last;
+    finite = finite && last.allFinite();
+    finite = advanceRun(run, step, first, last, 0.5 * (first + last)) && finite;
   }
+  if (!finite) rest();
+}
+
+/// False: it is not finite any more.
+bool VibrationSpread::advanceRun(int run, double step, const JointVector& from, const JointVector& to,
+                                 const JointVector& mean) noexcept {
+  const auto i = static_cast<std::size_t>(run);
+  bool finite = true;
+  for (int k = 0; k < modes_.count; ++k) {
+    const Mode& m = mode(run, k);
+    const ModeResponse& r = response_[std::min<std::size_t>(i, kLoads)][static_cast<std::size_t>(k)].at(m, step);
+    const ModeState next = advanced(m, {x_[i][k], v_[i][k]}, {from[k], to[k], mean[k]}, step, r);
+    x_[i][k] = next.x, v_[i][k] = next.v;
+    finite = finite && std::isfinite(next.x) && std::isfinite(next.v);
+  }
+  force_[i] = to;
+  return finite;
 }
 
 void VibrationSpread::strike(const JointVector& impulse) noexcept {
@@ -80,13 +86,13 @@ void VibrationSpread::strike(const JointVector& impulse) noexcept {
   for (std::size_t run = 0; run < kLoads; ++run) v_[run] += modalForce(modes_, impulse);
 }
 
-JointVector VibrationSpread::accelerationDifference(int run, const Vibration& vibration) const noexcept {
+JointVector VibrationSpread::accelerationDifference(int run, const JointVector& vibration) const noexcept {
   if (modes_.count == 0) return JointVector::Zero(modes_.mass.rows());
   const auto i = static_cast<std::size_t>(run);
   JointVector modal(modes_.count);
   for (int k = 0; k < modes_.count; ++k) modal[k] = acceleration(mode(run, k), {x_[i][k], v_[i][k]}, force_[i][k]);
   const JointVector joints = jointsOf(modes_, modal);
-  return run < kLoads ? JointVector(joints - vibration.acceleration()) : joints;
+  return run < kLoads ? JointVector(joints - vibration) : joints;
 }
 
 }  // namespace hammer_loads

@@ -37,12 +37,15 @@ class VibrationSpread {
   const OilDeviation& deviation(int mode) const noexcept { return deviation_[static_cast<std::size_t>(mode)]; }
   int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }
   /// By what the joints' accelerations of a run differ from those of the vibration, at the same instant [rad/s2].
-  JointVector accelerationDifference(int run, const Vibration& vibration) const noexcept;
+  JointVector accelerationDifference(int run, const JointVector& vibration) const noexcept;
 
  private:
   const Mode& mode(int run, int k) const noexcept {
     return mode_[static_cast<std::size_t>(std::min(run, kLoads))][static_cast<std::size_t>(k)];
   }
+
+  bool advanceRun(int run, double step, const JointVector& from, const JointVector& to,
+                  const JointVector& mean) noexcept;
 
   OilDeviation given_;
   std::array<OilDeviation, kMaxJoints> deviation_;

@@ -1,0 +1,63 @@
+#include "hammer_loads/boom/body_motion.h"
+
+namespace hammer_loads {
+namespace {
+
+RigidBody bodyOf(const KDL::Segment& segment) {
+  KDL::RigidBodyInertia given = segment.getInertia();  // its RefPoint() is not const
+  RigidBody body;
+  body.mass = given.getMass();
+  const KDL::Vector com = given.getCOG();
+  body.com = {com.x(), com.y(), com.z()};
+  const KDL::RotationalInertia about_com = given.RefPoint(com).getRotationalInertia();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) body.inertia(r, c) = about_com.data[3 * r + c];
+  }
+  return body;
+}
+
+}  // namespace
+
+std::vector<RigidBody> bodiesOf(const Chain& chain) {
+  std::vector<RigidBody> bodies(1);
+  for (const KDL::Segment& segment : chain.kdl().segments) bodies.push_back(bodyOf(segment));
+  return bodies;
+}
+
+void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
+                 const Eigen::Vector3d& root_acceleration, BodyMotions& result) noexcept {
+  result[0] = {};
+  result[0].acceleration = root_acceleration;
+  for (int i = 1; i < chain.links(); ++i) {
+    const auto here = static_cast<std::size_t>(i);
+    const BodyMotion& before = result[here - 1];
+    BodyMotion& now = result[here];
+    now = before;
+    now.acceleration = before.accelerationAt(pose.X_BL[here].translation() - pose.X_BL[here - 1].translation());
+    const int joint = chain.link(i).joint;
+    if (joint < 0) continue;
+    const Eigen::Vector3d& axis = pose.axis_B[static_cast<std::size_t>(joint)];
+    const Eigen::Vector3d velocity = axis * motion.velocity[joint];
+    const Eigen::Vector3d acceleration = axis * motion.acceleration[joint];
+    if (pose.prismatic[static_cast<std::size_t>(joint)]) {
+      now.acceleration += acceleration + 2.0 * before.rate.cross(velocity);
+    } else {
+      now.rate += velocity;
+      now.angular_acceleration += acceleration + before.rate.cross(velocity);
+    }
+  }
+}
+
+Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion) noexcept {
+  const Eigen::Matrix3d& R = X_BL.linear();
+  const Eigen::Vector3d r = R * body.com;
+  const Eigen::Vector3d rate_L = R.transpose() * motion.rate;
+  const Eigen::Vector3d moment_L =
+      body.inertia * (R.transpose() * motion.angular_acceleration) + rate_L.cross(body.inertia * rate_L);
+  Wrench load;
+  load.force = -body.mass * motion.accelerationAt(r);
+  load.torque = (X_BL.translation() + r).cross(load.force) - R * moment_L;
+  return load;
+}
+
+}  // namespace hammer_loads
