@@ -118,7 +118,7 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   const Eigen::Index joints = chain.joints(), cylinder_count = static_cast<Eigen::Index>(cylinders_.size());
   response_.setZero(7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * cylinder_count,
                     joints + 6);
-  difference_.setZero(response_.rows()), variance_.setZero(response_.rows());
+  deviation_.setZero(response_.rows());
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }

@@ -134,13 +134,13 @@ class Boom {
   std::array<CylinderPosition, kMaxJoints> at_;
 
   void findResponse() noexcept;
-  void takeDeviations(BoomDeviations& result) noexcept;
+  void takeDeviations(BoomDeviations& result) const noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   /// Columns: joint accelerations, force and moment on the tip. Rows: joint torques, sections, joints (force and moment
   /// of each), cylinders' forces on their rods' pins.
-  Eigen::MatrixXd response_;
-  JointVector response_at_;                ///< where it belongs; NaN: nowhere yet
-  Eigen::VectorXd difference_, variance_;  ///< one entry a row
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> response_;
+  JointVector response_at_;    ///< where it belongs; NaN: nowhere yet
+  Eigen::VectorXd deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

@@ -1,8 +1,57 @@
+#include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/boom/boom.h"
 
 namespace hammer_loads {
+namespace {
+
+/// One number for each run of a spread.
+using Runs = Eigen::Array<double, VibrationSpread::kMaxRuns, 1>;
+
+/// What makes the runs differ from the loads: how much each column of the response counts, and joint torques beside.
+struct Shares {
+  std::size_t count{};  ///< of columns that any run has
+  std::array<Eigen::Index, kMaxJoints + 6> column;
+  std::array<Runs, kMaxJoints + 6> by;
+  std::array<Runs, kMaxJoints> torque;  ///< by the modes' mass matrix
+
+  void add(Eigen::Index of_column, const Runs& share) noexcept {
+    if (!(share != 0.0).any()) return;
+    column[count] = of_column;
+    by[count++] = share;
+  }
+};
+
+Shares sharesOf(const VibrationSpread& spread, const Vibration& vibration, const WrenchSpread& w_tip, bool rigid,
+                Eigen::Index joints) noexcept {
+  using Columns = Eigen::Matrix<double, kMaxJoints, VibrationSpread::kMaxRuns>;
+  Columns acceleration = Columns::Zero(), torque = Columns::Zero();
+  const int runs = rigid || !vibration.known() ? 0 : std::min(spread.runs(), VibrationSpread::kLoads + w_tip.count);
+  const JointVector of_vibration = vibration.acceleration();
+  for (int run = 0; run < runs; ++run) {
+    const JointVector of_run = spread.accelerationDifference(run, of_vibration);
+    acceleration.col(run).head(joints) = of_run;
+    torque.col(run).head(joints) = -vibration.modes().mass.lazyProduct(of_run);
+  }
+  Shares shares;
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    shares.add(j, acceleration.row(j).transpose());
+    shares.torque[static_cast<std::size_t>(j)] = torque.row(j).transpose();
+  }
+  for (int k = 0; k < 6; ++k) {
+    Runs share = Runs::Zero();
+    for (int i = 0; i < w_tip.count; ++i) {
+      const Wrench& w = w_tip.part[static_cast<std::size_t>(i)];
+      share[VibrationSpread::kLoads + i] = (k < 3 ? w.force : w.torque)[k % 3];
+    }
+    shares.add(joints + k, share);
+  }
+  return shares;
+}
+
+}  // namespace
+
 LoadSpread Boom::spreadTorque(const WrenchSpread& w_tip) const noexcept {
   LoadSpread torque(chain_.joints(), w_tip.count);
   for (int i = 0; i < w_tip.count; ++i) torque.col(i) = hammerTorque(w_tip.part[static_cast<std::size_t>(i)]);
@@ -50,42 +99,26 @@ void Boom::findResponse() noexcept {
 void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                       BoomDeviations& result) noexcept {
   findResponse();
-  const Eigen::Index joints = chain_.joints();
-  const bool vibrates = !rigid && vibration_.known();
-  const JointVector vibration = vibration_.acceleration();
-  variance_.setZero();
-  for (int run = rigid ? VibrationSpread::kLoads : 0; run < VibrationSpread::kLoads + w_tip.count; ++run) {
-    difference_.setZero();
-    const auto add = [&](Eigen::Index column, double by) {
-      if (by != 0.0) difference_ += by * response_.col(column);
-    };
-    if (vibrates && run < spread.runs()) {
-      const JointVector acceleration = spread.accelerationDifference(run, vibration);
-      for (Eigen::Index j = 0; j < joints; ++j) add(j, acceleration[j]);
-      difference_.head(joints) -= vibration_.modes().mass.lazyProduct(acceleration);
-    }
-    if (run >= VibrationSpread::kLoads) {
-      const Wrench& w = w_tip.part[static_cast<std::size_t>(run - VibrationSpread::kLoads)];
-      for (int k = 0; k < 3; ++k) add(joints + k, w.force[k]), add(joints + 3 + k, w.torque[k]);
-    }
-    if (run == VibrationSpread::kSofter) {
-      variance_ = variance_.cwiseMax(difference_.cwiseAbs2());  // stiffer and softer exclude each other
-    } else {
-      variance_ += difference_.cwiseAbs2();
-    }
+  const Shares shares = sharesOf(spread, vibration_, w_tip, rigid, chain_.joints());
+  for (Eigen::Index row = 0; row < response_.rows(); ++row) {
+    Runs difference = row < chain_.joints() ? shares.torque[static_cast<std::size_t>(row)] : Runs(Runs::Zero());
+    for (std::size_t i = 0; i < shares.count; ++i) difference += response_(row, shares.column[i]) * shares.by[i];
+    const Runs square = difference.square();
+    // Stiffer and softer exclude each other.
+    deviation_[row] = std::max(square[VibrationSpread::kStiffer], square[VibrationSpread::kSofter]);
+    for (int run = VibrationSpread::kDamped; run < VibrationSpread::kMaxRuns; ++run) deviation_[row] += square[run];
   }
+  deviation_ = deviation_.cwiseSqrt();  // two at a time
   takeDeviations(result);
 }
 
-/// From variance_.
-void Boom::takeDeviations(BoomDeviations& result) noexcept {
-  Eigen::VectorXd& deviation = difference_;
-  deviation = variance_.cwiseSqrt();
+/// From deviation_.
+void Boom::takeDeviations(BoomDeviations& result) const noexcept {
   Eigen::Index row = chain_.joints();
-  result.torque = deviation.head(row);
+  result.torque = deviation_.head(row);
   const auto next = [&] {
     row += 3;
-    return deviation.segment<3>(row - 3);
+    return deviation_.segment<3>(row - 3);
   };
   for (std::size_t i = 0; i < sections().size(); ++i)
     result.section[i].force = next(), result.section[i].torque = next();

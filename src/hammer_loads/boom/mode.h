@@ -1,7 +1,9 @@
 /// One mode of vibration: unit mass, x'' + 2 zeta omega x' + omega^2 x = f, advanced exactly.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "hammer_loads/util/constants.h"
 
@@ -23,6 +25,13 @@ struct ModeResponse {
   double impulse{}, step{}, ramp{}, parabola{};
 };
 
+/// 1/n: a division would cost as much as the rest of a term.
+constexpr auto kInverse = [] {
+  std::array<double, 24> inverse{};
+  for (std::size_t n = 1; n < inverse.size(); ++n) inverse[n] = 1.0 / static_cast<double>(n);
+  return inverse;
+}();
+
 inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
   const double w = mode.omega, ww = w * w, damping = 2.0 * mode.zeta * w;
   ModeResponse r;
@@ -31,11 +40,12 @@ inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
     // c_1 = -2 zeta, c_k = -2 zeta c_(k-1) - c_(k-2); |c_k| <= k + 1. The equation of motion gives the others.
     const double x = w * t;
     double term = 1.0 / 6.0, c = 1.0, c_before = 0.0;  // term = x^k/(k+3)!
-    for (int k = 0; k < 20; ++k) {
+    for (std::size_t k = 0; k < 20; ++k) {
+      const double next = term * kInverse[k + 4];
       r.ramp += c * term;
-      r.parabola += c * term / (k + 4);
-      term *= x / (k + 4);
-      if ((k + 2) * term < 1e-18) break;
+      r.parabola += c * next;
+      term = x * next;
+      if (static_cast<double>(k + 2) * term < 1e-18) break;
       const double c_next = -2.0 * mode.zeta * c - c_before;
       c_before = c;
       c = c_next;
