@@ -223,6 +223,17 @@ TEST(Ledger, AFullDiskCostsNothingButTime) {
   EXPECT_EQ(statesOf(contentsOf(file.path()).totals.at(0)), statesOf(whole.take().counts));
 }
 
+TEST(Ledger, LookingAtSomethingElseLeavesNoFileBesideIt) {
+  const LedgerFile file;
+  std::ofstream(file.path("text")) << std::string(2000, 'x');
+  EXPECT_TRUE(LedgerRun(file.path("text"), machine(), "a").prepare());
+  EXPECT_FALSE(std::filesystem::exists(file.path("text.lock")));
+  LedgerRun good(file.path(), machine(), "a");
+  ASSERT_EQ(good.prepare(), kWritten);
+  EXPECT_TRUE(std::filesystem::exists(file.path() + ".lock"));
+  EXPECT_TRUE(LedgerRun(file.path(), machine(), "b").hold()) << "one writer at a time";
+}
+
 TEST(Ledger, AnythingElseInItsPlaceIsLeftAsItIs) {
   const LedgerFile file;
   LifeRecorder part = recorder();

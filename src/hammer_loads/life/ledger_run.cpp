@@ -20,25 +20,41 @@ class LedgerRun::Lock {
  public:
   /// Nothing after a problem.
   static std::unique_ptr<Lock> take(const std::string& path, std::string& problem, bool& busy) {
-    const int file = open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    const std::string name = path + ".lock";
+    constexpr int kHow = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW;
+    int file = open(name.c_str(), kHow | O_EXCL, 0666);
+    const bool made = file >= 0;
+    if (!made) file = open(name.c_str(), kHow, 0666);
     if (file < 0) {
       problem = std::string("its lock cannot be opened: ") + std::strerror(errno);
       return nullptr;
     }
-    auto lock = std::unique_ptr<Lock>(new Lock(file));
-    if (flock(file, LOCK_EX | LOCK_NB) == 0) return lock;
-    busy = errno == EWOULDBLOCK;
+    auto lock = std::unique_ptr<Lock>(new Lock(file, made ? name : ""));
+    const bool locked = flock(file, LOCK_EX | LOCK_NB) == 0;
+    if (locked && isAt(name, file)) return lock;
+    busy = locked || errno == EWOULDBLOCK;
     problem = busy ? "another run is writing it; waiting for that to end"
                    : std::string("its lock cannot be taken: ") + std::strerror(errno);
     return nullptr;
   }
   ~Lock() { close(file_); }
+  /// Leaves no file behind that was not there before.
+  void remove() {
+    if (!made_.empty()) unlink(made_.c_str());
+  }
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;
 
  private:
-  explicit Lock(int file) : file_(file) {}
+  /// False: another run has removed it between opening and locking.
+  static bool isAt(const std::string& name, int file) {
+    struct stat there {
+    }, here{};
+    return stat(name.c_str(), &there) == 0 && fstat(file, &here) == 0 && there.st_ino == here.st_ino;
+  }
+  Lock(int file, std::string made) : file_(file), made_(std::move(made)) {}
   int file_;
+  std::string made_;  ///< its name; empty where it was there before
 };
 
 namespace {
@@ -85,12 +101,17 @@ std::optional<std::string> LedgerRun::hold() {
 }
 
 std::optional<std::string> LedgerRun::prepare() {
+  const bool held = lock_ != nullptr;
   if (std::optional<std::string> trouble = hold()) return trouble;
   if (access(path_.c_str(), F_OK) != 0) return std::nullopt;
   Database database(path_, Database::Use::kWrite, kPatience);
   beginAsLedger(database);
   database.run("ROLLBACK");
   if (database.good()) return std::nullopt;
+  if (!held) {
+    lock_->remove();
+    lock_.reset();
+  }
   return problem(database.problem());
 }
 
