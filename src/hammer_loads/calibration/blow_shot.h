@@ -43,9 +43,26 @@ struct ShotPoint {
   double offset{}, speed{}, acceleration{};
 };
 
+/// What moves one side: speed at the blow, torques in the nodes, logarithm of the drive inertia, the law's two numbers.
+enum HalfIndex : Eigen::Index {
+  kOwnSpeed,
+  kOwnTorques,
+  kOwnLogInertia = kOwnTorques + kNodesBeside + 1,
+  kOwnStiffness,
+  kOwnDrag,
+  kHalfMoving
+};
+
+/// d(offset, speed)/d(each of HalfIndex).
+using ShotSlopes = Eigen::Matrix<double, 2, kHalfMoving>;
+
 /// The crank at times away from the blow, ascending, >= 0 [s] (before it: how long before). Runge-Kutta of order 4 in
 /// angle and sqrt(inertia) speed, steps of at most 0.06 rad.
 void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
            std::vector<ShotPoint>& points);
+
+/// The same with its derivatives, integrated along with it.
+void shoot(const ShaftModel& model, const HalfShot& half, const std::vector<double>& times,
+           std::vector<ShotPoint>& points, std::vector<ShotSlopes>& slopes);
 
 }  // namespace hammer_loads::calibration

@@ -40,10 +40,11 @@ Free allFree(bool centred) {
   return free;
 }
 
-ResidualCurve curveOf(const std::vector<SegmentFit>& fits, const SegmentModel& model, const Globals& globals) {
+ResidualCurve curveOf(const std::vector<SegmentFit>& fits, const SegmentModel& model, const Globals& globals,
+                      const Noise& noise) {
   std::vector<double> n(kCurveParts), sum(kCurveParts), squares(kCurveParts);
   for (const SegmentFit& fit : fits) {
-    for (const ResidualAt& r : fit.residuals(model, globals)) {
+    for (const ResidualAt& r : fit.residuals(model, globals, noise)) {
       const auto part = static_cast<std::size_t>(
           std::clamp((r.offset / kTwoPi + 0.5) * kCurveParts, 0.0, static_cast<double>(kCurveParts - 1)));
       n[part] += 1.0, sum[part] += r.angle, squares[part] += r.angle * r.angle;
@@ -226,13 +227,13 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   }
   result.left_out = fit.left_out;
   result.noise = fit.noise;
-  result.after = curveOf(fit.fits, model, fit.globals);
+  result.after = curveOf(fit.fits, model, fit.globals, fit.noise);
   const double curve_square = systematic(result.after);
   fit.covariance *= std::max(1.0, curve_square);
   removeBias(fit, model, allFree(centred), gain * track.facts.count);
   Globals in_force = basis.in_force;
   in_force.tail<kShaping>() = fit.globals.tail<kShaping>();
-  result.before = curveOf(fittedAlone(segments, model, in_force, fit.noise), model, in_force);
+  result.before = curveOf(fittedAlone(segments, model, in_force, fit.noise), model, in_force, fit.noise);
   addEstimates(result, fit, basis, centred);
   addCorrelations(result, fit);
   addRemarks(result, curve_square);

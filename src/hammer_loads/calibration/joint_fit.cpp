@@ -12,11 +12,13 @@ constexpr int kLeastIterations = 8;
 constexpr int kLocalIterations = 4;
 constexpr int kReplicas = 4;  // of the recording, by which the bias is found
 constexpr int kReplicaIterations = 3;
-constexpr double kBiasDoubt = 0.5;     // of the bias, left over when it is removed
-constexpr double kConverged = 0.01;    // of a deviation, change of every parameter
-constexpr double kNotExplained = 6.0;  // times the median mean square of the blows
-constexpr int kNeighbours = 3;         // blows on either side with which one may have errors in common
-constexpr double kMostTiming = 0.01;   // [s]
+constexpr double kBiasDoubt = 0.5;        // of the bias, left over when it is removed
+constexpr double kConverged = 0.01;       // of a deviation, change of every parameter
+constexpr double kNotExplained = 6.0;     // times the median mean square of the blows
+constexpr int kNeighbours = 3;            // blows on either side with which one may have errors in common
+constexpr double kMostTiming = 0.01;      // [s]
+constexpr double kMostAngleNoise = 0.1;   // [rad]
+constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
 
 using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
 
@@ -78,8 +80,11 @@ struct Reduced {
   LocalMatrix inverse;
   Eigen::Matrix<double, kLocals, kGlobals> by_global;  ///< -(change of locals per change of globals)
   Locals own;                                          ///< change of locals with globals as they are
-  double freedom;                                      ///< locals that the data decide
+  double angle_freedom, speed_freedom;                 ///< locals that the angles, that the speeds decide
 };
+
+/// Residuals that are free where so many are given.
+double freeOf(double given, double decided) { return std::max(given - decided, 0.3 * given); }
 
 Reduced reduce(const NormalEquations& e) {
   Reduced r;
@@ -88,26 +93,25 @@ Reduced reduce(const NormalEquations& e) {
   r.own = r.inverse * e.l;
   r.matrix = e.gg - e.lg.transpose() * r.by_global;
   r.score = e.g - e.lg.transpose() * r.own;
-  r.freedom = (r.inverse * e.ll_data).trace();
+  r.angle_freedom = (r.inverse * e.ll_angles).trace();
+  r.speed_freedom = (r.inverse * e.ll_speeds).trace();
   return r;
 }
 
-struct Residuals {
-  std::vector<ResidualAt> all;
-  double freedom{};  ///< samples less parameters
-  double speed_freedom{};
+/// A residual of which one kind of noise is asked: its variance is known + lever^2 noise^2.
+struct Leftover {
+  double residual, known, lever;
 };
 
-/// Root of sum(min(r^2/(angle^2 + w^2 t^2), 9)) = freedom, decreasing in t; 0 when already below.
-double timingNoise(const Residuals& residuals, double angle) {
-  const auto excess = [&](double t) {
+/// Root of sum(min(r^2/variance, 9)) = freedom, decreasing in the noise; 0 when already below.
+double noiseOf(const std::vector<Leftover>& leftovers, double freedom, double most) {
+  const auto excess = [&](double noise) {
     double sum = 0.0;
-    for (const ResidualAt& r : residuals.all)
-      sum += std::min(square(r.angle) / (square(angle) + square(r.speed * t)), 9.0);
-    return sum - residuals.freedom;
+    for (const Leftover& l : leftovers) sum += std::min(square(l.residual) / (l.known + square(l.lever * noise)), 9.0);
+    return sum - freedom;
   };
-  if (excess(0.0) <= 0.0) return 0.0;
-  double low = 0.0, high = kMostTiming;
+  double low = 0.0, high = most;
+  if (leftovers.empty() || excess(1e-9 * most) <= 0.0) return 0.0;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
     (excess(middle) > 0.0 ? low : high) = middle;
@@ -115,26 +119,10 @@ double timingNoise(const Residuals& residuals, double angle) {
   return 0.5 * (low + high);
 }
 
-double angleNoise(const Residuals& residuals, double now) {
-  double sum = 0.0;
-  for (const ResidualAt& r : residuals.all) sum += std::min(square(r.angle), 9.0 * square(now));
-  return std::max(std::sqrt(sum / residuals.freedom), 1e-7);
-}
-
-double speedNoise(const Residuals& residuals, double now) {
-  double sum = 0.0, n = 0.0;
-  for (const ResidualAt& r : residuals.all) {
-    if (std::isnan(r.speed_error)) continue;
-    sum += std::min(square(r.speed_error), 9.0 * square(now));
-    n += 1.0;
-  }
-  return n > 0.0 ? std::max(std::sqrt(sum / n), 1e-3) : now;
-}
-
 double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
   double sum = 0.0, n = 0.0;
-  for (const ResidualAt& r : fit.residuals(model, globals)) {
-    sum += square(r.angle) / (square(noise.angle) + square(r.speed * noise.timing));
+  for (const ResidualAt& r : fit.residuals(model, globals, noise)) {
+    sum += square(r.angle / r.deviation.angle);
     n += 1.0;
   }
   return sum / n;
@@ -156,20 +144,26 @@ void leaveOut(JointFit& joint, const SegmentModel& model) {
 }
 
 void learnNoise(JointFit& joint, const SegmentModel& model, const std::vector<Reduced>& reduced) {
-  Residuals residuals;
+  Noise& noise = joint.noise;
+  std::vector<Leftover> angles, speeds;
+  double angle_freedom = 0.0, speed_freedom = 0.0;
   for (std::size_t i = 0; i < joint.fits.size(); ++i) {
-    const std::vector<ResidualAt> own = joint.fits[i].residuals(model, joint.globals);
-    residuals.freedom +=
-        std::max(static_cast<double>(own.size()) - reduced[i].freedom, 0.3 * static_cast<double>(own.size()));
-    residuals.all.insert(residuals.all.end(), own.begin(), own.end());
+    const std::size_t angles_before = angles.size(), speeds_before = speeds.size();
+    for (const ResidualAt& r : joint.fits[i].residuals(model, joint.globals, noise)) {
+      angles.push_back({r.angle, noise.angle_known ? square(noise.angle) : 0.0, noise.angle_known ? r.speed : 1.0});
+      if (!std::isnan(r.speed_error))
+        speeds.push_back({r.speed_error, square(r.deviation.speed) - square(noise.speed), 1.0});
+    }
+    angle_freedom += freeOf(static_cast<double>(angles.size() - angles_before), reduced[i].angle_freedom);
+    speed_freedom += freeOf(static_cast<double>(speeds.size() - speeds_before), reduced[i].speed_freedom);
   }
-  if (joint.noise.angle_known) {
-    joint.noise.timing = timingNoise(residuals, joint.noise.angle);
+  if (noise.angle_known) {
+    noise.timing = noiseOf(angles, angle_freedom, kMostTiming);
   } else {  // jitter and noise of the angle in one
-    joint.noise.timing = 0.0;
-    joint.noise.angle = angleNoise(residuals, joint.noise.angle);
+    noise.timing = 0.0;
+    noise.angle = std::max(noiseOf(angles, angle_freedom, kMostAngleNoise), 1e-7);
   }
-  joint.noise.speed = speedNoise(residuals, joint.noise.speed);
+  if (!speeds.empty()) noise.speed = std::max(noiseOf(speeds, speed_freedom, kMostSpeedNoise), 1e-3);
 }
 
 struct System {
@@ -259,9 +253,9 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Fr
 /// Until nothing changes any more, at least so many times.
 void settle(JointFit& joint, const SegmentModel& model, const Globals& start, const Free& free, int least) {
   for (int i = 0; i < kMostIterations && !joint.fits.empty(); ++i) {
-    learnNoise(joint, model, linearised(joint, model, start).reduced);
     System s = linearised(joint, model, start);
     joint.converged = improve(joint, model, start, s, free) < kConverged;
+    learnNoise(joint, model, s.reduced);
     if (i == kLeastIterations - 2) leaveOut(joint, model);
     if (joint.converged && i + 1 >= least) return;
   }
@@ -278,7 +272,7 @@ void judge(JointFit& joint, const SegmentModel& model, const Globals& start, con
   for (std::size_t i = 0; i < joint.fits.size(); ++i) {
     const auto n = static_cast<double>(joint.fits[i].size());
     sum += n * meanSquare(joint.fits[i], model, joint.globals, joint.noise);
-    freedom += std::max(n - s.reduced[i].freedom, 0.3 * n);
+    freedom += freeOf(n, s.reduced[i].angle_freedom);
   }
   joint.mean_square = sum / freedom;
 }
@@ -312,7 +306,7 @@ void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, do
       segments.push_back(fit.replica(model, joint.globals, joint.noise, count, random));
     JointFit replica = joint;
     for (std::size_t k = 0; k < segments.size(); ++k) replica.fits[k] = joint.fits[k].onto(segments[k]);
-    settle(replica, model, Globals(Globals::Zero()), free, kReplicaIterations);
+    settle(replica, model, joint.globals, free, kReplicaIterations);
     mean += replica.globals / kReplicas;
   }
   const Globals bias = mean - joint.globals;
@@ -339,7 +333,7 @@ double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel
   for (const SegmentFit& fit : fittedAlone(segments, model, globals, noise)) {
     const auto n = static_cast<double>(fit.size());
     const Reduced r = reduce(fit.linearise(model, globals, noise));
-    const double left = std::max(n - r.freedom, 0.3 * n);
+    const double left = freeOf(n, r.angle_freedom);
     each.emplace_back(n * meanSquare(fit, model, globals, noise) / left, left);
   }
   if (each.empty()) return 0.0;

@@ -24,10 +24,6 @@ Seen seenAt(const Globals& g, double offset) {
 double weightOf(double r) { return std::abs(r) <= kHuber ? 1.0 : kHuber / std::abs(r); }
 double costOf(double r) { return std::abs(r) <= kHuber ? 0.5 * r * r : kHuber * (std::abs(r) - 0.5 * kHuber); }
 
-double angleDeviation(const Noise& noise, double speed) {
-  return std::sqrt(square(noise.angle) + square(speed * noise.timing));
-}
-
 /// Standard normal, the same with every standard library (Box-Muller).
 double normal(std::mt19937_64& random) {
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -74,61 +70,79 @@ SegmentFit::SegmentFit(const BlowSegment& segment, const Globals& globals) : seg
   node_step_ = std::max(p.back().time - middle, middle - p.front().time) / kNodesBeside;
 }
 
-std::size_t SegmentFit::beforeCount(const Locals& locals) const {
+std::size_t SegmentFit::beforeCount() const {
   const auto& p = segment_->points;
   const auto at =
-      std::partition_point(p.begin(), p.end(), [&](const CrankPoint& point) { return point.time < locals[kInstant]; });
+      std::partition_point(p.begin(), p.end(), [&](const CrankPoint& point) { return point.time < locals_[kInstant]; });
   return static_cast<std::size_t>(at - p.begin());
 }
 
-/// Where one of the blow's own parameters shows.
-SegmentFit::Sides SegmentFit::sidesOf(Eigen::Index local) noexcept {
-  if (local == kSpeedBefore || (local >= kTorques && local < kTorques + kNodesBeside)) return Sides::kBefore;
-  if (local == kSpeedAfter || (local >= kTorques + kNodesBeside && local < kLocals)) return Sides::kAfter;
-  return Sides::kBoth;
+HalfShot SegmentFit::halfOf(const Globals& globals, bool before) const {
+  HalfShot half;
+  half.before = before;
+  half.speed = locals_[before ? kSpeedBefore : kSpeedAfter];
+  for (int i = 0; i <= kNodesBeside; ++i) half.torque[i] = locals_[torqueIndex(before, i)];
+  half.node_step = node_step_;
+  half.drive_inertia = std::exp(globals[kLogInertia]);
+  half.law = {mean_speed_, globals[kStiffness], globals[kDrag]};
+  return half;
 }
 
-/// Points of all samples, in their order.
-void SegmentFit::run(const SegmentModel& model, const Globals& globals, const Locals& locals, Sides sides,
-                     std::vector<ShotPoint>& points) const {
+/// Points of all samples, in their order; slopes as well where they are asked for.
+void SegmentFit::run(const SegmentModel& model, const Globals& globals, std::vector<ShotPoint>& points,
+                     std::vector<MotionSlopes>* slopes) const {
   const auto& p = segment_->points;
-  const std::size_t before = beforeCount(locals);
+  const std::size_t before = beforeCount();
   ShaftModel shaft(model.mechanism, model.level);
   shaft.setHullMotion(segment_->gravity);
   std::vector<double> times;
   std::vector<ShotPoint> side;
+  std::vector<ShotSlopes> side_slopes;
   points.resize(p.size());
+  if (slopes) slopes->assign(p.size(), MotionSlopes::Zero());
   for (const bool is_before : {true, false}) {
-    if (sides == (is_before ? Sides::kAfter : Sides::kBefore)) continue;
-    HalfShot half;
-    half.before = is_before;
-    half.speed = locals[is_before ? kSpeedBefore : kSpeedAfter];
-    for (int i = 0; i <= kNodesBeside; ++i) half.torque[i] = locals[torqueIndex(is_before, i)];
-    half.node_step = node_step_;
-    half.drive_inertia = std::exp(globals[kLogInertia]);
-    half.law = {mean_speed_, globals[kStiffness], globals[kDrag]};
+    const HalfShot half = halfOf(globals, is_before);
+    const auto place = [&](std::size_t i) { return is_before ? before - 1 - i : before + i; };
     times.clear();
-    if (is_before) {
-      for (std::size_t i = before; i-- > 0;) times.push_back(locals[kInstant] - p[i].time);
+    for (std::size_t i = 0; i < (is_before ? before : p.size() - before); ++i)
+      times.push_back(std::abs(p[place(i)].time - locals_[kInstant]));
+    if (slopes) {
+      shoot(shaft, half, times, side, side_slopes);
     } else {
-      for (std::size_t i = before; i < p.size(); ++i) times.push_back(p[i].time - locals[kInstant]);
+      shoot(shaft, half, times, side);
     }
-    shoot(shaft, half, times, side);
-    for (std::size_t i = 0; i < side.size(); ++i) points[is_before ? before - 1 - i : before + i] = side[i];
+    for (std::size_t i = 0; i < side.size(); ++i) points[place(i)] = side[i];
+    if (!slopes) continue;
+    for (std::size_t i = 0; i < side.size(); ++i) {
+      MotionSlopes& all = (*slopes)[place(i)];
+      all.col(kInstant) << -side[i].speed, -side[i].acceleration;
+      all.col(is_before ? kSpeedBefore : kSpeedAfter) = side_slopes[i].col(kOwnSpeed);
+      for (int node = 0; node <= kNodesBeside; ++node)
+        all.col(torqueIndex(is_before, node)) = side_slopes[i].col(kOwnTorques + node);
+      all.rightCols<kShaping>() = side_slopes[i].rightCols<kShaping>();
+    }
   }
 }
 
+/// A stamp off by d shows an angle off by w d and a speed off by w' d; next to the blow it may lie on the other side of
+/// it, where the speed is another one.
+Weighing SegmentFit::weighing(const Noise& noise, double time, const ShotPoint& at) const {
+  const double variance = square(noise.timing), angle = square(noise.angle) + square(at.speed) * variance;
+  const double both = at.speed * at.acceleration * variance, share = both / angle;
+  double speed = square(noise.speed) + square(at.acceleration) * variance - share * both;
+  if (noise.timing > 0.0) {
+    const double other = 0.5 * std::erfc(std::abs(time - locals_[kInstant]) / (noise.timing * std::sqrt(2.0)));
+    speed += other * (1.0 - other) * square(locals_[kSpeedAfter] - locals_[kSpeedBefore]);
+  }
+  return {std::sqrt(angle), std::sqrt(speed), share};
+}
+
 double SegmentFit::cost(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
-  std::vector<ShotPoint> points;
-  run(model, globals, locals_, Sides::kBoth, points);
   double cost = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Seen seen = seenAt(globals, points[i].offset);
-    const double deviation = angleDeviation(noise, points[i].speed);
-    cost += costOf((segment_->points[i].seen - seen.value) / deviation) + std::log(deviation / noise.angle);
-    if (segment_->points[i].speed) {
-      cost += costOf((*segment_->points[i].speed - seen.slope * points[i].speed) / noise.speed);
-    }
+  for (const ResidualAt& r : residuals(model, globals, noise)) {
+    cost += costOf(r.angle / r.deviation.angle) + std::log(r.deviation.angle / noise.angle);
+    if (std::isnan(r.speed_error)) continue;
+    cost += costOf(r.speed_error / r.deviation.speed) + std::log(r.deviation.speed / noise.speed);
   }
   const double step = noise.torque_walk * std::sqrt(node_step_);
   for (const bool before : {true, false}) {
@@ -139,32 +153,16 @@ double SegmentFit::cost(const SegmentModel& model, const Globals& globals, const
 }
 
 NormalEquations SegmentFit::linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
-  constexpr double kSpeedStep = 1e-3, kTorqueStep = 0.5, kShapeSteps[kShaping] = {1e-3, 0.1, 1e-2};
-  constexpr int kMoving = kLocals + kShaping;
-  std::vector<ShotPoint> base, moved;
-  run(model, globals, locals_, Sides::kBoth, base);
+  std::vector<ShotPoint> base;
+  std::vector<MotionSlopes> slopes;
+  run(model, globals, base, &slopes);
   const std::size_t n = base.size();
-  // Derivatives of (offset, speed) by locals and logarithm of inertia, by differences; by the instant: the motion
-  // itself.
-  std::vector<Eigen::Matrix<double, 2, kMoving>> slopes(n);
-  for (std::size_t i = 0; i < n; ++i) slopes[i].col(kInstant) << -base[i].speed, -base[i].acceleration;
-  for (Eigen::Index k = kSpeedBefore; k < kMoving; ++k) {
-    Locals locals = locals_;
-    Globals other = globals;
-    const bool shared = k >= kLocals;
-    const double step = shared ? kShapeSteps[k - kLocals] : k <= kSpeedAfter ? kSpeedStep : kTorqueStep;
-    (shared ? other[kLogInertia + k - kLocals] : locals[k]) += step;
-    moved = base;
-    run(model, other, locals, shared ? Sides::kBoth : sidesOf(k), moved);
-    for (std::size_t i = 0; i < n; ++i)
-      slopes[i].col(k) << (moved[i].offset - base[i].offset) / step, (moved[i].speed - base[i].speed) / step;
-  }
 
   NormalEquations e;
-  e.ll.setZero(), e.ll_data.setZero(), e.lg.setZero(), e.gg.setZero(), e.l.setZero(), e.g.setZero();
-  const auto add = [&](const Locals& by_local, const Globals& by_global, double residual, double deviation) {
+  e.ll_angles.setZero(), e.ll_speeds.setZero(), e.lg.setZero(), e.gg.setZero(), e.l.setZero(), e.g.setZero();
+  const auto add = [&](auto& ll, const Locals& by_local, const Globals& by_global, double residual, double deviation) {
     const double r = residual / deviation, weight = weightOf(r) / square(deviation);
-    e.ll_data.noalias() += weight * by_local * by_local.transpose();
+    ll.noalias() += weight * by_local * by_local.transpose();
     e.lg.noalias() += weight * by_local * by_global.transpose();
     e.gg.noalias() += weight * by_global * by_global.transpose();
     e.l += weight * residual * by_local;
@@ -178,18 +176,24 @@ NormalEquations SegmentFit::linearise(const SegmentModel& model, const Globals& 
     const double s1 = std::sin(offset), c1 = std::cos(offset), s2 = 2.0 * s1 * c1, c2 = 1.0 - 2.0 * s1 * s1;
     Globals by_global;
     by_global << 1.0, s1, c1 - 1.0, s2, c2 - 1.0, seen.slope * slopes[i].row(0).tail<kShaping>().transpose();
-    const double deviation = angleDeviation(noise, speed);
-    add(seen.slope * slopes[i].row(0).head<kLocals>().transpose(), by_global, point.seen - seen.value, deviation);
-    e.cost += std::log(deviation / noise.angle);
+    const Weighing deviation = weighing(noise, point.time, base[i]);
+    const Locals by_local = seen.slope * slopes[i].row(0).head<kLocals>().transpose();
+    const double residual = point.seen - seen.value;
+    add(e.ll_angles, by_local, by_global, residual, deviation.angle);
+    e.cost += std::log(deviation.angle / noise.angle);
     if (!point.speed) continue;
     const double bend =
         -globals[kSine1] * s1 - globals[kCosine1] * c1 - 4.0 * (globals[kSine2] * s2 + globals[kCosine2] * c2);
-    const Eigen::Matrix<double, 1, kMoving> by_motion = seen.slope * slopes[i].row(1) + speed * bend * slopes[i].row(0);
-    by_global << 0.0, speed * c1, -speed * s1, 2.0 * speed * c2, -2.0 * speed * s2,
+    const MotionSlope by_motion = seen.slope * slopes[i].row(1) + speed * bend * slopes[i].row(0);
+    Globals speed_by_global;
+    speed_by_global << 0.0, speed * c1, -speed * s1, 2.0 * speed * c2, -2.0 * speed * s2,
         by_motion.tail<kShaping>().transpose();
-    add(by_motion.head<kLocals>().transpose(), by_global, *point.speed - seen.slope * speed, noise.speed);
+    add(e.ll_speeds, by_motion.head<kLocals>().transpose() - deviation.share * by_local,
+        speed_by_global - deviation.share * by_global, *point.speed - seen.slope * speed - deviation.share * residual,
+        deviation.speed);
+    e.cost += std::log(deviation.speed / noise.speed);
   }
-  e.ll = e.ll_data;
+  e.ll = e.ll_angles + e.ll_speeds;
   const double walk = 1.0 / (square(noise.torque_walk) * node_step_);
   for (const bool before : {true, false}) {
     for (int i = 1; i <= kNodesBeside; ++i) {
@@ -208,30 +212,45 @@ NormalEquations SegmentFit::linearise(const SegmentModel& model, const Globals& 
 
 BlowSegment SegmentFit::replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count,
                                 std::mt19937_64& random) const {
+  struct Taken {
+    double time;
+    std::size_t place;
+  };
+  std::vector<Taken> taken;
+  for (std::size_t i = 0; i < size(); ++i)
+    taken.push_back({segment_->points[i].time + noise.timing * normal(random), i});
+  std::sort(taken.begin(), taken.end(), [](const Taken& a, const Taken& b) { return a.time < b.time; });
+  BlowSegment instants = *segment_;
+  for (std::size_t i = 0; i < size(); ++i) instants.points[i].time = taken[i].time;
   std::vector<ShotPoint> points;
-  run(model, globals, locals_, Sides::kBoth, points);
+  onto(instants).run(model, globals, points);
   BlowSegment replica = *segment_;
   const double centre = segment_->points.front().seen;  // of some count
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double late = noise.timing * normal(random);
-    const Seen seen = seenAt(globals, points[i].offset + late * points[i].speed);
-    double& value = replica.points[i].seen;
-    value = seen.value + (noise.angle_known ? 0.0 : noise.angle * normal(random));
-    if (count > 0.0) value = centre + count * std::nearbyint((value - centre) / count);
-    if (replica.points[i].speed) replica.points[i].speed = seen.slope * points[i].speed + noise.speed * normal(random);
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Seen seen = seenAt(globals, points[i].offset);
+    CrankPoint& point = replica.points[taken[i].place];
+    point.seen = seen.value + (noise.angle_known ? 0.0 : noise.angle * normal(random));
+    if (count > 0.0) point.seen = centre + count * std::nearbyint((point.seen - centre) / count);
+    if (point.speed) point.speed = seen.slope * points[i].speed + noise.speed * normal(random);
   }
   return replica;
 }
 
-std::vector<ResidualAt> SegmentFit::residuals(const SegmentModel& model, const Globals& globals) const {
+std::vector<ResidualAt> SegmentFit::residuals(const SegmentModel& model, const Globals& globals,
+                                              const Noise& noise) const {
   std::vector<ShotPoint> points;
-  run(model, globals, locals_, Sides::kBoth, points);
+  run(model, globals, points);
   std::vector<ResidualAt> all;
+  all.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
+    const CrankPoint& point = segment_->points[i];
     const Seen seen = seenAt(globals, points[i].offset);
-    const std::optional<double>& speed = segment_->points[i].speed;
-    all.push_back({points[i].offset, points[i].speed, segment_->points[i].seen - seen.value,
-                   speed ? *speed - seen.slope * points[i].speed : std::numeric_limits<double>::quiet_NaN()});
+    const Weighing deviation = weighing(noise, point.time, points[i]);
+    const double angle = point.seen - seen.value;
+    all.push_back({points[i].offset, points[i].speed, angle,
+                   point.speed ? *point.speed - seen.slope * points[i].speed - deviation.share * angle
+                               : std::numeric_limits<double>::quiet_NaN(),
+                   deviation});
   }
   return all;
 }

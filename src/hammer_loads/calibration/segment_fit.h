@@ -36,8 +36,8 @@ struct SegmentModel {
 
 /// Least squares of one segment at the present parameters, weighted.
 struct NormalEquations {
-  Eigen::Matrix<double, kLocals, kLocals> ll;  ///< locals, with the prior of the torque
-  Eigen::Matrix<double, kLocals, kLocals> ll_data;
+  Eigen::Matrix<double, kLocals, kLocals> ll;                    ///< locals, with the prior of the torque
+  Eigen::Matrix<double, kLocals, kLocals> ll_angles, ll_speeds;  ///< what the angles, the speeds say of them
   Eigen::Matrix<double, kLocals, kGlobals> lg;
   Eigen::Matrix<double, kGlobals, kGlobals> gg;
   Locals l;  ///< right-hand sides
@@ -45,11 +45,20 @@ struct NormalEquations {
   double cost{};  ///< robust, half the sum of squares
 };
 
+/// How a sample's residuals weigh. A stamp that is off moves angle and speed together: `share` of the angle's residual
+/// is taken off the speed's, then they are independent.
+struct Weighing {
+  double angle{};  ///< deviation [rad]
+  double speed{};  ///< of the speed's, then [rad/s]
+  double share{};  ///< [1/s]
+};
+
 /// A reading's residual where the model stands.
 struct ResidualAt {
   double offset{}, speed{};  ///< of the crank
   double angle{};            ///< seen less predicted [rad]
-  double speed_error{};      ///< measured less predicted [rad/s]; NaN: not measured
+  double speed_error{};      ///< measured less predicted, less its share of the angle's [rad/s]; NaN: not measured
+  Weighing deviation;
 };
 
 class SegmentFit {
@@ -63,7 +72,7 @@ class SegmentFit {
 
   double cost(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
   NormalEquations linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
-  /// The same motion seen once more, with other noise.
+  /// The same motion seen once more, with other noise: at instants that are off their stamps.
   BlowSegment replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count,
                       std::mt19937_64& random) const;
   /// With the same parameters on another recording of it.
@@ -72,15 +81,17 @@ class SegmentFit {
     other.segment_ = &segment;
     return other;
   }
-  std::vector<ResidualAt> residuals(const SegmentModel& model, const Globals& globals) const;
+  std::vector<ResidualAt> residuals(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
 
  private:
-  /// Only the sides asked for; the other one's points stay.
-  enum class Sides { kBoth, kBefore, kAfter };
-  void run(const SegmentModel& model, const Globals& globals, const Locals& locals, Sides sides,
-           std::vector<ShotPoint>& points) const;
-  static Sides sidesOf(Eigen::Index local) noexcept;
-  std::size_t beforeCount(const Locals& locals) const;
+  /// d(offset, speed)/d(locals, shaping globals).
+  using MotionSlopes = Eigen::Matrix<double, 2, kLocals + kShaping>;
+  using MotionSlope = Eigen::Matrix<double, 1, kLocals + kShaping>;  ///< of one of them
+  void run(const SegmentModel& model, const Globals& globals, std::vector<ShotPoint>& points,
+           std::vector<MotionSlopes>* slopes = nullptr) const;
+  Weighing weighing(const Noise& noise, double time, const ShotPoint& at) const;
+  HalfShot halfOf(const Globals& globals, bool before) const;
+  std::size_t beforeCount() const;
 
   const BlowSegment* segment_;
   Locals locals_;
