@@ -156,5 +156,19 @@ TEST(FieldCrank, ATurnWithoutContactIsFollowedOntoTheMirroredBranch) {
   }
 }
 
+/// The rocker's weight lets a hammer without supply come to rest just behind the dead centre.
+TEST(FieldCrank, ARestAtTheDeadCentreIsNoTurnWithoutContact) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings());
+  double angle = 0.3;
+  filter.start({angle, std::nullopt});
+  for (int i = 0; i < 200; ++i) {
+    angle = std::max(0.2 * kCount, angle - 0.02);
+    filter.update(0.01, {std::floor(angle / kCount) * kCount, std::nullopt});
+    ASSERT_FALSE(filter.isDoubtful()) << i;
+    ASSERT_FALSE(filter.estimate().position.isMirrored()) << i;
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

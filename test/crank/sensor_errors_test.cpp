@@ -59,10 +59,25 @@ TEST(SensorErrors, NothingIsConcludedBeforeSomeTurns) {
   SensorErrors errors;
   for (int i = 0; i < 3; ++i) {
     errors.learn(0.1, 1e-4, SensorErrors::ofAngle(0.5));
-    errors.endTurn(1.0);
+    errors.endTurn(1.0, kTwoPi / 4096.0);
   }
   EXPECT_EQ(errors.estimate(), SensorErrors::Vector::Zero());
   EXPECT_EQ(errors.moment(), SensorErrors::Matrix::Zero());
+}
+
+/// What is off for certain is part of the uncertainty with what is not known of it; what may be nothing is not.
+TEST(SensorErrors, WhatIsCertainCountsWithItsDeviation) {
+  const auto momentOf = [](double b) {
+    SensorErrors errors;
+    for (int turn = 0; turn < 12; ++turn) {
+      for (double offset = -3.1; offset < 3.1; offset += 0.2) errors.learn(b, 1e-6, SensorErrors::ofAngle(offset));
+      errors.endTurn(1.0, 0.0);
+    }
+    EXPECT_NEAR(errors.estimate()[0], b, 0.05 * b);
+    return std::sqrt(errors.moment()(0, 0)) / b;
+  };
+  EXPECT_NEAR(momentOf(0.02), 1.0, 0.05);
+  EXPECT_LT(momentOf(0.0005), 0.8);
 }
 
 }  // namespace

@@ -209,9 +209,9 @@ void CrankFilter::respectCount(double reading) noexcept {
   if (high + doubt < edge_tolerance && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
 }
 
-/// A belief is about to pass the blow with contact; the rival goes on without.
+/// A belief is about to pass the blow with contact; the rival goes on without. A crank that rests there passes nothing.
 void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
-  if (!mirrored_ && !belief.tool_met) rival_.begin(belief);
+  if (!mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed) rival_.begin(belief);
 }
 
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
@@ -219,7 +219,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last) noexcept {
   const CrankPosition &from = last.state.position, &to = now_.state.position;
   if (from.angle.side != Side::kAfterBlow || to.angle.side != Side::kBeforeBlow || to.blow != from.blow + 1) return;
   if (from.isMirrored() || to.isMirrored()) return;
-  errors_.endTurn(consistency_.growth());
+  errors_.endTurn(consistency_.growth(), encoder_.resolution());
   blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_error.row(Belief::kFactor));
 }
 
@@ -269,7 +269,8 @@ std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double 
     outlier_ = innovation.value;
     return Tracking::kOutlier;
   }
-  if (!agrees || std::abs(innovation.value) > kSlip * std::abs(now_.state.speed)) {
+  // Contradicted on the mirrored branch: there was contact.
+  if (!agrees || mirrored_ || std::abs(innovation.value) > kSlip * std::abs(now_.state.speed)) {
     WeighedSample angle_alone = sample;
     angle_alone.speed.reset();
     return begin(angle_alone);

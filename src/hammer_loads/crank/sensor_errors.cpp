@@ -12,12 +12,13 @@ constexpr int kFirstTurns = 4;                           // the drive inertia is
 constexpr int kTurnsToKnow = 6;                          // nothing is concluded before
 constexpr double kMemory = 300.0;                        // turns: a minute at work
 constexpr double kUnmodelled[3] = {1.7e-3, 2e-3, 4e-3};  // [rad] what a clean machine shows: 0.10, 0.11, 0.23 deg
-constexpr double kUnmodelledDeviations = 2.5;            // likewise, where it is seen less well
-constexpr double kUnseenDeviations = 0.6;                // of what is not seen: 88 to 99 % of the wrench's errors
-                                                         // then lie within two deviations (simulated machines)
-constexpr double kSamplesToFollow = 20.0;                // a turn: with fewer of them a supply that follows the crank's
-                                                         // speed looks more like b, at 50 Hz twice as much, and
-                                                         // the torque's walk holds more of what is not seen
+constexpr double kUnmodelledCounts = 0.5;  // likewise, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
+constexpr double kUnmodelledDeviations = 2.5;  // likewise, where it is seen less well
+constexpr double kUnseenDeviations = 0.6;      // of what is not seen: 88 to 99 % of the wrench's errors
+                                               // then lie within two deviations (simulated machines)
+constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a supply that follows the crank's
+                                               // speed looks more like b, at 50 Hz twice as much, and
+                                               // the torque's walk holds more of what is not seen
 
 double square(double x) noexcept { return x * x; }
 
@@ -28,21 +29,25 @@ void SensorErrors::forget() noexcept {
   score_.setZero();
 }
 
-void SensorErrors::endTurn(double growth) noexcept {
+void SensorErrors::endTurn(double growth, double count) noexcept {
   const int samples = std::exchange(samples_, 0);
   if (++turns_ == kFirstTurns) forget();
   if (turns_ < kTurnsToKnow) return;
   const Matrix covariance = information_.inverse();
   estimate_ = covariance * score_;
   const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
-  Vector certain;  // what remains after the deviation
+  Vector doubt, certain;  // variance of what is seen; what remains after it
+  double share = 0.0;     // of b that is certain
   for (int i = 0; i < kSize; ++i) {
-    const double seen = square(kUnmodelledDeviations) * growth * covariance(i, i);
-    deviation_[i] = std::sqrt(square(unmodelled * kUnmodelled[i]) + seen);
-    const double excess = square(estimate_[i]) - square(deviation_[i]);
+    doubt[i] = square(unmodelled * kUnmodelled[i]) + square(kUnmodelledDeviations) * growth * covariance(i, i);
+    deviation_[i] = std::sqrt(doubt[i] + square(kUnmodelledCounts * count));
+    const double excess = square(estimate_[i]) - doubt[i];
     certain[i] = excess > 0.0 ? std::copysign(std::sqrt(excess), estimate_[i]) : 0.0;
+    if (excess > 0.0) share = std::max(share, excess / square(estimate_[i]));
   }
   moment_ = square(kUnseenDeviations / unmodelled) * growth * covariance + certain * certain.transpose();
+  // A sensor that is off for certain is so by as much as is known of it.
+  moment_.diagonal() += share * doubt;
   information_ *= 1.0 - 1.0 / kMemory;
   score_ *= 1.0 - 1.0 / kMemory;
 }

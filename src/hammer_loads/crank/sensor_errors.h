@@ -14,7 +14,7 @@ namespace hammer_loads {
 /// An innovation is then its derivative by b times b, and noise: weighted least squares over some minutes.
 ///
 /// A supply whose torque follows the crank's speed within a turn looks a little like b: with the shipped machine by 0.1
-/// to 0.2 deg, with jitter by 0.4 deg, some three standard deviations. deviation() contains that.
+/// to 0.2 deg, with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that.
 class SensorErrors {
  public:
   static constexpr int kSize = 3;
@@ -40,8 +40,8 @@ class SensorErrors {
     information_.noalias() += (weight * by_error.transpose()) * by_error;
     score_ += (weight * innovation) * by_error.transpose();
   }
-  /// Once a turn. growth: what variances are to be multiplied with.
-  void endTurn(double growth) noexcept;
+  /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
+  void endTurn(double growth, double count) noexcept;
 
   /// 0 before some turns.
   const Vector& estimate() const noexcept { return estimate_; }
