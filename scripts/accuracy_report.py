@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""doc/accuracy.md, its picture and the README's excerpt from what `accuracy` and the recorded sessions' test said."""
+"""doc/accuracy.md, its picture and the README's excerpts from what `accuracy` and the recorded sessions' test said."""
 import argparse
 import json
 import math
@@ -17,6 +17,7 @@ COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank"
 SESSION = {"none": "none", "difference": "difference"}  # crank rows by estimator; all others: mechanism
 EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage, AVX2"),
            ("crank", "mechanism, linkage"), ("pipeline", "linkage")]
+SIDE_BY_SIDE = [("clean", "clean"), ("typical", "typical"), ("typical, after calibrate", "typical, after `calibrate`")]
 SESSION_HEAD = "rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow instant | energy |"
 
 
@@ -111,13 +112,30 @@ def price_line(row):
 def excerpt(figures, recorded):
     prices = {(row["group"], row["name"]): row for row in figures["prices"]}
     lines = ["Cost on one core and worst relative error over all hard cases, against 100 digits; all rows, the",
-             "cases, simulated sessions and a picture are in [doc/accuracy.md](doc/accuracy.md):", "",
+             "cases and a picture are in [doc/accuracy.md](doc/accuracy.md):", "",
              "| | way to the loads | ns | per second | worst error |", "|---|---|---|---|---|"]
     lines += [price_line(prices[key]) for key in EXCERPT if key in prices]
     shipped = [line for line in recorded.strip().splitlines() if " 0 % |" in line]
     lines += ["", "Recorded sessions with clean sensors (`test/data`), as shipped, from 3 s after the start to 3 s before",
               "the end; root-mean-square errors are of the peak of each quantity, all others the worst of all turns:",
               "", f"| session | drive inertia wrong by | {SESSION_HEAD}", "|---" * 9 + "|"] + shipped
+    return "\n".join(lines) + "\n"
+
+
+def machines_excerpt(machines):
+    """Clean and typical side by side; Fz over its peak."""
+    rows = {(row["machine"], row["rate_hz"]): row for row in machines}
+
+    def line(text, rate, value):
+        return f"| {text} | " + " | ".join(value(rows[name, rate]) for name, _ in SIDE_BY_SIDE) + " |"
+
+    lines = ["| | " + " | ".join(title for _, title in SIDE_BY_SIDE) + " |", "|---" * (len(SIDE_BY_SIDE) + 1) + "|"]
+    for rate in (1000, 200):
+        lines += [line(f"error of Fz, rms of the peak, {rate} Hz", rate, lambda row: f"{100 * row['rms_z']:.2f} %"),
+                  line("worst sample", rate, lambda row: f"{100 * row['worst_z']:.1f} %"),
+                  line("errors within two stated deviations", rate, lambda row: f"{100 * row['covered_z']:.0f} %"),
+                  line("instant of the blow, worst", rate, lambda row: f"{1e3 * row['blow_time_s']:.2f} ms"),
+                  line("blows missed, false", rate, lambda row: f"{row['missed_blows']}, {row['false_blows']}")]
     return "\n".join(lines) + "\n"
 
 
@@ -130,13 +148,18 @@ def replace(path, marker, text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("work", type=pathlib.Path, help="directory with accuracy.json, tables and recorded")
+    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json), perhaps prices(.json) and recorded")
     parser.add_argument("root", type=pathlib.Path, help="of the source")
     arguments = parser.parse_args()
     work, root = arguments.work, arguments.root
-    figures = json.loads((work / "accuracy.json").read_text())
+    figures = json.loads((work / "sessions.json").read_text())
+    replace(root / "doc" / "accuracy.md", "sessions", (work / "sessions").read_text())
+    replace(root / "README.md", "machines", machines_excerpt(figures["machines"]))
+    if not (work / "prices.json").exists():
+        return
+    figures.update(json.loads((work / "prices.json").read_text()))
     draw(figures, root / "doc" / "accuracy.png")
-    tables = f"Measured on: {processor()}, one thread.\n\n" + (work / "tables").read_text()
+    tables = f"Measured on: {processor()}, one thread.\n\n" + (work / "prices").read_text()
     replace(root / "doc" / "accuracy.md", "tables", tables)
     replace(root / "README.md", "accuracy", excerpt(figures, (work / "recorded").read_text()))
 

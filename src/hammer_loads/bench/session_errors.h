@@ -8,9 +8,10 @@
 
 namespace hammer_loads::accuracy {
 
-/// Wrench of a sample [N, N, N m], time since the session's start [s].
+/// Wrench of a sample [N, N, N m], time since the session's start [s]; of an estimate with its deviation.
 struct WrenchAt {
   double time{}, force_x{}, force_z{}, torque_y{};
+  double force_z_deviation{};
 };
 
 /// A blow and the pulse of the turn before it, as estimated or true; turn_* are NaN without a pulse.
@@ -23,11 +24,14 @@ struct BlowAt {
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
 struct SessionErrors {
   double rms_x{}, rms_z{}, rms_torque{};
-  double turn_peak{};     ///< relative, worst turn
-  double turn_impulse{};  ///< of the blow's tool impulse, worst turn
-  double blow_time{};     ///< [s], worst
-  double energy{};        ///< relative, worst
-  int blows{}, missed_blows{}, extra_blows{};
+  double worst_z{};                            ///< of one sample
+  double covered_z{};                          ///< part of the errors of force_z within two of their deviations
+  double turn_peak{};                          ///< relative, worst turn
+  double turn_impulse{};                       ///< of the blow's tool impulse, worst turn
+  double blow_time{};                          ///< [s], worst
+  double energy{};                             ///< relative, worst
+  int blows{}, missed_blows{}, extra_blows{};  ///< missed: without pulse as well
+  int unseen_blows{}, false_blows{};           ///< nothing near them; nothing there
 };
 
 /// What is judged: [from, to], without the two turns after each drop-out.
@@ -58,18 +62,25 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
     e.rms_x += std::pow(estimate[next].force_x - t.force_x, 2);
     e.rms_z += std::pow(estimate[next].force_z - t.force_z, 2);
     e.rms_torque += std::pow(estimate[next].torque_y - t.torque_y, 2);
+    const double error = std::abs(estimate[next].force_z - t.force_z);
+    e.worst_z = std::max(e.worst_z, error);
+    e.covered_z += error <= 2.0 * estimate[next].force_z_deviation;
     ++count;
   }
   e.rms_x = std::sqrt(e.rms_x / count) / peak_x;
   e.rms_z = std::sqrt(e.rms_z / count) / peak_z;
   e.rms_torque = std::sqrt(e.rms_torque / count) / peak_torque;
+  e.worst_z /= peak_z;
+  e.covered_z /= count;
   for (const BlowAt& t : true_blows) {
     if (!judged(t.time)) continue;
     ++e.blows;
     const auto nearest = std::min_element(blows.begin(), blows.end(), [&](const BlowAt& a, const BlowAt& b) {
       return std::abs(a.time - t.time) < std::abs(b.time - t.time);
     });
-    if (nearest == blows.end() || std::abs(nearest->time - t.time) > 0.05 || std::isnan(nearest->turn_peak)) {
+    const bool unseen = nearest == blows.end() || std::abs(nearest->time - t.time) > 0.05;
+    e.unseen_blows += unseen;
+    if (unseen || std::isnan(nearest->turn_peak)) {
       ++e.missed_blows;
       continue;
     }
@@ -79,6 +90,11 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
     e.turn_impulse = std::max(e.turn_impulse, std::abs(nearest->turn_impulse_z - t.turn_impulse_z) / t.tool_impulse);
   }
   const auto within = [&](const BlowAt& b) { return judged(b.time); };
+  const auto isFalse = [&](const BlowAt& b) {
+    const auto isNear = [&](const BlowAt& t) { return std::abs(t.time - b.time) <= 0.05; };
+    return within(b) && std::none_of(true_blows.begin(), true_blows.end(), isNear);
+  };
+  e.false_blows = static_cast<int>(std::count_if(blows.begin(), blows.end(), isFalse));
   e.extra_blows = static_cast<int>(std::count_if(blows.begin(), blows.end(), within)) - e.blows;
   return e;
 }

@@ -28,16 +28,20 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
       run.blows.push_back(blow);
     }
     if (loads.refusal) continue;
-    run.wrenches.push_back({seconds(reading.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y});
+    const double deviation = loads.outputs.empty() ? 0.0 : loads.outputs.front().deviation.wrench.force_z;
+    run.wrenches.push_back(
+        {seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y, deviation});
   }
   run.counts = pipeline.counts();
   return run;
 }
 
-SessionErrors judge(const SessionRun& run, const simulation::Session& session,
-                    const simulation::MachineSettings& machine) {
+namespace {
+
+SessionErrors judgeBy(const std::vector<simulation::CrankTruth>& at, const SessionRun& run,
+                      const simulation::Session& session, const simulation::MachineSettings& machine) {
   std::vector<WrenchAt> truth;
-  for (const simulation::CrankTruth& t : session.truth)
+  for (const simulation::CrankTruth& t : at)
     truth.push_back({t.time, t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y});
   std::vector<BlowAt> blows;
   for (const simulation::BlowTruth& b : session.blows)
@@ -45,6 +49,22 @@ SessionErrors judge(const SessionRun& run, const simulation::Session& session,
   Judged judged{3.0, machine.duration - 3.0, {}};
   for (const auto& gap : machine.crank.drop_outs) judged.drop_outs.push_back(gap.to);
   return sessionErrors(run.wrenches, truth, run.blows, blows, judged);
+}
+
+}  // namespace
+
+SessionErrors judge(const SessionRun& run, const simulation::Session& session,
+                    const simulation::MachineSettings& machine) {
+  return judgeBy(session.truth, run, session, machine);
+}
+
+SessionErrors judgeAtStamps(const SessionRun& run, const simulation::Session& session,
+                            const simulation::MachineSettings& machine, double shift) {
+  SessionRun shifted = run;
+  std::vector<double> times;
+  for (WrenchAt& w : shifted.wrenches) times.push_back(w.time -= shift);
+  for (BlowAt& b : shifted.blows) b.time -= shift;
+  return judgeBy(simulation::truthAt(machine, times), shifted, session, machine);
 }
 
 }  // namespace hammer_loads::accuracy

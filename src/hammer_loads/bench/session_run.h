@@ -8,7 +8,7 @@
 namespace hammer_loads::accuracy {
 
 struct SessionRun {
-  std::vector<WrenchAt> wrenches;  ///< of accepted samples
+  std::vector<WrenchAt> wrenches;  ///< of accepted samples, at the stamps they are published with
   std::vector<BlowAt> blows;
   SampleCounts counts;
 };
@@ -20,5 +20,10 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
 /// Judged from 3 s after the start to 3 s before the end, without the two turns after each drop-out.
 SessionErrors judge(const SessionRun& run, const simulation::Session& session,
                     const simulation::MachineSettings& machine);
+
+/// The same by the truth at the stamps that were published, for sessions whose stamps are refitted. shift: of all
+/// stamps against the instants, which no sequence shows [s].
+SessionErrors judgeAtStamps(const SessionRun& run, const simulation::Session& session,
+                            const simulation::MachineSettings& machine, double shift);
 
 }  // namespace hammer_loads::accuracy

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/price_table.h"
 #include "hammer_loads/bench/session_table.h"
 #include "hammer_loads/commands/command_line.h"
@@ -10,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr char kPrices[] = "\"prices\": ", kSessions[] = "\"sessions\": ";
+constexpr char kPrices[] = "\"prices\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ";
 
 /// Why an existing file must stay; empty: this command wrote it.
 std::string whyFileMustStay(const std::string& name) {
@@ -54,8 +55,11 @@ std::string printTables(const Settings& settings, const std::string& only) {
   }
   if (only != "prices") {
     const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
-    std::cout << "\n### Simulated sessions\n\n" << accuracy::markdown(sessions);
-    json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions));
+    const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
+    std::cout << "\n### Machines as they are\n\n" << accuracy::markdown(machines);
+    std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
+    json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
+            (kMachines + accuracy::json(machines));
   }
   return json;
 }

@@ -1,0 +1,160 @@
+#include "hammer_loads/bench/machine_table.h"
+
+#include <functional>
+
+#include "hammer_loads/bench/session_run.h"
+#include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads::accuracy {
+namespace {
+
+using simulation::MachineSettings;
+
+struct Kind {
+  std::string name;
+  std::vector<double> rates;  ///< [Hz]
+  std::function<void(MachineSettings&)> flaw;
+  double inertia_guess{1.0};  ///< over the true one
+  bool calibrated{};
+  double shift{};  ///< mean of all stamps less the instants [s]
+};
+
+/// What a usual machine has of everything: zero half a degree off, 1024 counts, a PC's stamps, blows that differ.
+void makeTypical(MachineSettings& s) {
+  s.crank.counts = 1024;
+  s.crank.zero = 0.5 * kDegree;
+  s.crank.eccentricity[0] = {0.2 * kDegree, 1.0};
+  s.crank.stamp_noise = 3e-4;
+  s.crank.speed = false;
+  s.blow.restitution_drawn = true;
+  s.blow.restitution_low = 0.1;
+  s.blow.restitution_high = 0.25;
+}
+
+std::vector<Kind> kinds() {
+  const auto jitter = [](double deviation) {
+    return [deviation](MachineSettings& s) { s.crank.stamp_noise = deviation; };
+  };
+  const auto loss = [](double part) { return [part](MachineSettings& s) { s.blow.crank_loss = part; }; };
+  const auto counts = [](int number) { return [number](MachineSettings& s) { s.crank.counts = number; }; };
+  return {
+      {"clean", {1000.0, 200.0, 100.0}, [](MachineSettings&) {}},
+      {"typical", {1000.0, 200.0}, makeTypical, 1.3},
+      {"typical, after calibrate", {1000.0, 200.0}, makeTypical, 1.3, true},
+      {"stamps jitter by 0.05 ms", {1000.0, 100.0}, jitter(5e-5)},
+      {"stamps jitter by 0.2 ms", {1000.0, 100.0}, jitter(2e-4)},
+      {"stamps jitter by 1 ms", {1000.0, 200.0}, jitter(1e-3)},
+      {"stamps of whole ms", {1000.0}, [](MachineSettings& s) { s.crank.stamp_step = 1e-3; }, 1.0, false, -0.5e-3},
+      {"bursts of ten", {1000.0}, [](MachineSettings& s) { s.crank.burst = 10; }},
+      {"restitution 0 to 0.3",
+       {1000.0, 100.0},
+       [](MachineSettings& s) { s.blow.restitution_drawn = true, s.blow.restitution_high = 0.3; }},
+      {"crank loses 20 % at the blow", {1000.0, 100.0}, loss(0.2)},
+      {"crank loses 45 % at the blow", {1000.0, 100.0}, loss(0.45)},
+      {"tool met 0.3 deg early", {1000.0, 100.0}, [](MachineSettings& s) { s.blow.tool_early = 0.3 * kDegree; }},
+      {"10 % of the turns without blow", {1000.0, 100.0}, [](MachineSettings& s) { s.blow.blank_share = 0.1; }},
+      {"zero 0.5 deg off", {1000.0, 100.0}, [](MachineSettings& s) { s.crank.zero = 0.5 * kDegree; }},
+      {"encoder eccentric by 1 deg",
+       {1000.0, 100.0},
+       [](MachineSettings& s) {
+         s.crank.eccentricity[0] = {1.0 * kDegree, 1.0};
+       }},
+      {"360 counts", {1000.0, 100.0}, counts(360)},
+      {"1024 counts", {1000.0, 100.0}, counts(1024)},
+      {"no speeds", {1000.0, 100.0}, [](MachineSettings& s) { s.crank.speed = false; }},
+  };
+}
+
+MachineSettings machineOf(const Settings& settings, const Kind& kind, double rate) {
+  MachineSettings machine = simulation::workingMo100();
+  machine.hammer = settings.mechanism.parameters();
+  machine.duration = kind.calibrated ? 40.0 : 20.0;
+  machine.drive.stop_time = machine.duration - 2.0;
+  machine.crank.rate = rate;
+  machine.seed = 77;
+  kind.flaw(machine);
+  return machine;
+}
+
+/// What `calibrate` would have from the recording; each key only where it is determined.
+void applyCalibration(const simulation::Session& session, const MachineSettings& machine, HammerParameters& hammer,
+                      PipelineSettings& pipeline) {
+  std::vector<calibration::RecordedSample> samples;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const simulation::CrankReading& reading = session.crank[i];
+    const double pitch = session.truth[i].hull_pitch;
+    samples.push_back({1e-9 * static_cast<double>(reading.stamp - machine.start_stamp),
+                       reading.angle,
+                       reading.speed,
+                       {machine.gravity * std::sin(pitch), -machine.gravity * std::cos(pitch)}});
+  }
+  const Mechanism mechanism = *Mechanism::make(hammer).value;
+  calibration::CalibrationBasis basis{mechanism, Level::kRocker};
+  basis.torque_walk = pipeline.torque_walk * hammer.rocker_inertia_about_pivot;
+  basis.torque_deviation = pipeline.initial_torque_deviation * hammer.rocker_inertia_about_pivot;
+  CrankSensorPlace place;
+  for (const calibration::Estimate& e : calibration::calibrate(samples, basis).estimates) {
+    if (!e.determined()) continue;
+    if (e.key == "crank_zero_rad") place.zero = e.value;
+    if (e.key == "crank_direction") place.direction = static_cast<int>(e.value);
+    if (e.key == "crank_eccentricity_1_rad") place.eccentricity[0] = e.value;
+    if (e.key == "crank_eccentricity_1_phase_rad") place.eccentricity_phase[0] = e.value;
+    if (e.key == "crank_eccentricity_2_rad") place.eccentricity[1] = e.value;
+    if (e.key == "crank_eccentricity_2_phase_rad") place.eccentricity_phase[1] = e.value;
+    if (e.key == "crank_timing_noise_s") pipeline.crank_timing_noise = e.value;
+    if (e.key == "drive_inertia_kg_m2") hammer.drive_inertia = e.value;
+  }
+  pipeline.crank_sensor = *CrankSensor::make(place).value;
+}
+
+MachineRow rowOf(const Settings& settings, const Kind& kind, double rate) {
+  const MachineSettings machine = machineOf(settings, kind, rate);
+  const simulation::Session session = simulation::recordSession(machine);
+  HammerParameters hammer = settings.mechanism.parameters();
+  hammer.drive_inertia = kind.inertia_guess * machine.drive.inertia;
+  PipelineSettings pipeline = settings.pipeline;
+  if (kind.calibrated) applyCalibration(session, machine, hammer, pipeline);
+  const SessionRun run = runSession(session, machine.start_stamp, *Mechanism::make(hammer).value, pipeline);
+  return {kind.name, rate, machine.crank.speed, judgeAtStamps(run, session, machine, kind.shift)};
+}
+
+}  // namespace
+
+std::vector<MachineRow> machineTable(const Settings& settings) {
+  std::vector<MachineRow> rows;
+  for (const Kind& kind : kinds()) {
+    for (const double rate : kind.rates) rows.push_back(rowOf(settings, kind, rate));
+  }
+  return rows;
+}
+
+std::string markdown(const std::vector<MachineRow>& rows) {
+  std::string text =
+      "| machine | rate, Hz | speed | rms Fz | worst sample | within two deviations | blow instant | energy | blows | "
+      "missed | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const MachineRow& row : rows) {
+    const SessionErrors& e = row.errors;
+    text += format("| %s | %.0f | %s | %.2f %% | %.1f %% | %.0f %% | %.2f ms | %.1f %% | %d | %d | %d |\n",
+                   row.machine.c_str(), row.rate, row.speed ? "measured" : "none", 100 * e.rms_z, 100 * e.worst_z,
+                   100 * e.covered_z, 1e3 * e.blow_time, 100 * e.energy, e.blows, e.unseen_blows, e.false_blows);
+  }
+  return text;
+}
+
+std::string json(const std::vector<MachineRow>& rows) {
+  std::string text = "[";
+  for (const MachineRow& row : rows) {
+    const SessionErrors& e = row.errors;
+    text += format(
+        "%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"rms_z\": %.6g, \"worst_z\": %.6g, "
+        "\"covered_z\": %.6g, \"blow_time_s\": %.6g, \"energy\": %.6g, \"blows\": %d, \"missed_blows\": %d, "
+        "\"false_blows\": %d}",
+        &row == rows.data() ? "" : ",", row.machine.c_str(), row.rate, row.speed ? "true" : "false", e.rms_z, e.worst_z,
+        e.covered_z, e.blow_time, e.energy, e.blows, e.unseen_blows, e.false_blows);
+  }
+  return text + "\n]";
+}
+
+}  // namespace hammer_loads::accuracy

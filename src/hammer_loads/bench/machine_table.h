@@ -1,0 +1,28 @@
+/// Cost table, third part: error of a whole session on machines as they are, one flaw each or the usual ones together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/bench/session_errors.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads::accuracy {
+
+struct MachineRow {
+  std::string machine;
+  double rate{};  ///< of crank samples [Hz]
+  bool speed{};   ///< speeds are measured too
+  SessionErrors errors;
+};
+
+/// Simulated working sessions with the mechanism's filter as shipped (seeded: the same on every run), some minute of
+/// computing.
+std::vector<MachineRow> machineTable(const Settings& settings);
+
+/// As a table in Markdown.
+std::string markdown(const std::vector<MachineRow>& rows);
+/// As a JSON array of objects, errors as parts of one.
+std::string json(const std::vector<MachineRow>& rows);
+
+}  // namespace hammer_loads::accuracy
