@@ -14,7 +14,8 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first
 NO_DIGITS = 10.0  # where the picture shows errors above 1 and those that are no number
 COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank": "#3a8f5c", "pipeline": "#7a4ca0",
           "grapple": "#b08a1e"}
-SESSION = {"none": "none", "difference": "difference"}  # crank rows by estimator; all others: mechanism
+SESSION = {"none": "none", "difference": "difference",
+           "mechanism, linkage, smoothed": "smoothed"}  # crank rows by estimator; all others: mechanism
 EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage, AVX2"),
            ("crank", "mechanism, linkage"), ("pipeline", "linkage")]
 SIDE_BY_SIDE = [("clean", "clean"), ("typical", "typical"), ("typical, after calibrate", "typical, after `calibrate`")]

@@ -5,8 +5,8 @@
 namespace hammer_loads::accuracy {
 
 SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
-                      const PipelineSettings& settings) {
-  Pipeline pipeline(mechanism, settings);
+                      const PipelineSettings& settings, const TrackerMaker& make) {
+  Pipeline pipeline(mechanism, settings, {}, {}, make);
   const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
   const auto seconds = [start](std::int64_t stamp) { return 1e-9 * static_cast<double>(stamp - start); };
   std::size_t next_joints = 0;

@@ -13,9 +13,10 @@ struct SessionRun {
   SampleCounts counts;
 };
 
-/// Reads a session into a pipeline, joint states in their place between the crank samples. start: stamp of t = 0 [ns].
+/// Reads a session into a pipeline, joint states in their place between the crank samples. start: stamp of t = 0 [ns];
+/// make: of the crank's tracker.
 SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
-                      const PipelineSettings& settings);
+                      const PipelineSettings& settings, const TrackerMaker& make = makeTracker);
 
 /// Judged from 3 s after the start to 3 s before the end, without the two turns after each drop-out.
 SessionErrors judge(const SessionRun& run, const simulation::Session& session,

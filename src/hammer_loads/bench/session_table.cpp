@@ -1,10 +1,13 @@
 #include "hammer_loads/bench/session_table.h"
 
 #include "hammer_loads/bench/session_run.h"
+#include "hammer_loads/pipeline/smoothed_runs.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::accuracy {
 namespace {
+
+const std::string kSmoothed = "smoothed";  // mechanism, as process_bag --smooth has it
 
 simulation::MachineSettings machineOf(const Settings& settings, const SessionRow& row) {
   simulation::MachineSettings machine = simulation::workingMo100();
@@ -27,7 +30,14 @@ SessionErrors errorsOf(const Settings& settings, const SessionRow& row) {
   for (const auto& [name, estimator] : kCrankEstimatorNames) {
     if (name == row.estimator) pipeline.crank_estimator = estimator;
   }
-  return judge(runSession(session, machine.start_stamp, settings.mechanism, pipeline), session, machine);
+  const auto run = [&](const TrackerMaker& make) {
+    return runSession(session, machine.start_stamp, settings.mechanism, pipeline, make);
+  };
+  if (row.estimator != kSmoothed) return judge(run(makeTracker), session, machine);
+  SmoothedRuns runs;
+  run(runs.ahead());
+  runs.end();
+  return judge(run(runs.behind()), session, machine);
 }
 
 }  // namespace
@@ -40,6 +50,8 @@ std::vector<SessionRow> sessionTable(const Settings& settings) {
   }
   for (const int counts : {512, 1024, 2048, 8192, 65536}) rows.push_back({"mechanism", 1000.0, counts, true, {}});
   for (const double rate : {1000.0, 100.0}) rows.push_back({"mechanism", rate, 4096, false, {}});
+  for (const double rate : {1000.0, 100.0}) rows.push_back({kSmoothed, rate, 4096, true, {}});
+  rows.push_back({kSmoothed, 1000.0, 1024, true, {}});
   for (SessionRow& row : rows) row.errors = errorsOf(settings, row);
   return rows;
 }

@@ -3,6 +3,7 @@
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/pipeline/smoothed_runs.h"
 #include "hammer_loads/simulation/session.h"
 
 namespace hammer_loads::accuracy {
@@ -47,6 +48,22 @@ PriceRow trackerPrice(const Settings& settings, const char* name, Level level, C
   return {"crank", name, costOf(readings.size(), pass), {}, {}};
 }
 
+/// The filter, its track and the way back: what a recording's sample costs beside the second pass.
+PriceRow smoothedPrice(const Settings& settings, const char* name, Level level) {
+  const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
+  const PipelineSettings pipeline = settingsOf(settings, level, CrankEstimator::kMechanism);
+  const auto pass = [&] {
+    SmoothedRuns runs;
+    const auto ahead = runs.ahead()(settings.mechanism, pipeline);
+    ahead->start({readings.front().angle, readings.front().speed});
+    for (std::size_t i = 1; i < readings.size(); ++i) {
+      const double step = 1e-9 * static_cast<double>(readings[i].stamp - readings[i - 1].stamp);
+      keep(ahead->update(step, {readings[i].angle, readings[i].speed}));
+    }
+  };
+  return {"crank", name, costOf(readings.size(), pass), {}, {}};
+}
+
 PriceRow pipelinePrice(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
   Pipeline pipeline(settings.mechanism, settingsOf(settings, level, CrankEstimator::kMechanism));
@@ -78,6 +95,7 @@ std::vector<PriceRow> stepPrices(const Settings& settings) {
           trackerPrice(settings, "difference", Level::kRocker, CrankEstimator::kDifference),
           trackerPrice(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
           trackerPrice(settings, "mechanism, linkage", Level::kLinkage, CrankEstimator::kMechanism),
+          smoothedPrice(settings, "mechanism, linkage, smoothed", Level::kLinkage),
           pipelinePrice(settings, "rocker", Level::kRocker),
           pipelinePrice(settings, "linkage", Level::kLinkage),
           countedPrice(settings, "rocker, turn loads and cycles", Level::kRocker),

@@ -45,6 +45,8 @@ void addOptions(CLI::App& app, Arguments& given, BagJob& job) {
   app.get_option("--pressures-topic")
       ->description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   app.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
+  app.add_flag("--smooth", job.smooth, "the crank by later samples as well: more exact than the live node can be")
+      ->excludes("--ledger");
   app.add_flag("--pins", job.pins, "pin forces as well")->excludes(no_bag);
   app.add_option("--grapple", given.grapple, "the grapple as well, from --joint-states-topic; may be repeated")
       ->allow_extra_args(false)

@@ -15,6 +15,15 @@ constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothi
 
 double square(double x) noexcept { return x * x; }
 
+/// drawn: the factor is another one than before.
+void extend(const ShaftTransition& f, bool drawn, ShaftMatrix* transition) noexcept {
+  if (transition == nullptr) return;
+  ShaftMatrix step = ShaftMatrix::Identity();
+  step.topRows<2>() = f;
+  if (drawn) step.col(CrankBelief::kFactor).setZero();
+  *transition = (step * *transition).eval();
+}
+
 }  // namespace
 
 void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
@@ -26,7 +35,7 @@ void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
 }
 
 int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
-                         double most_speed, double dt) noexcept {
+                         double most_speed, double dt, ShaftMatrix* transition) noexcept {
   ShaftLoad load = model(state.position.angle);
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
@@ -36,8 +45,10 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     const double b = 1.0 / (state.drive_inertia + load.inertia);
     const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
+    const bool drawn = step.blows > 0 && !tool_met;
+    extend(step.transition, drawn, transition);
     if (step.blows > 0) {
-      if (!tool_met) drawFactor(prior);
+      if (drawn) drawFactor(prior);
       blows += !tool_met;
       tool_met = false;
     }
@@ -90,13 +101,15 @@ void CrankBelief::forgetAngle(double variance) noexcept {
   covariance(kAngle, kAngle) = variance;
 }
 
-void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn) noexcept {
+void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, ShaftMatrix* transition) noexcept {
   const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
-  if (!tool_met && state.speed > 0.0) drawFactor(prior);
+  const bool draws = !tool_met && state.speed > 0.0;
+  if (draws) drawFactor(prior);
   tool_met = false;
   ShaftTransition f = ShaftTransition::Identity();
   ShaftLoad load;
   passBlow(model, prior.mean, state, load, f);
+  extend(f, draws, transition);
   by_error.topRows<2>() = (f * by_error).eval();
   const ShaftTransition moved = f * covariance;
   covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();

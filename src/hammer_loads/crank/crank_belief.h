@@ -33,8 +33,9 @@ struct CrankBelief {
   bool tool_met{};  ///< before the dead centre: nothing strikes there any more
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
+  /// transition: multiplied by d(this after)/d(this before), rows as above, where it is wanted.
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
-              double dt) noexcept;
+              double dt, ShaftMatrix* transition = nullptr) noexcept;
   /// Scalar measurement of one variable, Joseph form. Slides the position; it may end beyond the blow. by_error: what
   /// the sensor's errors make of the measurement.
   void correct(Row row, double innovation, double variance, const SensorErrors::Row& by_error) noexcept;
@@ -47,7 +48,7 @@ struct CrankBelief {
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.
   void forgetAngle(double variance) noexcept;
   /// The position stands beyond the blow that it should have passed: passes it now.
-  void passLate(const ShaftModel& model, const BlowPrior& prior) noexcept;
+  void passLate(const ShaftModel& model, const BlowPrior& prior, ShaftMatrix* transition = nullptr) noexcept;
   /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
   void meetTool(double deviation, double dt) noexcept;
   bool isSound(double most_speed) const noexcept;

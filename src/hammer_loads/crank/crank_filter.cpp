@@ -107,8 +107,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
 
 /// (1)
 int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noexcept {
-  const CrankWalks walks{settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk};
-  return belief.predict(step_model_, walks, blows_.prior(), contact, mostSpeed(), dt);
+  return belief.predict(step_model_, walks(), blows_.prior(), contact, mostSpeed(), dt);
 }
 
 /// (6)

@@ -68,7 +68,17 @@ class CrankFilter final : public CrankTracker {
   double angleResolution() const noexcept override { return encoder_.resolution(); }
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }
 
+  const CrankFilter* filter() const noexcept override { return this; }
+
   const ShaftState& state() const noexcept { return now_.state; }
+  /// What is known at the last accepted sample, as the filter computes it.
+  const CrankBelief& belief() const noexcept { return now_; }
+  /// What is expected of the next blow.
+  BlowPrior blowPrior() const noexcept { return blows_.prior(); }
+  CrankWalks walks() const noexcept { return {settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk}; }
+  double mostSpeed() const noexcept;  ///< from which on an estimate has diverged [rad/s]
+  /// What variances are multiplied with before they are published.
+  double growth() const noexcept { return consistency_.growth(); }
   /// Covariance of (angle, speed, torque, logarithm of drive inertia, blow factor) at the last accepted sample, as the
   /// filter computes it; what it publishes is multiplied by the consistency where that is above 1.
   const ShaftMatrix& covariance() const noexcept { return now_.covariance; }
@@ -107,8 +117,6 @@ class CrankFilter final : public CrankTracker {
   void doubtInertia(double dt) noexcept;
   Tracking begin(const WeighedSample& sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
-  bool hasRunAway(const ShaftState& state) const noexcept;
-  double mostSpeed() const noexcept;
   double mostTorque() const noexcept;
 
   ShaftModel model_;        ///< with the latest motion of the hull

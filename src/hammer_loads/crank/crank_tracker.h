@@ -10,6 +10,8 @@
 
 namespace hammer_loads {
 
+class CrankFilter;
+
 /// One crank sample as measured.
 struct CrankSample {
   double angle{};               ///< any winding [rad]
@@ -76,6 +78,8 @@ class CrankTracker {
   /// Mean of innovation^2 over its variance: near 1 where readings and model agree; NaN before enough samples and of no
   /// model.
   virtual double consistency() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
+  /// The filter that learns of sensor and machine behind the estimates; null: none.
+  virtual const CrankFilter* filter() const noexcept { return nullptr; }
   /// One count of the angle sensor [rad], as far as known.
   virtual double angleResolution() const noexcept = 0;
   /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "hammer_loads/pipeline/hull_deviation.h"
-#include "hammer_loads/pipeline/make_tracker.h"
 
 namespace hammer_loads {
 namespace {
@@ -27,13 +26,13 @@ CrankSampleGate::Limits limitsOf(const PipelineSettings& s, double resolution) n
 
 }  // namespace
 
-CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& settings)
+CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& settings, const TrackerMaker& make)
     : model_(&model),
       settings_(settings),
       unit_check_(settings.max_crank_speed),
       latency_(static_cast<StampNs>(std::llround(settings.crank_latency / kSecondsPerNs))),
       sequence_(settings.crank_stamps, settings.stale_after),
-      tracker_(makeTracker(model.mechanism(), settings)),
+      tracker_(make(model.mechanism(), settings)),
       gate_(limitsOf(settings, tracker_->angleResolution())),
       step_(*tracker_) {}
 

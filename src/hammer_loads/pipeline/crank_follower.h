@@ -9,6 +9,7 @@
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/crank_sample_gate.h"
 #include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/unit_check.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
@@ -17,7 +18,7 @@ namespace hammer_loads {
 class CrankFollower {
  public:
   /// Refers to the model, which must outlive it.
-  CrankFollower(const HullModel& model, const PipelineSettings& settings);
+  CrankFollower(const HullModel& model, const PipelineSettings& settings, const TrackerMaker& make);
   CrankFollower(const CrankFollower&) = delete;
   CrankFollower& operator=(const CrankFollower&) = delete;
 

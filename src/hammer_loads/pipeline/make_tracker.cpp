@@ -1,18 +1,11 @@
 #include "hammer_loads/pipeline/make_tracker.h"
 
-#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/plain_tracker.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 
 namespace hammer_loads {
 
-std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
-  if (s.crank_estimator != CrankEstimator::kMechanism) {
-    const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
-                                                                         : PlainTracker::Acceleration::kDifference;
-    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, mechanism.parameters().drive_inertia,
-                                          s.crank_sensor);
-  }
+CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSettings& s) {
   const double inertia = mechanism.parameters().rocker_inertia_about_pivot;
   CrankFilterSettings filter;
   filter.sensor = s.crank_sensor;
@@ -27,7 +20,17 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
   filter.initial_inertia_deviation = s.initial_inertia_deviation;
   filter.max_speed = s.max_crank_speed;
   filter.blow_factor = blowInertia(mechanism, s.level, mechanism.parameters().drive_inertia).smoothFactor();
-  return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia, filter);
+  return filter;
+}
+
+std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
+  if (s.crank_estimator == CrankEstimator::kMechanism)
+    return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia,
+                                         filterSettings(mechanism, s));
+  const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
+                                                                       : PlainTracker::Acceleration::kDifference;
+  return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, mechanism.parameters().drive_inertia,
+                                        s.crank_sensor);
 }
 
 }  // namespace hammer_loads

@@ -14,15 +14,16 @@ constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocat
 }  // namespace
 
 Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom,
-                   const SampleCounts& counts)
+                   const SampleCounts& counts, const TrackerMaker& make)
     : mechanism_(mechanism),
       settings_(settings),
       model_(mechanism_, settings.level),
-      crank_(model_, settings_),
+      crank_(model_, settings_, make),
       hull_(settings_, boom),
       turn_(model_, crank_.step(), crank_.tracker()),
       sampler_(model_, crank_.step(), crank_.tracker(), settings_),
-      nominal_force_(pulseAtConstantSpeed(mechanism_, settings_.level, kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
+      nominal_force_(
+          pulseAtConstantSpeed(mechanism_, settings_.level, kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
       counts_(counts) {
   if (boom) boom_.emplace(*boom, settings_, mechanism.parameters().striking_distance);
   result_.outputs.reserve(std::min(sampler_.mostOutputs(), kMostOutputs));

@@ -18,9 +18,9 @@ namespace hammer_loads {
 /// inputs and settings alone.
 class Pipeline {
  public:
-  /// boom: nothing where its loads are not wanted. counts: where they go on from.
+  /// boom: nothing where its loads are not wanted. counts: where they go on from. make: of the crank's tracker.
   Pipeline(const Mechanism& mechanism, const PipelineSettings& settings, const std::optional<Boom>& boom = {},
-           const SampleCounts& counts = {});
+           const SampleCounts& counts = {}, const TrackerMaker& make = makeTracker);
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
@@ -69,7 +69,7 @@ class Pipeline {
   std::optional<BoomFollower> boom_;
   double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; a much larger one is not published: degrees
                           ///< that are not recognised yet, for instance
-  bool boom_follows_{};  ///< the boom has had every step since the last restart
+  bool boom_follows_{};   ///< the boom has had every step since the last restart
   SampleCounts counts_;
   SampleResult result_;
 };

@@ -91,7 +91,7 @@ void warnOfPlace(const SensorErrors& errors, std::vector<Warning>& warnings) {
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr double kInconsistent = 3.0;   // times the variance; a clean machine has 0.9
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
-  const auto* filter = dynamic_cast<const CrankFilter*>(&pipeline.crank().tracker());
+  const CrankFilter* filter = pipeline.crank().tracker().filter();
   if (filter == nullptr || pipeline.counts().blows < kLearned) return;
   if (filter->isLost())
     warnings.push_back(

@@ -2,12 +2,13 @@
 
 #include <system_error>
 
+#include "hammer_loads/pipeline/smoothed_runs.h"
 #include "hammer_loads/ros/attach.h"
 #include "hammer_loads/ros/bag_inputs.h"
-#include "hammer_loads/ros/bag_writer.h"
 #include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/bag_tables.h"
 #include "hammer_loads/ros/bag_warnings.h"
+#include "hammer_loads/ros/bag_writer.h"
 #include "hammer_loads/ros/grapple_bag_processing.h"
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/settings/yaml_value.h"
@@ -27,8 +28,10 @@ struct Sinks {
 /// The hammer's bridge through the runs of a recording.
 class HammerRuns {
  public:
-  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, const Sinks& sinks, BagReport& report)
-      : runs_(runs), job_(job), sinks_(sinks), report_(report) {
+  /// make: of the crank's tracker, for each run.
+  HammerRuns(const std::vector<BagRun>& runs, const BagJob& job, const Sinks& sinks, const TrackerMaker& make,
+             BagReport& report)
+      : runs_(runs), job_(job), sinks_(sinks), make_(make), report_(report) {
     begin();
   }
 
@@ -70,7 +73,7 @@ class HammerRuns {
     joints_came_ = false;
     samples_ = 0;
     const Settings& settings = runs_[next_++].settings;
-    flow_.emplace(settings);
+    flow_.emplace(settings, make_);
     pressures_ = HammerBridge::pressureTopics(settings, settings.input_topics.cylinder_pressures);
     if (job_.pieces != nullptr) flow_->keepPieces(*job_.pieces);
     if (sinks_.bag != nullptr) attachToBag(flow_->outputs(), *sinks_.bag, job_.output_prefix, job_.pins);
@@ -101,7 +104,8 @@ class HammerRuns {
 
   const std::vector<BagRun>& runs_;
   const BagJob& job_;
-  const Sinks& sinks_;
+  const Sinks sinks_;
+  const TrackerMaker make_;
   BagReport& report_;
   std::size_t next_{};
   bool joints_came_{};       ///< in this run
@@ -112,6 +116,39 @@ class HammerRuns {
   sensor_msgs::Imu imu_;
   sensor_msgs::FluidPressure pressure_;
   std::vector<std::pair<ros::Time, tf2_msgs::TFMessage::ConstPtr>> statics_;
+};
+
+/// The pass ahead of the one that writes: the live filter on the same messages.
+class AheadPass {
+ public:
+  /// Opens the bags once more: each reader needs its own.
+  AheadPass(const std::vector<BagRun>& runs, const std::vector<std::string>& files, const std::set<std::string>& topics)
+      : inputs_(BagInputs::open(files)) {
+    if (!inputs_.value) throw std::runtime_error(inputs_.problems.front());
+    messages_.emplace(inputs_.value->messagesOn(topics));
+    runs_.emplace(runs, job_, Sinks{}, smoothed_.ahead(), report_);
+  }
+
+  TrackerMaker behind() { return smoothed_.behind(); }
+  /// Reads on until the pass behind can take its next message.
+  void readOn() {
+    while (!smoothed_.isReady()) {
+      if (const BagMessage* item = messages_->next()) {
+        runs_->take(*item);
+      } else {
+        runs_.reset();
+        smoothed_.end();
+      }
+    }
+  }
+
+ private:
+  const BagJob job_{};  ///< writes nothing
+  BagReport report_;    ///< of no use: that of the other pass counts
+  Checked<BagInputs> inputs_;
+  SmoothedRuns smoothed_;
+  std::optional<BagMessages> messages_;
+  std::optional<HammerRuns> runs_;
 };
 
 Wanted wantedTopics(const std::vector<BagRun>& runs, bool hammer, const std::string& slider_topic) {
@@ -142,6 +179,18 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   return {};
 }
 
+/// What smoothing asks of the runs, and says in their run_info; why it cannot be done.
+std::vector<std::string> prepareSmoothing(std::vector<BagRun>& runs, std::vector<BagWarning>& warnings) {
+  const std::string mark = "smooth: the crank is estimated by later samples as well; the live node gives other values";
+  for (BagRun& run : runs) {
+    if (run.settings.pipeline.crank_estimator != CrankEstimator::kMechanism)
+      return {"--smooth: crank_estimator must be mechanism"};
+    run.settings.notes.push_back(mark);
+  }
+  addOnce(warnings, {"smooth", mark});
+  return {};
+}
+
 /// Everything that one job works with once its inputs are known to be good.
 struct Work {
   const BagInputs& inputs;
@@ -151,8 +200,8 @@ struct Work {
   std::string slider_topic;  ///< empty: no grapple
 };
 
-void warnOfInputs(const Work& work, const std::set<std::string>& topics, const std::set<const BagConnection*>& connections,
-                  std::vector<BagWarning>& warnings) {
+void warnOfInputs(const Work& work, const std::set<std::string>& topics,
+                  const std::set<const BagConnection*>& connections, std::vector<BagWarning>& warnings) {
   std::set<std::string> heard;
   for (const BagConnection* connection : connections) heard.insert(connection->topic);
   warnOfPublishers(work.inputs, topics, warnings);
@@ -162,17 +211,19 @@ void warnOfInputs(const Work& work, const std::set<std::string>& topics, const s
 }
 
 void process(const Work& work, const Sinks& sinks, const std::function<void(double)>& progress, BagReport& report) {
+  const Wanted wanted = wantedTopics(work.runs, work.hammer, work.slider_topic);
+  std::set<std::string> topics;
+  for (const auto& [name, type] : wanted) topics.insert(name);
+  std::optional<AheadPass> ahead;
   std::optional<HammerRuns> hammer;
   std::optional<GrappleFlow> grapple;
-  if (work.hammer) hammer.emplace(work.runs, work.job, sinks, report);
+  if (work.hammer && work.job.smooth) ahead.emplace(work.runs, work.job.inputs, topics);
+  if (work.hammer) hammer.emplace(work.runs, work.job, sinks, ahead ? ahead->behind() : makeTracker, report);
   if (work.job.grapple) {
     grapple.emplace(*work.job.grapple);
     if (sinks.bag != nullptr) attachToBag(grapple->outputs(), *sinks.bag, work.job.grapple_prefix, false);
   }
 
-  const Wanted wanted = wantedTopics(work.runs, work.hammer, work.slider_topic);
-  std::set<std::string> topics;
-  for (const auto& [name, type] : wanted) topics.insert(name);
   std::set<const BagConnection*> heard;
   BagMessages messages = work.inputs.messagesOn(topics);
   const auto count = static_cast<double>(messages.size());
@@ -181,6 +232,7 @@ void process(const Work& work, const Sinks& sinks, const std::function<void(doub
   while (const BagMessage* item = messages.next()) {
     progress(++done / count);
     heard.insert(item->connection);
+    if (ahead) ahead->readOn();
     if (hammer) hammer->take(*item);
     if (grapple && item->connection->topic == work.slider_topic) {
       item->to(slider);
@@ -228,7 +280,7 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
   if (!inputs.value) return inputs.problems;
   const std::string& names = inputs.value->names();
   try {
-    const Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
+    Checked<std::vector<BagRun>> runs = runsOf(*inputs.value, job, report.warnings);
     if (!runs.value) return runs.problems;
     report.notes = runs.notes;
     if (!job.output.empty()) report.hammer_prefix = job.output_prefix, report.grapple_prefix = job.grapple_prefix;
@@ -237,6 +289,10 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     for (const BagRun& run : *runs.value)
       work.hammer = work.hammer || inputs.value->has(run.settings.input_topics.crank);
     if (!work.hammer) report.notes = {}, report.warnings = {};
+    if (work.hammer && job.smooth) {
+      const std::vector<std::string> problems = prepareSmoothing(*runs.value, report.warnings);
+      if (!problems.empty()) return problems;
+    }
     if (job.grapple) work.slider_topic = first.joint_states;
     const bool hammer_required = !job.grapple || !job.tables.empty() || job.pieces != nullptr;
     const std::string& required = hammer_required ? first.crank : first.joint_states;

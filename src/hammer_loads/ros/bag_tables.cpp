@@ -43,7 +43,7 @@ void addCounts(const SampleCounts& counts, RunRecord& record) {
 void addLearned(const CrankTracker& tracker, RunRecord& record) {
   record.consistency = tracker.consistency();
   record.angle_resolution = tracker.angleResolution();
-  const auto* filter = dynamic_cast<const CrankFilter*>(&tracker);
+  const CrankFilter* filter = tracker.filter();
   if (filter == nullptr) return;
   record.timing_noise = filter->timingNoise();
   record.speed_noise = filter->speedNoise();

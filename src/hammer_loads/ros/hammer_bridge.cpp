@@ -15,7 +15,8 @@ std::string hullFrame(const Settings& settings) {
 
 }  // namespace
 
-HammerBridge::HammerBridge(const Settings& settings) : settings_(settings) {
+HammerBridge::HammerBridge(const Settings& settings, TrackerMaker make)
+    : settings_(settings), make_tracker_(std::move(make)) {
   prepareOutputs();
   std::vector<std::string> frames;
   for (const std::size_t output : frame_outputs_) frames.push_back(settings.pipeline.boom_wrench_links[output]);
@@ -61,7 +62,7 @@ void HammerBridge::begin(const Settings& settings) {
   if (pipeline_) finishRun();
   settings_ = settings;
   const SampleCounts counts = pipeline_ ? pipeline_->counts() : SampleCounts{};
-  pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts);
+  pipeline_.emplace(settings_.mechanism, settings_.pipeline, settings_.boom, counts, make_tracker_);
   beginCount();
   if (frame_wrenches_) frame_wrenches_->reset();
   RunInfo& run_info = outputs_.run_info.message;

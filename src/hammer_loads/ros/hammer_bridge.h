@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/ros/frame_wrench.h"
 #include "hammer_loads/ros/hammer_outputs.h"
@@ -22,7 +23,8 @@ namespace hammer_loads {
 /// input, passed on to the outputs that it causes.
 class HammerBridge {
  public:
-  explicit HammerBridge(const Settings& settings);
+  /// make: of the crank's tracker, for each run.
+  explicit HammerBridge(const Settings& settings, TrackerMaker make = makeTracker);
 
   void crank(const sensor_msgs::JointState& message, const ros::Time& record_time);
   void jointStates(const sensor_msgs::JointState& message, const ros::Time& record_time);
@@ -80,6 +82,7 @@ class HammerBridge {
   void send(const TurnEnd& end, const ros::Time& record_time);
 
   Settings settings_;
+  TrackerMaker make_tracker_;
   std::optional<Pipeline> pipeline_;  ///< replaced with each run, in its place
   HammerOutputs outputs_;
   std::optional<LifeFlow> life_;  ///< of the pipeline, replaced with each count

@@ -110,7 +110,7 @@ void NodeDiagnostics::describeCrank(Status& status) {
   status.add("restarts", counts.restarts);
   status.add("blows", counts.blows);
   status.add("passages of the blow backward", counts.backward_passes);
-  if (const auto* filter = dynamic_cast<const CrankFilter*>(&pipeline.crank().tracker())) {
+  if (const CrankFilter* filter = pipeline.crank().tracker().filter()) {
     status.add("drive inertia, identified [kg m2]", filter->state().drive_inertia);
     status.add("net torque [N m]", filter->state().torque);
     status.add("speed noise, identified [rad/s]", filter->speedNoise());

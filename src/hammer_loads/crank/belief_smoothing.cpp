@@ -1,0 +1,97 @@
+#include "hammer_loads/crank/belief_smoothing.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+using Vector = Eigen::Matrix<double, 5, 1>;
+using Row = CrankBelief::Row;
+
+constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
+constexpr double kMostAtBlow = 6.0;  // squared distance of five variables: 9 of 10 blows at the dead centre are below 3
+
+/// Beliefs that a step of the model joins, and how.
+struct Joined {
+  CrankBelief predicted;
+  ShaftMatrix transition{ShaftMatrix::Identity()};
+};
+
+/// Predicts to the side of the blow where the filter was afterwards; nothing if the model does not come there.
+std::optional<Joined> joined(const ShaftModel& model, const FilterStep& step, const CrankBelief& before,
+                             const CrankBelief& now) noexcept {
+  const CrankPosition &from = before.state.position, &to = now.state.position;
+  const bool passes = from.blowsPassed() != to.blowsPassed();
+  const bool contact = passes && !from.isMirrored() && !to.isMirrored();
+  Joined result{before};
+  CrankBelief& predicted = result.predicted;
+  predicted.predict(model, step.walks, step.prior, contact, step.most_speed, step.length, &result.transition);
+  CrankPosition& reached = predicted.state.position;
+  if (contact && reached.angle.side == Side::kBeforeBlow && to.angle.side == Side::kAfterBlow &&
+      reached.blow == to.blow)
+    predicted.passLate(model, step.prior, &result.transition);
+  if (reached.angle.side != to.angle.side || reached.blow != to.blow) return std::nullopt;
+  return result;
+}
+
+/// A sample only ever makes a variance smaller; where the filter made one larger, the prediction is not what it used.
+bool isWidened(const CrankBelief& predicted, const CrankBelief& now) noexcept {
+  constexpr double kRounding = 1e-6;
+  return (now.covariance.diagonal().array() > (1.0 + kRounding) * predicted.covariance.diagonal().array()).any();
+}
+
+Vector between(const CrankBelief& a, const CrankBelief& b) noexcept {
+  Vector change;
+  change << difference(a.state.position, b.state.position), a.state.speed - b.state.speed,
+      a.state.torque - b.state.torque, std::log(a.state.drive_inertia / b.state.drive_inertia), a.factor - b.factor;
+  return change;
+}
+
+void move(const Vector& change, CrankBelief& belief) noexcept {
+  belief.state.position.slide(change[Row::kAngle]);
+  belief.state.speed += change[Row::kSpeed];
+  belief.state.torque += change[Row::kTorque];
+  belief.state.drive_inertia = std::clamp(belief.state.drive_inertia * std::exp(change[Row::kInertia]),
+                                          belief.least_inertia, belief.most_inertia);
+  belief.factor = std::max(kLeastFactor, belief.factor + change[Row::kFactor]);
+}
+
+}  // namespace
+
+std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& step, const CrankBelief& before,
+                                          const CrankBelief& now, const CrankBelief& next) noexcept {
+  model.setHullMotion(step.hull);
+  const std::optional<Joined> way = joined(model, step, before, now);
+  if (!way || isWidened(way->predicted, now)) return std::nullopt;
+  const ShaftMatrix& predicted = way->predicted.covariance;
+  // Scaled to a correlation: torque and angle differ by ten powers of ten.
+  const Vector scale = predicted.diagonal().cwiseSqrt().cwiseInverse();
+  if (!scale.allFinite()) return std::nullopt;
+  const Eigen::LDLT<ShaftMatrix> factors(scale.asDiagonal() * predicted * scale.asDiagonal());
+  if (factors.info() != Eigen::Success || !(factors.vectorD().array() > 0.0).all()) return std::nullopt;
+  const ShaftMatrix scaled = scale.asDiagonal() * (way->transition * before.covariance);
+  const ShaftMatrix gain = factors.solve(scaled).transpose() * scale.asDiagonal();
+
+  const Vector change = between(next, way->predicted), scaled_change = scale.asDiagonal() * change;
+  const bool passes = before.state.position.blowsPassed() != now.state.position.blowsPassed();
+  if (passes && !(scaled_change.dot(factors.solve(scaled_change)) < kMostAtBlow)) return std::nullopt;
+
+  CrankBelief result = before;
+  move(gain * change, result);
+  result.by_error += gain * (next.by_error - way->predicted.by_error);
+  const ShaftMatrix covariance = before.covariance + gain * (next.covariance - predicted) * gain.transpose();
+  result.covariance = 0.5 * (covariance + covariance.transpose());
+  if (!result.isSound(step.most_speed) || isWidened(before, result)) return std::nullopt;
+  return result;
+}
+
+void settleBranch(const ShaftModel& model, double factor, CrankBelief& belief) noexcept {
+  const bool back = belief.state.position.angle.side == Side::kAfterBlow;
+  ShaftTransition unused = ShaftTransition::Identity();
+  ShaftLoad load;
+  passBlow(model, back ? 1.0 / factor : factor, belief.state, load, unused);
+}
+
+}  // namespace hammer_loads

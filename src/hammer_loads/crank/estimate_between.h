@@ -1,0 +1,26 @@
+/// The estimate between two samples.
+#pragma once
+
+#include "hammer_loads/crank/crank_belief.h"
+#include "hammer_loads/crank/crank_tracker.h"
+
+namespace hammer_loads {
+
+/// Two samples and the step between them; refers to its arguments.
+struct BetweenSamples {
+  const ShaftModel& model;
+  const ShaftModel& step_model;  ///< with the hull's mean motion over the step
+  const CrankBelief& before;
+  const CrankBelief& now;
+  const HullMotion& before_hull;  ///< at the samples
+  const HullMotion& now_hull;
+  double step{};        ///< [s]
+  double most_speed{};  ///< from which on an estimate has diverged [rad/s]
+};
+
+/// The way forward from the earlier sample and the way back from the later one, each trusted near its own end. Between
+/// samples that no machine makes either may run away; it is left out then. dt after the earlier one, less than the step
+/// [s].
+CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;
+
+}  // namespace hammer_loads

@@ -1,0 +1,49 @@
+/// A recording's crank by earlier and later samples.
+#pragma once
+
+#include <memory>
+
+#include "hammer_loads/crank/crank_track.h"
+
+namespace hammer_loads {
+
+/// Gives the samples of a track again, in their order. It must be asked as the tracker was that filled the track; each
+/// start() or update() needs a sample that is ready. What a sample is taken for (a restart, an outlier, doubtful) is
+/// what the filter took it for.
+class SmoothedCrank final : public CrankTracker {
+ public:
+  SmoothedCrank(const ShaftModel& model, std::shared_ptr<CrankTrack> track);
+
+  void start(const CrankSample& sample) noexcept override;
+  Tracking update(double dt, const CrankSample& sample) noexcept override;
+  void setHullMotion(const HullMotion& hull) noexcept override;
+
+  CrankEstimate estimate() const noexcept override;
+  CrankEstimate between(double dt) const noexcept override;
+  bool hasSpeed() const noexcept override { return now_.has_speed; }
+  bool isPlausible() const noexcept override { return now_.is_plausible; }
+  Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
+  Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override;
+  BlowFactor blowFactor() const noexcept override;
+  double driveInertia() const noexcept override { return now_.belief.state.drive_inertia; }
+  bool isDoubtful() const noexcept override { return now_.is_doubtful; }
+  bool isProven() const noexcept override { return now_.is_proven; }
+  double consistency() const noexcept override { return now_.consistency; }
+  /// As it is after the last sample that came into the track.
+  const CrankFilter* filter() const noexcept override { return &track_->filter(); }
+  double angleResolution() const noexcept override { return now_.resolution; }
+
+ private:
+  Tracking next() noexcept;
+  Eigen::Matrix3d covarianceOf(const CrankBelief& belief, double torque_part) const noexcept;
+  ShaftMatrix grown(const CrankBelief& belief) const noexcept;
+
+  std::shared_ptr<CrankTrack> track_;
+  ShaftModel model_;       ///< with the latest motion of the hull
+  ShaftModel step_model_;  ///< with its mean over the step
+  HullMotion before_hull_, now_hull_;
+  CrankBelief before_;
+  TrackedSample now_;
+};
+
+}  // namespace hammer_loads

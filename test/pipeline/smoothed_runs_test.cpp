@@ -1,0 +1,188 @@
+// The smoothed crank against the live filter's, by the truth of simulated machines.
+#include "hammer_loads/pipeline/smoothed_runs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/session.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+using simulation::MachineSettings;
+using simulation::Session;
+
+constexpr double kNearBlow = 5e-4;   // [s]: which side a sample is on may stay unknown
+constexpr double kJudgedFrom = 3.0;  // [s]: the filter has learned by then
+
+struct Judged {
+  double rms{};          ///< of force_z, part of the peak
+  double rms_far{};      ///< the same without the samples next to a blow
+  double inside{};       ///< part of the errors within two deviations
+  double restitution{};  ///< rms of its error
+  SampleCounts counts;
+  std::vector<double> forces;  ///< force_z of every accepted sample [N]
+};
+
+MachineSettings machineOf(double rate, std::uint64_t seed, double duration = 14.0) {
+  MachineSettings machine = simulation::workingMo100();
+  machine.duration = duration;
+  machine.drive.stop_time = duration - 0.5;
+  machine.crank.rate = rate;
+  machine.crank.drop_outs.clear();
+  machine.seed = seed;
+  return machine;
+}
+
+/// 1024 counts, no speeds, stamps of a PC, blows that differ.
+MachineSettings typicalMachine(double rate, std::uint64_t seed, double duration = 14.0) {
+  MachineSettings machine = machineOf(rate, seed, duration);
+  machine.crank.counts = 1024;
+  machine.crank.speed = false;
+  machine.crank.stamp_noise = 3e-4;
+  machine.blow.restitution_drawn = true;
+  machine.blow.restitution_low = 0.1;
+  machine.blow.restitution_high = 0.25;
+  return machine;
+}
+
+void feed(const Session& session, Pipeline& pipeline, const std::function<void(std::size_t)>& sample) {
+  const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+  std::size_t joints = 0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    for (; joints < session.joints.size() && session.joints[joints].stamp <= session.crank[i].stamp; ++joints) {
+      const auto& position = session.joints[joints].position;
+      pipeline.boomJoints(session.joints[joints].stamp, names, {position.begin(), position.end()}, {});
+    }
+    pipeline.crankSample(session.crank[i].stamp, {session.crank[i].angle, session.crank[i].speed});
+    sample(i);
+  }
+}
+
+/// What the pipeline gave at an instant.
+struct Given {
+  double time{}, force_z{}, deviation{};  ///< [s since start], [N]
+};
+
+/// Of what was given while the hammer worked, by the truth at the published stamps.
+void judgeForces(const MachineSettings& machine, const std::vector<Given>& given, const Session& session,
+                 Judged& judged) {
+  std::vector<double> times;
+  for (const Given& sample : given) times.push_back(sample.time);
+  const std::vector<simulation::CrankTruth> truth = simulation::truthAt(machine, times);
+  double squares = 0.0, peak = 0.0, count = 0.0, far_squares = 0.0;
+  auto blow = session.blows.begin();
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const double error = given[i].force_z - truth[i].load.force_z;
+    while (blow != session.blows.end() && blow->time < given[i].time - kNearBlow) ++blow;
+    const bool near_blow = blow != session.blows.end() && blow->time < given[i].time + kNearBlow;
+    peak = std::max(peak, std::abs(truth[i].load.force_z));
+    judged.inside += std::abs(error) <= 2.0 * given[i].deviation;
+    squares += error * error;
+    if (!near_blow) far_squares += error * error;
+    ++count;
+  }
+  judged.rms = std::sqrt(squares / count) / peak;
+  judged.rms_far = std::sqrt(far_squares / count) / peak;
+  judged.inside /= count;
+}
+
+Judged judge(const MachineSettings& machine, const Session& session, const TrackerMaker& make) {
+  const Settings settings = *loadFiles(configDirectory(), {}).value;
+  Pipeline pipeline(test::mechanismOf(machine.hammer), settings.pipeline, {}, {}, make);
+  Judged judged;
+  std::vector<Given> given;
+  double blow_squares = 0.0, blows = 0.0;
+  feed(session, pipeline, [&](std::size_t) {
+    const SampleResult& result = pipeline.result();
+    const auto since = [&](StampNs stamp) { return 1e-9 * static_cast<double>(stamp - machine.start_stamp); };
+    for (std::size_t k = 0; k < result.turn_ends; ++k) {
+      const double at = since(result.ends[k].stamp);
+      const auto truth = std::find_if(session.blows.begin(), session.blows.end(),
+                                      [&](const auto& blow) { return std::abs(blow.time - at) < 0.02; });
+      if (at < kJudgedFrom || truth == session.blows.end()) continue;
+      const double true_restitution = -truth->strike.rocker_speed_after / truth->strike.rocker_speed_before;
+      blow_squares += std::pow(result.ends[k].blow.restitution - true_restitution, 2);
+      ++blows;
+    }
+    if (result.refusal) return;
+    judged.forces.push_back(result.wrench.force_z);
+    const double time = since(result.stamp);
+    if (time < kJudgedFrom || time > machine.drive.stop_time - 0.3) return;
+    given.push_back({time, result.wrench.force_z, result.outputs.back().deviation.wrench.force_z});
+  });
+  judgeForces(machine, given, session, judged);
+  judged.restitution = std::sqrt(blow_squares / blows);
+  judged.counts = pipeline.counts();
+  return judged;
+}
+
+struct Both {
+  Judged live, smoothed;
+};
+
+Both bothOf(const MachineSettings& machine) {
+  const Session session = simulation::recordSession(machine);
+  SmoothedRuns runs;
+  Both both{judge(machine, session, runs.ahead()), {}};
+  EXPECT_TRUE(runs.isReady());
+  runs.end();
+  both.smoothed = judge(machine, session, runs.behind());
+  const auto say = [](const std::string& name, const Judged& judged) {
+    testing::Test::RecordProperty(name + "_rms", std::to_string(judged.rms));
+    testing::Test::RecordProperty(name + "_inside", std::to_string(judged.inside));
+  };
+  say("live", both.live);
+  say("smoothed", both.smoothed);
+  return both;
+}
+
+/// part: of the live filter's rms that is left at most.
+void expectBetter(const Both& both, double part) {
+  EXPECT_LT(both.smoothed.rms, both.live.rms);
+  EXPECT_LT(both.smoothed.rms_far, part * both.live.rms_far);
+  EXPECT_GE(both.smoothed.inside, 0.88);
+  EXPECT_LE(both.smoothed.inside, 0.99);
+  EXPECT_EQ(both.smoothed.counts.refusedTotal(), both.live.counts.refusedTotal());
+}
+
+TEST(SmoothedRuns, PassAheadIsTheLiveFilterBitForBit) {
+  const MachineSettings machine = typicalMachine(500.0, 3);
+  const Session session = simulation::recordSession(machine);
+  SmoothedRuns runs;
+  const Judged ahead = judge(machine, session, runs.ahead()), live = judge(machine, session, makeTracker);
+  ASSERT_GT(live.forces.size(), 5000U);
+  EXPECT_TRUE(ahead.forces == live.forces);
+}
+
+TEST(SmoothedRuns, NothingIsLostOnExactSensors) {
+  for (const double rate : {1000.0, 100.0}) {
+    const Both both = bothOf(machineOf(rate, 5));
+    expectBetter(both, 0.7);
+  }
+}
+
+TEST(SmoothedRuns, StampsThatJitterWeighLess) {
+  MachineSettings machine = machineOf(1000.0, 7);
+  machine.crank.stamp_noise = 2e-4;
+  const Both both = bothOf(machine);
+  expectBetter(both, 0.8);
+}
+
+TEST(SmoothedRuns, ATypicalMachineIsCloser) {
+  for (const MachineSettings& machine : {typicalMachine(1000.0, 11), typicalMachine(200.0, 11, 45.0)}) {
+    const Both both = bothOf(machine);  // 45 s: more than is smoothed at once
+    expectBetter(both, 0.7);
+    EXPECT_LT(both.smoothed.restitution, 1.05 * both.live.restitution);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
