@@ -16,6 +16,7 @@ constexpr Doubt kAngle{2e-4, 0.01, 0.002};        // [rad]
 constexpr Doubt kTorque{0.004, 0.02, 0.002};      // of the torque that the cylinder's relief valve allows
 constexpr double kSlowest = 0.01, kMoved = 0.02;  // [s] between joint states; [rad] a jump
 constexpr double kFast = 0.05, kRest = 2.0;       // [rad/s]: its acceleration hides the vibration; [s] to wait then
+constexpr double kStart = 1.0;                    // [s] until a boom that is driven at the start is seen to be
 constexpr double kMemory = 0.5, kLost = 0.5;      // of each filter [s]; of an angle that winds or came back [rad]
 
 void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, double size = 1.0) noexcept {
@@ -32,7 +33,7 @@ void ModeObserver::follow(const JointMotion& motion, double step) noexcept {
                     (motion.position - first_).cwiseAbs().maxCoeff() > kLost;
   if (lost) {
     first_ = slow_ = motion.position;
-    unrest_ = kRest;
+    unrest_ = kStart;
     return;
   }
   const double part = step / kMemory;
