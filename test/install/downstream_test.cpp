@@ -150,7 +150,8 @@ TEST_F(DownstreamTest, LaunchArgumentsBecomeParameters) {
 TEST_F(DownstreamTest, HeadersAreInstalledOnlyWithTheirLibrary) {
   const fs::path include = kPrefix / "include/hammer_loads";
   for (const char* room : {"simulation", "bench", "commands"}) EXPECT_FALSE(fs::exists(include / room)) << room;
-  for (const char* header : {"ros/load_display.h", "ros/machine_player.h", "ros/run_node.h"}) EXPECT_FALSE(fs::exists(include / header));
+  for (const char* header : {"ros/load_display.h", "ros/machine_player.h", "ros/run_node.h"})
+    EXPECT_FALSE(fs::exists(include / header));
   EXPECT_TRUE(fs::exists(include / "pipeline/pipeline.h"));
 }
 

@@ -13,8 +13,8 @@ namespace hammer_loads {
 namespace {
 
 using simulation::HammerOnBoom;
-using test::Error;
 using simulation::OnBoomTruth;
+using test::Error;
 constexpr double kMillisecond = 1e-3, kBegin = 3.0, kEnd = 8.0;
 constexpr StampNs kMs = 1000000;
 
@@ -203,8 +203,7 @@ TEST(HammerOnBoomSession, PressuresReplaceTheCylindersForces) {
   play(pipeline, {false, true, 0.0, 0.0, 0.0, 0.0, true}, [&](const OnBoomTruth& t, const SampleResult& result) {
     ASSERT_NE(result.boom, nullptr);
     ASSERT_TRUE(result.boom->measured);
-    for (int j = 0; j < 3; ++j)
-      ASSERT_NEAR(result.boom->loads.total[j + 1], -t.hold[j], 2e-3 * 3e4) << t.time;
+    for (int j = 0; j < 3; ++j) ASSERT_NEAR(result.boom->loads.total[j + 1], -t.hold[j], 2e-3 * 3e4) << t.time;
     ASSERT_TRUE(result.boom->press_force_lost) << "it hangs free";
   });
 }

@@ -45,12 +45,13 @@ struct Errors {
   }
   double covered() const { return static_cast<double>(within) / static_cast<double>(3 * samples); }
   void print(const std::string& name) const {
-    std::printf("%s: Fz %.2f|%.2f  My %.2f  torques %.2f %.2f %.2f  sections %.2f %.2f %.2f (correlation %.4f)  "
-                "energy %.2f  covered %.0f %%  %.2f Hz\n",
-                name.c_str(), 100 * force_z.rmsOfLargest(), 100 * force_z.worstOfLargest(), 100 * moment.rms(),
-                100 * torque[0].rms(), 100 * torque[1].rms(), 100 * torque[2].rms(), 100 * section[0].rmsOfRange(),
-                100 * section[1].rmsOfRange(), 100 * section[2].rmsOfRange(), leastCorrelation(), 100 * energy,
-                100 * covered(), frequency);
+    std::printf(
+        "%s: Fz %.2f|%.2f  My %.2f  torques %.2f %.2f %.2f  sections %.2f %.2f %.2f (correlation %.4f)  "
+        "energy %.2f  covered %.0f %%  %.2f Hz\n",
+        name.c_str(), 100 * force_z.rmsOfLargest(), 100 * force_z.worstOfLargest(), 100 * moment.rms(),
+        100 * torque[0].rms(), 100 * torque[1].rms(), 100 * torque[2].rms(), 100 * section[0].rmsOfRange(),
+        100 * section[1].rmsOfRange(), 100 * section[2].rmsOfRange(), leastCorrelation(), 100 * energy, 100 * covered(),
+        frequency);
   }
 };
 

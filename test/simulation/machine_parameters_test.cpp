@@ -156,9 +156,10 @@ TEST(MachineParameters, FlawsAreRead) {
 
 TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith) {
   EXPECT_FALSE(loadSimulator(configDirectory(), {}).value->machine.on_boom.on);
-  const Checked<SimulatorSettings> loaded = loadSimulator(
-      configDirectory(), given("{hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
-                               " imu_x_m: 0.1, pressure_rate_Hz: 0, joint_noise_rad: 0.0001, restitution_drawn: true}"));
+  const Checked<SimulatorSettings> loaded =
+      loadSimulator(configDirectory(),
+                    given("{hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
+                          " imu_x_m: 0.1, pressure_rate_Hz: 0, joint_noise_rad: 0.0001, restitution_drawn: true}"));
   ASSERT_TRUE(loaded.value) << loaded.problems.front();
   const MachineSettings& machine = loaded.value->machine;
   EXPECT_TRUE(machine.on_boom.on);
@@ -169,9 +170,9 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   EXPECT_EQ(machine.on_boom.pressures.rate, 0.0);
   EXPECT_EQ(machine.joint_noise, 1e-4);
   EXPECT_EQ(machine.hammer.drive_reaction_ratio, 1.0);
-  const Checked<SimulatorSettings> wrong =
-      loadSimulator(configDirectory(), given("{hull_on_boom: true, level: linkage, blank_share: 0.1, tool_early_rad: 0.1,"
-                                             " blow_crank_loss: 0.1, coupling_frequency_Hz: 50, oil_stiffness_factor: 0}"));
+  const Checked<SimulatorSettings> wrong = loadSimulator(
+      configDirectory(), given("{hull_on_boom: true, level: linkage, blank_share: 0.1, tool_early_rad: 0.1,"
+                               " blow_crank_loss: 0.1, coupling_frequency_Hz: 50, oil_stiffness_factor: 0}"));
   EXPECT_FALSE(wrong.value);
   for (const char* key : {"level", "blank_share", "tool_early_rad", "blow_crank_loss", "coupling_frequency_Hz"})
     EXPECT_TRUE(mentions(wrong.problems, std::string(key))) << key;

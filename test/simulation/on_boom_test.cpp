@@ -133,8 +133,7 @@ TEST(OnBoomSession, SameSeedSameReadingsHoweverTimeIsCut) {
     ASSERT_EQ(whole.pressures[i].bore, again.pressures[i].bore);
     ASSERT_EQ(whole.pressures[i].rod, again.pressures[i].rod);
   }
-  for (std::size_t i = 0; i < whole.joints.size(); ++i)
-    ASSERT_EQ(whole.joints[i].position, again.joints[i].position);
+  for (std::size_t i = 0; i < whole.joints.size(); ++i) ASSERT_EQ(whole.joints[i].position, again.joints[i].position);
 }
 
 /// The unit is turned by 0.3 rad; force less force of the chambers is what holds the joint.
@@ -158,7 +157,8 @@ TEST(OnBoomSession, SensorsAtRestShowTheWeight) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::min(p.bore[i], p.rod[i]), 5e6, 0.05e6);
   double squares = 0.0;
   for (const JointReading& joints : session.joints)
-    for (const double speed : joints.velocity) squares += speed * speed / (4.0 * static_cast<double>(session.joints.size()));
+    for (const double speed : joints.velocity)
+      squares += speed * speed / (4.0 * static_cast<double>(session.joints.size()));
   EXPECT_NEAR(std::sqrt(squares), 0.01, 0.004);
 }
 

@@ -77,8 +77,8 @@ class Player {
   }
 
   void tellImu(const simulation::HullImuReading& r) {
-    pipeline.hullImu(r.stamp, {{r.specific_force[0], r.specific_force[1], r.specific_force[2]},
-                               {r.rate[0], r.rate[1], r.rate[2]}});
+    pipeline.hullImu(
+        r.stamp, {{r.specific_force[0], r.specific_force[1], r.specific_force[2]}, {r.rate[0], r.rate[1], r.rate[2]}});
   }
   void tellPressures(const simulation::PressureReading& r) {
     for (std::size_t i = 0; i < r.bore.size(); ++i) {

@@ -12,8 +12,8 @@
 namespace hammer_loads {
 
 /// Each reading is given once, at the crank sample that follows it. Joint sensors see the vibration too: what the
-/// operator does is taken as what is left of their angles below some 0.3 Hz. Joint angles count above 100 Hz; the faster
-/// a joint moves, the less. While the operator drives a joint fast, 2 s after that and 1 s after the start only
+/// operator does is taken as what is left of their angles below some 0.3 Hz. Joint angles count above 100 Hz; the
+/// faster a joint moves, the less. While the operator drives a joint fast, 2 s after that and 1 s after the start only
 /// pressures count. No allocation.
 class ModeObserver {
  public:

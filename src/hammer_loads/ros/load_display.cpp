@@ -55,7 +55,8 @@ void LoadDisplay::onRunInfo(const RunInfo& info) {
   for (int j = 0; j < chain.joints(); ++j) {
     const int beyond = chain.linkBeyond(j);
     const Pose origin(Eigen::Translation3d(chain.link(beyond).origin));
-    frames.push_back(frameOf("joint/" + chain.jointNames()[static_cast<std::size_t>(j)], chain.link(beyond - 1).name, origin));
+    frames.push_back(
+        frameOf("joint/" + chain.jointNames()[static_cast<std::size_t>(j)], chain.link(beyond - 1).name, origin));
   }
   for (const auto& frame : frames) {
     Shown& shown = shown_[frame.child_frame_id];

@@ -297,8 +297,7 @@ void HammerOnBoom::blow() {
   const PlanePoint to_hull = std::exp(kI * hullAngle(now_));
   const PlanePoint striker = jointPlace(now_, 3) - machine_.hammer.striking_distance / to_hull;
   Vector5 J, v, loop;  // of the striking point along the tool; the linkage allows no speed along the loop
-  for (std::size_t j = 0; j < 3; ++j)
-    J[static_cast<int>(j)] = (to_hull * -kI * (striker - jointPlace(now_, j))).imag();
+  for (std::size_t j = 0; j < 3; ++j) J[static_cast<int>(j)] = (to_hull * -kI * (striker - jointPlace(now_, j))).imag();
   J[3] = 0.0, J[4] = machine_.hammer.striking_distance;
   v << now_.v, u_before * now_.v[3];
   loop << 0.0, 0.0, 0.0, u_after, -1.0;
@@ -306,15 +305,15 @@ void HammerOnBoom::blow() {
   const Vector5 by_tool = inverse.solve(J), by_loop = inverse.solve(loop);
   const BlowSettings& b = machine_.blow;
   const double restitution = b.restitution_low + draws_.uniform() * (b.restitution_high - b.restitution_low);
-  const double P = b.restitution_drawn ? -(1.0 + restitution) * J.dot(v) / J.dot(by_tool)
-                                       : -loop.dot(v) / loop.dot(by_tool);
+  const double P =
+      b.restitution_drawn ? -(1.0 + restitution) * J.dot(v) / J.dot(by_tool) : -loop.dot(v) / loop.dot(by_tool);
   const Vector5 left = v + P * by_tool, after = left - by_loop * (loop.dot(left) / loop.dot(by_loop));
 
   BlowTruth truth;
   truth.time = now_.time;
   truth.crank_speed = v[3];
-  truth.strike = {v[4], left[4], -P * 0.5 * J.dot(v + left), P, after[3],
-                  0.5 * (left.dot(M * left) - after.dot(M * after))};
+  truth.strike = {v[4], left[4],  -P * 0.5 * J.dot(v + left),
+                  P,    after[3], 0.5 * (left.dot(M * left) - after.dot(M * after))};
   truth.turn_period = now_.time - last_blow_;
   truth.turn_peak_force_z = truth.turn_impulse_x = truth.turn_impulse_z = truth.last_lobe_impulse_z = kNaN;
   truth.whole_turn = whole_turn_;

@@ -89,7 +89,7 @@ struct JointMotion {
 double positionOf(const JointMotion& motion, double time) noexcept;  ///< [rad]
 double velocityOf(const JointMotion& motion, double time) noexcept;  ///< [rad/s]
 
-/// Inertial unit on a hull that hangs on its boom: place from the rocker's pivot D, axes those of the hull turned about y.
+/// Inertial unit on a hull that hangs on its boom: place from the rocker's pivot D, axes the hull's, turned about y.
 struct HullImuSensor {
   double rate{};                ///< [Hz]; 0: none
   double x{}, z{}, pitch{};     ///< [m], [m], [rad]

@@ -106,9 +106,9 @@ OnBoomTruth HammerOnBoom::truth() const {
   t.displacement = t.angles - heldAt(now_.time).x.head<3>();
   t.hold = holding(now_);
   for (std::size_t i = 0; i < t.cut.size(); ++i) t.cut[i] = cutLoad(t, a, boom_.cuts[i]);
-  const PlanePoint acceleration = (imuPlace(along(now_, a, kInstant)) - 2.0 * imuPlace(now_) +
-                                   imuPlace(along(now_, a, -kInstant))) /
-                                  (kInstant * kInstant);
+  const PlanePoint acceleration =
+      (imuPlace(along(now_, a, kInstant)) - 2.0 * imuPlace(now_) + imuPlace(along(now_, a, -kInstant))) /
+      (kInstant * kInstant);
   const PlanePoint felt =
       (acceleration + kI * machine_.gravity) * std::exp(kI * (t.hull_pitch + machine_.on_boom.imu.pitch));
   t.imu_x = felt.real(), t.imu_z = felt.imag(), t.imu_rate = t.rates.sum();

@@ -37,7 +37,7 @@ struct HullImuReading {
 
 /// The messages below `cylinder_pressures` of one instant; order of kBoomCylinders.
 struct PressureReading {
-  std::int64_t stamp{};               ///< [ns]
+  std::int64_t stamp{};                 ///< [ns]
   std::array<double, 3> bore{}, rod{};  ///< gauge [Pa]
 };
 
