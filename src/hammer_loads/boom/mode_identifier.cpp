@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -25,8 +27,6 @@ VibrationReading emptyReading(Eigen::Index joints) {
   reading.displacement = reading.velocity = reading.acceleration = JointVector::Zero(joints);
   return reading;
 }
-
-double square(double x) noexcept { return x * x; }
 
 }  // namespace
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads::calibration {
 namespace {
 
@@ -21,8 +23,6 @@ constexpr double kMostAngleNoise = 0.1;   // [rad]
 constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
 
 using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
-
-double square(double x) { return x * x; }
 
 /// Marquardt: a little more of the diagonal.
 LocalMatrix damped(const LocalMatrix& matrix, double part) {

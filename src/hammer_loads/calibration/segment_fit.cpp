@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads::calibration {
 namespace {
-
-double square(double x) { return x * x; }
 
 /// The reading beyond zero and its slope at an offset.
 struct Seen {

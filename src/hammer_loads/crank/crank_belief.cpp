@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -12,8 +14,6 @@ constexpr double kMaxInertiaChange =
 constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
 constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
-
-double square(double x) noexcept { return x * x; }
 
 /// drawn: the factor is another one than before.
 void extend(const ShaftTransition& f, bool drawn, ShaftMatrix* transition) noexcept {

@@ -39,7 +39,9 @@ Path along(const Path& start, const Path& derivative, double dt) noexcept {
 
 /// first: the derivative at the start.
 Path rungeKutta(const Shaft& shaft, const Path& start, const Path& first, double dt) noexcept {
-  const auto derivative = [&](const Path& at) { return rate(shaft, at.h, shaft.model.withoutSlopes({at.offset, shaft.side})); };
+  const auto derivative = [&](const Path& at) {
+    return rate(shaft, at.h, shaft.model.withoutSlopes({at.offset, shaft.side}));
+  };
   const Path k2 = derivative(along(start, first, 0.5 * dt));
   const Path k3 = derivative(along(start, k2, 0.5 * dt));
   const Path k4 = derivative(along(start, k3, dt));
@@ -149,8 +151,7 @@ Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState&
   const CrankAngle angle_end{end.offset, shaft.side};
   const ShaftLoad load_end = total != nullptr ? model(angle_end) : model.withoutSlopes(angle_end);
   const double speed_end = end.h / std::sqrt(state.drive_inertia + load_end.inertia);
-  if (total != nullptr)
-    *total = chained(transition(shaft, piece.used, state.speed, load, speed_end, load_end), *total);
+  if (total != nullptr) *total = chained(transition(shaft, piece.used, state.speed, load, speed_end, load_end), *total);
   state.position.angle.offset = end.offset;
   state.position.renormalise();
   state.speed = speed_end;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -33,8 +35,6 @@ constexpr double kUnexplained = 3.0;       // mean innovation^2 over its varianc
 constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
 constexpr double kForgetDoubts = 30.0;     // [s]
-
-double square(double x) noexcept { return x * x; }
 
 }  // namespace
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -19,8 +21,6 @@ constexpr double kUnseenDeviations = 0.6;      // of what is not seen: 88 to 99 
 constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a supply that follows the crank's
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
-
-double square(double x) noexcept { return x * x; }
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -15,8 +17,6 @@ constexpr double kGap = 6.0;               // root mean squares beyond which sam
 constexpr double kEvidence = 7.0;          // logarithm of likelihood ratio that a sample was lost
 constexpr double kLeastScatter = 0.15;     // of the interval: a run's beginning is not known better
 constexpr double kGrown = 2.0;             // scatter about the line over that of white jitter with such steps
-
-double square(double x) noexcept { return x * x; }
 
 }  // namespace
 

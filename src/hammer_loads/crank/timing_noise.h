@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 
 /// A stamp off by d shows an angle off by w d: the innovation's variance has a part w^2 sigma_t^2. Its maximum of
@@ -36,7 +38,6 @@ class TimingNoise {
   double deviation() const noexcept { return std::sqrt(variance()); }  ///< [s]
 
  private:
-  static double square(double x) noexcept { return x * x; }
   static constexpr double kGain = 0.005;
   static constexpr int kLearning = 60;         // samples: a wrong first guess of the inertia passes for jitter
   static constexpr double kMostAtFirst = 4.0;  // so that a single surprise among them counts little

@@ -9,12 +9,6 @@
 namespace hammer_loads {
 namespace {
 
-std::string nameOf(Level level) {
-  for (const auto& [name, named] : kLevelNames)
-    if (named == level) return name;
-  return {};
-}
-
 /// What is known when the run begins.
 RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
   RunRecord record;

@@ -10,10 +10,7 @@ void prepareMechanism(const std::string& crank_joint, sensor_msgs::JointState& m
   message.velocity.resize(message.name.size());
 }
 
-void prepareHullLoads(Level level, HullLoads& message) {
-  for (const auto& [name, named] : kLevelNames)
-    if (named == level) message.level = name;
-}
+void prepareHullLoads(Level level, HullLoads& message) { message.level = nameOf(level); }
 
 void fillWrench(StampNs stamp, const HullWrench& wrench, geometry_msgs::WrenchStamped& message) {
   message.header.stamp = timeOf(stamp);

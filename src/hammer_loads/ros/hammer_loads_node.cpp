@@ -78,13 +78,10 @@ void HammerLoadsNode::subscribePressures(ros::NodeHandle& node) {
 
 void HammerLoadsNode::sayWhatRuns() const {
   const Settings& settings = bridge_.settings();
-  std::string level;
-  for (const auto& [name, value] : kLevelNames)
-    if (value == settings.pipeline.level) level = name;
   std::string notes;
   for (const std::string& note : settings.notes) notes += "; " + note;
-  ROS_INFO("hammer: %s; level %s%s", settings.hammer_given ? "its own file" : "the shipped MO-100", level.c_str(),
-           notes.c_str());
+  ROS_INFO("hammer: %s; level %s%s", settings.hammer_given ? "its own file" : "the shipped MO-100",
+           nameOf(settings.pipeline.level), notes.c_str());
   ROS_INFO("log: %s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "not recording");
   if (ledger_) ROS_INFO("ledger of load cycles: %s", ledger_->path().c_str());
   ROS_INFO("waits for %s with joint %s, %s%s", crank_topic_.c_str(), settings.pipeline.crank_joint.c_str(),

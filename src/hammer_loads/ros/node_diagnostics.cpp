@@ -156,8 +156,7 @@ void NodeDiagnostics::describeImu(Status& status) {
 }
 
 void NodeDiagnostics::describeModel(Status& status) {
-  for (const auto& [name, level] : kLevelNames)
-    if (level == bridge_.settings().pipeline.level) status.summaryf(DiagnosticStatus::OK, "level %s", name);
+  status.summaryf(DiagnosticStatus::OK, "level %s", nameOf(bridge_.settings().pipeline.level));
   for (const std::string& note : bridge_.settings().notes) status.add("note", note);
 }
 

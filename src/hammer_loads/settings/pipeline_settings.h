@@ -35,6 +35,11 @@ constexpr std::array<std::pair<const char*, std::optional<Level>>, 4> kLevelChoi
     {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}, {"auto", std::nullopt}}};
 constexpr std::array<std::pair<const char*, Level>, 3> kLevelNames{
     {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
+constexpr const char* nameOf(Level level) noexcept {
+  for (const auto& [name, named] : kLevelNames)
+    if (named == level) return name;
+  return "";
+}
 constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorNames{
     {{"mechanism", CrankEstimator::kMechanism},
      {"difference", CrankEstimator::kDifference},
