@@ -1,14 +1,14 @@
 #include "hammer_loads/ros/crank_recording_bag.h"
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
 #include <sensor_msgs/JointState.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "hammer_loads/pipeline/hull_pitch.h"
+#include "hammer_loads/ros/bag_messages.h"
 
 namespace hammer_loads {
 namespace {
@@ -50,19 +50,24 @@ CrankBag readCrankBag(const std::vector<std::string>& files, const std::string& 
                       const std::string& joint_topic, const PipelineSettings& settings) {
   CrankBag result;
   CrankReader reader(settings, result);
+  sensor_msgs::JointState message;
   for (const std::string& file : files) {
     try {
-      rosbag::Bag bag(file, rosbag::bagmode::Read);
-      rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{crank_topic, joint_topic}));
-      for (const rosbag::MessageInstance& item : view) {
-        const auto message = item.instantiate<sensor_msgs::JointState>();
-        if (!message) {
+      std::vector<std::unique_ptr<BagFile>> bag;
+      bag.push_back(std::make_unique<BagFile>(file));
+      BagMessages messages(bag, [&](const BagConnection& connection) {
+        return connection.topic == crank_topic || connection.topic == joint_topic;
+      });
+      while (const BagMessage* item = messages.next()) {
+        const std::string& topic = item->connection->topic;
+        if (!item->is<sensor_msgs::JointState>()) {
           result.problem =
-              file + ": " + item.getTopic() + " is of type " + item.getDataType() + ", must be sensor_msgs/JointState";
+              file + ": " + topic + " is of type " + item->connection->type + ", must be sensor_msgs/JointState";
           return result;
         }
-        if (item.getTopic() == joint_topic) reader.joints(*message);
-        if (item.getTopic() == crank_topic) reader.crank(*message);
+        item->to(message);
+        if (topic == joint_topic) reader.joints(message);
+        if (topic == crank_topic) reader.crank(message);
       }
     } catch (const std::exception& error) {
       result.problem = file + ": cannot be read as a bag: " + error.what();
