@@ -73,7 +73,7 @@ def middle(group, distance):
 
 def draw(figures, path):
     points = sorted((math.log10(row["ns"]), math.log10(picture_error(row, figures["sessions"])), row)
-                    for row in figures["prices"] if row["errors"] or row["group"] in ("crank", "pipeline"))
+                    for row in figures["costs"] if row["errors"] or row["group"] in ("crank", "pipeline"))
     figure, axes = plt.subplots(figsize=(9.5, 6.5), dpi=110)
     for x, y, row in points:
         axes.plot(10**x, 10**y, "o", color=COLORS[row["group"]], markersize=7)
@@ -101,7 +101,7 @@ def draw(figures, path):
     figure.savefig(path)
 
 
-def price_line(row):
+def cost_line(row):
     error = "see below" if row["group"] in ("crank", "pipeline") else f"{worst(row):.0e}"
     if row["name"] == "pulse":
         error = f"{100 * row['errors']['regular turn']['of_peak']:.0f} % of the peak (model)"
@@ -111,11 +111,11 @@ def price_line(row):
 
 
 def excerpt(figures, recorded):
-    prices = {(row["group"], row["name"]): row for row in figures["prices"]}
+    costs = {(row["group"], row["name"]): row for row in figures["costs"]}
     lines = ["Cost on one core and worst relative error over all hard cases, against 100 digits; all rows, the",
              "cases and a picture are in [doc/accuracy.md](doc/accuracy.md):", "",
              "| | way to the loads | ns | per second | worst error |", "|---|---|---|---|---|"]
-    lines += [price_line(prices[key]) for key in EXCERPT if key in prices]
+    lines += [cost_line(costs[key]) for key in EXCERPT if key in costs]
     shipped = [line for line in recorded.strip().splitlines() if " 0 % |" in line]
     lines += ["", "Recorded sessions with clean sensors (`test/data`), as shipped, from 3 s after the start to 3 s before",
               "the end; root-mean-square errors are of the peak of each quantity, all others the worst of all turns:",
@@ -149,18 +149,18 @@ def replace(path, marker, text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json), perhaps prices(.json) and recorded")
+    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json), perhaps costs(.json) and recorded")
     parser.add_argument("root", type=pathlib.Path, help="of the source")
     arguments = parser.parse_args()
     work, root = arguments.work, arguments.root
     figures = json.loads((work / "sessions.json").read_text())
     replace(root / "doc" / "accuracy.md", "sessions", (work / "sessions").read_text())
     replace(root / "README.md", "machines", machines_excerpt(figures["machines"]))
-    if not (work / "prices.json").exists():
+    if not (work / "costs.json").exists():
         return
-    figures.update(json.loads((work / "prices.json").read_text()))
+    figures.update(json.loads((work / "costs.json").read_text()))
     draw(figures, root / "doc" / "accuracy.png")
-    tables = f"Measured on: {processor()}, one thread.\n\n" + (work / "prices").read_text()
+    tables = f"Measured on: {processor()}, one thread.\n\n" + (work / "costs").read_text()
     replace(root / "doc" / "accuracy.md", "tables", tables)
     replace(root / "README.md", "accuracy", excerpt(figures, (work / "recorded").read_text()))
 

@@ -1,4 +1,4 @@
-// The price list's reference against tables of another origin.
+// The cost table's reference against tables of another origin.
 #include <gtest/gtest.h>
 
 #include "hammer_loads/bench/newton_euler.h"

@@ -1,4 +1,4 @@
-/// The price list's reference of the grapple, for the tests.
+/// The cost table's reference of the grapple, for the tests.
 #pragma once
 
 #include "hammer_loads/bench/explicit_curve.h"

@@ -57,14 +57,14 @@ TEST(PipelineWithBoom, AllocatesNothingPerSample) {
   }
 }
 
-/// Time per sample at work [us]: least and mean over batches of some two turns, whose verdicts are part of the price.
-struct Price {
+/// Time per sample at work [us]: least and mean over batches of some two turns, whose verdicts are part of the cost.
+struct Cost {
   double least{1e9}, mean{};
 };
 
-Price priceOf(const Settings& settings, bool with_boom) {
+Cost costOf(const Settings& settings, bool with_boom) {
   constexpr double kBatch = 0.5;
-  Price price;
+  Cost cost;
   int batches = 0;
   for (int run = 0; run < 4; ++run) {
     Player player(settings, with_boom);
@@ -77,18 +77,18 @@ Price priceOf(const Settings& settings, bool with_boom) {
       player.playTo(end, everything);
       const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - start;
       const double each = spent.count() / static_cast<double>(player.pipeline.counts().accepted - before);
-      price.least = std::min(price.least, each);
-      price.mean += each;
+      cost.least = std::min(cost.least, each);
+      cost.mean += each;
     }
     EXPECT_TRUE(std::isfinite(sum));
   }
-  price.mean /= batches;
-  return price;
+  cost.mean /= batches;
+  return cost;
 }
 
 TEST(PipelineWithBoom, CostsAFewMicrosecondsASample) {
   const Settings settings = settingsWith("boom: compliant\nhull_motion: model\n");
-  const Price with = priceOf(settings, true), without = priceOf(settings, false);
+  const Cost with = costOf(settings, true), without = costOf(settings, false);
   std::printf("us per sample, least and mean: without boom %.2f %.2f, with everything %.2f %.2f\n", without.least,
               without.mean, with.least, with.mean);
   RecordProperty("with_boom_least_us", format("%.2f", with.least));

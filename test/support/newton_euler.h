@@ -1,4 +1,4 @@
-/// The price list's reference, for the tests.
+/// The cost table's reference, for the tests.
 #pragma once
 
 #include "hammer_loads/bench/newton_euler.h"

@@ -2,8 +2,8 @@
 #include <fstream>
 #include <iostream>
 
+#include "hammer_loads/bench/cost_table.h"
 #include "hammer_loads/bench/machine_table.h"
-#include "hammer_loads/bench/price_table.h"
 #include "hammer_loads/bench/session_table.h"
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/commands/output_file.h"
@@ -11,13 +11,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr char kPrices[] = "\"prices\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ";
+constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ";
 
 /// Why an existing file must stay; empty: this command wrote it.
 std::string whyFileMustStay(const std::string& name) {
   std::string line;
   std::getline(std::ifstream(name), line);
-  const bool ours = line.rfind(std::string("{") + kPrices, 0) == 0 || line.rfind(std::string("{") + kSessions, 0) == 0;
+  const bool ours = line.rfind(std::string("{") + kCosts, 0) == 0 || line.rfind(std::string("{") + kSessions, 0) == 0;
   return ours ? "" : "it holds no figures of this command";
 }
 
@@ -49,11 +49,11 @@ class JsonFile {
 std::string printTables(const Settings& settings, const std::string& only) {
   std::string json;
   if (only != "sessions") {
-    const std::vector<accuracy::PriceRow> prices = accuracy::priceTable(settings);
-    std::cout << accuracy::markdown(prices) << std::flush;
-    json = kPrices + accuracy::json(prices);
+    const std::vector<accuracy::CostRow> costs = accuracy::costTable(settings);
+    std::cout << accuracy::markdown(costs) << std::flush;
+    json = kCosts + accuracy::json(costs);
   }
-  if (only != "prices") {
+  if (only != "costs") {
     const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
     const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
     std::cout << "\n### Machines as they are\n\n" << accuracy::markdown(machines);
@@ -73,7 +73,7 @@ int run(int argc, const char* const* argv) {
   addParamsOption(app, files);
   app.add_option("--json", json_file, "also write the figures to this file, which must not exist");
   app.add_flag("--force", force, "replace that file if this command wrote it");
-  app.add_option("--only", only, "one of the two parts")->check(CLI::IsMember({"prices", "sessions"}));
+  app.add_option("--only", only, "one of the two parts")->check(CLI::IsMember({"costs", "sessions"}));
   if (const auto code = parse(app, argc, argv)) return *code;
   endCleanlyOnSignals();
   const std::optional<Settings> settings = loadOrReport(files);

@@ -1,4 +1,4 @@
-#include "hammer_loads/bench/life_prices.h"
+#include "hammer_loads/bench/life_costs.h"
 
 #include <cmath>
 #include <random>
@@ -37,7 +37,7 @@ std::vector<double> noise() {
   return values;
 }
 
-PriceRow counterPrice(const char* name, const std::vector<double>& values) {
+CostRow counterCost(const char* name, const std::vector<double>& values) {
   life::CycleCounter counter(grid());
   return {"life",
           name,
@@ -50,7 +50,7 @@ PriceRow counterPrice(const char* name, const std::vector<double>& values) {
           {}};
 }
 
-PriceRow recorderPrice(const std::vector<double>& values) {
+CostRow recorderCost(const std::vector<double>& values) {
   life::LifeSettings settings;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < kChannels; ++i) {
@@ -72,7 +72,7 @@ PriceRow recorderPrice(const std::vector<double>& values) {
           {}};
 }
 
-PriceRow turnPrice(const std::vector<double>& values) {
+CostRow turnCost(const std::vector<double>& values) {
   life::TurnLoadsRecorder recorder(kChannels);
   std::int64_t stamp = 0;
   return {"life",
@@ -90,10 +90,10 @@ PriceRow turnPrice(const std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<PriceRow> lifePrices() {
+std::vector<CostRow> lifeCosts() {
   const std::vector<double> load = hammerLoad();
-  return {counterPrice("cycle counter, hammer at work", load),
-          counterPrice("cycle counter, noise over the scale", noise()), recorderPrice(load), turnPrice(load)};
+  return {counterCost("cycle counter, hammer at work", load),
+          counterCost("cycle counter, noise over the scale", noise()), recorderCost(load), turnCost(load)};
 }
 
 }  // namespace hammer_loads::accuracy

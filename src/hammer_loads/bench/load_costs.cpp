@@ -1,4 +1,4 @@
-#include "hammer_loads/bench/load_prices.h"
+#include "hammer_loads/bench/load_costs.h"
 
 #include <map>
 
@@ -22,10 +22,10 @@ Level exactLevelOf(const LoadWay& way) { return way.level == Level::kLinkage ? L
 
 }  // namespace
 
-std::vector<PriceRow> loadPrices(const Mechanism& mechanism) {
+std::vector<CostRow> loadCosts(const Mechanism& mechanism) {
   const std::vector<LoadWay> ways = loadWays();
   const std::vector<HardCase> cases = hardCases(mechanism.parameters());
-  std::vector<PriceRow> rows;
+  std::vector<CostRow> rows;
   for (const LoadWay& way : ways)
     rows.push_back({way.group, way.name, costOf(kTimedAngles, way.pass(timedCase(cases.front()))), {}, {}});
   for (const HardCase& hard_case : cases) {

@@ -1,4 +1,4 @@
-#include "hammer_loads/bench/grapple_prices.h"
+#include "hammer_loads/bench/grapple_costs.h"
 
 #include <algorithm>
 #include <array>
@@ -82,7 +82,7 @@ std::vector<CaseError> errorsOf(const Grapple& grapple, const std::vector<double
   return errors;
 }
 
-PriceRow warmStep(const Grapple& grapple, const std::vector<double>& sliders) {
+CostRow warmStep(const Grapple& grapple, const std::vector<double>& sliders) {
   GrappleTracker tracker(grapple);
   const Cost cost = costOf(sliders.size(), [&] {
     for (const double slider : sliders) {
@@ -100,14 +100,14 @@ PriceRow warmStep(const Grapple& grapple, const std::vector<double>& sliders) {
   return {"grapple", "warm step, both jaws", cost, errorsOf(grapple, sliders, pose), {}};
 }
 
-PriceRow coldPose(const Grapple& grapple, const std::vector<double>& sliders) {
+CostRow coldPose(const Grapple& grapple, const std::vector<double>& sliders) {
   const Cost cost = costOf(sliders.size(), [&] {
     for (const double slider : sliders) keep(grapple.at(slider));
   });
   return {"grapple", "cold pose", cost, errorsOf(grapple, sliders, [&](double s) { return grapple.at(s); }), {}};
 }
 
-PriceRow enumeration(const Grapple& grapple, const std::vector<double>& sliders) {
+CostRow enumeration(const Grapple& grapple, const std::vector<double>& sliders) {
   const LeverGroup group(grapple.parameters());
   std::vector<Planar> places;
   for (const double slider : sliders) places.push_back(grapple.at(slider).value().a);
@@ -119,7 +119,7 @@ PriceRow enumeration(const Grapple& grapple, const std::vector<double>& sliders)
 
 }  // namespace
 
-std::vector<PriceRow> grapplePrices(const Grapple& grapple) {
+std::vector<CostRow> grappleCosts(const Grapple& grapple) {
   const std::vector<double> sliders = swing(grapple.parameters());
   return {warmStep(grapple, sliders), coldPose(grapple, sliders), enumeration(grapple, sliders)};
 }

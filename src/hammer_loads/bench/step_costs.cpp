@@ -1,4 +1,4 @@
-#include "hammer_loads/bench/step_prices.h"
+#include "hammer_loads/bench/step_costs.h"
 
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/make_tracker.h"
@@ -34,7 +34,7 @@ PipelineSettings settingsOf(const Settings& settings, Level level, CrankEstimato
   return s;
 }
 
-PriceRow trackerPrice(const Settings& settings, const char* name, Level level, CrankEstimator estimator) {
+CostRow trackerCost(const Settings& settings, const char* name, Level level, CrankEstimator estimator) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
   const auto tracker = makeTracker(settings.mechanism, settingsOf(settings, level, estimator));
   const auto pass = [&] {
@@ -49,7 +49,7 @@ PriceRow trackerPrice(const Settings& settings, const char* name, Level level, C
 }
 
 /// The filter, its track and the way back: what a recording's sample costs beside the second pass.
-PriceRow smoothedPrice(const Settings& settings, const char* name, Level level) {
+CostRow smoothedCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
   const PipelineSettings pipeline = settingsOf(settings, level, CrankEstimator::kMechanism);
   const auto pass = [&] {
@@ -64,7 +64,7 @@ PriceRow smoothedPrice(const Settings& settings, const char* name, Level level) 
   return {"crank", name, costOf(readings.size(), pass), {}, {}};
 }
 
-PriceRow pipelinePrice(const Settings& settings, const char* name, Level level) {
+CostRow pipelineCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
   Pipeline pipeline(settings.mechanism, settingsOf(settings, level, CrankEstimator::kMechanism));
   const auto pass = [&] {
@@ -74,7 +74,7 @@ PriceRow pipelinePrice(const Settings& settings, const char* name, Level level) 
 }
 
 /// Pipeline, turn loads and cycles of the shipped channels.
-PriceRow countedPrice(const Settings& settings, const char* name, Level level) {
+CostRow countedCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
   Pipeline pipeline(settings.mechanism, settingsOf(settings, level, CrankEstimator::kMechanism));
   LifeFollower follower(pipeline, settings.life);
@@ -90,16 +90,16 @@ PriceRow countedPrice(const Settings& settings, const char* name, Level level) {
 
 }  // namespace
 
-std::vector<PriceRow> stepPrices(const Settings& settings) {
-  return {trackerPrice(settings, "none", Level::kRocker, CrankEstimator::kNone),
-          trackerPrice(settings, "difference", Level::kRocker, CrankEstimator::kDifference),
-          trackerPrice(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
-          trackerPrice(settings, "mechanism, linkage", Level::kLinkage, CrankEstimator::kMechanism),
-          smoothedPrice(settings, "mechanism, linkage, smoothed", Level::kLinkage),
-          pipelinePrice(settings, "rocker", Level::kRocker),
-          pipelinePrice(settings, "linkage", Level::kLinkage),
-          countedPrice(settings, "rocker, turn loads and cycles", Level::kRocker),
-          countedPrice(settings, "linkage, turn loads and cycles", Level::kLinkage)};
+std::vector<CostRow> stepCosts(const Settings& settings) {
+  return {trackerCost(settings, "none", Level::kRocker, CrankEstimator::kNone),
+          trackerCost(settings, "difference", Level::kRocker, CrankEstimator::kDifference),
+          trackerCost(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
+          trackerCost(settings, "mechanism, linkage", Level::kLinkage, CrankEstimator::kMechanism),
+          smoothedCost(settings, "mechanism, linkage, smoothed", Level::kLinkage),
+          pipelineCost(settings, "rocker", Level::kRocker),
+          pipelineCost(settings, "linkage", Level::kLinkage),
+          countedCost(settings, "rocker, turn loads and cycles", Level::kRocker),
+          countedCost(settings, "linkage, turn loads and cycles", Level::kLinkage)};
 }
 
 }  // namespace hammer_loads::accuracy

@@ -15,7 +15,7 @@ struct CaseError {
   Error error;
 };
 
-struct PriceRow {
+struct CostRow {
   std::string group;  ///< printed, scalar, batch, crank, pipeline, life or grapple
   std::string name;
   Cost cost;

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "hammer_loads/bench/price_row.h"
+#include "hammer_loads/bench/cost_row.h"
 #include "hammer_loads/linkage/mechanism.h"
 
 namespace hammer_loads::accuracy {
 
 /// Some 10 s.
-std::vector<PriceRow> loadPrices(const Mechanism& mechanism);
+std::vector<CostRow> loadCosts(const Mechanism& mechanism);
 
 }  // namespace hammer_loads::accuracy

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "hammer_loads/bench/price_row.h"
+#include "hammer_loads/bench/cost_row.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::accuracy {
 
 /// At 1 kHz; errors are the session table's. Some 5 s.
-std::vector<PriceRow> stepPrices(const Settings& settings);
+std::vector<CostRow> stepCosts(const Settings& settings);
 
 }  // namespace hammer_loads::accuracy

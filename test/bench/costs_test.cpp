@@ -1,4 +1,4 @@
-// What the price list says of errors and of costs.
+// What the cost table says of errors and of costs.
 #include <gtest/gtest.h>
 #include <time.h>
 #include <yaml-cpp/yaml.h>
@@ -130,12 +130,12 @@ TEST(Timing, GivesTheProcessorTimeOfAnEvaluation) {
   EXPECT_GE(cost.spread, 0.0);
 }
 
-TEST(Command, PricesEveryWay) {
+TEST(Command, CostsEveryWay) {
   // What it wrote before may go.
-  const test::TemporaryFile file("{\"prices\": []}\n", ".json");
-  const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--only prices --force --json " + file.path());
+  const test::TemporaryFile file("{\"costs\": []}\n", ".json");
+  const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--only costs --force --json " + file.path());
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const YAML::Node rows = YAML::LoadFile(file.path())["prices"];  // JSON is YAML
+  const YAML::Node rows = YAML::LoadFile(file.path())["costs"];  // JSON is YAML
   std::set<std::string> groups;
   std::size_t loads = 0;
   for (const YAML::Node& row : rows) {
@@ -152,14 +152,14 @@ TEST(Command, PricesEveryWay) {
 }
 
 TEST(Command, RefusesAFileThatCannotBeWritten) {
-  const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--json /nowhere/prices.json");
+  const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--json /nowhere/costs.json");
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "/nowhere/prices.json: cannot be written: No such file or directory\n");
+  EXPECT_EQ(run.err, "/nowhere/costs.json: cannot be written: No such file or directory\n");
   EXPECT_EQ(run.out, "");
 }
 
 TEST(Command, ReplacesNoFileThatItDidNotWrite) {
-  const test::TemporaryFile written("{\"prices\": []}\n", ".json"), notes("notes\n", ".json");
+  const test::TemporaryFile written("{\"costs\": []}\n", ".json"), notes("notes\n", ".json");
   const auto expectRefused = [](const std::string& arguments, const std::string& reason) {
     const test::Outcome run = test::runCommand(HAMMER_LOADS_ACCURACY, "--json " + arguments);
     EXPECT_EQ(run.exit_code, 1);
@@ -170,7 +170,7 @@ TEST(Command, ReplacesNoFileThatItDidNotWrite) {
   expectRefused(written.path(), "exists already");
   expectRefused(notes.path() + " --force", "it holds no figures of this command");
   expectRefused(testing::TempDir() + " --force", "is a directory");
-  EXPECT_EQ(test::contentOf(written.path()), "{\"prices\": []}\n");
+  EXPECT_EQ(test::contentOf(written.path()), "{\"costs\": []}\n");
   EXPECT_EQ(test::contentOf(notes.path()), "notes\n");
 }
 
