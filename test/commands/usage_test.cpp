@@ -11,12 +11,12 @@ namespace {
 const std::vector<std::string> kCommands{HAMMER_LOADS_ACCURACY, HAMMER_LOADS_EVALUATE, HAMMER_LOADS_GRAPPLE_TABLE,
                                          HAMMER_LOADS_PROCESS_BAG, HAMMER_LOADS_TURN_TABLE};
 const std::vector<std::string> kNodes{HAMMER_LOADS_HAMMER_LOADS_NODE, HAMMER_LOADS_GRAPPLE_NODE,
-                                      HAMMER_LOADS_SIMULATE_HAMMER, HAMMER_LOADS_SIMULATE_GRAPPLE,
-                                      HAMMER_LOADS_SHOW_LOADS};
+                                      HAMMER_LOADS_SIMULATE_HAMMER, HAMMER_LOADS_SIMULATE_GRAPPLE};
 
 std::vector<std::string> programs() {
   std::vector<std::string> all = kCommands;
   all.insert(all.end(), kNodes.begin(), kNodes.end());
+  all.push_back(HAMMER_LOADS_SHOW_LOADS);  // a node without a parameter file
   return all;
 }
 

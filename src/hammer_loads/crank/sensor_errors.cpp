@@ -46,8 +46,8 @@ void SensorErrors::endTurn(double growth, double count) noexcept {
     if (excess > 0.0) share = std::max(share, excess / square(estimate_[i]));
   }
   moment_ = square(kUnseenDeviations / unmodelled) * growth * covariance + certain * certain.transpose();
-  // A sensor that is off for certain is so by as much as is known of it.
-  moment_.diagonal() += share * doubt;
+  // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
+  moment_.diagonal() += share * share * doubt;
   information_ *= 1.0 - 1.0 / kMemory;
   score_ *= 1.0 - 1.0 / kMemory;
 }
