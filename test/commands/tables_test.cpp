@@ -158,6 +158,16 @@ TEST_F(Tables, KnowInputParametersAndMachine) {
     EXPECT_EQ(contentOf(path("shipped.sqlite")).find(part), std::string::npos) << part;
 }
 
+/// Where a node logs and counts is in a log's parameters, but no property of the machine.
+TEST_F(Tables, HoldNoPathOfANode) {
+  const test::TemporaryFile paths("log_directory: /tmp/a node's\nlog_split_mb: 77\nlife_ledger: /tmp/a.sqlite\n");
+  ASSERT_EQ(tables(kSession, "shipped.sqlite").exit_code, 0);
+  ASSERT_EQ(tables(kSession, "paths.sqlite", "--params " + paths.path()).exit_code, 0);
+  EXPECT_EQ(contentOf(path("paths.sqlite")).find("/tmp"), std::string::npos);
+  const std::string sha = "SELECT parameters_sha256 FROM runs";
+  EXPECT_EQ(ask("paths.sqlite", sha), ask("shipped.sqlite", sha));
+}
+
 TEST_F(Tables, RefusalsAndWarningsAreThoseOnTheConsole) {
   {
     rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);

@@ -1,5 +1,7 @@
 #include "hammer_loads/ros/bag_tables.h"
 
+#include <sstream>
+
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
@@ -9,16 +11,28 @@
 namespace hammer_loads {
 namespace {
 
+/// A database holds no path: where a node logs and counts is no property of the machine. yaml: one key a line.
+std::string withoutPaths(const std::string& yaml) {
+  std::istringstream lines(yaml);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string key = line.substr(0, line.find(':'));
+    if (key.rfind("log_", 0) != 0 && key != "life_ledger") kept += line + '\n';
+  }
+  return kept;
+}
+
 /// What is known when the run begins.
 RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
   RunRecord record;
-  const std::vector<ParameterText> parameters = parameterTexts(configDirectory(), settings.yaml);
+  const std::string yaml = withoutPaths(settings.yaml);
+  const std::vector<ParameterText> parameters = parameterTexts(configDirectory(), yaml);
   record.input_sha256 = input_sha256;
-  record.parameters_sha256 = sha256Of({settings.yaml, settings.robot_description});
+  record.parameters_sha256 = sha256Of({yaml, settings.robot_description});
   record.machine = sha256Of({settings.machine});
   record.version = packageVersion();
   record.revision = packageRevision();
-  record.parameters_yaml = settings.yaml;
+  record.parameters_yaml = yaml;
   record.equivalent_cycles_per_hour = settings.life.equivalent_cycles_per_hour;
   record.level = nameOf(settings.pipeline.level);
   for (const ParameterText& parameter : parameters)
