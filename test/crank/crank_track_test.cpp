@@ -44,6 +44,12 @@ Beliefs record(double seconds, double jump_at, CrankTrack& track) {
   return beliefs;
 }
 
+std::vector<TrackedSample> samplesOf(CrankTrack& closed) {
+  std::vector<TrackedSample> samples;
+  while (closed.isReady()) samples.push_back(closed.take());
+  return samples;
+}
+
 TEST(CrankTrack, GivesEverySampleOnceAndSomeSecondsLater) {
   Machine machine;
   constexpr double kStep = 5e-3;
@@ -83,10 +89,9 @@ TEST(CrankTrack, LaterSamplesOnlyEverReduceTheDoubt) {
 
 TEST(CrankTrack, KnowsAllOfATurnWhatItsBlowDid) {
   Machine machine;
-  const Beliefs beliefs = record(4.0, 100.0, machine.track);
+  record(4.0, 100.0, machine.track);
   machine.track.close();
-  std::vector<TrackedSample> samples;
-  while (machine.track.isReady()) samples.push_back(machine.track.take());
+  const std::vector<TrackedSample> samples = samplesOf(machine.track);
   int turns = 0;
   for (std::size_t i = 1000; i + 1 < samples.size(); ++i) {
     const CrankPosition &at = samples[i].belief.state.position, &next = samples[i + 1].belief.state.position;
@@ -103,8 +108,7 @@ TEST(CrankTrack, AnIntervalEndsWhereTheFilterRestarts) {
   Machine machine;
   const Beliefs beliefs = record(4.0, 2.5, machine.track);
   machine.track.close();
-  std::vector<TrackedSample> samples;
-  while (machine.track.isReady()) samples.push_back(machine.track.take());
+  const std::vector<TrackedSample> samples = samplesOf(machine.track);
   ASSERT_EQ(samples.size(), beliefs.size());
   std::size_t restart = 2;
   while (restart < samples.size() && samples[restart].tracking != Tracking::kRestarted) ++restart;

@@ -11,6 +11,7 @@
 #include "hammer_loads/ros/ros_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/read_grapple.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -36,7 +37,7 @@ Parameters (private)
 void play(const GrappleParameters& grapple, const std::string& joint, double period, double samples_per_second) {
   ros::NodeHandle node;
   const ros::Publisher publisher = node.advertise<sensor_msgs::JointState>("joint_states", 100);
-  const double turn = 2.0 * 3.14159265358979324 / period, half = 0.5 * (grapple.slider_closed - grapple.slider_open);
+  const double turn = kTwoPi / period, half = 0.5 * (grapple.slider_closed - grapple.slider_open);
   sensor_msgs::JointState message;
   message.name = {joint};
   ros::Rate rate(samples_per_second);

@@ -1,16 +1,13 @@
 #include "hammer_loads/crank/belief_smoothing.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
 namespace hammer_loads {
 namespace {
 
-using Vector = Eigen::Matrix<double, 5, 1>;
-using Row = CrankBelief::Row;
+using Vector = CrankBelief::Vector;
 
-constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostAtBlow = 6.0;  // squared distance of five variables: 9 of 10 blows at the dead centre are below 3
 
 /// Beliefs that a step of the model joins, and how.
@@ -49,15 +46,6 @@ Vector between(const CrankBelief& a, const CrankBelief& b) noexcept {
   return change;
 }
 
-void move(const Vector& change, CrankBelief& belief) noexcept {
-  belief.state.position.slide(change[Row::kAngle]);
-  belief.state.speed += change[Row::kSpeed];
-  belief.state.torque += change[Row::kTorque];
-  belief.state.drive_inertia = std::clamp(belief.state.drive_inertia * std::exp(change[Row::kInertia]),
-                                          belief.least_inertia, belief.most_inertia);
-  belief.factor = std::max(kLeastFactor, belief.factor + change[Row::kFactor]);
-}
-
 }  // namespace
 
 std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& step, const CrankBelief& before,
@@ -79,7 +67,7 @@ std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& st
   if (passes && !(scaled_change.dot(factors.solve(scaled_change)) < kMostAtBlow)) return std::nullopt;
 
   CrankBelief result = before;
-  move(gain * change, result);
+  result.move(gain * change);
   result.by_error += gain * (next.by_error - way->predicted.by_error);
   const ShaftMatrix covariance = before.covariance + gain * (next.covariance - predicted) * gain.transpose();
   result.covariance = 0.5 * (covariance + covariance.transpose());

@@ -45,10 +45,10 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     const double b = 1.0 / (state.drive_inertia + load.inertia);
     const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
-    const bool drawn = step.blows > 0 && !tool_met;
-    extend(step.transition, drawn, transition);
+    const bool draws = step.blows > 0 && !tool_met;
+    extend(step.transition, draws, transition);
     if (step.blows > 0) {
-      if (drawn) drawFactor(prior);
+      if (draws) drawFactor(prior);
       blows += !tool_met;
       tool_met = false;
     }
@@ -69,19 +69,21 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
   return blows;
 }
 
-void CrankBelief::correct(Row row, double innovation, double variance,
-                          const SensorErrors::Row& measured_by_error) noexcept {
-  const double total = covariance(row, row) + variance;
-  using Vector = Eigen::Matrix<double, 5, 1>;
-  const Vector gain = covariance.col(row) / total;
-  const Vector change = gain * innovation;
+void CrankBelief::move(const Vector& change) noexcept {
   state.position.slide(change[kAngle]);
   state.speed += change[kSpeed];
   state.torque += change[kTorque];
-  const double inertia =
-      state.drive_inertia * std::exp(std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange));
-  state.drive_inertia = std::clamp(inertia, least_inertia, most_inertia);
+  state.drive_inertia = std::clamp(state.drive_inertia * std::exp(change[kInertia]), least_inertia, most_inertia);
   factor = std::clamp(factor + change[kFactor], kLeastFactor, kMostFactor);
+}
+
+void CrankBelief::correct(Row row, double innovation, double variance,
+                          const SensorErrors::Row& measured_by_error) noexcept {
+  const double total = covariance(row, row) + variance;
+  const Vector gain = covariance.col(row) / total;
+  Vector change = gain * innovation;
+  change[kInertia] = std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange);
+  move(change);
   by_error += gain * (measured_by_error - by_error.row(row)).eval();
   // (1 - K H) P (1 - K H)' + K R K' with H one row of the identity
   const ShaftMatrix left = covariance - gain * covariance.row(row);

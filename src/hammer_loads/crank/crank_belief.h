@@ -1,7 +1,10 @@
 /// State and covariance of the crank filter: what a prediction, a measurement and a blow do to them.
 #pragma once
 
+#include <cmath>
+
 #include "hammer_loads/crank/crank_dynamics.h"
+#include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/sensor_errors.h"
 
 namespace hammer_loads {
@@ -23,6 +26,7 @@ struct BlowPrior {
 /// Gaussian belief: angle, speed, torque, logarithm of drive inertia, factor of the last blow.
 struct CrankBelief {
   enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia, kFactor };
+  using Vector = Eigen::Matrix<double, 5, 1>;  ///< rows as above
 
   ShaftState state;
   ShaftMatrix covariance{ShaftMatrix::Zero()};
@@ -36,8 +40,10 @@ struct CrankBelief {
   /// transition: multiplied by d(this after)/d(this before), rows as above, where it is wanted.
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
               double dt, ShaftMatrix* transition = nullptr) noexcept;
-  /// Scalar measurement of one variable, Joseph form. Slides the position; it may end beyond the blow. by_error: what
-  /// the sensor's errors make of the measurement.
+  /// By a change of its variables, within their bounds. Slides the position; it may end beyond the blow.
+  void move(const Vector& change) noexcept;
+  /// Scalar measurement of one variable, Joseph form; moves. by_error: what the sensor's errors make of the
+  /// measurement.
   void correct(Row row, double innovation, double variance, const SensorErrors::Row& by_error) noexcept;
   /// The same of a speed whose innovation has the variance `total`.
   void correctSpeed(double innovation, double total, const SensorErrors::Row& measured) noexcept {
@@ -52,6 +58,15 @@ struct CrankBelief {
   /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
   void meetTool(double deviation, double dt) noexcept;
   bool isSound(double most_speed) const noexcept;
+  /// The covariance grown by what the innovations show beyond the model, and by a moment of the sensor's errors, which
+  /// are not corrected.
+  ShaftMatrix grown(double growth, const SensorErrors::Matrix& moment) const noexcept {
+    return growth * covariance + (by_error * moment) * by_error.transpose();
+  }
+  /// Factor of the last blow and drive inertia, with deviations by `grown`.
+  BlowFactor blowFactor(const ShaftMatrix& grown) const noexcept {
+    return {factor, std::sqrt(grown(kFactor, kFactor)), state.drive_inertia, std::sqrt(grown(kInertia, kInertia))};
+  }
 
  private:
   void drawFactor(const BlowPrior& prior) noexcept;

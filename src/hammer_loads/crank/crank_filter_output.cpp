@@ -11,11 +11,7 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   load_ = model_(now_.state.position.angle);
 }
 
-BlowFactor CrankFilter::blowFactor() const noexcept {
-  const ShaftMatrix covariance = grown(now_);
-  const auto deviation = [&](CrankBelief::Row row) { return std::sqrt(covariance(row, row)); };
-  return {now_.factor, deviation(CrankBelief::kFactor), now_.state.drive_inertia, deviation(CrankBelief::kInertia)};
-}
+BlowFactor CrankFilter::blowFactor() const noexcept { return now_.blowFactor(grown(now_)); }
 
 bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torque) <= mostTorque(); }
 
@@ -31,10 +27,8 @@ Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) co
   return hammer_loads::motionCovariance(model_, belief, grown(belief), torque_part);
 }
 
-/// By what the innovations show beyond the model, and by the sensor's errors, which are not corrected.
 ShaftMatrix CrankFilter::grown(const CrankBelief& belief) const noexcept {
-  const SensorErrors::Effect& effect = belief.by_error;
-  return consistency_.growth() * belief.covariance + (effect * errors_.moment()) * effect.transpose();
+  return belief.grown(consistency_.growth(), errors_.moment());
 }
 
 }  // namespace hammer_loads

@@ -68,14 +68,11 @@ Eigen::Matrix3d SmoothedCrank::covarianceOf(const CrankBelief& belief, double to
 }
 
 BlowFactor SmoothedCrank::blowFactor() const noexcept {
-  const ShaftMatrix covariance = grown(now_.belief);
-  const auto deviation = [&](CrankBelief::Row row) { return std::sqrt(covariance(row, row)); };
-  return {now_.belief.factor, deviation(CrankBelief::kFactor), now_.belief.state.drive_inertia,
-          deviation(CrankBelief::kInertia)};
+  return now_.belief.blowFactor(grown(now_.belief));
 }
 
 ShaftMatrix SmoothedCrank::grown(const CrankBelief& belief) const noexcept {
-  return now_.growth * belief.covariance + (belief.by_error * now_.moment) * belief.by_error.transpose();
+  return belief.grown(now_.growth, now_.moment);
 }
 
 }  // namespace hammer_loads

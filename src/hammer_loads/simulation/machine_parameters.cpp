@@ -6,6 +6,7 @@
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/pipeline_settings.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::simulation {
@@ -14,7 +15,6 @@ namespace {
 constexpr NumberRule kAny = NumberRule::any();
 constexpr NumberRule kPositive = NumberRule::positive();
 constexpr NumberRule kNotNegative = NumberRule::notNegative();
-constexpr double kTwoPi = 6.283185307179586232;
 constexpr std::int64_t kLargestSeed = std::int64_t{1} << 53;  // exact in every reader of YAML
 constexpr std::int64_t kMostCounts = 1 << 24;
 constexpr std::int64_t kMostBurst = 10000;

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <random>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads::simulation {
 
 /// Box-Muller on mt19937_64, whose sequence the standard fixes (std::normal_distribution's is not).
@@ -14,10 +16,9 @@ class NormalNoise {
 
   /// Standard normal deviate; always consumes two numbers of the generator.
   double operator()() noexcept {
-    constexpr double kFullTurn = 6.283185307179586232;
     const double u = 1.0 - uniform();  // (0, 1]
     const double v = uniform();
-    return std::sqrt(-2.0 * std::log(u)) * std::cos(kFullTurn * v);
+    return std::sqrt(-2.0 * std::log(u)) * std::cos(kTwoPi * v);
   }
 
   /// In [0, 1).

@@ -5,10 +5,11 @@
 #include <limits>
 #include <numeric>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586232;
 constexpr double kJointLag = 0.005;  // first joint sample [s], so that the two streams do not coincide
 constexpr double kImuLag = 0.0004, kPressureLag = 0.0007;  // theirs, so that no two of them do
 constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9, kJointSeed = 0x94d049bb133111eb;
@@ -172,6 +173,12 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
   return reading;
 }
 
+OnBoomTruth SessionStream::onBoomAt(double time) {
+  HammerOnBoom& machine = std::get<HammerOnBoom>(machine_);
+  machine.advanceTo(time);
+  return machine.truth();
+}
+
 /// The sensors of a boom on its oil see it vibrate.
 JointReading SessionStream::readJoints(double time) {
   JointReading reading;
@@ -182,9 +189,8 @@ JointReading SessionStream::readJoints(double time) {
     reading.position[i] = joint.mean + joint.amplitude * std::sin(angle);
     reading.velocity[i] = joint.amplitude * rate * std::cos(angle);
   }
-  if (HammerOnBoom* machine = std::get_if<HammerOnBoom>(&machine_)) {
-    machine->advanceTo(time);
-    const OnBoomTruth truth = machine->truth();
+  if (std::holds_alternative<HammerOnBoom>(machine_)) {
+    const OnBoomTruth truth = onBoomAt(time);
     for (int i = 0; i < 3; ++i) {
       const auto k = static_cast<std::size_t>(i + 1);
       reading.position[k] = truth.angles[i], reading.velocity[k] = truth.rates[i];
@@ -196,9 +202,7 @@ JointReading SessionStream::readJoints(double time) {
 }
 
 HullImuReading SessionStream::readImu(double time) {
-  HammerOnBoom& machine = std::get<HammerOnBoom>(machine_);
-  machine.advanceTo(time);
-  const OnBoomTruth truth = machine.truth();
+  const OnBoomTruth truth = onBoomAt(time);
   const HullImuSensor& imu = settings_.on_boom.imu;
   HullImuReading reading{stampAt(time), {truth.imu_x, 0.0, truth.imu_z}, {0.0, truth.imu_rate, 0.0}};
   for (double& force : reading.specific_force) force += imu.acceleration_noise * imu_noise_();
@@ -207,9 +211,7 @@ HullImuReading SessionStream::readImu(double time) {
 }
 
 PressureReading SessionStream::readPressures(double time) {
-  HammerOnBoom& machine = std::get<HammerOnBoom>(machine_);
-  machine.advanceTo(time);
-  const OnBoomTruth truth = machine.truth();
+  const OnBoomTruth truth = onBoomAt(time);
   PressureReading reading{stampAt(time), truth.bore_pressure, truth.rod_pressure};
   for (auto* chambers : {&reading.bore, &reading.rod})
     for (double& pressure : *chambers) pressure += settings_.on_boom.pressures.noise * pressure_noise_();
