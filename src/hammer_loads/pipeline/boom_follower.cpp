@@ -80,7 +80,8 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
     const bool continued = swung || (known_ && step.count > 0);
     if (!continued) boom_.vibration().rest(), spread_.rest();
-    boom_.moveCompliant(motion_, g_B);
+    held_.follow(motion_, seconds(sample.stamp - last_stamp_));
+    boom_.moveCompliant(takesCompliant() ? held_.motion() : motion_, g_B);
     spread_.follow(boom_.vibration());
     if (continued && !swung) vibrate(step, sample.spread);
     observe(sample, seconds(sample.stamp - last_stamp_));
@@ -108,9 +109,8 @@ void BoomFollower::findLoads(const BoomSample& sample) noexcept {
 /// Frequencies and damping as sensors show them.
 void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
-  observer_.follow(motion_, step);
-  if (sample.imu) observer_.imu(boom_, *sample.imu);
-  observer_.joints(boom_, sample.stamp, step, joints_);
+  if (sample.imu) observer_.imu(boom_, held_, *sample.imu);
+  observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (pressures_.accepted() == 0) return;
   boom_.loads(onTip(sample.motion_wrench), true, state_.loads);
   observer_.pressures(boom_, sample.stamp, pressures_, state_.loads);
@@ -125,7 +125,7 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
     const Cylinder& cylinder = boom_.cylinders()[i];
     const int joint = cylinder.joint();
     const std::optional<ChamberPressures> p = pressures_.at(i, sample.stamp);
-    const CylinderPosition& at = boom_.cylinderPosition(i);
+    const CylinderPosition at = cylinder.at(motion_.position[joint]);  // of a measured force the lever as it is measured
     if (!p || at.dead_centre) continue;
     const double total = -forceOf(cylinder, *p) * at.arm;
     state_.contact_torque[joint] = total - state_.loads.total[joint];

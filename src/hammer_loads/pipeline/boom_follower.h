@@ -11,6 +11,7 @@
 #include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
+#include "hammer_loads/pipeline/held_pose.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
 #include "hammer_loads/pipeline/mode_observer.h"
 #include "hammer_loads/pipeline/wrench_history.h"
@@ -121,6 +122,7 @@ class BoomFollower {
   VibrationSpread spread_;
   JointBuffer joints_;
   CylinderPressures pressures_;
+  HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;
   double striking_distance_;

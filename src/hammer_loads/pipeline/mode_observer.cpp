@@ -15,9 +15,6 @@ constexpr Doubt kRate{0.005, 0.02, 0.005};        // [rad/s]
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};        // [rad]
 constexpr Doubt kTorque{0.004, 0.02, 0.002};      // of the torque that the cylinder's relief valve allows
 constexpr double kSlowest = 0.01, kMoved = 0.02;  // [s] between joint states; [rad] a jump
-constexpr double kFast = 0.05, kRest = 2.0;       // [rad/s]: its acceleration hides the vibration; [s] to wait then
-constexpr double kStart = 1.0;                    // [s] until a boom that is driven at the start is seen to be
-constexpr double kMemory = 0.5, kLost = 0.5;      // of each filter [s]; of an angle that winds or came back [rad]
 
 void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, double size = 1.0) noexcept {
   reading.noise = size * doubt.noise;
@@ -28,35 +25,20 @@ void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, 
 
 }  // namespace
 
-void ModeObserver::follow(const JointMotion& motion, double step) noexcept {
-  const bool lost = first_.size() != motion.position.size() || !(step < kMemory) ||
-                    (motion.position - first_).cwiseAbs().maxCoeff() > kLost;
-  if (lost) {
-    first_ = slow_ = motion.position;
-    unrest_ = kStart;
-    return;
-  }
-  const double part = step / kMemory;
-  first_ += part * (motion.position - first_);
-  slow_ += part * (first_ - slow_);
-  unrest_ = slowRate().cwiseAbs().maxCoeff() > kFast ? kRest : std::max(0.0, unrest_ - step);
-}
-
-JointVector ModeObserver::slowRate() const noexcept { return (first_ - slow_) / kMemory; }
-
-void ModeObserver::imu(Boom& boom, const ImuReading& reading) noexcept {
-  if (unrest_ > 0.0) return;
+void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& reading) noexcept {
+  if (held.isDriven()) return;
   const Jacobian J = tipJacobian(boom.pose());
-  const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * slowRate();
+  const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
   see(boom, 0, tipAccelerationReading(J, imu_position_, x, g_T, reading.specific_force.x()), kAcceleration);
   see(boom, 1, tipAccelerationReading(J, imu_position_, z, g_T, reading.specific_force.z()), kAcceleration);
   see(boom, 2, tipRateReading(J, y, reading.rate.y() - slow_rate.y()), kRate);
 }
 
-void ModeObserver::joints(Boom& boom, StampNs sample, double step, const JointBuffer& joints) noexcept {
+void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, double step,
+                          const JointBuffer& joints) noexcept {
   const int count = boom.chain().joints();
-  const JointVector slow_rate = slowRate();
+  const JointVector slow_rate = held.slowRate();
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const int joint = boom.cylinders()[i].joint();
     const std::optional<JointBuffer::Reading> now = joints.newest(joint);
@@ -65,8 +47,8 @@ void ModeObserver::joints(Boom& boom, StampNs sample, double step, const JointBu
     const double interval = seconds(now->stamp - track.stamp), ahead = seconds(now->stamp - sample);
     const bool jumped = !(interval > 0.0) || interval > kSlowest || std::abs(now->position - track.position) > kMoved;
     track.stamp = now->stamp, track.position = now->position;
-    if (jumped || unrest_ > 0.0 || std::abs(ahead) > 0.75 * step) continue;
-    VibrationReading reading = jointAngleReading(count, joint, now->position - slow_[joint]);
+    if (jumped || held.isDriven() || std::abs(ahead) > 0.75 * step) continue;
+    VibrationReading reading = jointAngleReading(count, joint, now->position - held.slowAngle()[joint]);
     reading.velocity[joint] = ahead;
     Doubt doubt = kAngle;
     doubt.walk += std::abs(slow_rate[joint]);

@@ -6,6 +6,7 @@
 
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
+#include "hammer_loads/pipeline/held_pose.h"
 #include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
 
@@ -20,11 +21,9 @@ class ModeObserver {
   /// imu_position: from D, axes of hammer_hull [m].
   explicit ModeObserver(const Eigen::Vector3d& imu_position) : imu_position_(imu_position) {}
 
-  /// The joints as they are measured, a step [s] after the call before; first of all at each sample.
-  void follow(const JointMotion& motion, double step) noexcept;
   /// The unit's reading at the sample in the hull's axes, if a new one has come.
-  void imu(Boom& boom, const ImuReading& reading) noexcept;
-  void joints(Boom& boom, StampNs sample, double step, const JointBuffer& joints) noexcept;
+  void imu(Boom& boom, const HeldPose& held, const ImuReading& reading) noexcept;
+  void joints(Boom& boom, const HeldPose& held, StampNs sample, double step, const JointBuffer& joints) noexcept;
   /// loads: those of the sample, rigid or not.
   void pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures, const BoomLoads& loads) noexcept;
 
@@ -35,11 +34,7 @@ class ModeObserver {
   };
   static constexpr int kImuChannels = 3;
 
-  JointVector slowRate() const noexcept;
-
   Eigen::Vector3d imu_position_;
-  JointVector first_, slow_;  ///< angles through one and two filters of the first order [rad]
-  double unrest_{};           ///< so long the operator's last fast move, or its not being known, still counts [s]
   std::array<JointTrack, kMaxJoints> joints_;
   std::array<std::uint64_t, kMaxJoints> pressures_{};  ///< CylinderPressures::count() at the last sample
 };

@@ -23,6 +23,10 @@ PlanePoint inHull(double xi, double eta, double com_angle) {
   return {-(c * xi + s * eta), -s * xi + c * eta};
 }
 
+using Modes = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d>;
+
+Modes modesOf(const Eigen::Vector3d& K, const Eigen::Matrix3d& M) { return Modes(K.asDiagonal(), M); }
+
 Mechanism checked(const HammerParameters& parameters) {
   const Checked<Mechanism> made = Mechanism::make(parameters);
   if (!made.value) throw std::invalid_argument(made.problems.front());
@@ -45,31 +49,48 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
   now_.v[3] = 0.0;
   now_.before_blow = machine.start_angle > kPi;
   now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
-  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>(), K = stiffness(held).asDiagonal();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> modes(K, M);
-  const Eigen::Vector3d rates = 2.0 * machine.on_boom.damping * modes.eigenvalues().cwiseSqrt();
+  followOperator();
+}
+
+/// What the hull keeps of its mass is that of the description less rotor and rocker, whose mass the description smears
+/// over the places of a turn.
+void HammerOnBoom::takeMovingPartsOffTheHull() {
+  constexpr int kPlaces = 360;
+  State held = heldAt(0.0);
+  const PlanePoint joint = jointPlace(held, 2), to_hull = std::exp(kI * hullAngle(held));
+  double mass = 0.0, square = 0.0;  // of the distance from the joint
+  PlanePoint at = 0.0;
+  double inertia = 0.0;
+  for (int i = 0; i < kPlaces; ++i) {
+    held.x[3] = (i + 0.5) * kTwoPi / kPlaces - kPi;
+    held.before_blow = held.x[3] < 0.0;
+    const Body rocker = bodies(held)[3];
+    const PlanePoint place = (rocker.place - joint) * to_hull;
+    mass = rocker.mass, inertia = rocker.inertia;
+    at += place / static_cast<double>(kPlaces), square += std::norm(place) / kPlaces;
+  }
+  OilBoomLink& hull = boom_.links[2];
+  const double about_joint = hull.inertia + hull.mass * std::norm(hull.com);
+  const PlanePoint com = (hull.mass * hull.com - mass * at) / (hull.mass - mass);
+  hull.mass -= mass;
+  hull.com = com;
+  hull.inertia = about_joint - mass * square - inertia - rotor_ * ratio_ * ratio_ - hull.mass * std::norm(com);
+}
+
+/// Every mode keeps its damping ratio wherever the boom goes.
+void HammerOnBoom::followOperator() {
+  const State held = heldAt(now_.time);
+  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>();
+  const Modes modes = modesOf(stiffness(held), M);
+  const Eigen::Vector3d rates = 2.0 * machine_.on_boom.damping * modes.eigenvalues().cwiseSqrt();
   const Eigen::Matrix3d inertia = M * modes.eigenvectors();
   damping_ = inertia * rates.asDiagonal() * inertia.transpose();
 }
 
-/// What the hull keeps of its mass is that of the description less rocker, at its mean place, and rotor.
-void HammerOnBoom::takeMovingPartsOffTheHull() {
-  const State held = heldAt(0.0);
-  const Body rocker = bodies(held)[3];
-  OilBoomLink& hull = boom_.links[2];
-  const PlanePoint at = (rocker.place - jointPlace(held, 2)) * std::exp(kI * hullAngle(held));
-  const PlanePoint com = (hull.mass * hull.com - rocker.mass * at) / (hull.mass - rocker.mass);
-  hull.inertia += hull.mass * std::norm(hull.com - com) - rocker.mass * std::norm(at - com) - rocker.inertia -
-                  rotor_ * ratio_ * ratio_;
-  hull.mass -= rocker.mass;
-  hull.com = com;
-}
-
 Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
   const State held = heldAt(time);
-  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>(), K = stiffness(held).asDiagonal();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> modes(K, M, Eigen::EigenvaluesOnly);
-  return modes.eigenvalues().cwiseSqrt() / (2.0 * kPi);
+  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>();
+  return modesOf(stiffness(held), M).eigenvalues().cwiseSqrt() / kTwoPi;
 }
 
 /// Where the operator holds the joints, crank a quarter of a turn from the blow.
@@ -230,6 +251,7 @@ double HammerOnBoom::timeToDeadCentre(double dt) const {
 void HammerOnBoom::advanceTo(double time) {
   while (now_.time < time) {
     letGo();
+    followOperator();
     const double left = time - now_.time;
     double dt = std::min(machine_.on_boom.step, left);
     State next = stepped(now_, dt);

@@ -76,6 +76,7 @@ class HammerOnBoom {
   Matrix4 massMatrix(const State& s) const;
   Vector4 weight(const State& s) const;
   Eigen::Vector3d stiffness(const State& held) const;
+  void followOperator();
   Eigen::Vector3d holding(const State& s) const;
   Vector4 force(const State& s, const Vector4& inertia) const;
   Vector4 acceleration(const State& s) const;

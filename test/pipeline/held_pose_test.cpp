@@ -1,0 +1,70 @@
+#include "hammer_loads/pipeline/held_pose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/util/constants.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kStep = 1e-3;  // [s]
+
+JointMotion joint(double position, double velocity) {
+  JointMotion motion;
+  motion.position = JointVector::Constant(1, position), motion.velocity = JointVector::Constant(1, velocity);
+  motion.acceleration = JointVector::Constant(1, 7.0);
+  return motion;
+}
+
+TEST(HeldPose, FollowsAJointThatIsDrivenSlowlyWithoutLag) {
+  constexpr double kAcceleration = 0.004;  // [rad/s2]
+  HeldPose held;
+  for (double t = 0.0; t < 10.0; t += kStep) {
+    const double angle = 0.3 + 0.5 * kAcceleration * t * t;
+    held.follow(joint(angle, kAcceleration * t), kStep);
+    if (t < 8.0) continue;
+    ASSERT_FALSE(held.isDriven());
+    ASSERT_NEAR(held.motion().position[0], angle, 2e-5) << t;
+    ASSERT_NEAR(held.motion().velocity[0], kAcceleration * t, 1.1 * kAcceleration) << t;
+    ASSERT_EQ(held.motion().acceleration[0], 7.0);
+  }
+}
+
+TEST(HeldPose, LeavesLittleOfAVibration) {
+  for (const auto& [frequency, left] : {std::pair{3.4, 0.29}, std::pair{9.0, 0.11}}) {
+    HeldPose held;
+    double largest = 0.0, fastest = 0.0;
+    for (double t = 0.0; t < 10.0; t += kStep) {
+      const double rate = kTwoPi * frequency;
+      held.follow(joint(0.3 + 0.007 * std::sin(rate * t), 0.007 * rate * std::cos(rate * t)), kStep);
+      if (t < 8.0) continue;
+      largest = std::max(largest, std::abs(held.motion().position[0] - 0.3));
+      fastest = std::max(fastest, std::abs(held.motion().velocity[0]));
+    }
+    EXPECT_LT(largest, left * 0.007) << frequency;
+    EXPECT_LT(fastest, 0.1 * 0.007 * kTwoPi * frequency) << frequency;
+  }
+}
+
+TEST(HeldPose, IsAsMeasuredAtTheStartAndWhileDriven) {
+  HeldPose held;
+  bool was_driven = false;
+  for (double t = 0.0; t < 12.0; t += kStep) {
+    const double speed = t > 5.0 && t < 7.0 ? 0.1 : 0.0, angle = 0.1 * std::min(2.0, std::max(0.0, t - 5.0));
+    held.follow(joint(angle, speed), kStep);
+    const bool surely = t < 0.9 || (t > 6.0 && t < 8.5);
+    if (surely) {
+      ASSERT_TRUE(held.isDriven()) << t;
+      ASSERT_EQ(held.motion().position[0], angle) << t;
+      ASSERT_EQ(held.motion().velocity[0], speed) << t;
+    }
+    was_driven = was_driven || (t > 2.0 && held.isDriven());
+  }
+  EXPECT_TRUE(was_driven);
+  EXPECT_FALSE(held.isDriven());
+}
+
+}  // namespace
+}  // namespace hammer_loads
