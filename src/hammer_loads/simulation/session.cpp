@@ -185,9 +185,7 @@ JointReading SessionStream::readJoints(double time) {
   reading.stamp = stampAt(time);
   for (std::size_t i = 0; i < settings_.boom.size(); ++i) {
     const JointMotion& joint = settings_.boom[i];
-    const double rate = kTwoPi / joint.period, angle = rate * time + joint.phase;
-    reading.position[i] = joint.mean + joint.amplitude * std::sin(angle);
-    reading.velocity[i] = joint.amplitude * rate * std::cos(angle);
+    reading.position[i] = positionOf(joint, time), reading.velocity[i] = velocityOf(joint, time);
   }
   if (std::holds_alternative<HammerOnBoom>(machine_)) {
     const OnBoomTruth truth = onBoomAt(time);

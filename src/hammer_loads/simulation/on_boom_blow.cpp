@@ -1,0 +1,65 @@
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "hammer_loads/simulation/hammer_on_boom.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+const PlanePoint kI(0.0, 1.0);
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+/// At the dead centre crank and rocker are free of each other: five coordinates, of which the linkage makes four again.
+void HammerOnBoom::blow() {
+  using Vector5 = Eigen::Matrix<double, 5, 1>;
+  using Matrix5 = Eigen::Matrix<double, 5, 5>;
+  const double u_before = links_.rockerAngle({0.0, true, false}).first;
+  const double u_after = links_.rockerAngle({0.0, false, false}).first;
+  const Bodies all = bodies(now_);
+  Vector5 rotor;
+  rotor << ratio_, ratio_, ratio_, 1.0, 0.0;
+  Matrix5 M = rotor_ * rotor * rotor.transpose();
+  for (std::size_t k = 0; k < 4; ++k) {
+    Vector5 x = Vector5::Zero(), z = x, turn = x;
+    for (int j = 0; j < 3; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      x[j] = all[k].by[i].real(), z[j] = all[k].by[i].imag(), turn[j] = all[k].turn[j];
+    }
+    if (k == 3) x[4] = all[k].by[3].real() / u_before, z[4] = all[k].by[3].imag() / u_before, turn[4] = 1.0;
+    M += all[k].mass * (x * x.transpose() + z * z.transpose()) + all[k].inertia * turn * turn.transpose();
+  }
+  const PlanePoint to_hull = std::exp(kI * hullAngle(now_));
+  const PlanePoint striker = jointPlace(now_, 3) - machine_.hammer.striking_distance / to_hull;
+  Vector5 J, v, loop;  // of the striking point along the tool; the linkage allows no speed along the loop
+  for (std::size_t j = 0; j < 3; ++j) J[static_cast<int>(j)] = (to_hull * -kI * (striker - jointPlace(now_, j))).imag();
+  J[3] = 0.0, J[4] = machine_.hammer.striking_distance;
+  v << now_.v, u_before * now_.v[3];
+  loop << 0.0, 0.0, 0.0, u_after, -1.0;
+  const Eigen::LDLT<Matrix5> inverse = M.ldlt();
+  const Vector5 by_tool = inverse.solve(J), by_loop = inverse.solve(loop);
+  const BlowSettings& b = machine_.blow;
+  const double restitution = b.restitution_low + draws_.uniform() * (b.restitution_high - b.restitution_low);
+  const double P =
+      b.restitution_drawn ? -(1.0 + restitution) * J.dot(v) / J.dot(by_tool) : -loop.dot(v) / loop.dot(by_tool);
+  const Vector5 left = v + P * by_tool, after = left - by_loop * (loop.dot(left) / loop.dot(by_loop));
+
+  BlowTruth truth;
+  truth.time = now_.time;
+  truth.crank_speed = v[3];
+  truth.strike = {v[4], left[4],  -P * 0.5 * J.dot(v + left),
+                  P,    after[3], 0.5 * (left.dot(M * left) - after.dot(M * after))};
+  truth.turn_period = now_.time - last_blow_;
+  truth.turn_peak_force_z = truth.turn_impulse_x = truth.turn_impulse_z = truth.last_lobe_impulse_z = kNaN;
+  truth.whole_turn = whole_turn_;
+  blows_.push_back(truth);
+  now_.v = after.head<4>();
+  now_.before_blow = false;
+  last_blow_ = now_.time;
+  whole_turn_ = true;
+  ++turn_;
+}
+
+}  // namespace hammer_loads::simulation
