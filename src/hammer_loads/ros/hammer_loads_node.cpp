@@ -45,13 +45,8 @@ void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
   const auto no_delay = ros::TransportHints().tcpNoDelay();
   // Joint states first: where both arrive on one topic, a sample's own pitch counts for it.
   joint_states_ = node.subscribe("joint_states", kTopicQueue, &HammerLoadsNode::onJointStates, this, no_delay);
-  crank_ = node.subscribe("crank", kTopicQueue, &HammerLoadsNode::onCrank, this, no_delay);
   if (bridge_.needsImu()) hull_imu_ = node.subscribe("hull_imu", kTopicQueue, &HammerLoadsNode::onImu, this, no_delay);
   subscribePressures(node);
-  joint_states_topic_ = joint_states_.getTopic();
-  crank_topic_ = crank_.getTopic();
-  hull_imu_topic_ = hull_imu_.getTopic();
-  one_topic_ = joint_states_topic_ == crank_topic_;
   const auto transforms = [this](bool is_static) {
     return boost::function<void(const Event<tf2_msgs::TFMessage>&)>(
         [this, is_static](const Event<tf2_msgs::TFMessage>& event) { onTransforms(event, is_static); });
@@ -61,6 +56,12 @@ void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
   tf_static_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf_static", kTopicQueue, transforms(true));
   if (bridge_.needsTransforms())
     tf_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf", kTopicQueue, transforms(false), {}, no_delay);
+  // The crank last: a player of bags that waits for its subscriber then finds all others.
+  crank_ = node.subscribe("crank", kTopicQueue, &HammerLoadsNode::onCrank, this, no_delay);
+  joint_states_topic_ = joint_states_.getTopic();
+  crank_topic_ = crank_.getTopic();
+  hull_imu_topic_ = hull_imu_.getTopic();
+  one_topic_ = joint_states_topic_ == crank_topic_;
   diagnostics_.watch({&crank_, &joint_states_, &hull_imu_});
 }
 
