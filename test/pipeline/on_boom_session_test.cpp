@@ -131,6 +131,30 @@ TEST(OnBoomSession, TheRightOilNeedsNoMoreSensors) {
   expectAsTheTruth(errorsOf("right oil, hull by imu", session, "hull_motion: imu\n", {true, false}), "imu");
 }
 
+/// Without a boom file the IMU alone knows that the hull leaves the rock.
+TEST(OnBoomSession, TheImuTakesTheHullsOwnSpeedOutOfTheEnergy) {
+  for (const double crank_rate : {1000.0, 100.0}) {
+    simulation::MachineSettings m = machine(1.0, 50.0);
+    m.crank.rate = crank_rate;
+    m.on_boom.imu = {500.0, 0.05, 0.1, 0.2, 0.1, 0.003};
+    const Session session = simulation::recordSession(m);
+    const auto error = [&](const std::string& hull_motion) {
+      test::Player player(test::settingsWith("boom: none\nhull_motion: " + hull_motion, false), false, session);
+      Errors e;  // of energy alone
+      player.playTo(kEnd, [&](double time, const SampleResult& result) {
+        if (time > kBegin) addBlows(session, result, e);
+      });
+      EXPECT_GT(e.blows, 15U);
+      return e.energy / static_cast<double>(e.blows);
+    };
+    const double fixed = error("fixed"), imu = error("imu\nimu_x_m: 0.05\nimu_z_m: 0.1\nimu_pitch_rad: 0.2\n");
+    std::printf("energy at %.0f Hz: %.2f %% on a hull taken as fixed, %.2f %% with its IMU\n", crank_rate,
+                100.0 * fixed, 100.0 * imu);
+    EXPECT_GT(fixed, 0.03) << "what there is to find";
+    EXPECT_LT(std::abs(imu), 0.02);
+  }
+}
+
 class WrongOil : public testing::TestWithParam<double> {};
 
 TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {

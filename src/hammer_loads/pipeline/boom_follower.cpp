@@ -75,12 +75,12 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     ++faults_;
     return state_;
   }
+  held_.follow(motion_, seconds(sample.stamp - last_stamp_));
   const Eigen::Vector3d g_B = gravityInRoot(sample.gravity, base_);
   if (follow_vibration_) {
     const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
     const bool continued = swung || (known_ && step.count > 0);
     if (!continued) boom_.vibration().rest(), spread_.rest();
-    held_.follow(motion_, seconds(sample.stamp - last_stamp_));
     boom_.moveCompliant(takesCompliant() ? held_.motion() : motion_, g_B);
     spread_.follow(boom_.vibration());
     if (continued && !swung) vibrate(step, sample.spread);
@@ -171,6 +171,12 @@ void BoomFollower::strike(const HullWrench& impulse) noexcept {
   spread_.strike(torque);
   const Vector6 velocity = J * (0.5 * (before + boom_.vibration().velocity()));
   state_.at_blow = TipVelocity{velocity[2], velocity[4]};
+}
+
+TipVelocity BoomFollower::drivenTip() const noexcept {
+  if (!known_) return {};
+  const Vector6 velocity = tipJacobian(boom_.pose()) * held_.slowRate();
+  return {velocity[2], velocity[4]};
 }
 
 void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {

@@ -14,6 +14,7 @@
 #include "hammer_loads/pipeline/held_pose.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
 #include "hammer_loads/pipeline/mode_observer.h"
+#include "hammer_loads/pipeline/tip_velocity.h"
 #include "hammer_loads/pipeline/wrench_history.h"
 
 namespace hammer_loads {
@@ -36,12 +37,6 @@ struct BoomChoice {
   double lowest_frequency{};  ///< of the boom at its end [Hz], 0 without modes
   double rigid_error{};       ///< of joint torques for such a pulse, over the largest [-]; see rigidError()
   double rigid_tolerance{};   ///< [-]
-};
-
-/// Velocity of the tip, in its plane.
-struct TipVelocity {
-  double z{};     ///< of the tip's origin along its z [m/s]
-  double rate{};  ///< about its y [rad/s]
 };
 
 /// What one crank sample gave. Void but for stamp and fault when there is a fault.
@@ -88,6 +83,8 @@ class BoomFollower {
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Through a crank sample that gives no loads: the boom swings on, without pieces as if free.
   void swing(StampNs stamp, const WrenchHistory& step) noexcept;
+  /// How the operator moves the tip, vibration left out, some 0.5 s late.
+  TipVelocity drivenTip() const noexcept;
   /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
   /// 0.1 ms.
   void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept;

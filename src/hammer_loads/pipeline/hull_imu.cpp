@@ -27,8 +27,16 @@ std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& readi
   if (readings_ > 0 && seconds(stamp - now_.stamp) > settings_.max_age) readings_ = 0;
   before_ = now_;
   now_ = {stamp, settings_.rotation * reading.specific_force, settings_.rotation * reading.rate};
+  if (readings_ == 0) speed_.forget();
+  speed_.add(stamp, now_.force.z(), now_.rate.y() * settings_.position.x() - now_.rate.x() * settings_.position.y(),
+             now_.rate.y());
   readings_ = std::min(readings_ + 1, 2);
   return std::nullopt;
+}
+
+void HullImu::struck(StampNs stamp) noexcept {
+  blow_ = stamp;
+  speed_.struck(stamp);
 }
 
 std::optional<ImuReading> HullImu::reading(StampNs stamp) const noexcept {

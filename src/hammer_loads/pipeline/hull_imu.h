@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/hull_speed.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
 #include "hammer_loads/util/stamp.h"
 
@@ -36,7 +37,9 @@ class HullImu {
   std::optional<ImuRefusal> update(StampNs stamp, const ImuReading& reading) noexcept;
 
   /// A blow was struck at that instant: accelerations jump there, so no line and no difference goes across it.
-  void struck(StampNs stamp) noexcept { blow_ = stamp; }
+  void struck(StampNs stamp) noexcept;
+  /// How D moved at the last blow, where that is known.
+  std::optional<TipVelocity> speedAtBlow() const noexcept { return speed_.atBlow(); }
 
   /// What the unit reads at a stamp, in axes of hammer_hull: on the line through the last two readings, also one
   /// interval beyond them at most; where a blow lies between, the nearest reading on the stamp's side. Nothing before
@@ -58,6 +61,7 @@ class HullImu {
 
   HullImuSettings settings_;
   Sample now_, before_;
+  HullSpeed speed_;
   int readings_{};  ///< in a row, counted up to 2
   std::optional<StampNs> rewound_, blow_;
 };

@@ -40,6 +40,8 @@ class HullState {
   const HullMotion& predict(StampNs stamp) noexcept;
   /// A blow was struck within the step to the sample: its motion again, with that known.
   void struck(StampNs blow, StampNs sample) noexcept;
+  /// Of D at the last blow by the IMU, where that is known.
+  std::optional<TipVelocity> speedAtBlow() const noexcept { return imu_.speedAtBlow(); }
   /// What the IMU reads at the sample in the hull's axes, if a reading has come since the last call.
   std::optional<ImuReading> newImuReading(StampNs stamp) noexcept;
   /// After it: the vibration of the boom at the sample; null: not known.

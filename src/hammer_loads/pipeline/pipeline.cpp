@@ -97,6 +97,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (!(std::hypot(wrench.force_x, wrench.force_z) <= most_force)) return withhold(Refusal::kImplausible);
   result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
   followBoom();
+  hullMovedAtBlow();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
@@ -111,10 +112,23 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
 
 /// The boom does not rest because a sample gives nothing.
 void Pipeline::swingOn(const WrenchHistory& step) noexcept {
-  if (!boom_follows_) return hull_.rest();
-  boom_->swing(result_.stamp, step);
-  if (boom_->state().at_blow) turn_.hullMovedAtBlow(*boom_->state().at_blow);
-  hull_.vibrates(&boom_->state());
+  if (boom_follows_) {
+    boom_->swing(result_.stamp, step);
+    hull_.vibrates(&boom_->state());
+  } else {
+    hull_.rest();
+  }
+  hullMovedAtBlow();
+}
+
+/// Vibration by the IMU where it knows, else by the boom's model; with what the operator does, which no IMU sees.
+void Pipeline::hullMovedAtBlow() noexcept {
+  if (!turn_.blowWaits()) return;
+  std::optional<TipVelocity> speed = hull_.speedAtBlow();
+  if (!speed && boom_) speed = boom_->state().at_blow;
+  if (!speed) return;
+  const TipVelocity driven = boom_ ? boom_->drivenTip() : TipVelocity{};
+  turn_.hullMovedAtBlow({speed->z + driven.z, speed->rate + driven.rate});
 }
 
 /// Measured accelerations of the hull jump at a blow.
@@ -133,7 +147,6 @@ void Pipeline::followBoom() noexcept {
   result_.boom =
       &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp)}, step);
   boom_follows_ = true;
-  if (result_.boom->at_blow) turn_.hullMovedAtBlow(*result_.boom->at_blow);
   for (std::size_t i = 0; i < result_.turn_ends; ++i)
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
 }

@@ -55,6 +55,7 @@ class Pipeline {
   const SampleResult& refuse(Refusal refusal) noexcept;
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
+  void hullMovedAtBlow() noexcept;
   void followBoom() noexcept;
   void passBlows() noexcept;
   void swingOn(const WrenchHistory& step) noexcept;

@@ -28,7 +28,8 @@ class TurnFollower {
   /// after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
 
-  /// Velocity of the hull by the boom's vibration at the blow that the last step ended with.
+  bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
+  /// Velocity of the hull at that blow; zero until it is given.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
 
   double peakForce() const noexcept { return peak_force_; }            ///< of the last whole turn [N], 0 before it

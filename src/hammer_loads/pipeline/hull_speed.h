@@ -1,0 +1,48 @@
+/// How fast the hull moves when the rocker strikes, from its IMU.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "hammer_loads/pipeline/tip_velocity.h"
+#include "hammer_loads/util/stamp.h"
+
+namespace hammer_loads {
+
+/// The hull comes back each turn: from blow to blow its velocity has no trend, and no mean. That takes weight, offsets
+/// and the jump at the blow out of the integral of the unit's readings; what is left at both ends is the velocity at the
+/// blow, mean of before and after it. Nothing before the second blow in a row, or after a pause of the unit.
+///
+/// Neglects: what differs from turn to turn, and the boom's slow motion.
+class HullSpeed {
+ public:
+  /// The unit at a stamp, axes of the hull: force along z [m/s2], what turning adds to D's velocity along z [m/s], rate
+  /// about y [rad/s]. No allocation.
+  void add(StampNs stamp, double force_z, double by_turning, double rate) noexcept;
+  void forget() noexcept;
+  void struck(StampNs blow) noexcept;
+  /// At the last blow.
+  std::optional<TipVelocity> atBlow() const noexcept { return at_blow_; }
+
+ private:
+  struct Point {
+    StampNs stamp{};
+    double force{}, integral{};  ///< less the first force
+    TipVelocity velocity;        ///< but for weight and offsets
+    TipVelocity way;             ///< its integral
+  };
+  static constexpr std::size_t kKept = 64;  ///< some 60 ms at 1 kHz: so late a crank sample may show a blow
+
+  static Point after(const Point& point, StampNs stamp, double force, double by_turning, double rate) noexcept;
+  Point at(StampNs stamp) const noexcept;
+  const Point& back(std::size_t steps) const noexcept { return points_[(count_ - 1 - steps) % kKept]; }
+
+  std::array<Point, kKept> points_;
+  std::uint64_t count_{};
+  double first_force_{};
+  std::optional<Point> last_blow_;
+  std::optional<TipVelocity> at_blow_;
+};
+
+}  // namespace hammer_loads
