@@ -96,7 +96,7 @@ TEST_P(CrankInDegrees, IsWithheldNamedAndGivesNothingAbsurdBefore) {
     after += pipeline.crank().looksLikeDegrees();
   }
   EXPECT_EQ(after, 0U);
-  EXPECT_LE(largest, 3.0 * 40558.1) << "three times the peak of the nameplate's turn at constant speed";
+  EXPECT_LE(largest, 0.5 * 40558.1) << "half the peak of the nameplate's turn at constant speed";
   const auto warnings = warningsOf(pipeline);
   ASSERT_FALSE(warnings.empty());
   EXPECT_STREQ(warnings.front().key, "degrees");

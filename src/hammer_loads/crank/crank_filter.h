@@ -85,8 +85,8 @@ class CrankFilter final : public CrankTracker {
   const Encoder& encoder() const noexcept { return encoder_; }
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
   double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
+  bool isProven() const noexcept override { return consistency() < kAgrees; }
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
-  bool isProven() const noexcept override { return !std::isnan(consistency()); }
   double consistency() const noexcept override { return consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
   const SensorErrors& sensorErrors() const noexcept { return errors_; }
@@ -97,6 +97,7 @@ class CrankFilter final : public CrankTracker {
 
  private:
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
+  static constexpr double kAgrees = 12.0;  ///< worse than any flaw of a sensor in radians: a coupling of 50 Hz gives 11
 
   ShaftMatrix grown(const CrankBelief& belief) const noexcept;
   WeighedSample weighed(const CrankSample& reading) noexcept;

@@ -73,7 +73,7 @@ class CrankTracker {
   virtual double driveInertia() const noexcept = 0;
   /// Whether the last blow was one at all is not clear yet: what is estimated may be of the wrong branch.
   virtual bool isDoubtful() const noexcept { return false; }
-  /// Enough samples have come to say whether they fit the model: until then a wrong unit may not show.
+  /// Enough samples have come, and they fit the model: until then a wrong unit may not show.
   virtual bool isProven() const noexcept { return true; }
   /// Mean of innovation^2 over its variance: near 1 where readings and model agree; NaN before enough samples and of no
   /// model.

@@ -8,7 +8,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMostForce = 3.0;  // times the nominal turn's peak, once readings and model agree; before that 1
+// Beyond these, in units of the nominal turn at constant speed, nothing is published. Its peak is some four times that of
+// a hammer at work.
+constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
+constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
 }  // namespace
@@ -93,8 +96,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
 
   const CrankMotion motion = motionOf(result_.crank);
   const HullWrench wrench = hullWrench(model_, motion, hull_.motion().motion);
-  const double most_force = (crank_.tracker().isProven() ? kMostForce : 1.0) * nominal_force_;
-  if (!(std::hypot(wrench.force_x, wrench.force_z) <= most_force)) return withhold(Refusal::kImplausible);
+  if (!isPlausible(wrench)) return withhold(Refusal::kImplausible);
   result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
   followBoom();
   hullMovedAtBlow();
@@ -108,6 +110,14 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   sampler_.sample(result_);
   ++counts_.accepted;
   return result_;
+}
+
+bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
+  const double force = std::hypot(wrench.force_x, wrench.force_z);
+  if (crank_.tracker().isProven()) return force <= kMostForce * nominal_force_;
+  const double nominal_speed = kTwoPi * settings_.turn_rate;
+  return force <= kMostForceUnproven * nominal_force_ &&
+         std::abs(result_.crank.speed) <= kMostSpeedUnproven * nominal_speed;
 }
 
 /// The boom does not rest because a sample gives nothing.

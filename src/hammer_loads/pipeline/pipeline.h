@@ -55,6 +55,7 @@ class Pipeline {
   const SampleResult& refuse(Refusal refusal) noexcept;
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
+  bool isPlausible(const HullWrench& wrench) const noexcept;
   void hullMovedAtBlow() noexcept;
   void followBoom() noexcept;
   void passBlows() noexcept;
@@ -68,7 +69,7 @@ class Pipeline {
   TurnFollower turn_;
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
-  double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; a much larger one is not published: degrees
+  double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; see isPlausible()
                           ///< that are not recognised yet, for instance
   bool boom_follows_{};   ///< the boom has had every step since the last restart
   SampleCounts counts_;
