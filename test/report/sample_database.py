@@ -210,8 +210,8 @@ def make(path, machine=None, seconds=60.0, first_ns=1700000000 * SECOND, seed=1,
     db = sqlite3.connect(str(path), isolation_level=None)
     db.execute("PRAGMA journal_mode = OFF")
     db.execute("PRAGMA synchronous = OFF")
-    db.execute("BEGIN")
     db.executescript(SCHEMA)
+    db.execute("BEGIN")  # not before: executescript ends a transaction, and then every row is one
     stamp = first_ns
     for run_id in range(1, runs + 1):
         stamp = write_run(db, run_id, machine, seconds, stamp, seed + run_id, boom, classes, warnings,
