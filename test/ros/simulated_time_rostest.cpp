@@ -9,8 +9,11 @@
 #include <algorithm>
 #include <map>
 
-#include "hammer_loads/ros/hammer_loads_node.h"
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/ros/live_node.h"
+#include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
+#include "hammer_loads/util/stamp.h"
 #include "ros/eventually.h"
 
 namespace hammer_loads {
@@ -144,7 +147,7 @@ class SimulatedTime : public testing::Test {
   const Settings settings_ = *loadFiles(configDirectory(), {}).value;
   const Inputs inputs_ = recordInputs();
   ros::NodeHandle handle_;
-  std::unique_ptr<HammerLoadsNode> node_;
+  std::unique_ptr<LiveNode> node_;
   ros::Publisher crank_, joints_;
   ros::Subscriber crank_arrival_, joint_arrival_, wrench_, diagnostics_;
   std::size_t arrived_{};

@@ -1,6 +1,6 @@
 /// grapple_node: the live grapple.
 #include "hammer_loads/commands/node_usage.h"
-#include "hammer_loads/ros/grapple_node.h"
+#include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/ros/run_node.h"
 
 namespace {

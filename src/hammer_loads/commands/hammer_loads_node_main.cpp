@@ -1,6 +1,6 @@
 /// hammer_loads_node: the live node.
 #include "hammer_loads/commands/node_usage.h"
-#include "hammer_loads/ros/hammer_loads_node.h"
+#include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/ros/run_node.h"
 
 namespace {

@@ -43,8 +43,8 @@ void GrappleNode::beginRun() {
   log_->forgetLatched(run_info_.getTopic());
 }
 
-std::unique_ptr<GrappleNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-                                             std::vector<std::string>& problems) {
+std::unique_ptr<LiveNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                                          std::vector<std::string>& problems) {
   ParameterMap given = privateParameters(private_node, problems);
   given.erase("diagnostic_period");  // of diagnostic_updater
   const Checked<GrappleSettings> settings = loadGrappleSettings(configDirectory(), given);

@@ -14,13 +14,14 @@
 #include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/grapple_diagnostics.h"
 #include "hammer_loads/ros/grapple_flow.h"
+#include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/ros/log_services.h"
 
 namespace hammer_loads {
 
 /// In `joint_states`; out, for each jaw, `~jaw_edge/left`, `~jaw_edge/left_twist`, `~jaw_edge/left_accel`, then
 /// `~mechanism`, `~run_info` (latched), /diagnostics. One of each per accepted slider sample, with the sample's stamp.
-class GrappleNode final {
+class GrappleNode final : public LiveNode {
  public:
   /// log: recording, unless nothing shall be logged yet.
   GrappleNode(ros::NodeHandle node, ros::NodeHandle private_node, const GrappleSettings& settings,
@@ -40,9 +41,5 @@ class GrappleNode final {
   ros::Subscriber joint_states_;
   std::string topic_;  ///< of joint_states_
 };
-
-/// Node from its private parameters; every problem is reported on one line each and gives no node.
-std::unique_ptr<GrappleNode> makeGrappleNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-                                             std::vector<std::string>& problems);
 
 }  // namespace hammer_loads

@@ -2,7 +2,7 @@
 
 #include <pluginlib/class_list_macros.hpp>
 
-#include "hammer_loads/ros/grapple_node.h"
+#include "hammer_loads/ros/live_node.h"
 
 namespace hammer_loads {
 
@@ -15,7 +15,7 @@ class GrappleNodelet : public nodelet::Nodelet {
     if (!node_) throw std::runtime_error("bad parameters: nothing is published");
   }
 
-  std::unique_ptr<GrappleNode> node_;
+  std::unique_ptr<LiveNode> node_;
 };
 
 }  // namespace hammer_loads

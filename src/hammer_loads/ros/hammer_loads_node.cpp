@@ -195,8 +195,8 @@ ros::Time HammerLoadsNode::recordTime(const ros::Time& arrival) {
   return tick.time;
 }
 
-std::unique_ptr<HammerLoadsNode> makeHammerNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-                                                std::vector<std::string>& problems) {
+std::unique_ptr<LiveNode> makeHammerNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                                         std::vector<std::string>& problems) {
   const Checked<Settings> settings = loadPrivateParameters(private_node);
   problems = settings.problems;
   if (!settings.value) return nullptr;

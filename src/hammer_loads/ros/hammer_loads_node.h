@@ -17,6 +17,7 @@
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/log/record_clock.h"
 #include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/ros/log_services.h"
 #include "hammer_loads/ros/node_diagnostics.h"
 #include "hammer_loads/settings/load.h"
@@ -25,13 +26,13 @@ namespace hammer_loads {
 
 /// Topics as in the contract. By default one wrench per accepted crank sample, with its stamp. Services `~log/...` and
 /// dynamic_reconfigure change what may safely change; each change begins a new run.
-class HammerLoadsNode final {
+class HammerLoadsNode final : public LiveNode {
  public:
   /// log: started already where settings.log.enabled.
   HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_node, const Settings& settings,
                   std::unique_ptr<BagLog> log);
   /// Ends the run, and writes to log and ledger what is not there yet.
-  ~HammerLoadsNode();
+  ~HammerLoadsNode() override;
 
  private:
   template <typename Message>
@@ -71,9 +72,5 @@ class HammerLoadsNode final {
   ros::Subscriber joint_states_, crank_, hull_imu_, tf_, tf_static_;
   std::string joint_states_topic_, crank_topic_, hull_imu_topic_;  ///< resolved
 };
-
-/// Node from its private parameters; every problem is reported on one line each and gives no node.
-std::unique_ptr<HammerLoadsNode> makeHammerNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-                                                std::vector<std::string>& problems);
 
 }  // namespace hammer_loads
