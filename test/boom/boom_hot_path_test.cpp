@@ -10,7 +10,7 @@
 namespace hammer_loads {
 namespace {
 
-const Eigen::Vector3d kLevel(0.0, 0.0, -9.80665);
+using test::kLevel;
 
 /// A kilohertz session: pose, weight and motion torques, vibration, cylinders, the wrench at four links, tip vibration,
 /// three sections, joint reactions and pin forces.

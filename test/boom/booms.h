@@ -13,8 +13,12 @@
 #include "hammer_loads/settings/parameter_reader.h"
 #include "hammer_loads/settings/read_boom.h"
 #include "hammer_loads/util/format.h"
+#include "support/constants.h"
 
 namespace hammer_loads::test {
+
+inline const Eigen::Vector3d kLevel(0.0, 0.0, -kGravity);  ///< gravity on level ground [m/s2]
+inline const JointVector kZero = JointVector::Zero(4);     ///< of the shipped boom's joints
 
 inline std::string sourceFile(const std::string& path) {
   return std::string(HAMMER_LOADS_TEST_DATA) + "/../../" + path;
@@ -29,6 +33,13 @@ inline std::string textOf(const std::string& path) {
 }
 
 inline std::string shippedUrdf() { return textOf(sourceFile("urdf/eo2621_mo100.urdf")); }
+
+/// The first `from` of a text replaced. Throws where there is none.
+inline std::string withFirstReplaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::runtime_error("no " + from);
+  return text.replace(at, from.size(), to);
+}
 
 /// A boom alone, from its description and files. Unknown keys are problems.
 inline Checked<Boom> loadBoom(const std::string& urdf_text, const std::vector<std::string>& files) {

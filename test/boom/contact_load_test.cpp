@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-const Eigen::Vector3d kLevel(0.0, 0.0, -9.80665);
+using test::kLevel;
 
 TEST(ContactLoad, IsFoundFromThePressuresThatHoldIt) {
   Boom boom = test::shippedBoom();

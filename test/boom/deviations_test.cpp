@@ -7,7 +7,7 @@
 namespace hammer_loads {
 namespace {
 
-const Eigen::Vector3d kLevel(0.0, 0.0, -9.80665);
+using test::kLevel;
 using test::kMillisecond;
 
 JointMotion still(const JointVector& position) {

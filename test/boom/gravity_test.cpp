@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kGravity = 9.80665;
+using test::kGravity;
 
 /// Rotation about a coordinate axis, written down.
 Eigen::Matrix3d about(int axis, double angle) {
@@ -19,18 +19,12 @@ Eigen::Matrix3d about(int axis, double angle) {
   return R;
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
 /// The shipped description with the hull turned on its bracket and the boom's foot askew.
 std::string tiltedUrdf() {
-  return replaced(replaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
-                           "<origin xyz=\"0.10 0 -0.55\" rpy=\"0.05 0.4 -0.1\"/>"),
-                  "<origin xyz=\"0.25 0 0.40\" rpy=\"0 0 0\"/>",
-                  "<origin xyz=\"0.25 0 0.40\" rpy=\"0.02 -0.03 0.01\"/>");
+  return test::withFirstReplaced(
+      test::withFirstReplaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
+                              "<origin xyz=\"0.10 0 -0.55\" rpy=\"0.05 0.4 -0.1\"/>"),
+      "<origin xyz=\"0.25 0 0.40\" rpy=\"0 0 0\"/>", "<origin xyz=\"0.25 0 0.40\" rpy=\"0.02 -0.03 0.01\"/>");
 }
 
 TEST(Gravity, InTheRootOfABaseThatLeans) {
@@ -73,9 +67,10 @@ TEST(Gravity, OfALevelBaseIsThatOfThePitch) {
 
 TEST(Gravity, TiltOfTheMountTurnsTheWeightOfTheHammer) {
   // 0.4 rad: the pitch joints alone miss 40 % of a vertical weight, 137 of 345 N.
-  const Checked<Chain> made = Chain::make(replaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
-                                                   "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0.4 0\"/>"),
-                                          {});
+  const Checked<Chain> made =
+      Chain::make(test::withFirstReplaced(test::shippedUrdf(), "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0 0\"/>",
+                                          "<origin xyz=\"0.10 0 -0.55\" rpy=\"0 0.4 0\"/>"),
+                  {});
   const double mass = 345.0 / kGravity;
   const Eigen::Vector3d g = gravityInTip(*made.value, test::joints({0.0, -0.35, 1.2, -0.85}), {0.0, 0.0, -kGravity});
   EXPECT_NEAR((mass * g - Eigen::Vector3d(0.0, 0.0, -345.0)).norm(), 2.0 * 345.0 * std::sin(0.2), 1e-9);
@@ -86,8 +81,9 @@ TEST(Gravity, JointTorquesOfABaseThatLeansAreThoseOfALeaningDescription) {
   // The same tilt in the description: base_link upright, all beyond on a tilted swing axis.
   const BaseTilt base{0.12, -0.2};
   // R_WB = Ry(pitch) Rx(roll) is rpy = (roll, pitch, 0) of the first joint.
-  const Checked<Boom> tilted = Boom::make(replaced(test::shippedUrdf(), "<origin xyz=\"0 0 0.60\" rpy=\"0 0 0\"/>",
-                                                   "<origin xyz=\"0 0 0.60\" rpy=\"0.12 -0.2 0\"/>"));
+  const Checked<Boom> tilted =
+      Boom::make(test::withFirstReplaced(test::shippedUrdf(), "<origin xyz=\"0 0 0.60\" rpy=\"0 0 0\"/>",
+                                         "<origin xyz=\"0 0 0.60\" rpy=\"0.12 -0.2 0\"/>"));
   ASSERT_TRUE(tilted.value);
   Boom in_description = *tilted.value, on_ground = *Boom::make(test::shippedUrdf()).value;
   const JointVector zero = JointVector::Zero(4);

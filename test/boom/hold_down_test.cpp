@@ -7,9 +7,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kGravity = 9.80665;
-const Eigen::Vector3d kLevel(0.0, 0.0, -kGravity);
-const JointVector kZero = JointVector::Zero(4);
+using test::kGravity;
+using test::kLevel;
+using test::kZero;
 
 class Press : public testing::Test {
  protected:

@@ -1,15 +1,13 @@
 // Finite inputs beyond every machine: what is returned is finite or marked, and the next sample is right again.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "boom/booms.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
 
-const Eigen::Vector3d kLevel(0.0, 0.0, -9.80665);
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kLevel;
 
 /// One step of a kilohertz session on the compliant boom.
 bool sample(Boom& boom, const JointMotion& motion, const Wrench& w, BoomLoads& loads) {

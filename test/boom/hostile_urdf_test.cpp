@@ -18,7 +18,7 @@ std::string joint(const std::string& name, const std::string& parent, const std:
   return "<joint name=\"" + name + "\" type=\"continuous\"><parent link=\"" + parent + "\"/><child link=\"" + child +
          "\"/><axis xyz=\"0 1 0\"/></joint>";
 }
-std::string link(const std::string& name) {
+std::string plainLink(const std::string& name) {
   return "<link name=\"" + name +
          "\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>"
          "</inertial></link>";
@@ -26,11 +26,11 @@ std::string link(const std::string& name) {
 
 /// Links from base_link to hammer_hull, in one row.
 std::string row(int links) {
-  std::string text = "<robot name=\"r\">" + link("base_link");
+  std::string text = "<robot name=\"r\">" + plainLink("base_link");
   std::string parent = "base_link";
   for (int i = 1; i < links; ++i) {
     const std::string child = i + 1 == links ? "hammer_hull" : format("l%d", i);
-    text += link(child) + joint(format("j%d", i), parent, child);
+    text += plainLink(child) + joint(format("j%d", i), parent, child);
     parent = child;
   }
   return text + "</robot>";
@@ -53,7 +53,7 @@ TEST(HostileUrdf, ManyLinks) {
 }
 
 TEST(HostileUrdf, ManyJoints) {
-  std::string text = "<robot name=\"r\">" + link("base_link") + link("hammer_hull");
+  std::string text = "<robot name=\"r\">" + plainLink("base_link") + plainLink("hammer_hull");
   for (int i = 0; i < 1001; ++i) text += joint(format("j%d", i), "base_link", "hammer_hull");
   expectOne(text + "</robot>", "more than 1000 joints, must be at most 1000");
 }
@@ -121,7 +121,7 @@ TEST(HostileUrdf, CountsExactlyWhatIsThere) {
 }
 
 TEST(HostileUrdf, RingsAndSharedChildren) {
-  const std::string three = "<robot name=\"r\">" + link("base_link") + link("hammer_hull") + link("c");
+  const std::string three = "<robot name=\"r\">" + plainLink("base_link") + plainLink("hammer_hull") + plainLink("c");
   // A ring beside the root, and one that hangs on it.
   expectOne(three + joint("j", "hammer_hull", "c") + joint("k", "c", "hammer_hull") + "</robot>",
             "link c: hangs on itself, must hang on the root");
@@ -129,11 +129,11 @@ TEST(HostileUrdf, RingsAndSharedChildren) {
                 joint("k", "c", "hammer_hull") + "</robot>",
             "link hammer_hull: child of more than one joint, must be of one");
   // A ladder with two joints at each step has 2^400 ways down.
-  std::string ladder = "<robot name=\"r\">" + link("base_link");
+  std::string ladder = "<robot name=\"r\">" + plainLink("base_link");
   std::string parent = "base_link";
   for (int i = 0; i < 400; ++i) {
     const std::string child = i == 399 ? "hammer_hull" : format("l%d", i);
-    ladder += link(child) + joint(format("a%d", i), parent, child) + joint(format("b%d", i), parent, child);
+    ladder += plainLink(child) + joint(format("a%d", i), parent, child) + joint(format("b%d", i), parent, child);
     parent = child;
   }
   const Checked<Boom> made = Boom::make(ladder + "</robot>");
@@ -141,16 +141,10 @@ TEST(HostileUrdf, RingsAndSharedChildren) {
   EXPECT_NE(made.problems[0].find("child of more than one joint"), std::string::npos);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
 TEST(HostileUrdf, NumbersOfNoMachine) {
   const std::string good = test::shippedUrdf();
   const auto expectAbout = [&](const std::string& from, const std::string& to, const std::string& named) {
-    const Checked<Boom> made = Boom::make(replaced(good, from, to));
+    const Checked<Boom> made = Boom::make(test::withFirstReplaced(good, from, to));
     EXPECT_FALSE(made.value) << to;
     ASSERT_FALSE(made.problems.empty()) << to;
     EXPECT_NE(made.problems[0].find(named), std::string::npos) << made.problems[0];
@@ -171,17 +165,19 @@ TEST(HostileUrdf, NumbersOfNoMachine) {
   for (const char* axis : {"0 0 0", "1e308 0 0", "0 1e-300 0"})
     expectAbout("<axis xyz=\"0 0 1\"/>", format("<axis xyz=\"%s\"/>", axis), "joint swing_joint");
   // Massless links are allowed as long as something beyond each joint is heavy.
-  EXPECT_TRUE(Boom::make(replaced(good, mass, "<mass value=\"0\"/>")).value);
+  EXPECT_TRUE(Boom::make(test::withFirstReplaced(good, mass, "<mass value=\"0\"/>")).value);
 }
 
 TEST(HostileUrdf, InertiaBeyondACylinderIsRequired) {
   // All that lies beyond the last joint is a point mass on its axis.
   std::string urdf = test::shippedUrdf();
   const std::string none = "<inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"/>";
-  urdf = replaced(urdf, "<inertia ixx=\"0.5208\" ixy=\"0\" ixz=\"0\" iyy=\"1.104\" iyz=\"0\" izz=\"1.104\"/>", none);
-  urdf = replaced(urdf, "<origin xyz=\"0.03 0 -0.06\" rpy=\"0 0 0\"/>", "");
-  urdf = replaced(urdf, "<mass value=\"350\"/>", "<mass value=\"0\"/>");
-  urdf = replaced(urdf, "<inertia ixx=\"24.65\" ixy=\"0\" ixz=\"0\" iyy=\"29.9\" iyz=\"0\" izz=\"12.4\"/>", none);
+  urdf = test::withFirstReplaced(
+      urdf, "<inertia ixx=\"0.5208\" ixy=\"0\" ixz=\"0\" iyy=\"1.104\" iyz=\"0\" izz=\"1.104\"/>", none);
+  urdf = test::withFirstReplaced(urdf, "<origin xyz=\"0.03 0 -0.06\" rpy=\"0 0 0\"/>", "");
+  urdf = test::withFirstReplaced(urdf, "<mass value=\"350\"/>", "<mass value=\"0\"/>");
+  urdf = test::withFirstReplaced(
+      urdf, "<inertia ixx=\"24.65\" ixy=\"0\" ixz=\"0\" iyy=\"29.9\" iyz=\"0\" izz=\"12.4\"/>", none);
   const Checked<Boom> made = Boom::make(urdf, test::shippedBoomParameters());
   ASSERT_EQ(made.problems.size(), 1U);
   EXPECT_EQ(made.problems[0],

@@ -9,8 +9,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kGravity = 9.80665;
-const Eigen::Vector3d kLevel(0.0, 0.0, -kGravity);
+using test::kGravity;
+using test::kLevel;
 
 double worstOf(const JointVector& a, const JointVector& b) { return (a - b).cwiseAbs().maxCoeff(); }
 

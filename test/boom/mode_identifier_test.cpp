@@ -10,10 +10,9 @@
 namespace hammer_loads {
 namespace {
 
-using Vector = Eigen::Vector3d;
 using test::kMillisecond;
 
-constexpr double kGravity = 9.80665;
+using test::kGravity;
 
 enum class Sensor { kImu, kSlowImu, kJoints, kPressures };
 
@@ -37,7 +36,7 @@ class Session {
     for (int i = 0; i < steps; ++i) {
       time_ += kMillisecond;
       const Wrench w = hammer_.at(time_);
-      const Vector load = machine_.load(w);
+      const Eigen::Vector3d load = machine_.load(w);
       machine_.step(load_, load);
       load_ = load;
       Wrench known = w;  // what the identifier is given of it
@@ -77,7 +76,7 @@ class Session {
     if (sensor_ == Sensor::kPressures && i % 2 == 0) observePressures();
   }
   void observeImu() {
-    const Vector imu = machine_.imu(0.3, 0.005);
+    const Eigen::Vector3d imu = machine_.imu(0.3, 0.005);
     const Eigen::Vector3d g_T = boom_->gravityAtTip(), here = Eigen::Vector3d::Zero();
     const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
     see(0, tipAccelerationReading(J_, here, x, g_T, imu[0]), 0.3, 0.3, 0.05);
@@ -104,7 +103,7 @@ class Session {
 
   test::PulsingHammer hammer_;
   Jacobian J_;
-  Vector load_ = Vector::Zero();
+  Eigen::Vector3d load_ = Eigen::Vector3d::Zero();
   JointVector torque_ = JointVector::Zero(4);
   double time_{}, error_{}, size_{};
 };

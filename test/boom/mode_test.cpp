@@ -14,17 +14,17 @@
 namespace hammer_loads {
 namespace {
 
-using Real = boost::multiprecision::cpp_bin_float_50;
+using Exact = boost::multiprecision::cpp_bin_float_50;
 
 /// Impulse, step, ramp and parabola by the closed forms in 50 digits.
 std::array<double, 4> exactResponse(const Mode& mode, double time) {
-  const Real w = mode.omega, zeta = mode.zeta, t = time;
-  const Real root = sqrt(1 - zeta * zeta), decay = exp(-zeta * w * t);
-  const Real s = sin(root * w * t), c = cos(root * w * t);
-  const Real impulse = decay * s / (root * w);
-  const Real step = (1 - decay * (c + zeta / root * s)) / (w * w);
-  const Real ramp = (t - 2 * zeta * w * step - impulse) / (w * w);
-  const Real parabola = (t * t / 2 - 2 * zeta * w * ramp - step) / (w * w);
+  const Exact w = mode.omega, zeta = mode.zeta, t = time;
+  const Exact root = sqrt(1 - zeta * zeta), decay = exp(-zeta * w * t);
+  const Exact s = sin(root * w * t), c = cos(root * w * t);
+  const Exact impulse = decay * s / (root * w);
+  const Exact step = (1 - decay * (c + zeta / root * s)) / (w * w);
+  const Exact ramp = (t - 2 * zeta * w * step - impulse) / (w * w);
+  const Exact parabola = (t * t / 2 - 2 * zeta * w * ramp - step) / (w * w);
   return {impulse.convert_to<double>(), step.convert_to<double>(), ramp.convert_to<double>(),
           parabola.convert_to<double>()};
 }

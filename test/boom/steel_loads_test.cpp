@@ -16,7 +16,7 @@ using Real = long double;
 using Vector = Eigen::Matrix<Real, 3, 1>;
 using Matrix = Eigen::Matrix<Real, 3, 3>;
 
-constexpr double kGravity = 9.80665;
+using test::kGravity;
 
 struct Load {
   Vector force = Vector::Zero(), moment = Vector::Zero();

@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-const JointVector kZero = JointVector::Zero(4);
+using test::kZero;
 
 class ShippedBoom : public testing::Test {
  protected:

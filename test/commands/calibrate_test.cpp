@@ -15,7 +15,7 @@ using test::TemporaryFile;
 
 const std::string kBag = std::string(HAMMER_LOADS_TEST_DATA) + "/mo100_100hz.bag";
 
-Outcome run(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_CALIBRATE, arguments); }
+Outcome runCalibrate(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_CALIBRATE, arguments); }
 
 /// A name that is free, and nothing left of it afterwards.
 class FreeName {
@@ -37,7 +37,7 @@ class FreeName {
 
 TEST(Calibrate, WritesParametersThatEveryOtherCommandReads) {
   const FreeName output;
-  const Outcome outcome = run(kBag + " --write " + output.path());
+  const Outcome outcome = runCalibrate(kBag + " --write " + output.path());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("crank_zero_rad"), std::string::npos);
   const Checked<Settings> settings = loadFiles(configDirectory(), {output.path()});
@@ -49,17 +49,17 @@ TEST(Calibrate, WritesParametersThatEveryOtherCommandReads) {
   EXPECT_NE(contentOf(output.picture()).find("</svg>"), std::string::npos);
 
   const std::string before = contentOf(output.path());
-  const Outcome again = run(kBag + " --write " + output.path());
+  const Outcome again = runCalibrate(kBag + " --write " + output.path());
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_NE(again.err.find("--force"), std::string::npos);
   EXPECT_EQ(contentOf(output.path()), before);
-  EXPECT_EQ(run(kBag + " --force --write " + output.path()).exit_code, 0);
+  EXPECT_EQ(runCalibrate(kBag + " --force --write " + output.path()).exit_code, 0);
   EXPECT_EQ(contentOf(output.path()), before);  // the same input gives the same bytes
 }
 
 TEST(Calibrate, ReplacesNothingThatItDidNotWrite) {
   const TemporaryFile others("crank_zero_rad: 0.1\n");
-  const Outcome outcome = run(kBag + " --force --write " + others.path());
+  const Outcome outcome = runCalibrate(kBag + " --force --write " + others.path());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.err.find("no calibration"), std::string::npos) << outcome.err;
   EXPECT_EQ(contentOf(others.path()), "crank_zero_rad: 0.1\n");
@@ -67,22 +67,22 @@ TEST(Calibrate, ReplacesNothingThatItDidNotWrite) {
 
 TEST(Calibrate, RefusesWhatItCannotUse) {
   const FreeName output;
-  const Outcome no_topic = run(kBag + " --crank-topic /other --write " + output.path());
+  const Outcome no_topic = runCalibrate(kBag + " --crank-topic /other --write " + output.path());
   EXPECT_EQ(no_topic.exit_code, 1);
   EXPECT_NE(no_topic.err.find("/other"), std::string::npos);
   const TemporaryFile text("not a bag");
-  EXPECT_EQ(run(text.path() + " --write " + output.path()).exit_code, 1);
-  EXPECT_EQ(run(kBag + " --force --write " + kBag).exit_code, 1);
+  EXPECT_EQ(runCalibrate(text.path() + " --write " + output.path()).exit_code, 1);
+  EXPECT_EQ(runCalibrate(kBag + " --force --write " + kBag).exit_code, 1);
   const TemporaryFile wrong("crank_direction: 2\n");
-  EXPECT_EQ(run(kBag + " --params " + wrong.path() + " --write " + output.path()).exit_code, 1);
+  EXPECT_EQ(runCalibrate(kBag + " --params " + wrong.path() + " --write " + output.path()).exit_code, 1);
   EXPECT_FALSE(fs::exists(output.path()));
 }
 
 TEST(Calibrate, WrongUsageAndHelp) {
-  EXPECT_EQ(run(kBag).exit_code, 2);
-  EXPECT_EQ(run("--write x.yaml").exit_code, 2);
-  EXPECT_EQ(run(kBag + " --write x.yaml --nonsense").exit_code, 2);
-  EXPECT_EQ(run("--help").exit_code, 0);
+  EXPECT_EQ(runCalibrate(kBag).exit_code, 2);
+  EXPECT_EQ(runCalibrate("--write x.yaml").exit_code, 2);
+  EXPECT_EQ(runCalibrate(kBag + " --write x.yaml --nonsense").exit_code, 2);
+  EXPECT_EQ(runCalibrate("--help").exit_code, 0);
 }
 
 }  // namespace

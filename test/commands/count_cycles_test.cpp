@@ -18,7 +18,7 @@ using test::Outcome;
 using test::TemporaryFile;
 namespace fs = std::filesystem;
 
-Outcome run(const std::string& arguments, const std::string& input) {
+Outcome runCountCycles(const std::string& arguments, const std::string& input) {
   return test::runCommand(HAMMER_LOADS_COUNT_CYCLES, arguments, input);
 }
 
@@ -45,7 +45,7 @@ class State {
 
 TEST(CountCycles, PrintsTheStandardsCount) {
   for (const char* arguments : {"", "--exact", "--full-scale -10.5 10.5 --classes 21"}) {
-    const Outcome outcome = run(arguments, kFigure6);
+    const Outcome outcome = runCountCycles(arguments, kFigure6);
     EXPECT_EQ(outcome.out, kCount) << arguments;
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(outcome.exit_code, 0);
@@ -53,21 +53,21 @@ TEST(CountCycles, PrintsTheStandardsCount) {
 }
 
 TEST(CountCycles, ReadsWhatRecordersWrite) {
-  EXPECT_EQ(run("", " -2.0\r\n+1e0\n\n-3\n5\n nan\n-1\n3\n-inf\n-4\nNaN\n4.\n-2").out, kCount);
-  EXPECT_EQ(run("", "1\nnan\n2\n").err, "warning: stdin: 1 skipped, not a finite load\n");
+  EXPECT_EQ(runCountCycles("", " -2.0\r\n+1e0\n\n-3\n5\n nan\n-1\n3\n-inf\n-4\nNaN\n4.\n-2").out, kCount);
+  EXPECT_EQ(runCountCycles("", "1\nnan\n2\n").err, "warning: stdin: 1 skipped, not a finite load\n");
 }
 
 TEST(CountCycles, ASeriesWithoutACycleGivesTheHeader) {
   for (const char* series : {"", "\n", "7\n", "7\n7\n7\n", "nan\n"}) {
-    const Outcome outcome = run("", series);
+    const Outcome outcome = runCountCycles("", series);
     EXPECT_EQ(outcome.out, "range,mean,count\n");
     EXPECT_EQ(outcome.exit_code, 0);
   }
-  EXPECT_EQ(run("", "").err, "warning: stdin: no number to count\n");
+  EXPECT_EQ(runCountCycles("", "").err, "warning: stdin: no number to count\n");
 }
 
 TEST(CountCycles, SaturationIsReported) {
-  const Outcome outcome = run("--full-scale 0 10 --classes 10", "-1\n12\n5\n11\n");
+  const Outcome outcome = runCountCycles("--full-scale 0 10 --classes 10", "-1\n12\n5\n11\n");
   EXPECT_EQ(outcome.err, "warning: stdin: 1 below and 2 above the full scale, counted at its ends\n");
   EXPECT_EQ(outcome.exit_code, 0);
 }
@@ -83,20 +83,20 @@ TEST(CountCycles, PiecesWithAStateGiveTheCountOfTheWhole) {
       for (int i = 0; i < piece * 40; ++i) series += std::to_string(value(random)) + "\n";
       whole += series;
       const Outcome outcome =
-          run(piece < 3 ? arguments + " --state " + state.path() : "--state " + state.path(), series);
+          runCountCycles(piece < 3 ? arguments + " --state " + state.path() : "--state " + state.path(), series);
       EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
       last = outcome.out;
     }
-    EXPECT_EQ(last, run(arguments, whole).out);
+    EXPECT_EQ(last, runCountCycles(arguments, whole).out);
     EXPECT_EQ(state.files(), 1U);
   }
 }
 
 TEST(CountCycles, AFailedRunLeavesTheStateAsItWas) {
   const State state;
-  ASSERT_EQ(run("--state " + state.path(), "1\n5\n2\n").exit_code, 0);
+  ASSERT_EQ(runCountCycles("--state " + state.path(), "1\n5\n2\n").exit_code, 0);
   const std::string before = contentOf(state.path());
-  EXPECT_EQ(run("--state " + state.path(), "3\nfive\n").exit_code, 1);
+  EXPECT_EQ(runCountCycles("--state " + state.path(), "3\nfive\n").exit_code, 1);
   EXPECT_EQ(contentOf(state.path()), before);
   const TemporaryFile in("4\n", ".in");
   const std::string command = std::string(HAMMER_LOADS_COUNT_CYCLES) + " --state " + state.path() + " <" + in.path() +
@@ -108,13 +108,13 @@ TEST(CountCycles, AFailedRunLeavesTheStateAsItWas) {
 
 TEST(CountCycles, AnythingElseInTheStatesPlaceIsRefused) {
   const State state;
-  ASSERT_EQ(run("--full-scale 0 10 --classes 10 --state " + state.path(), "1\n5\n2\n").exit_code, 0);
+  ASSERT_EQ(runCountCycles("--full-scale 0 10 --classes 10 --state " + state.path(), "1\n5\n2\n").exit_code, 0);
   const std::string good = contentOf(state.path());
   const std::string other = testing::TempDir() + "count_cycles_other";
   for (const std::string& content :
        {std::string{}, std::string("my notes\n"), good.substr(0, good.size() - 3), good + "more\n"}) {
     std::ofstream(other, std::ios::binary) << content;
-    const Outcome outcome = run("--state " + other, "1\n2\n");
+    const Outcome outcome = runCountCycles("--state " + other, "1\n2\n");
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
@@ -123,12 +123,12 @@ TEST(CountCycles, AnythingElseInTheStatesPlaceIsRefused) {
   }
   std::remove(other.c_str());
   for (const std::string& place : {testing::TempDir(), std::string("/dev/null"), std::string("/no/such/place/state")}) {
-    const Outcome outcome = run("--state " + place, "1\n2\n");
+    const Outcome outcome = runCountCycles("--state " + place, "1\n2\n");
     EXPECT_EQ(outcome.exit_code, 1) << place;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
   }
   for (const char* kind : {"--exact", "--full-scale 0 11", "--full-scale 0 10 --classes 11"}) {
-    const Outcome outcome = run(std::string(kind) + " --state " + state.path(), "1\n2\n");
+    const Outcome outcome = runCountCycles(std::string(kind) + " --state " + state.path(), "1\n2\n");
     EXPECT_EQ(outcome.exit_code, 1) << kind;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
   }
@@ -139,10 +139,10 @@ TEST(CountCycles, ALinkStaysALinkAndPermissionsStay) {
   const State state;
   const std::string link = testing::TempDir() + "count_cycles_link";
   fs::remove(link);
-  ASSERT_EQ(run("--state " + state.path(), "1\n").exit_code, 0);
+  ASSERT_EQ(runCountCycles("--state " + state.path(), "1\n").exit_code, 0);
   ASSERT_EQ(chmod(state.path().c_str(), 0640), 0);
   fs::create_symlink(state.path(), link);
-  EXPECT_EQ(run("--state " + link, "5\n").out, "range,mean,count\n4,3,0.5\n");
+  EXPECT_EQ(runCountCycles("--state " + link, "5\n").out, "range,mean,count\n4,3,0.5\n");
   EXPECT_TRUE(fs::is_symlink(link));
   struct stat status {};
   ASSERT_EQ(stat(state.path().c_str(), &status), 0);
@@ -152,7 +152,7 @@ TEST(CountCycles, ALinkStaysALinkAndPermissionsStay) {
 
 TEST(CountCycles, BadLinesAreOneLineAndExitCode1) {
   for (const char* bad : {"five", "1,2", "0x10", "1e999", "1 2", "--", "nan(1)", "\x01"}) {
-    const Outcome outcome = run("", std::string("1\n") + bad + "\n3\n");
+    const Outcome outcome = runCountCycles("", std::string("1\n") + bad + "\n3\n");
     EXPECT_EQ(outcome.exit_code, 1) << bad;
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
@@ -165,12 +165,12 @@ TEST(CountCycles, WrongUsageIsOneLineAndExitCode2) {
        {"--classes 10", "--full-scale 1", "--full-scale 1 1", "--full-scale 2 1", "--full-scale 0 nan",
         "--exact --full-scale 0 1", "--full-scale 0 1 --classes 1", "--state", "series.txt",
         "--full-scale 0 1 --classes 1000000", "--full-scale 0 1 --classes 4.5"}) {
-    const Outcome outcome = run(arguments, "1\n2\n");
+    const Outcome outcome = runCountCycles(arguments, "1\n2\n");
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_EQ(outcome.out, "") << arguments;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
   }
-  EXPECT_EQ(run("--help", "").exit_code, 0);
+  EXPECT_EQ(runCountCycles("--help", "").exit_code, 0);
 }
 
 }  // namespace

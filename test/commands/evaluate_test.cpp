@@ -232,7 +232,7 @@ TEST(Evaluate, ABadHeaderIsNamed) {
                  {"header: crank_angle_rad: found 2 times, must be there once"});
 }
 
-Outcome run(const std::string& arguments, const std::string& input) {
+Outcome runEvaluate(const std::string& arguments, const std::string& input) {
   return test::runCommand(HAMMER_LOADS_EVALUATE, arguments, input);
 }
 
@@ -245,7 +245,7 @@ TEST(EvaluateCommand, PrintsWhatTheLibraryWrites) {
     std::istringstream in(input);
     std::ostringstream out;
     ASSERT_TRUE(evaluateTable(HullModel(settings.mechanism, level), in, out).empty());
-    const Outcome outcome = run(std::string("--level ") + word, input);
+    const Outcome outcome = runEvaluate(std::string("--level ") + word, input);
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(outcome.out, out.str()) << name << ' ' << word;
@@ -256,34 +256,35 @@ TEST(EvaluateCommand, TakesLevelAndMachineFromFilesInOrder) {
   const std::string input = kHeader + "\n6,31.416,0,0.2,9.8\n";
   const TemporaryFile linkage("level: linkage\n"), pulse("level: pulse\n");
   const TemporaryFile light(test::hammerYaml({{"rocker_mass_kg", "17.6"}}));
-  EXPECT_EQ(run("", input).out, run("--level rocker", input).out);
-  EXPECT_EQ(run("--params " + linkage.path(), input).out, run("--level linkage", input).out);
-  EXPECT_EQ(run("--params " + linkage.path() + " --params " + pulse.path(), input).out,
-            run("--level pulse", input).out);
-  EXPECT_EQ(run("--params " + linkage.path() + " --level rocker", input).out, run("--level rocker", input).out);
-  const double force = rowOf(run("", input).out, 0).at("hull_force_x_N");
-  EXPECT_NEAR(rowOf(run("--params " + light.path(), input).out, 0).at("hull_force_x_N"), 0.5 * force, 1e-9);
+  EXPECT_EQ(runEvaluate("", input).out, runEvaluate("--level rocker", input).out);
+  EXPECT_EQ(runEvaluate("--params " + linkage.path(), input).out, runEvaluate("--level linkage", input).out);
+  EXPECT_EQ(runEvaluate("--params " + linkage.path() + " --params " + pulse.path(), input).out,
+            runEvaluate("--level pulse", input).out);
+  EXPECT_EQ(runEvaluate("--params " + linkage.path() + " --level rocker", input).out,
+            runEvaluate("--level rocker", input).out);
+  const double force = rowOf(runEvaluate("", input).out, 0).at("hull_force_x_N");
+  EXPECT_NEAR(rowOf(runEvaluate("--params " + light.path(), input).out, 0).at("hull_force_x_N"), 0.5 * force, 1e-9);
 }
 
 TEST(EvaluateCommand, BadInputIsOneLineEachAndExitCode1) {
-  const Outcome outcome = run("", kHeader + "\n1,2,3,4,5\n1,2,3,4,-5\n1,fast,3,4,5\n");
+  const Outcome outcome = runEvaluate("", kHeader + "\n1,2,3,4,5\n1,2,3,4,-5\n1,fast,3,4,5\n");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(outcome.err,
             "stdin: row 2: gravity_m_s2: -5 m/s2, must be a finite number >= 0\n"
             "stdin: row 3: crank_speed_rad_s: fast rad/s, must be a finite number\n");
-  EXPECT_EQ(run("", "").exit_code, 1);
-  EXPECT_EQ(run("--params /no/such/file.yaml", kHeader + "\n").exit_code, 1);
+  EXPECT_EQ(runEvaluate("", "").exit_code, 1);
+  EXPECT_EQ(runEvaluate("--params /no/such/file.yaml", kHeader + "\n").exit_code, 1);
 }
 
 TEST(EvaluateCommand, WrongUsageIsOneLineAndExitCode2) {
   for (const char* arguments : {"--level hammer", "--level", "--params", "states.csv", "--no-such-option"}) {
-    const Outcome outcome = run(arguments, kHeader + "\n1,2,3,4,5\n");
+    const Outcome outcome = runEvaluate(arguments, kHeader + "\n1,2,3,4,5\n");
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_EQ(outcome.out, "") << arguments;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
   }
-  EXPECT_EQ(run("--help", "").exit_code, 0);
+  EXPECT_EQ(runEvaluate("--help", "").exit_code, 0);
 }
 
 TEST(EvaluateCommand, UnwritableOutputIsAnError) {

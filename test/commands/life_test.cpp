@@ -18,7 +18,7 @@ using test::Outcome;
 
 constexpr std::int64_t kSecond = 1000000000, kDay = 86400 * kSecond;
 
-Outcome run(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_LIFE, arguments); }
+Outcome runLife(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_LIFE, arguments); }
 
 /// One run of the series at 1 Hz, 8 s, so that 450 cycles an hour are one cycle.
 class Ledger {
@@ -83,7 +83,7 @@ constexpr double kSum = 0.5 * (3 * 3 * 3 * 3 * 3) + 1.5 * (4 * 4 * 4 * 4 * 4) + 
 
 TEST(Life, CsvHasTheFiguresOfTheStandardsExample) {
   const Ledger ledger;
-  const Outcome outcome = run(ledger.path() + " --csv");
+  const Outcome outcome = runLife(ledger.path() + " --csv");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<Row> rows = rowsOf(outcome.out);
   ASSERT_EQ(rows.size(), 4U);  // two channels, all and a day each
@@ -117,8 +117,8 @@ TEST(Life, CsvHasTheFiguresOfTheStandardsExample) {
 
 TEST(Life, JsonSaysTheSame) {
   const Ledger ledger;
-  const std::vector<Row> rows = rowsOf(run(ledger.path() + " --csv").out);
-  const YAML::Node json = YAML::Load(run("--json " + ledger.path()).out);
+  const std::vector<Row> rows = rowsOf(runLife(ledger.path() + " --csv").out);
+  const YAML::Node json = YAML::Load(runLife("--json " + ledger.path()).out);
   ASSERT_EQ(json["epochs"].size(), 1U);
   const YAML::Node epoch = json["epochs"][0];
   EXPECT_EQ(epoch["machine"].as<std::string>(), "MO-100, \"yellow\"");
@@ -140,7 +140,7 @@ TEST(Life, JsonSaysTheSame) {
 
 TEST(Life, TextNamesChannelsDaysAndHowItCounts) {
   const Ledger ledger;
-  const Outcome outcome = run(ledger.path());
+  const Outcome outcome = runLife(ledger.path());
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");
   for (const char* part : {"epoch 1: machine MO-100", "residue as half cycles", "450 cycles an hour", "stress/toe_MPa",
@@ -152,7 +152,7 @@ TEST(Life, WhatIsNoLedgerIsOneLineAndExitCode1) {
   const test::TemporaryFile text(std::string(3000, 'x'), ".sqlite"), empty({}, ".sqlite");
   for (const std::string& file :
        {text.path(), empty.path(), testing::TempDir(), std::string("/no/such/file"), std::string("/dev/null")}) {
-    const Outcome outcome = run(file);
+    const Outcome outcome = runLife(file);
     EXPECT_EQ(outcome.exit_code, 1) << file;
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
@@ -162,11 +162,11 @@ TEST(Life, WhatIsNoLedgerIsOneLineAndExitCode1) {
 
 TEST(Life, WrongUsageIsOneLineAndExitCode2) {
   for (const char* arguments : {"", "a.sqlite b.sqlite", "a.sqlite --json --csv", "--xml a.sqlite"}) {
-    const Outcome outcome = run(arguments);
+    const Outcome outcome = runLife(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
   }
-  EXPECT_EQ(run("--help").exit_code, 0);
+  EXPECT_EQ(runLife("--help").exit_code, 0);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using accuracy::BlowAt;
 using accuracy::WrenchAt;
 
-constexpr double kStart = 1700000000.0;  // [s] of both sessions
+constexpr double kSessionStart = 1700000000.0;  // [s] of both sessions
 
 std::string data(const std::string& name) { return std::string(HAMMER_LOADS_TEST_DATA) + "/" + name; }
 
@@ -39,7 +39,7 @@ ParameterMap parametersWithInertia(double factor) {
   return given;
 }
 
-double sinceStart(const ros::Time& time) { return (time - ros::Time(kStart)).toSec(); }
+double sinceStart(const ros::Time& time) { return (time - ros::Time(kSessionStart)).toSec(); }
 
 struct Truth {
   std::vector<WrenchAt> wrenches;

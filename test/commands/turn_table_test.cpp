@@ -17,12 +17,12 @@ using test::numbersOf;
 using test::Outcome;
 using test::TemporaryFile;
 
-Outcome run(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_TURN_TABLE, arguments); }
+Outcome runTurnTable(const std::string& arguments) { return test::runCommand(HAMMER_LOADS_TURN_TABLE, arguments); }
 
 /// `key: value` lines.
 std::map<std::string, double> summaryOf(const std::string& arguments) {
   std::map<std::string, double> summary;
-  for (const std::string& line : linesOf(run("--summary " + arguments).out)) {
+  for (const std::string& line : linesOf(runTurnTable("--summary " + arguments).out)) {
     const std::size_t colon = line.find(": ");
     summary[line.substr(0, colon)] = std::stod(line.substr(colon + 2));
   }
@@ -30,7 +30,7 @@ std::map<std::string, double> summaryOf(const std::string& arguments) {
 }
 
 TEST(TurnTable, SummaryGivesThePapersPulse) {
-  const Outcome outcome = run("--speed 31.416 --level rocker --summary");
+  const Outcome outcome = runTurnTable("--speed 31.416 --level rocker --summary");
   EXPECT_EQ(outcome.exit_code, 0);
   const std::vector<std::pair<std::string, double>> right{
       {"amplitude_N", 40558.0395215},      {"peak_angle_deg", 348.480359663}, {"impulse_Ns", 483.218440034},
@@ -47,7 +47,7 @@ TEST(TurnTable, SummaryGivesThePapersPulse) {
 }
 
 TEST(TurnTable, HasOneRowPerStepAndBothSidesOfTheBlow) {
-  const Outcome outcome = run("--speed 31.416 --level rocker --step-deg 1");
+  const Outcome outcome = runTurnTable("--speed 31.416 --level rocker --step-deg 1");
   EXPECT_EQ(outcome.exit_code, 0);
   const std::vector<std::string> lines = linesOf(outcome.out);
   ASSERT_EQ(lines.size(), 1U + 361U);
@@ -65,7 +65,7 @@ TEST(TurnTable, HasOneRowPerStepAndBothSidesOfTheBlow) {
 
 TEST(TurnTable, RowsAreTheModelsToTwelveDigits) {
   const Settings settings = loadFiles(configDirectory(), {}).value.value();
-  const std::vector<std::string> lines = linesOf(run("--speed 20 --step-deg 7.3 --pitch 0.3").out);
+  const std::vector<std::string> lines = linesOf(runTurnTable("--speed 20 --step-deg 7.3 --pitch 0.3").out);
   ASSERT_EQ(lines.size(), 1U + 50U + 1U);  // 0 to 357.7, and 360
   const double g = settings.pipeline.gravity;
   for (std::size_t i = 1; i < 51; ++i) {
@@ -82,7 +82,7 @@ TEST(TurnTable, RowsAreTheModelsToTwelveDigits) {
 
 TEST(TurnTable, WeightCountsOnlyWithAPitch) {
   const auto forceAtStart = [](const std::string& pitch) {
-    return numbersOf(linesOf(run("--step-deg 360 " + pitch).out).at(1)).at(3);
+    return numbersOf(linesOf(runTurnTable("--step-deg 360 " + pitch).out).at(1)).at(3);
   };
   EXPECT_NEAR(forceAtStart(""), 0.0, 1e-9);
   EXPECT_NEAR(forceAtStart("--pitch 0"), -35.2 * 9.80665, 1e-8);
@@ -90,16 +90,16 @@ TEST(TurnTable, WeightCountsOnlyWithAPitch) {
 
 TEST(TurnTable, TakesParameterFilesInOrder) {
   const TemporaryFile light(hammerYaml({{"rocker_mass_kg", "17.6"}})), heavy("rocker_mass_kg: 35.2\n");
-  const std::string mo100 = linesOf(run("--summary").out).at(0);
+  const std::string mo100 = linesOf(runTurnTable("--summary").out).at(0);
   const std::string files = "--params " + light.path() + " --params " + heavy.path();
-  EXPECT_EQ(linesOf(run("--summary " + files).out).at(0), mo100);
-  EXPECT_EQ(linesOf(run("--summary --params " + light.path()).out).at(0), "amplitude_N: 20279.0197608");
+  EXPECT_EQ(linesOf(runTurnTable("--summary " + files).out).at(0), mo100);
+  EXPECT_EQ(linesOf(runTurnTable("--summary --params " + light.path()).out).at(0), "amplitude_N: 20279.0197608");
 }
 
 TEST(TurnTable, PinsAddsTheModelsPinForcesAndDriveTorque) {
   const Settings settings = loadFiles(configDirectory(), {}).value.value();
-  const std::string plain = run("--step-deg 10 --level linkage --pitch 0.3").out;
-  const std::vector<std::string> lines = linesOf(run("--step-deg 10 --level linkage --pitch 0.3 --pins").out);
+  const std::string plain = runTurnTable("--step-deg 10 --level linkage --pitch 0.3").out;
+  const std::vector<std::string> lines = linesOf(runTurnTable("--step-deg 10 --level linkage --pitch 0.3 --pins").out);
   ASSERT_EQ(lines.size(), 1U + 37U);
   EXPECT_EQ(lines[0],
             "crank_angle_deg,time_s,force_x_N,force_z_N,torque_y_Nm,drive_torque_y_Nm,"
@@ -119,7 +119,7 @@ TEST(TurnTable, PinsAddsTheModelsPinForcesAndDriveTorque) {
 }
 
 TEST(TurnTable, PinsOfAMasslessRodAreFiniteOnBothSidesOfTheBlow) {
-  const std::vector<std::string> lines = linesOf(run("--step-deg 180 --level rocker --pins").out);
+  const std::vector<std::string> lines = linesOf(runTurnTable("--step-deg 180 --level rocker --pins").out);
   ASSERT_EQ(lines.size(), 1U + 3U);
   const std::vector<double> after = numbersOf(lines[1]), before = numbersOf(lines[3]);
   // Rows 1e-9 rad after and before the blow of reference mo100_constant_speed.csv.
@@ -136,7 +136,7 @@ TEST(TurnTable, LevelPulseIsTheHalfSineOfTheNominalTurn) {
   EXPECT_EQ(pulse["turn_impulse_x_Ns"], 0.0);
   EXPECT_NEAR(pulse["turn_impulse_z_Ns"], rocker["impulse_Ns"], 1e-9);
   const double w = 31.416, degree = std::acos(-1.0) / 180.0;
-  for (const std::string& line : linesOf(run("--level pulse --step-deg 3").out)) {
+  for (const std::string& line : linesOf(runTurnTable("--level pulse --step-deg 3").out)) {
     if (line[0] == 'c') continue;
     const std::vector<double> row = numbersOf(line);
     const double right =
@@ -152,7 +152,7 @@ TEST(TurnTable, LevelPulseIsTheHalfSineOfTheNominalTurn) {
 TEST(TurnTable, LevelPulseWithWeightHasThePulseOfItsOwnTable) {
   for (const std::string pitch : {"0.4", "2.9"}) {  // tool down, tool up
     auto summary = summaryOf("--level pulse --pitch " + pitch);
-    const std::vector<std::string> lines = linesOf(run("--level pulse --step-deg 0.01 --pitch " + pitch).out);
+    const std::vector<std::string> lines = linesOf(runTurnTable("--level pulse --step-deg 0.01 --pitch " + pitch).out);
     double peak = 0.0, peak_angle = 0.0, lobe = 0.0, turn = 0.0, last = 0.0;
     const double time_step = 0.01 / 180.0 * std::acos(-1.0) / 31.416;
     for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -172,7 +172,7 @@ TEST(TurnTable, LevelPulseWithWeightHasThePulseOfItsOwnTable) {
 
 TEST(TurnTable, BadParametersAreNamedAndGiveExitCode1) {
   const TemporaryFile bad(hammerYaml({{"crank_length_m", "-0.048"}, {"rod_mass_kg", "\"4.5\""}}) + "levle: rocker\n");
-  const Outcome outcome = run("--params " + bad.path());
+  const Outcome outcome = runTurnTable("--params " + bad.path());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(outcome.out, "");
   const std::vector<std::string> lines = linesOf(outcome.err);
@@ -180,14 +180,14 @@ TEST(TurnTable, BadParametersAreNamedAndGiveExitCode1) {
   EXPECT_EQ(lines[0].rfind("rod_mass_kg: \"4.5\" kg, must be a finite number", 0), 0U) << lines[0];
   EXPECT_EQ(lines[1].rfind("crank_length_m: -0.048 m, must be > 0", 0), 0U) << lines[1];
   EXPECT_EQ(lines[2].rfind("levle: unknown key, perhaps level was meant", 0), 0U) << lines[2];
-  EXPECT_EQ(run("--params /no/such/file.yaml").exit_code, 1);
+  EXPECT_EQ(runTurnTable("--params /no/such/file.yaml").exit_code, 1);
 }
 
 TEST(TurnTable, WrongUsageIsOneLineAndExitCode2) {
   for (const char* arguments : {"--speed 0", "--speed -1", "--speed nan", "--speed inf", "--speed fast", "--speed",
                                 "--step-deg 0", "--step-deg -1", "--step-deg 361", "--step-deg nan", "--level hammer",
                                 "--pitch inf", "--no-such-option", "stray", "--params"}) {
-    const Outcome outcome = run(arguments);
+    const Outcome outcome = runTurnTable(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_EQ(outcome.out, "") << arguments;
     EXPECT_EQ(linesOf(outcome.err).size(), 1U) << arguments << ": " << outcome.err;
@@ -195,7 +195,7 @@ TEST(TurnTable, WrongUsageIsOneLineAndExitCode2) {
 }
 
 TEST(TurnTable, HelpIsNoError) {
-  const Outcome outcome = run("--help");
+  const Outcome outcome = runTurnTable("--help");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.out.find("--step-deg"), std::string::npos);
 }

@@ -4,15 +4,12 @@
 
 #include "hammer_loads/crank/plain_tracker.h"
 #include "hammer_loads/simulation/session.h"
+#include "support/constants.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kCount = kTwoPi / 4096;
-
-CrankFilterSettings settings() { return test::filterSettings(kCount); }
 
 simulation::Session shortSession(bool speed, double rate, double true_inertia, std::uint64_t seed = 5) {
   simulation::MachineSettings machine = simulation::workingMo100();
@@ -29,7 +26,7 @@ simulation::Session shortSession(bool speed, double rate, double true_inertia, s
 class CrankFilterTest : public testing::Test {
  protected:
   CrankFilter filter(double inertia) {
-    return CrankFilter(ShaftModel(mechanism_, Level::kRocker), inertia, settings());
+    return CrankFilter(ShaftModel(mechanism_, Level::kRocker), inertia, test::filterSettings(test::kEncoderCount));
   }
   /// Runs a session and calls check(filter, truth) after each sample.
   template <typename Check>
@@ -137,8 +134,8 @@ TEST_F(CrankFilterTest, TellsTheMotionBetweenSamples) {
 
 TEST_F(CrankFilterTest, StandsStill) {
   CrankFilter f = filter(0.6);
-  f.start({1.0 - std::fmod(1.0, kCount), 0.0});
-  for (int i = 0; i < 2000; ++i) f.update(1e-3, {1.0 - std::fmod(1.0, kCount), 0.0});
+  f.start({1.0 - std::fmod(1.0, test::kEncoderCount), 0.0});
+  for (int i = 0; i < 2000; ++i) f.update(1e-3, {1.0 - std::fmod(1.0, test::kEncoderCount), 0.0});
   EXPECT_NEAR(f.estimate().speed, 0.0, 0.01);
   EXPECT_NEAR(f.estimate().acceleration, 0.0, 3.0);
 }
@@ -161,7 +158,7 @@ TEST_F(CrankFilterTest, IgnoresOneOutlierAndBelievesTwo) {
   EXPECT_EQ(f.update(2e-3, {angle += 0.04, 20.0}), Tracking::kContinued);
   EXPECT_EQ(f.update(1e-3, {angle + 2.02, 20.0}), Tracking::kOutlier);
   EXPECT_EQ(f.update(2e-3, {angle + 2.04, 20.0}), Tracking::kRestarted);
-  EXPECT_NEAR(CrankAngle::wrapToPi(f.estimate().position.angle.offset - (angle + 2.04)), 0.0, kCount);
+  EXPECT_NEAR(CrankAngle::wrapToPi(f.estimate().position.angle.offset - (angle + 2.04)), 0.0, test::kEncoderCount);
 }
 
 TEST_F(CrankFilterTest, AKickThatNoTorqueGivesIsAnOutlierHoweverSmall) {
@@ -189,10 +186,10 @@ TEST_F(CrankFilterTest, ASpeedThatSaysNothingDoesNoHarm) {
 
 TEST_F(CrankFilterTest, TheEncoderDecidesTheSideOfTheBlow) {
   CrankFilter f = filter(0.6);
-  f.start({kTwoPi - 40 * kCount, 15.0});
+  f.start({kTwoPi - 40 * test::kEncoderCount, 15.0});
   for (int count = -39; count <= 10; ++count) {
-    const double reading = count < 0 ? kTwoPi + count * kCount : count * kCount;
-    f.update(kCount / 15.0, {reading, 15.0});
+    const double reading = count < 0 ? kTwoPi + count * test::kEncoderCount : count * test::kEncoderCount;
+    f.update(test::kEncoderCount / 15.0, {reading, 15.0});
     const Side side = f.estimate().position.angle.side;
     EXPECT_EQ(side, count < 0 ? Side::kBeforeBlow : Side::kAfterBlow) << count;
   }
@@ -214,20 +211,20 @@ TEST_F(CrankFilterTest, StaysSoundWhateverComes) {
 }
 
 TEST(Encoder, MeansTheMiddleOfACount) {
-  Encoder encoder(kCount);
-  EXPECT_DOUBLE_EQ(encoder.angle(100 * kCount), 100.5 * kCount);
+  Encoder encoder(test::kEncoderCount);
+  EXPECT_DOUBLE_EQ(encoder.angle(100 * test::kEncoderCount), 100.5 * test::kEncoderCount);
   EXPECT_FALSE(encoder.isFiner());
 }
 
 TEST(Encoder, TakesAFinerSensorAsItIs) {
-  Encoder encoder(kCount);
+  Encoder encoder(test::kEncoderCount);
   for (int i = 0; i < 5; ++i) encoder.angle(0.1234 * i + 0.01);
   EXPECT_TRUE(encoder.isFiner());
-  EXPECT_DOUBLE_EQ(encoder.angle(100 * kCount), 100 * kCount);
+  EXPECT_DOUBLE_EQ(encoder.angle(100 * test::kEncoderCount), 100 * test::kEncoderCount);
 }
 
 TEST(PlainTracker, TakesSpeedsAndTheirDifferenceAsTheyAre) {
-  PlainTracker tracker(PlainTracker::Acceleration::kDifference, kCount, 0.6, {});
+  PlainTracker tracker(PlainTracker::Acceleration::kDifference, test::kEncoderCount, 0.6, {});
   tracker.start({6.2, 30.0});
   EXPECT_EQ(tracker.update(1e-2, {6.2 + 0.305 - kTwoPi, 31.0}), Tracking::kContinued);
   EXPECT_DOUBLE_EQ(tracker.estimate().speed, 31.0);
@@ -237,7 +234,7 @@ TEST(PlainTracker, TakesSpeedsAndTheirDifferenceAsTheyAre) {
 }
 
 TEST(PlainTracker, AssumesNoAccelerationAsThePaper) {
-  PlainTracker tracker(PlainTracker::Acceleration::kZero, kCount, 0.6, {});
+  PlainTracker tracker(PlainTracker::Acceleration::kZero, test::kEncoderCount, 0.6, {});
   tracker.start({1.0, std::nullopt});
   EXPECT_FALSE(tracker.hasSpeed());
   tracker.update(1e-2, {1.3, std::nullopt});

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586232;
 
 /// The contract's formula, as it stands there.
 double readingOf(const CrankSensorPlace& p, double angle) {

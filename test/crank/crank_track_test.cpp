@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "support/constants.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"
@@ -13,9 +14,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCount = kTwoPi / 4096;
-
-struct Machine {
+struct Tracked {
   Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   CrankTrack track{mechanism, Level::kRocker, 0.6, test::filterSettings()};
 };
@@ -36,7 +35,7 @@ Beliefs record(double seconds, double jump_at, CrankTrack& track) {
     crank.advanceTo(2e-3 * i);
     const double stamp = std::max(last + 1e-6, 2e-3 * i + jitter(random));
     const double reading = crank.angle() + (2e-3 * i > jump_at ? 1.0 : 0.0);
-    const CrankSample sample{std::floor(reading / kCount) * kCount, std::nullopt};
+    const CrankSample sample{std::floor(reading / test::kEncoderCount) * test::kEncoderCount, std::nullopt};
     const Tracking tracking = i == 1 ? (track.start(sample), Tracking::kRestarted) : track.update(stamp - last, sample);
     if (tracking != Tracking::kOutlier) last = stamp;
     beliefs.push_back(track.filter().belief());
@@ -51,7 +50,7 @@ std::vector<TrackedSample> samplesOf(CrankTrack& closed) {
 }
 
 TEST(CrankTrack, GivesEverySampleOnceAndSomeSecondsLater) {
-  Machine machine;
+  Tracked machine;
   constexpr double kStep = 5e-3;
   std::size_t in = 0, out = 0, most = 0;
   double since_last = 0.0;  // accepted sample [s]
@@ -71,7 +70,7 @@ TEST(CrankTrack, GivesEverySampleOnceAndSomeSecondsLater) {
 }
 
 TEST(CrankTrack, LaterSamplesOnlyEverReduceTheDoubt) {
-  Machine machine;
+  Tracked machine;
   const Beliefs beliefs = record(4.0, 100.0, machine.track);
   machine.track.close();
   double filtered = 0.0, smoothed = 0.0;
@@ -88,7 +87,7 @@ TEST(CrankTrack, LaterSamplesOnlyEverReduceTheDoubt) {
 }
 
 TEST(CrankTrack, KnowsAllOfATurnWhatItsBlowDid) {
-  Machine machine;
+  Tracked machine;
   record(4.0, 100.0, machine.track);
   machine.track.close();
   const std::vector<TrackedSample> samples = samplesOf(machine.track);
@@ -105,7 +104,7 @@ TEST(CrankTrack, KnowsAllOfATurnWhatItsBlowDid) {
 }
 
 TEST(CrankTrack, AnIntervalEndsWhereTheFilterRestarts) {
-  Machine machine;
+  Tracked machine;
   const Beliefs beliefs = record(4.0, 2.5, machine.track);
   machine.track.close();
   const std::vector<TrackedSample> samples = samplesOf(machine.track);

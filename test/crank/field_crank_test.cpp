@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "support/constants.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"
@@ -13,7 +14,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCount = kTwoPi / 4096;
 using Blow = test::StrikingCrank::Blow;
 
 struct Told {
@@ -35,14 +35,12 @@ struct Machine {
   unsigned seed{1};
 };
 
-CrankFilterSettings settings() { return test::filterSettings(); }
-
 /// Eight seconds, judged from the third on. The truth is that at the stamp.
 Record follow(const Machine& machine) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   test::StrikingCrank at_stamp(mechanism.linkage(), 0.737, 0.6), taken(mechanism.linkage(), 0.737, 0.6);
   at_stamp.blow = taken.blow = machine.blow;
-  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings());
+  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, test::filterSettings());
   std::mt19937 random(machine.seed);
   std::normal_distribution<> normal;
   Record run;
@@ -54,7 +52,7 @@ Record follow(const Machine& machine) {
     const double stamp = std::max(last + 1e-6, time + machine.jitter * normal(random));
     taken.advanceTo(time);
     at_stamp.advanceTo(stamp);
-    CrankSample sample{std::floor(taken.angle() / kCount) * kCount, std::nullopt};
+    CrankSample sample{std::floor(taken.angle() / test::kEncoderCount) * test::kEncoderCount, std::nullopt};
     const double speed = taken.speed() + 0.15 * normal(random);
     if (machine.speeds) sample.speed = speed;
     const Tracking tracking =
@@ -159,12 +157,12 @@ TEST(FieldCrank, ATurnWithoutContactIsFollowedOntoTheMirroredBranch) {
 /// The rocker's weight lets a hammer without supply come to rest just behind the dead centre.
 TEST(FieldCrank, ARestAtTheDeadCentreIsNoTurnWithoutContact) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
-  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings());
+  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, test::filterSettings());
   double angle = 0.3;
   filter.start({angle, std::nullopt});
   for (int i = 0; i < 200; ++i) {
-    angle = std::max(0.2 * kCount, angle - 0.02);
-    filter.update(0.01, {std::floor(angle / kCount) * kCount, std::nullopt});
+    angle = std::max(0.2 * test::kEncoderCount, angle - 0.02);
+    filter.update(0.01, {std::floor(angle / test::kEncoderCount) * test::kEncoderCount, std::nullopt});
     ASSERT_FALSE(filter.isDoubtful()) << i;
     ASSERT_FALSE(filter.estimate().position.isMirrored()) << i;
   }

@@ -5,6 +5,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/hammer/hull_wrench.h"
+#include "support/constants.h"
 #include "support/filter_settings.h"
 #include "support/free_run.h"
 #include "support/imu_on_hull.h"
@@ -13,10 +14,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCount = kTwoPi / 4096;
-constexpr StampNs kMs = 1000000;
-
-CrankFilterSettings settings() { return test::filterSettings(kCount); }
+using test::kMs;
 
 enum class Known { kPitch, kImu, kAll };
 
@@ -31,7 +29,7 @@ Errors followed(const test::HullBody& body, Known known) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   const test::FreeHull system(mechanism, Level::kRocker, body);
   test::FreeRun run(system, test::hangingStill(body, 15.0), 160.0);
-  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings());
+  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, test::filterSettings(test::kEncoderCount));
   const HullImuSettings mounting = test::imuMounting();
   HullImu imu(mounting);
   test::ImuNoise noisy(4);
@@ -50,7 +48,8 @@ Errors followed(const test::HullBody& body, Known known) {
     if (known == Known::kImu) hull = imu.at(i * kMs).value_or(weight);
     filter.setHullMotion(hull);
     const double phi = state.crank.offset + (state.crank.side == Side::kBeforeBlow ? kTwoPi : 0.0);
-    const CrankSample sample{std::floor(phi / kCount) * kCount, state.crank_speed + noise(random)};
+    const CrankSample sample{std::floor(phi / test::kEncoderCount) * test::kEncoderCount,
+                             state.crank_speed + noise(random)};
     if (i == 0) {
       filter.start(sample);
     } else {

@@ -11,8 +11,6 @@
 namespace hammer_loads {
 namespace {
 
-CrankFilterSettings settings() { return test::filterSettings(kTwoPi / 65536.0, 1e-3); }
-
 /// Angle of a sensor whose place is off by b, from the true one.
 double read(double angle, const SensorErrors::Vector& b) {
   return angle + b[0] + b[1] * std::sin(angle) + b[2] * (std::cos(angle) - 1.0);
@@ -21,7 +19,7 @@ double read(double angle, const SensorErrors::Vector& b) {
 SensorErrors::Vector found(const SensorErrors::Vector& b) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   test::StrikingCrank crank(mechanism.linkage(), 0.737, 0.6);
-  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, settings());
+  CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, test::filterSettings(kTwoPi / 65536.0, 1e-3));
   std::mt19937 random(3);
   std::normal_distribution<> noise(0.0, 1e-3);
   for (int i = 1; i < 12000; ++i) {

@@ -7,12 +7,14 @@
 #include <random>
 #include <vector>
 
+#include "support/constants.h"
+
 namespace hammer_loads {
 namespace {
 
 using Kind = StampSequence::Kind;
 constexpr std::int64_t kStart = 1700000000000000000;
-constexpr std::int64_t kMs = 1000000;
+using test::kMs;
 
 /// Samples every millisecond, some of them lost; stamps as the way to the computer makes them.
 struct Stream {

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "grapple/grapples.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 GrappleTracker trackerOf(const GrappleParameters& p) { return GrappleTracker(test::grappleOf(p)); }
 

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "hammer_loads/life/count_state.h"
+#include "hammer_loads/util/constants.h"
 #include "life/astm_reference.h"
 #include "support/counting_new.h"
 
@@ -14,8 +14,6 @@ namespace hammer_loads::life {
 namespace {
 
 using namespace test;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(LoadGrid, RefusesWhatIsNoScale) {
   EXPECT_FALSE(LoadGrid::make(0.0, 0.0, 10).value);

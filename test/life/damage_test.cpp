@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "hammer_loads/util/constants.h"
 #include "life/astm_reference.h"
@@ -13,7 +12,6 @@ namespace hammer_loads::life {
 namespace {
 
 using namespace test;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<RangeMean> kFigure6{{3, -0.5, 0.5}, {4, -1, 0.5}, {4, 1, 1},    {6, 1, 0.5},
                                       {8, 0, 0.5},    {8, 1, 0.5},  {9, 0.5, 0.5}};

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "hammer_loads/life/count_state.h"
+#include "hammer_loads/util/constants.h"
 #include "life/astm_reference.h"
 #include "support/counting_new.h"
 
@@ -15,7 +15,6 @@ namespace {
 
 using namespace test;
 constexpr std::int64_t kSecond = 1000000000;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<std::string> kInputs{"hull_wrench/force_x_N", "hull_wrench/force_z_N",
                                        "section_loads/foot/torque_y_Nm"};

@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-const Series kFigure6{-2, 1, -3, 5, -1, 3, -4, 4, -2};
+const Series kSeriesOfFigure6{-2, 1, -3, 5, -1, 3, -4, 4, -2};
 
 void expectRanges(const Series& series, const Ranges& expected) {
   EXPECT_EQ(rangesOf(cyclesOf(rangesAndMeans(exactCount(series)))), expected);
@@ -38,11 +38,11 @@ void expectClosed(const Series& series, const ClosedPairs& closed, const Series&
 }
 
 TEST(Oracles, O1AstmFigure6) {
-  expectRanges(kFigure6, {{3, 0.5}, {4, 1.5}, {6, 0.5}, {8, 1}, {9, 0.5}});
-  expectClosed(kFigure6, {{-1, 3, 1}}, {-2, 1, -3, 5, -4, 4, -2});
+  expectRanges(kSeriesOfFigure6, {{3, 0.5}, {4, 1.5}, {6, 0.5}, {8, 1}, {9, 0.5}});
+  expectClosed(kSeriesOfFigure6, {{-1, 3, 1}}, {-2, 1, -3, 5, -4, 4, -2});
   const Cycles expected{{{3, -0.5}, 0.5}, {{4, -1}, 0.5}, {{4, 1}, 1},    {{6, 1}, 0.5},
                         {{8, 0}, 0.5},    {{8, 1}, 0.5},  {{9, 0.5}, 0.5}};
-  EXPECT_EQ(cyclesOf(rangesAndMeans(exactCount(kFigure6))), expected);
+  EXPECT_EQ(cyclesOf(rangesAndMeans(exactCount(kSeriesOfFigure6))), expected);
 }
 
 struct Numbered {
@@ -55,8 +55,8 @@ struct Numbered {
 TEST(Oracles, O1PointsCarryWhereTheyAre) {
   FourPointStack<Numbered> stack;
   std::vector<std::pair<int, int>> closed;
-  for (int i = 0; i < static_cast<int>(kFigure6.size()); ++i) {
-    stack.push({kFigure6[static_cast<std::size_t>(i)], i},
+  for (int i = 0; i < static_cast<int>(kSeriesOfFigure6.size()); ++i) {
+    stack.push({kSeriesOfFigure6[static_cast<std::size_t>(i)], i},
                [&](const Numbered& b, const Numbered& c) { closed.emplace_back(b.index, c.index); });
   }
   EXPECT_EQ(closed, (std::vector<std::pair<int, int>>{{4, 5}}));
@@ -74,7 +74,7 @@ TEST(Oracles, O2AstmFigure7) {
   EXPECT_EQ(ranges, (Ranges{{3, 1}, {4, 1}, {7, 1}, {9, 1}}));
   double sum = 0.0, sum_once = 0.0;
   for (const auto& [range, count] : ranges) sum += count * std::pow(range, 5);
-  for (const auto& [range, count] : rangesOf(cyclesOf(rangesAndMeans(exactCount(kFigure6)))))
+  for (const auto& [range, count] : rangesOf(cyclesOf(rangesAndMeans(exactCount(kSeriesOfFigure6)))))
     sum_once += count * std::pow(range, 5);
   EXPECT_EQ(sum, 77123.0);
   EXPECT_NEAR(sum / sum_once - 1.0, 0.137, 5e-4);

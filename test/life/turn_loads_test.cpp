@@ -4,14 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "hammer_loads/util/constants.h"
 #include "support/counting_new.h"
 
 namespace hammer_loads::life {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMs = 1000000;
 
 TEST(TurnLoads, OfSamplesAndTheExtremesBetween) {

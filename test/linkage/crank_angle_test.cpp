@@ -9,12 +9,12 @@
 namespace hammer_loads {
 namespace {
 
-using Real = boost::multiprecision::cpp_bin_float_50;
+using Exact = boost::multiprecision::cpp_bin_float_50;
 
-Real nearestBlow(double phi) {
-  const Real two_pi = 2 * boost::math::constants::pi<Real>();
-  const Real turns = floor(Real(phi) / two_pi + Real(0.5));
-  return Real(phi) - turns * two_pi;
+Exact nearestBlow(double phi) {
+  const Exact two_pi = 2 * boost::math::constants::pi<Exact>();
+  const Exact turns = floor(Exact(phi) / two_pi + Exact(0.5));
+  return Exact(phi) - turns * two_pi;
 }
 
 TEST(CrankAngle, OffsetIsExactWithinTheFirstTurns) {
@@ -22,9 +22,9 @@ TEST(CrankAngle, OffsetIsExactWithinTheFirstTurns) {
   std::uniform_real_distribution<double> angle(-30.0, 30.0);
   for (int i = 0; i < 20000; ++i) {
     const double phi = angle(random);
-    const Real exact = nearestBlow(phi);
+    const Exact exact = nearestBlow(phi);
     const double wrapped = CrankAngle::wrapToPi(phi);
-    EXPECT_LE(abs(Real(wrapped) - exact), 2.3e-16 * abs(exact) + 1e-30) << phi;
+    EXPECT_LE(abs(Exact(wrapped) - exact), 2.3e-16 * abs(exact) + 1e-30) << phi;
   }
 }
 
@@ -34,8 +34,8 @@ TEST(CrankAngle, OffsetKeepsItsDigitsNextToTheBlow) {
     for (double distance = 1e-1; distance > 1e-15; distance *= 0.1) {
       for (double sign : {-1.0, 1.0}) {
         const double phi = turns * two_pi + sign * distance;
-        const Real exact = nearestBlow(phi);
-        EXPECT_LE(abs(Real(CrankAngle::wrapToPi(phi)) - exact), 2.3e-16 * abs(exact) + 1e-30) << phi;
+        const Exact exact = nearestBlow(phi);
+        EXPECT_LE(abs(Exact(CrankAngle::wrapToPi(phi)) - exact), 2.3e-16 * abs(exact) + 1e-30) << phi;
       }
     }
   }
@@ -49,7 +49,7 @@ TEST(CrankAngle, ManyTurnsCostNoMoreThanTheAnglesOwnRounding) {
       const double phi = angle(random);
       // fma rounds once at the size of the offset, plus the third part of 2 pi: 6e-33 per turn.
       const double bound = 4.5e-16 + turns * 6.1e-33 * 10;
-      EXPECT_LE(abs(Real(CrankAngle::wrapToPi(phi)) - nearestBlow(phi)), bound) << phi;
+      EXPECT_LE(abs(Exact(CrankAngle::wrapToPi(phi)) - nearestBlow(phi)), bound) << phi;
     }
   }
 }

@@ -7,15 +7,15 @@
 namespace hammer_loads {
 namespace {
 
-using Real = boost::multiprecision::cpp_bin_float_50;
+using Exact = boost::multiprecision::cpp_bin_float_50;
 
 TEST(HalfAngleSine, PolynomialsAreExactToRounding) {
   double worst_sine = 0.0, worst_cosine = 0.0;
   for (int i = -16600; i <= 16600; ++i) {
     const double h = kLargestHalfAngle * i / 16600.0;
     const SineCosine got = sineCosinePolynomial(h);
-    if (i != 0) worst_sine = std::max(worst_sine, static_cast<double>(abs(Real(got.sine) / sin(Real(h)) - 1)));
-    worst_cosine = std::max(worst_cosine, static_cast<double>(abs(Real(got.cosine) - cos(Real(h)))));
+    if (i != 0) worst_sine = std::max(worst_sine, static_cast<double>(abs(Exact(got.sine) / sin(Exact(h)) - 1)));
+    worst_cosine = std::max(worst_cosine, static_cast<double>(abs(Exact(got.cosine) - cos(Exact(h)))));
   }
   EXPECT_LE(worst_sine, 3e-16);
   EXPECT_LE(worst_cosine, 3e-16);
@@ -24,7 +24,7 @@ TEST(HalfAngleSine, PolynomialsAreExactToRounding) {
 
 TEST(HalfAngleSine, KeepsRelativeAccuracyNearZero) {
   for (double h = 1.0; h > 1e-300; h *= 0.37) {
-    EXPECT_NEAR(static_cast<double>(Real(sineCosinePolynomial(h).sine) / sin(Real(h))), 1.0, 2.3e-16) << h;
+    EXPECT_NEAR(static_cast<double>(Exact(sineCosinePolynomial(h).sine) / sin(Exact(h))), 1.0, 2.3e-16) << h;
   }
   EXPECT_EQ(sineCosinePolynomial(0.0).sine, 0.0);
   EXPECT_EQ(sineCosinePolynomial(0.0).cosine, 1.0);

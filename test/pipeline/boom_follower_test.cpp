@@ -6,18 +6,20 @@
 
 #include "boom/booms.h"
 #include "hammer_loads/util/constants.h"
+#include "support/constants.h"
 #include "support/counting_new.h"
 #include "support/wall_clock.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr StampNs kMs = 1000000;
-constexpr double kGravity = 9.80665, kStrikingDistance = 0.1975;
-const std::vector<std::string> kFour{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+using test::kGravity;
+using test::kMs;
+constexpr double kStrikingDistance = 0.1975;
+using test::kFour;
 const std::vector<double> kWorking{0.2, -0.35, 1.20, -0.85};
 
-PipelineSettings settings(BoomModel model) {
+PipelineSettings modelled(BoomModel model) {
   PipelineSettings s;
   s.boom = model;
   s.joint_max_age = 0.2;
@@ -47,7 +49,7 @@ Boom boomWithoutFile() { return std::move(*Boom::make(test::shippedUrdf()).value
 class Follower {
  public:
   explicit Follower(BoomModel model, Boom boom = test::shippedBoom())
-      : follower(std::move(boom), settings(model), kStrikingDistance) {}
+      : follower(std::move(boom), modelled(model), kStrikingDistance) {}
 
   const BoomState& sample(const HullWrench& w, const WrenchHistory& step, int ms = 1) {
     now += ms * kMs;
@@ -280,9 +282,9 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanPressForceAtTheTool) {
 }
 
 /// A kilohertz session of a moving boom, 50 joint states and 5 turns a second, wrenches at four links.
-class Session {
+class BoomSession {
  public:
-  Session() : follower_(test::shippedBoom(), settings(BoomModel::kAuto), kStrikingDistance) {
+  BoomSession() : follower_(test::shippedBoom(), modelled(BoomModel::kAuto), kStrikingDistance) {
     step_.count = 1;
     step_.pieces[0].duration = 1e-3;
   }
@@ -320,7 +322,7 @@ class Session {
 };
 
 TEST(BoomFollower, AllocatesNothing) {
-  Session session;
+  BoomSession session;
   session.sample();
   const std::size_t before = test::allocations;
   for (int i = 0; i < 5000; ++i) session.sample();
@@ -329,7 +331,7 @@ TEST(BoomFollower, AllocatesNothing) {
 }
 
 TEST(BoomFollower, TakesAtMostThreeMicrosecondsASample) {
-  Session session;
+  BoomSession session;
   double least = 1e9;
   constexpr int kBatches = 100, kSamples = 200;  // a turn
   for (int batch = 0; batch < kBatches; ++batch) {

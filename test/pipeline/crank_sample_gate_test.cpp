@@ -6,11 +6,12 @@
 #include <optional>
 
 #include "hammer_loads/linkage/crank_angle.h"
+#include "support/constants.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr StampNs kMs = 1000000;
+using test::kMs;
 
 class IntakeTest : public testing::Test {
  protected:

@@ -4,10 +4,12 @@
 
 #include <limits>
 
+#include "support/constants.h"
+
 namespace hammer_loads {
 namespace {
 
-constexpr StampNs kMs = 1000000;
+using test::kMs;
 
 TEST(CylinderPressures, NeedBothChambers) {
   CylinderPressures pressures(0.02);

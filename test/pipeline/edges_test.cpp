@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/pipeline/warnings.h"
+#include "support/constants.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
@@ -12,8 +13,7 @@ namespace {
 using test::session;
 using test::settingsWith;
 
-constexpr double kDegrees = 57.29577951308232;
-const std::vector<std::string> kCrank{"hammer_crank_joint"};
+using test::kCrank;
 const std::vector<std::string> kJoints{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
 
 Pipeline pipelineOf(const Settings& settings) { return Pipeline(settings.mechanism, settings.pipeline, settings.boom); }
@@ -104,8 +104,10 @@ TEST_P(CrankInDegrees, IsWithheldNamedAndGivesNothingAbsurdBefore) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AngleSpeedOrBoth, CrankInDegrees,
-                         testing::Values(Units{kDegrees, 1.0, true}, Units{1.0, kDegrees, true},
-                                         Units{kDegrees, kDegrees, true}, Units{kDegrees, 1.0, false}));
+                         testing::Values(Units{test::kDegreesPerRadian, 1.0, true},
+                                         Units{1.0, test::kDegreesPerRadian, true},
+                                         Units{test::kDegreesPerRadian, test::kDegreesPerRadian, true},
+                                         Units{test::kDegreesPerRadian, 1.0, false}));
 
 TEST(BoomInDegrees, IsWithheldUntilItIsOver) {
   const Settings settings = settingsWith("boom: auto\n");
@@ -113,7 +115,7 @@ TEST(BoomInDegrees, IsWithheldUntilItIsOver) {
     keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}), wrenches);
   };
   EXPECT_GT(wrenchesOf(settings, each).size(), 4000U);
-  EXPECT_LT(wrenchesOf(settings, each, kDegrees).size(), 50U) << "before the first joint states came";
+  EXPECT_LT(wrenchesOf(settings, each, test::kDegreesPerRadian).size(), 50U) << "before the first joint states came";
 
   Pipeline pipeline = pipelineOf(settings);
   StampNs stamp = 1700000000000000000;

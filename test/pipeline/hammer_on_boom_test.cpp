@@ -6,6 +6,7 @@
 #include <random>
 
 #include "hammer_loads/simulation/session.h"
+#include "support/constants.h"
 #include "support/error_of_signal.h"
 #include "support/session_player.h"
 
@@ -16,7 +17,7 @@ using simulation::HammerOnBoom;
 using simulation::OnBoomTruth;
 using test::Error;
 constexpr double kMillisecond = 1e-3, kBegin = 3.0, kEnd = 8.0;
-constexpr StampNs kMs = 1000000;
+using test::kMs;
 
 struct Recording {
   std::vector<OnBoomTruth> truth;

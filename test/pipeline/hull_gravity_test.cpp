@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "support/constants.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
 namespace {
 
-const std::vector<std::string> kFour{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+using test::kFour;
 constexpr double kG = 9.80665;
 
 HullGravity gravityWith(const std::string& keys, bool with_boom) {
@@ -18,7 +19,8 @@ HullGravity gravityWith(const std::string& keys, bool with_boom) {
 
 TEST(HullGravity, TakesTheBasesPitchLikeAJoints) {
   for (const bool with_boom : {false, true}) {
-    HullGravity level = gravityWith("base_pitch_rad: 0.0\n", with_boom), leans = gravityWith("base_pitch_rad: 0.3\n", with_boom);
+    HullGravity level = gravityWith("base_pitch_rad: 0.0\n", with_boom),
+                leans = gravityWith("base_pitch_rad: 0.3\n", with_boom);
     level.joints(kFour, {0.0, -0.2, 1.2, -0.8});
     leans.joints(kFour, {0.0, -0.2, 0.9, -0.8});
     EXPECT_NEAR(level.gravity().x, kG * std::sin(0.2), 1e-12);

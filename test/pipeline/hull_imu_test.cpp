@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hammer_loads/hammer/hull_model.h"
+#include "support/constants.h"
 #include "support/counting_new.h"
 #include "support/free_run.h"
 #include "support/imu_on_hull.h"
@@ -13,7 +14,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr StampNs kMs = 1000000;
+using test::kMs;
 const ImuReading kUpright{{0.0, 0.0, 9.80665}, {0.0, 0.0, 0.0}};
 
 HullImuSettings atD() {

@@ -8,6 +8,7 @@
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
+#include "support/constants.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -19,41 +20,41 @@ using Names = std::vector<std::string>;
 using Numbers = std::vector<double>;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
-constexpr double kFrom = 3.0, kAttack = 4.0, kBack = 4.1, kTo = 5.0;  // [s] of the session
-constexpr double kTurn = 0.25;                                        // [s]: the machine makes some 4.6 in a second
-constexpr double kGoodError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
-const Names kCrank{"hammer_crank_joint"};
+constexpr double kUndisturbedFrom = 3.0, kAttack = 4.0, kSoundFrom = 4.1, kUntil = 5.0;  // [s] of the session
+constexpr double kOneTurn = 0.25;           // [s]: the machine makes some 4.6 in a second
+constexpr double kUndisturbedError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
+using test::kCrank;
 const Names kBoom{"boom_joint", "arm_joint", "hammer_joint"};
 const Numbers kBoomAngles{-0.35, 1.20, -0.85};
 
-const simulation::MachineSettings& machine() {
+const simulation::MachineSettings& attackedMachine() {
   static const simulation::MachineSettings settings = [] {
     simulation::MachineSettings s = simulation::workingMo100();
-    s.duration = kTo;
+    s.duration = kUntil;
     for (simulation::JointMotion& joint : s.boom) joint.amplitude = 0.0;
     return s;
   }();
   return settings;
 }
 
-const Session& session() {
-  static const Session recorded = simulation::recordSession(machine());
+const Session& attacked() {
+  static const Session recorded = simulation::recordSession(attackedMachine());
   return recorded;
 }
 
 /// A pipeline at work and what it gives.
 class Victim {
  public:
-  explicit Victim(const PipelineSettings& settings) : pipeline_(test::mechanismOf(machine().hammer), settings) {
-    for (const auto& truth : session().truth) peak_ = std::max(peak_, std::abs(truth.load.force_z));
+  explicit Victim(const PipelineSettings& settings) : pipeline_(test::mechanismOf(attackedMachine().hammer), settings) {
+    for (const auto& truth : attacked().truth) peak_ = std::max(peak_, std::abs(truth.load.force_z));
   }
 
   /// Good samples of [from, to) [s].
   void work(double from, double to, const std::function<void(const CrankReading&)>& instead = {}) {
     boom(kBoom, kBoomAngles);
-    for (std::size_t i = 0; i < session().crank.size(); ++i) {
-      const CrankReading& reading = session().crank[i];
-      const double time = session().truth[i].time;
+    for (std::size_t i = 0; i < attacked().crank.size(); ++i) {
+      const CrankReading& reading = attacked().crank[i];
+      const double time = attacked().truth[i].time;
       if (time < from || time >= to) continue;
       if (instead) {
         instead(reading);
@@ -62,7 +63,7 @@ class Victim {
       const SampleResult& loads = crank(reading.stamp, kCrank, {reading.angle}, {*reading.speed});
       if (loads.refusal) continue;
       if (first_accepted_ < from) first_accepted_ = time;
-      worst_ = std::max(worst_, std::abs(loads.wrench.force_z - session().truth[i].load.force_z) / peak_);
+      worst_ = std::max(worst_, std::abs(loads.wrench.force_z - attacked().truth[i].load.force_z) / peak_);
     }
   }
   const SampleResult& good(const CrankReading& r) { return crank(r.stamp, kCrank, {r.angle}, {*r.speed}); }
@@ -262,11 +263,11 @@ void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   // The filter's errors are judged once the attack is a turn ago; the trackers for comparison promise nothing.
   const bool judged = settings.crank_estimator == CrankEstimator::kMechanism && settings.level == Level::kRocker;
   Victim victim(settings);
-  victim.work(kFrom, kAttack);
+  victim.work(kUndisturbedFrom, kAttack);
   ASSERT_GT(victim.accepted(), 900u) << "the channel must work before";
   std::uint64_t hostile = 0;
   const std::uint64_t refused = attack.refusal ? victim.refused(*attack.refusal) : 0;
-  victim.work(kAttack, kBack, [&](const CrankReading& r) { attack.strike(victim, r), ++hostile; });
+  victim.work(kAttack, kSoundFrom, [&](const CrankReading& r) { attack.strike(victim, r), ++hostile; });
   ASSERT_GT(hostile, 90u);
   if (attack.refusal) {
     // The plain trackers know no outlier: they can refuse only by value, shape and stamp.
@@ -275,15 +276,15 @@ void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
     }
   }
   const std::uint64_t accepted = victim.accepted();
-  victim.work(kBack, kBack + kTurn);
-  EXPECT_GE(victim.firstAccepted(), kBack) << "output must come back";
-  EXPECT_LT(victim.firstAccepted(), kBack + kTurn);
+  victim.work(kSoundFrom, kSoundFrom + kOneTurn);
+  EXPECT_GE(victim.firstAccepted(), kSoundFrom) << "output must come back";
+  EXPECT_LT(victim.firstAccepted(), kSoundFrom + kOneTurn);
   victim.forgetErrors();
-  victim.work(kBack + kTurn, kTo);
+  victim.work(kSoundFrom + kOneTurn, kUntil);
   EXPECT_TRUE(victim.finite());
   EXPECT_GT(victim.accepted(), accepted + 600u);
   if (judged) {
-    EXPECT_LE(victim.worst(), kGoodError);
+    EXPECT_LE(victim.worst(), kUndisturbedError);
   }
 }
 
@@ -336,18 +337,18 @@ TEST(InputAttack, TheBoomsAngles) {
     for (const PipelineSettings& settings : allSettings()) {
       SCOPED_TRACE(attack.name);
       Victim victim(settings);
-      victim.work(kFrom, kAttack);
+      victim.work(kUndisturbedFrom, kAttack);
       const std::uint64_t accepted = victim.accepted();
       ASSERT_GT(accepted, 900u);
       victim.boom(attack.names, attack.angles);
-      victim.work(kAttack, kBack, [&](const CrankReading& r) { victim.good(r); });
+      victim.work(kAttack, kSoundFrom, [&](const CrankReading& r) { victim.good(r); });
       EXPECT_GT(victim.accepted(), accepted + 90u) << "the crank goes on";
       EXPECT_TRUE(std::isfinite(victim.pipeline().hull().pitch().pitch()));
       victim.forgetErrors();
-      victim.work(kBack, kTo);
+      victim.work(kSoundFrom, kUntil);
       EXPECT_TRUE(victim.finite());
       if (settings.crank_estimator == CrankEstimator::kMechanism && settings.level == Level::kRocker) {
-        EXPECT_LE(victim.worst(), kGoodError) << "good angles count at once";
+        EXPECT_LE(victim.worst(), kUndisturbedError) << "good angles count at once";
       }
     }
   }

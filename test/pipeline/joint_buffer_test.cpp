@@ -5,24 +5,25 @@
 #include <limits>
 
 #include "boom/booms.h"
+#include "hammer_loads/util/constants.h"
+#include "support/constants.h"
 #include "support/counting_new.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr StampNs kMs = 1000000;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using test::kMs;
 using Names = std::vector<std::string>;
 using Values = std::vector<double>;
 
-PipelineSettings settings(BoomAcceleration acceleration = BoomAcceleration::kDifference) {
+PipelineSettings accelerated(BoomAcceleration acceleration = BoomAcceleration::kDifference) {
   PipelineSettings s;
   s.joint_max_age = 0.2;
   s.boom_acceleration = acceleration;
   return s;
 }
 
-const Names kFour{"swing_joint", "boom_joint", "arm_joint", "hammer_joint"};
+using test::kFour;
 
 class Joints : public testing::Test {
  protected:
@@ -34,7 +35,7 @@ class Joints : public testing::Test {
     return motion;
   }
   Boom boom_{test::shippedBoom()};
-  JointBuffer buffer_{boom_.chain(), settings()};
+  JointBuffer buffer_{boom_.chain(), accelerated()};
 };
 
 TEST_F(Joints, AreHeldBeyondTheNewestStateAndLinearBetweenStates) {
@@ -102,7 +103,7 @@ TEST_F(Joints, WithoutVelocitiesDifferencesFollowAParabolaExactly) {
   EXPECT_NEAR(between.position[2], position(0.080), 0.125 * a * 0.04 * 0.04 * 1.01);
   EXPECT_EQ(between.velocity[1], 0.0);
 
-  JointBuffer first(boom_.chain(), settings());
+  JointBuffer first(boom_.chain(), accelerated());
   first.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {});
   JointMotion motion;
   ASSERT_FALSE(first.at(0, motion));
@@ -114,7 +115,7 @@ TEST_F(Joints, WithoutVelocitiesDifferencesFollowAParabolaExactly) {
 }
 
 TEST_F(Joints, AccelerationMayBeNeglected) {
-  JointBuffer plain(boom_.chain(), settings(BoomAcceleration::kNone));
+  JointBuffer plain(boom_.chain(), accelerated(BoomAcceleration::kNone));
   plain.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 0.0, 0.0});
   plain.update(10 * kMs, kFour, {0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 1.0, 0.0});
   JointMotion motion;
@@ -164,7 +165,7 @@ TEST_F(Joints, AJointThatTurnsFreelyTakesTheShorterWay) {
   const auto planar = test::PlanarChain<2>::random(random);
   const Checked<Chain> chain = Chain::make(planar.urdf(), {"base_link", "tip", {}});
   ASSERT_TRUE(chain.value);
-  JointBuffer winding(*chain.value, settings());
+  JointBuffer winding(*chain.value, accelerated());
   winding.update(0, {"j0", "j1"}, {3.1, 0.0}, {});
   winding.update(10 * kMs, {"j0", "j1"}, {-3.1, 0.5}, {});
   JointMotion motion;

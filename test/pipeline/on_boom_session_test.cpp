@@ -30,7 +30,7 @@ simulation::MachineSettings machine(double oil, double joint_rate) {
   return m;
 }
 
-struct Errors {
+struct SessionMisses {
   Error force_z, moment, torque[3], section[3];
   std::size_t samples{}, refused{}, within{}, blows{};
   double energy{};     ///< mean, relative
@@ -55,11 +55,11 @@ struct Errors {
   }
 };
 
-struct Sensors {
+struct SensorsOnBoom {
   bool imu{}, pressures{};
 };
 
-void addBlows(const Session& session, const SampleResult& result, Errors& e) {
+void addBlows(const Session& session, const SampleResult& result, SessionMisses& e) {
   for (std::size_t k = 0; k < result.turn_ends; ++k) {
     const double time = seconds(result.ends[k].stamp - simulation::workingMo100().start_stamp);
     for (const simulation::BlowTruth& blow : session.blows) {
@@ -70,7 +70,7 @@ void addBlows(const Session& session, const SampleResult& result, Errors& e) {
   }
 }
 
-void addSample(const OnBoomTruth& t, const SampleResult& result, Errors& e) {
+void addSample(const OnBoomTruth& t, const SampleResult& result, SessionMisses& e) {
   ++e.samples;
   e.force_z.add(result.wrench.force_z, t.load.force_z);
   e.moment.add(result.wrench.torque_y, t.load.torque_y + t.drive_reaction_y);
@@ -83,11 +83,11 @@ void addSample(const OnBoomTruth& t, const SampleResult& result, Errors& e) {
   for (std::size_t s = 0; s < 3; ++s) e.section[s].add(boom.steel.section[s].torque.y(), t.cut[s].torque_y);
 }
 
-Errors errorsOf(const std::string& name, const Session& session, const std::string& parameters,
-                const Sensors& sensors) {
+SessionMisses errorsOf(const std::string& name, const Session& session, const std::string& parameters,
+                       const SensorsOnBoom& sensors) {
   test::Player player(test::settingsWith("boom: compliant\n" + parameters), true, session);
   player.imu_speaks = sensors.imu, player.pressures_speak = sensors.pressures;
-  Errors e;
+  SessionMisses e;
   std::size_t i = 0;
   player.playTo(kEnd, [&](double time, const SampleResult& result) {
     const OnBoomTruth& truth = session.on_boom[i++];
@@ -111,7 +111,7 @@ constexpr char kModel[] = "hull_motion: model\nboom_stiffness: given\n";
 constexpr char kIdentified[] = "hull_motion: model\nboom_stiffness: identified\n";
 constexpr char kByImu[] = "hull_motion: imu\nboom_stiffness: identified\n";
 
-void expectAsTheTruth(const Errors& e, const std::string& name) {
+void expectAsTheTruth(const SessionMisses& e, const std::string& name) {
   EXPECT_LT(e.worstTorque(), 0.05) << name;
   EXPECT_LT(e.moment.rms(), 0.02) << name;
   EXPECT_LT(e.force_z.rmsOfLargest(), 0.006) << name;
@@ -125,7 +125,7 @@ void expectAsTheTruth(const Errors& e, const std::string& name) {
 /// The second mode is twice the blow rate: of all poses one of the worst, where 0.1 % of stiffness is 1 % of torque.
 TEST(OnBoomSession, TheRightOilNeedsNoMoreSensors) {
   const Session session = simulation::recordSession(machine(1.0, 50.0));
-  const Errors model = errorsOf("right oil", session, kModel, {});
+  const SessionMisses model = errorsOf("right oil", session, kModel, {});
   expectAsTheTruth(model, "right oil");
   EXPECT_LT(model.worstTorque(), 0.02);
   expectAsTheTruth(errorsOf("right oil, hull by imu", session, "hull_motion: imu\n", {true, false}), "imu");
@@ -140,7 +140,7 @@ TEST(OnBoomSession, TheImuTakesTheHullsOwnSpeedOutOfTheEnergy) {
     const Session session = simulation::recordSession(m);
     const auto error = [&](const std::string& hull_motion) {
       test::Player player(test::settingsWith("boom: none\nhull_motion: " + hull_motion, false), false, session);
-      Errors e;  // of energy alone
+      SessionMisses e;  // of energy alone
       player.playTo(kEnd, [&](double time, const SampleResult& result) {
         if (time > kBegin) addBlows(session, result, e);
       });
@@ -160,14 +160,14 @@ class WrongOil : public testing::TestWithParam<double> {};
 TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {
   const simulation::MachineSettings m = machine(GetParam(), 50.0);
   const Session session = simulation::recordSession(m);
-  const Errors given = errorsOf("as given", session, kModel, {});
+  const SessionMisses given = errorsOf("as given", session, kModel, {});
   EXPECT_GT(given.worstTorque(), 0.5) << "what the others must do better";
   const double frequency = simulation::HammerOnBoom(m).frequencies(kEnd)[0];
-  const Errors imu = errorsOf("imu", session, kIdentified, {true, false});
+  const SessionMisses imu = errorsOf("imu", session, kIdentified, {true, false});
   EXPECT_NEAR(imu.frequency / frequency, 1.0, 0.03);
   expectAsTheTruth(imu, "imu");
   expectAsTheTruth(errorsOf("hull by imu", session, kByImu, {true, false}), "hull by imu");
-  const Errors pressures = errorsOf("pressures", session, kIdentified, {false, true});
+  const SessionMisses pressures = errorsOf("pressures", session, kIdentified, {false, true});
   EXPECT_NEAR(pressures.frequency / frequency, 1.0, 0.03);
   expectAsTheTruth(pressures, "pressures");
   expectAsTheTruth(errorsOf("all sensors", session, kByImu, {true, true}), "all sensors");
@@ -176,7 +176,7 @@ TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {
 TEST_P(WrongOil, IsMeasuredByJointStatesAbove100Hz) {
   const simulation::MachineSettings m = machine(GetParam(), 400.0);
   const Session session = simulation::recordSession(m);
-  const Errors e = errorsOf("joint states", session, kIdentified, {});
+  const SessionMisses e = errorsOf("joint states", session, kIdentified, {});
   EXPECT_NEAR(e.frequency / simulation::HammerOnBoom(m).frequencies(kEnd)[0], 1.0, 0.03);
   expectAsTheTruth(e, "joint states");
 }
@@ -187,8 +187,8 @@ TEST(OnBoomSession, ABoomThatIsDrivenFastKeepsTheModesAsGiven) {
   m.boom[1].amplitude = 0.15, m.boom[1].period = 6.0;
   m.boom[2].amplitude = 0.20, m.boom[2].period = 5.0;
   const Session session = simulation::recordSession(m);
-  const Errors given = errorsOf("driven, as given", session, kModel, {});
-  const Errors followed = errorsOf("driven, imu and joint states", session, kIdentified, {true, false});
+  const SessionMisses given = errorsOf("driven, as given", session, kModel, {});
+  const SessionMisses followed = errorsOf("driven, imu and joint states", session, kIdentified, {true, false});
   EXPECT_LT(followed.worstTorque(), 1.05 * given.worstTorque());
   EXPECT_GT(followed.covered(), 0.85);
   EXPECT_LT(errorsOf("driven, pressures", session, kIdentified, {false, true}).worstTorque(), 0.05);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "support/constants.h"
 #include "support/counting_new.h"
 #include "support/session_player.h"
 #include "support/wall_clock.h"
@@ -18,10 +19,10 @@ using test::Player;
 using test::session;
 using test::settingsWith;
 
-constexpr double kGravity = 9.80665;
+using test::kGravity;
 constexpr double kJointsHeard = 0.02;  // [s]: the first joint states come within a period of theirs
 
-const auto kNothing = [](double, const SampleResult&) {};
+const auto kOnlyPlay = [](double, const SampleResult&) {};
 
 /// Everything that a node publishes per sample but the messages.
 struct Everything {
@@ -102,7 +103,7 @@ TEST(PipelineWithBoom, JointsCarryTheLinksMotionAndTheirWeightOnce) {
   const Settings settings = settingsWith("boom: rigid\n");
   Player player(settings);
   double peak = 0.0;
-  player.playTo(kJointsHeard, kNothing);
+  player.playTo(kJointsHeard, kOnlyPlay);
   player.playTo(kSessionEnd, [&](double time, const SampleResult& loads) {
     ASSERT_TRUE(loads.boom != nullptr && !loads.boom->fault) << time;
     const CrankMotion crank{loads.crank.position.angle, loads.crank.speed, loads.crank.acceleration};
@@ -138,7 +139,7 @@ TEST(PipelineWithBoom, StaleJointsSilenceTheBoomAloneUntilTheyAreBack) {
     ASSERT_TRUE(!stale || loads.boom->fault->kind == JointFault::Kind::kStale) << time;
     ++(stale ? faults : known);
   };
-  player.playTo(kJointsHeard, kNothing);
+  player.playTo(kJointsHeard, kOnlyPlay);
   player.playTo(kSilent, watch);
   EXPECT_GT(player.pipeline.boom()->state().tip.velocity.norm(), 0.0);
   player.joints_speak = false;

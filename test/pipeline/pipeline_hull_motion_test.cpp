@@ -13,7 +13,7 @@ using test::Player;
 using test::session;
 using test::settingsWith;
 
-const auto kNothing = [](double, const SampleResult&) {};
+const auto kJustPlay = [](double, const SampleResult&) {};
 
 void expectSame(const std::vector<HullWrench>& a, const std::vector<HullWrench>& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -114,10 +114,10 @@ TEST(PipelineHullMotion, ASilentImuLeavesTheWeightByPitchAndIsCounted) {
   Player failing(settings);
   const ImuCounts& counts = failing.pipeline.hull().imuCounts();
   failing.imu = test::atRest(0.0, settings.pipeline.imu);
-  failing.playTo(3.0, kNothing);
+  failing.playTo(3.0, kJustPlay);
   EXPECT_EQ(counts.missed, 1U);
   failing.imu.reset();
-  failing.playTo(3.049, kNothing);  // 50 ms: imu_max_age_s
+  failing.playTo(3.049, kJustPlay);  // 50 ms: imu_max_age_s
   EXPECT_EQ(counts.missed, 1U);
   EXPECT_TRUE(failing.pipeline.hull().motionKnown());
   failing.playTo(4.0, [](double time, const SampleResult& loads) { ASSERT_FALSE(loads.refusal) << time; });
@@ -125,7 +125,7 @@ TEST(PipelineHullMotion, ASilentImuLeavesTheWeightByPitchAndIsCounted) {
   EXPECT_FALSE(failing.pipeline.hull().motionKnown());
   const std::uint64_t missed = counts.missed;
   failing.imu = test::atRest(0.0, settings.pipeline.imu);
-  failing.playTo(kSessionEnd, kNothing);
+  failing.playTo(kSessionEnd, kJustPlay);
   EXPECT_EQ(counts.missed, missed + 1);
   EXPECT_TRUE(failing.pipeline.hull().motionKnown());
 }

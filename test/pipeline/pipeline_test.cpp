@@ -5,6 +5,7 @@
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
+#include "support/constants.h"
 #include "support/counting_new.h"
 #include "support/mo100.h"
 #include "support/session_bounds.h"
@@ -15,14 +16,14 @@ namespace {
 using simulation::MachineSettings;
 using simulation::Session;
 
-const std::vector<std::string> kCrank{"hammer_crank_joint"};
+using test::kCrank;
 
 const Settings& shippedSettings() {
   static const Settings settings = *loadFiles(configDirectory(), {}).value;
   return settings;
 }
 
-MachineSettings machineOf(std::uint64_t seed, double rate) {
+MachineSettings machineWithDropOut(std::uint64_t seed, double rate) {
   MachineSettings machine = simulation::workingMo100();
   machine.seed = seed;
   machine.duration = 12.0;
@@ -44,7 +45,7 @@ class UnseenSessions : public testing::TestWithParam<Case> {};
 
 TEST_P(UnseenSessions, StayWithinTheBounds) {
   for (const auto& [rate, bounds] : {std::pair{1000.0, test::kBounds1kHz}, std::pair{100.0, test::kBounds100Hz}}) {
-    MachineSettings machine = machineOf(GetParam().seed, rate);
+    MachineSettings machine = machineWithDropOut(GetParam().seed, rate);
     machine.crank.speed_noise = GetParam().speed_noise;
     machine.crank.speed = GetParam().speed;
     machine.drive.inertia = GetParam().true_inertia;
@@ -68,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, UnseenSessions,
 TEST(Pipeline, AfterADropOutNothingIsTenPercentWrong) {
   for (const double gap : {0.03, 0.1, 0.2, 0.4}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      MachineSettings machine = machineOf(seed, 1000.0);
+      MachineSettings machine = machineWithDropOut(seed, 1000.0);
       machine.duration = 7.5;
       machine.drive.stop_time = 7.4;
       machine.crank.drop_outs = {
@@ -91,7 +92,7 @@ TEST(Pipeline, AfterADropOutNothingIsTenPercentWrong) {
 }
 
 TEST(Pipeline, ThePapersAssumptionOfConstantSpeedIsThirtyPercentWrong) {
-  const MachineSettings machine = machineOf(1, 1000.0);
+  const MachineSettings machine = machineWithDropOut(1, 1000.0);
   const Session session = simulation::recordSession(machine);
   PipelineSettings settings = shippedSettings().pipeline;
   settings.crank_estimator = CrankEstimator::kNone;
@@ -107,7 +108,7 @@ TEST(Pipeline, ThePapersAssumptionOfConstantSpeedIsThirtyPercentWrong) {
 }
 
 TEST(Pipeline, AllocatesNothingPerSample) {
-  const MachineSettings machine = machineOf(1, 1000.0);
+  const MachineSettings machine = machineWithDropOut(1, 1000.0);
   const Session session = simulation::recordSession(machine);
   Pipeline pipeline(test::mechanismOf(machine.hammer), shippedSettings().pipeline);
   std::vector<double> position(1), velocity(1);

@@ -6,13 +6,12 @@
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kDegree = kTwoPi / 360.0;
-
-simulation::MachineSettings machineAt(double rate, std::uint64_t seed) {
+simulation::MachineSettings longMachineAt(double rate, std::uint64_t seed) {
   simulation::MachineSettings s = simulation::workingMo100();
   s.duration = 12.0;
   s.drive.stop_time = 20.0;
@@ -67,7 +66,7 @@ TEST(SensorWarnings, MachinesWithoutAFlawRaiseNone) {
   std::uniform_real_distribution<double> part(0.0, 1.0);
   for (std::uint64_t i = 0; i < 8; ++i) {
     const double rates[] = {100.0, 200.0, 500.0, 1000.0};
-    simulation::MachineSettings s = upright(machineAt(rates[i % 4], 300 + i));
+    simulation::MachineSettings s = upright(longMachineAt(rates[i % 4], 300 + i));
     s.crank.counts = i % 3 == 0 ? 1024 : 4096;
     s.crank.speed = i % 2 == 0;
     s.drive.inertia *= 0.8 + 0.4 * part(random);
@@ -79,7 +78,7 @@ TEST(SensorWarnings, MachinesWithoutAFlawRaiseNone) {
 
 TEST(SensorWarnings, AZeroThatIsOffIsNamedWithItsSizeAndPartOfTheDeviations) {
   for (const double off : {0.7, -0.7}) {
-    simulation::MachineSettings s = upright(machineAt(500.0, 40));
+    simulation::MachineSettings s = upright(longMachineAt(500.0, 40));
     s.crank.zero = off * kDegree;
     const Heard heard = hear(s);
     ASSERT_EQ(heard.keys, "zero;") << off;
@@ -91,22 +90,22 @@ TEST(SensorWarnings, AZeroThatIsOffIsNamedWithItsSizeAndPartOfTheDeviations) {
 }
 
 TEST(SensorWarnings, AnEccentricEncoderIsNamed) {
-  simulation::MachineSettings s = upright(machineAt(500.0, 41));
+  simulation::MachineSettings s = upright(longMachineAt(500.0, 41));
   s.crank.eccentricity[0] = {1.2 * kDegree, 0.7};
   EXPECT_EQ(hear(s).keys, "eccentricity;");
 }
 
 TEST(SensorWarnings, JitterAndStampsThatRepeatAreNamed) {
-  simulation::MachineSettings s = upright(machineAt(500.0, 42));
+  simulation::MachineSettings s = upright(longMachineAt(500.0, 42));
   s.crank.stamp_noise = 3e-4;
   EXPECT_EQ(hear(s).keys, "jitter;");
-  simulation::MachineSettings bursts = upright(machineAt(1000.0, 43));
+  simulation::MachineSettings bursts = upright(longMachineAt(1000.0, 43));
   bursts.crank.burst = 10;
   EXPECT_NE(hear(bursts).keys.find("stamps;"), std::string::npos);
 }
 
 TEST(SensorWarnings, ASoftCouplingIsNoZero) {
-  simulation::MachineSettings s = upright(machineAt(1000.0, 44));
+  simulation::MachineSettings s = upright(longMachineAt(1000.0, 44));
   s.drive.coupling_frequency = 50.0;
   const std::string keys = hear(s).keys;
   EXPECT_NE(keys.find("inconsistent;"), std::string::npos) << keys;
@@ -115,7 +114,7 @@ TEST(SensorWarnings, ASoftCouplingIsNoZero) {
 
 /// The samples end within the time that a blow takes to be measured.
 TEST(PipelineEnd, TheLastBlowIsGiven) {
-  simulation::MachineSettings s = upright(machineAt(1000.0, 45));
+  simulation::MachineSettings s = upright(longMachineAt(1000.0, 45));
   const std::vector<simulation::BlowTruth> blows = simulation::recordSession(s).blows;
   s.duration = blows.back().time + 0.01;
   const Heard heard = hear(s);

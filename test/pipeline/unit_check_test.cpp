@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "hammer_loads/simulation/session.h"
+#include "support/constants.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
 namespace {
 
 constexpr double kMaxSpeed = 300.0;
-constexpr double kDegrees = 180.0 / kPi;
 
 struct Sensor {
   double angle_unit{1.0}, speed_unit{1.0};
@@ -44,7 +44,7 @@ Verdict judge(const simulation::Session& session, const Sensor& sensor) {
   return judge(session, sensor, check);
 }
 
-simulation::MachineSettings machineOf(std::uint64_t seed, double rate) {
+simulation::MachineSettings unwoundMachine(std::uint64_t seed, double rate) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.seed = seed;
   machine.duration = 4.5;
@@ -58,9 +58,11 @@ simulation::MachineSettings machineOf(std::uint64_t seed, double rate) {
 TEST(UnitCheck, TellsDegreesOfAngleOfSpeedAndOfBoth) {
   for (const double rate : {50.0, 100.0, 1000.0, 5000.0}) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-      const simulation::Session session = simulation::recordSession(machineOf(seed, rate));
-      for (const Sensor& sensor : {Sensor{kDegrees, 1.0, true}, Sensor{1.0, kDegrees, true},
-                                   Sensor{kDegrees, kDegrees, true}, Sensor{kDegrees, 1.0, false}}) {
+      const simulation::Session session = simulation::recordSession(unwoundMachine(seed, rate));
+      for (const Sensor& sensor :
+           {Sensor{test::kDegreesPerRadian, 1.0, true}, Sensor{1.0, test::kDegreesPerRadian, true},
+            Sensor{test::kDegreesPerRadian, test::kDegreesPerRadian, true},
+            Sensor{test::kDegreesPerRadian, 1.0, false}}) {
         SCOPED_TRACE(testing::Message() << rate << " Hz, angle x " << sensor.angle_unit << ", speed x "
                                         << (sensor.speed ? sensor.speed_unit : 0.0) << ", seed " << seed);
         const Verdict verdict = judge(session, sensor);
@@ -76,7 +78,7 @@ TEST(UnitCheck, IsSilentOnEverySimulatedSession) {
   for (const double rate : {20.0, 50.0, 100.0, 1000.0, 5000.0, 20000.0}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       constexpr int kCounts[] = {0, 4096, 512};
-      simulation::MachineSettings machine = machineOf(seed, rate);
+      simulation::MachineSettings machine = unwoundMachine(seed, rate);
       machine.crank.counts = kCounts[seed - 1];
       machine.crank.speed_noise = seed == 3 ? 1.0 : 0.15;
       machine.crank.stamp_noise = seed == 3 ? 2e-5 : 0.0;
@@ -88,11 +90,11 @@ TEST(UnitCheck, IsSilentOnEverySimulatedSession) {
 }
 
 TEST(UnitCheck, IsCalmedByGoodSamples) {
-  const simulation::Session session = simulation::recordSession(machineOf(1, 1000.0));
+  const simulation::Session session = simulation::recordSession(unwoundMachine(1, 1000.0));
   UnitCheck check(kMaxSpeed);
-  EXPECT_TRUE(judge(session, {kDegrees, 1.0, true}, check).last);
+  EXPECT_TRUE(judge(session, {test::kDegreesPerRadian, 1.0, true}, check).last);
   EXPECT_FALSE(judge(session, {}, check).last);
-  EXPECT_TRUE(judge(session, {kDegrees, 1.0, false}, check).last);
+  EXPECT_TRUE(judge(session, {test::kDegreesPerRadian, 1.0, false}, check).last);
   EXPECT_FALSE(judge(session, {1.0, 1.0, false}, check).last);
 }
 

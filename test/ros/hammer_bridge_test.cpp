@@ -41,9 +41,9 @@ ros::Time timeOfNs(std::int64_t ns) {
   return time;
 }
 
-struct Messages {
+struct SentMessages {
   sensor_msgs::JointState crank, joints;
-  Messages() {
+  SentMessages() {
     crank.name = {"hammer_crank_joint"}, crank.position = {0.0};
     joints.name.assign(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
     joints.position.resize(4), joints.velocity.resize(4);
@@ -58,7 +58,7 @@ void play(HammerBridge& bridge, double rate, bool speeds, const After& after) {
   machine.crank.rate = rate;
   machine.crank.drop_outs = {{4.0, 4.4}, {6.0, 6.1}};
   const simulation::Session session = simulation::recordSession(machine);
-  Messages m;
+  SentMessages m;
   std::size_t joint = 0;
   for (const auto& r : session.crank) {
     for (; joint < session.joints.size() && session.joints[joint].stamp <= r.stamp; ++joint) {
@@ -205,7 +205,7 @@ TEST(TurnLoadsMessage, ComesWithEachBlowAndNamesEveryChannel) {
 
 TEST(Stamps, BeyondEveryClockAreCountedAndTheNextGoodOneWorks) {
   HammerBridge bridge(test::settingsWith("boom: auto\n"));
-  Messages m;
+  SentMessages m;
   m.crank.velocity = {0.0};
   const auto send = [&](std::uint32_t sec, std::uint32_t nsec) {
     m.crank.header.stamp.sec = sec, m.crank.header.stamp.nsec = nsec;
@@ -226,7 +226,7 @@ TEST(HotPath, AllocatesNothingPerMessage) {
   HammerBridge bridge(test::settingsWith("boom: compliant\nboom_wrench_links: [arm_link]\n"));
   std::size_t sent = 0;
   bridge.outputs().forEach([&](auto& output) { output.attach([&](const auto&, const ros::Time&) { ++sent; }); });
-  Messages m;
+  SentMessages m;
   m.crank.velocity = {0.0};
   double angle = 0.5;
   const auto send = [&](int i) {

@@ -8,6 +8,8 @@
 namespace hammer_loads {
 namespace {
 
+using Lines = std::vector<std::string>;
+
 ParameterMap mapOf(const std::string& yaml) {
   std::vector<std::string> problems;
   return parameterMap(YAML::Load(yaml), {}, problems).value();
@@ -69,7 +71,6 @@ TEST(ReadLife, StressByModulusAreaOrCoefficient) {
 
 TEST(ReadLife, WhatIsWrongIsNamed) {
   const auto problems = [](const std::string& yaml) { return read(yaml).problems; };
-  using Lines = std::vector<std::string>;
   EXPECT_EQ(problems(kToe + "toe_hull_y_MPa_per_unit: 1.0"),
             Lines{"toe_hull_y_MPa_per_unit: must be the only one beside toe_hull_y_modulus_m3 and toe_hull_y_area_m2"});
   EXPECT_EQ(

@@ -13,7 +13,7 @@ namespace {
 using XmlRpc::XmlRpcValue;
 using Lines = std::vector<std::string>;
 
-Lines problemsOf(const XmlRpcValue& parameters) {
+Lines problemsOnServer(const XmlRpcValue& parameters) {
   Lines problems;
   const ParameterMap map = parameterMap(yamlFromXmlRpc(parameters), "/node", problems).value();
   const Lines found = load(configDirectory(), map).problems;
@@ -57,7 +57,7 @@ TEST(RosParameters, ReachTheSameReaderAsFiles) {
   parameters["gravity_m_s2"] = 9;
   parameters["crank_estimator"] = "none";
   parameters["pitch_joints"][0] = "boom_joint";
-  EXPECT_EQ(problemsOf(parameters), Lines{});
+  EXPECT_EQ(problemsOnServer(parameters), Lines{});
 }
 
 TEST(RosParameters, ProblemsNameTheNameSpace) {
@@ -66,7 +66,7 @@ TEST(RosParameters, ProblemsNameTheNameSpace) {
   parameters["hull_pitch_rad"] = std::numeric_limits<double>::quiet_NaN();
   parameters["stale_after_s"] = -1.5;
   parameters["excavator"]["length_m"] = 3.0;
-  EXPECT_EQ(problemsOf(parameters),
+  EXPECT_EQ(problemsOnServer(parameters),
             (Lines{"hull_pitch_rad: .nan rad, must be a finite number (/node)",
                    "gravity_m_s2: \"9.8\" m/s2, must be a finite number >= 0 (/node)",
                    "stale_after_s: -1.5 s, must be a finite number > 0 (/node)", "excavator: unknown key (/node)"}));
@@ -75,7 +75,7 @@ TEST(RosParameters, ProblemsNameTheNameSpace) {
 TEST(RosParameters, OneHammerKeyMeansThatAllMustBeGiven) {
   XmlRpcValue parameters;
   parameters["rocker_mass_kg"] = 35.2;
-  EXPECT_EQ(problemsOf(parameters).size(), hammerKeys().size() - 1);
+  EXPECT_EQ(problemsOnServer(parameters).size(), hammerKeys().size() - 1);
 }
 
 }  // namespace

@@ -7,13 +7,12 @@
 #include <set>
 
 #include "hammer_loads/simulation/session.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586232;
-
-MachineSettings shortRun() {
+MachineSettings flawedRun() {
   MachineSettings s = workingMo100();
   s.duration = 8.0;
   s.drive.start_time = 0.7;
@@ -22,7 +21,7 @@ MachineSettings shortRun() {
 }
 
 MachineSettings heavyLinks() {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.level = Level::kLinkage;
   s.hammer.rod_mass = 9.0;
   s.hammer.rod_com_along = 0.07;
@@ -34,7 +33,7 @@ MachineSettings heavyLinks() {
 }
 
 /// Within the integration's error, 1e-10 of the energy that went through.
-void expectBalanced(const EnergyAccount& e) {
+void expectAllAccountedFor(const EnergyAccount& e) {
   EXPECT_NEAR(e.kinetic + e.blows + e.losses + e.stops, e.motor - e.friction + e.weight, 1e-6 + 1e-10 * e.motor);
   EXPECT_NEAR(e.stored, e.supply - e.motor - e.valves, 1e-6 + 1e-10 * e.motor);
 }
@@ -47,7 +46,7 @@ double since(const MachineSettings& s, const CrankReading& reading) {
 
 TEST(Blows, EveryWayOfMeetingTheToolBalancesItsEnergy) {
   for (int way = 0; way < 6; ++way) {
-    for (MachineSettings s : {shortRun(), heavyLinks()}) {
+    for (MachineSettings s : {flawedRun(), heavyLinks()}) {
       if (way == 0 || way == 5) s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
       if (way == 1) s.blow.crank_loss = 0.2;
       if (way == 2) s.blow.tool_early = 0.3 * kTwoPi / 360.0;
@@ -56,7 +55,7 @@ TEST(Blows, EveryWayOfMeetingTheToolBalancesItsEnergy) {
       if (way == 5) s.blow.crank_loss = 0.1, s.blow.blank_share = 0.1, s.drive.coupling_frequency = 80.0;
       WorkingMachine machine(s);
       machine.advanceTo(s.duration);
-      expectBalanced(machine.energy());
+      expectAllAccountedFor(machine.energy());
       double energy = 0.0;
       const std::vector<BlowTruth> blows = machine.takeBlows();
       for (const BlowTruth& blow : blows) energy += blow.strike.energy;
@@ -116,7 +115,7 @@ TEST(Blows, ToolsImpulseAndMomentumDecideTheSpeeds) {
 }
 
 TEST(Blows, RestitutionThatKeepsTheSpeedIsThePlainBlow) {
-  const MachineSettings s = shortRun();
+  const MachineSettings s = flawedRun();
   const MovingLinks links(*Mechanism::make(s.hammer).value, s.level);
   const Strike plain = links.strike(13.6);
   const Strike drawn = links.strike(13.6, -plain.rocker_speed_after / plain.rocker_speed_before, 0.6);
@@ -127,7 +126,7 @@ TEST(Blows, RestitutionThatKeepsTheSpeedIsThePlainBlow) {
 }
 
 TEST(Blows, RestitutionIsDrawnAnewBetweenItsBounds) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.duration = 20.0;
   s.blow.restitution_drawn = true;
   s.blow.restitution_high = 0.3;
@@ -148,7 +147,7 @@ TEST(Blows, RestitutionIsDrawnAnewBetweenItsBounds) {
 
 TEST(Blows, SpeedAfterIsWhatTheCrankGoesOnWith) {
   for (int way = 0; way < 2; ++way) {
-    MachineSettings s = shortRun();
+    MachineSettings s = flawedRun();
     if (way == 0) s.blow.crank_loss = 0.35;
     if (way == 1) s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
     const std::vector<BlowTruth> blows = recordSession(s).blows;
@@ -166,7 +165,7 @@ TEST(Blows, SpeedAfterIsWhatTheCrankGoesOnWith) {
 }
 
 TEST(Blows, EarlyToolSlowsTheCrankBeforeTheDeadCentre) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.blow.tool_early = 0.3 * kTwoPi / 360.0;
   const std::vector<BlowTruth> blows = recordSession(s).blows;
   std::vector<double> times;
@@ -182,7 +181,7 @@ TEST(Blows, EarlyToolSlowsTheCrankBeforeTheDeadCentre) {
 
 /// Without a tool and friction nothing tells one branch from the other: the energy stays, turn after turn.
 TEST(Blows, BlankTurnGoesThroughTheMirroredBranchSmoothly) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.blow.blank_share = 1.0;
   s.drive.coulomb_friction = s.drive.viscous_friction = s.drive.leakage = 0.0;
   s.gravity = 0.0;
@@ -205,11 +204,11 @@ TEST(Blows, BlankTurnGoesThroughTheMirroredBranchSmoothly) {
   EXPECT_GT(mirrored, 4000);
   EXPECT_GT(upright, 4000);
   EXPECT_TRUE(machine.takeBlows().empty());
-  expectBalanced(machine.energy());
+  expectAllAccountedFor(machine.energy());
 }
 
 TEST(Blows, BlankShareIsThatOfTheBlows) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.duration = 60.0;
   s.drive.stop_time = 60.0;
   s.blow.blank_share = 0.1;
@@ -221,7 +220,7 @@ TEST(Blows, BlankShareIsThatOfTheBlows) {
 }
 
 TEST(Coupling, MotorSwingsAgainstTheCrankAtItsFrequency) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.drive.coupling_frequency = 60.0;
   s.drive.coupling_damping = 0.0;
   s.drive.motor_share = 0.3;
@@ -249,12 +248,12 @@ TEST(Coupling, MotorSwingsAgainstTheCrankAtItsFrequency) {
 // --- The sensor -------------------------------------------------------------------------------------------------
 
 TEST(Stamps, FlawsOfTheMessagesLeaveMachineAndReadingsAsTheyAre) {
-  MachineSettings flawed = shortRun();
+  MachineSettings flawed = flawedRun();
   flawed.crank.stamp_noise = 3e-4;
   flawed.crank.stamps_late = true;
   flawed.crank.stamp_step = 1e-3;
   flawed.crank.latency = 2e-3;
-  const Session plain = recordSession(shortRun()), other = recordSession(flawed);
+  const Session plain = recordSession(flawedRun()), other = recordSession(flawed);
   ASSERT_EQ(plain.crank.size(), other.crank.size());
   for (std::size_t i = 0; i < plain.crank.size(); ++i) {
     ASSERT_EQ(plain.crank[i].angle, other.crank[i].angle);
@@ -265,7 +264,7 @@ TEST(Stamps, FlawsOfTheMessagesLeaveMachineAndReadingsAsTheyAre) {
 
 TEST(Stamps, NoiseHasItsDeviationOrOnlyDelays) {
   for (const bool late : {false, true}) {
-    MachineSettings s = shortRun();
+    MachineSettings s = flawedRun();
     s.crank.stamp_noise = 2e-4;
     s.crank.stamps_late = late;
     const Session session = recordSession(s);
@@ -284,7 +283,7 @@ TEST(Stamps, NoiseHasItsDeviationOrOnlyDelays) {
 }
 
 TEST(Stamps, WholeMillisecondsRepeat) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.crank.stamp_step = 1e-3;
   const Session session = recordSession(s);
   std::size_t repeated = 0;
@@ -298,7 +297,7 @@ TEST(Stamps, WholeMillisecondsRepeat) {
 }
 
 TEST(Stamps, BurstsCarryTheLastStamp) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.crank.burst = 10;
   const Session session = recordSession(s);
   ASSERT_GT(session.crank.size(), 7900U);
@@ -310,7 +309,7 @@ TEST(Stamps, BurstsCarryTheLastStamp) {
 }
 
 TEST(Stamps, DuplicatesComeTwice) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.crank.duplicate_share = 0.05;
   const Session session = recordSession(s);
   std::set<std::int64_t> stamps;
@@ -322,7 +321,7 @@ TEST(Stamps, DuplicatesComeTwice) {
 
 /// The truth of a header stamp is that of a reading really taken then.
 TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.crank.stamp_noise = 3e-4;
   s.crank.latency = 4e-3;
   s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
@@ -345,7 +344,7 @@ TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
 }
 
 TEST(Encoder, ReadingIsTheContractsFormula) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.crank.counts = 0;
   s.crank.unwound = true;
   s.crank.speed_noise = 0.0;
@@ -366,7 +365,7 @@ TEST(Encoder, ReadingIsTheContractsFormula) {
 }
 
 TEST(Encoder, GearedOneCountsItsOwnTurns) {
-  MachineSettings s = shortRun();
+  MachineSettings s = flawedRun();
   s.crank.ratio = 2.5;
   s.crank.counts = 1024;
   const Session session = recordSession(s);

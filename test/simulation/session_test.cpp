@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "hammer_loads/util/constants.h"
+
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586232;
-
-MachineSettings shortRun() {
+MachineSettings quietRun() {
   MachineSettings s = workingMo100();
   s.duration = 4.0;
   s.drive.start_time = 0.7;
@@ -31,12 +31,12 @@ void expectSame(const Session& a, const Session& b) {
   }
 }
 
-TEST(Session, SameSeedSameReadings) { expectSame(recordSession(shortRun()), recordSession(shortRun())); }
+TEST(Session, SameSeedSameReadings) { expectSame(recordSession(quietRun()), recordSession(quietRun())); }
 
 TEST(Session, OtherSeedOtherNoiseSameMachine) {
-  MachineSettings other = shortRun();
+  MachineSettings other = quietRun();
   other.seed = 2;
-  const Session a = recordSession(shortRun()), b = recordSession(other);
+  const Session a = recordSession(quietRun()), b = recordSession(other);
   EXPECT_NE(a.crank[100].stamp, b.crank[100].stamp);
   ASSERT_EQ(a.blows.size(), b.blows.size());
   EXPECT_NEAR(a.blows.back().time, b.blows.back().time, 1e-6);
@@ -44,8 +44,8 @@ TEST(Session, OtherSeedOtherNoiseSameMachine) {
 
 /// The grid of integration differs, so readings agree to its error, the noise exactly.
 TEST(Session, PiecesGiveTheWhole) {
-  const Session whole = recordSession(shortRun());
-  SessionStream stream(shortRun());
+  const Session whole = recordSession(quietRun());
+  SessionStream stream(quietRun());
   Session pieces;
   for (int i = 1; i <= 800; ++i) stream.advanceTo(0.005 * i, pieces);
   ASSERT_EQ(whole.crank.size(), pieces.crank.size());
@@ -59,19 +59,19 @@ TEST(Session, PiecesGiveTheWhole) {
 }
 
 TEST(Session, StampsAreTheTruthsInstants) {
-  const Session session = recordSession(shortRun());
+  const Session session = recordSession(quietRun());
   ASSERT_EQ(session.crank.size(), session.truth.size());
   EXPECT_NEAR(static_cast<double>(session.crank.size()), 4000.0, 1.0);
   EXPECT_EQ(session.joints.size(), 200U);
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const std::int64_t since = session.crank[i].stamp - shortRun().start_stamp;
+    const std::int64_t since = session.crank[i].stamp - quietRun().start_stamp;
     ASSERT_EQ(static_cast<double>(since) * 1e-9, session.truth[i].time);
     ASSERT_TRUE(i == 0 || session.crank[i].stamp > session.crank[i - 1].stamp);
   }
 }
 
 TEST(Session, AngleIsTheEncodersCount) {
-  const Session session = recordSession(shortRun());
+  const Session session = recordSession(quietRun());
   const double count = kTwoPi / 4096;
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
     const double below = session.truth[i].angle - session.crank[i].angle;
@@ -84,9 +84,9 @@ TEST(Session, AngleIsTheEncodersCount) {
 }
 
 TEST(Session, UnwoundAngleGrowsByTheTurns) {
-  MachineSettings s = shortRun();
+  MachineSettings s = quietRun();
   s.crank.unwound = true;
-  const Session wrapped = recordSession(shortRun()), unwound = recordSession(s);
+  const Session wrapped = recordSession(quietRun()), unwound = recordSession(s);
   ASSERT_EQ(wrapped.crank.size(), unwound.crank.size());
   for (std::size_t i = 0; i < wrapped.crank.size(); ++i) {
     const double turns = static_cast<double>(unwound.truth[i].turn) * kTwoPi;
@@ -96,7 +96,7 @@ TEST(Session, UnwoundAngleGrowsByTheTurns) {
 }
 
 TEST(Session, SpeedNoiseHasItsDeviation) {
-  const Session session = recordSession(shortRun());
+  const Session session = recordSession(quietRun());
   double sum = 0.0, squares = 0.0, fourth = 0.0;
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
     const double error = *session.crank[i].speed - session.truth[i].speed;
@@ -111,9 +111,9 @@ TEST(Session, SpeedNoiseHasItsDeviation) {
 }
 
 TEST(Session, DropOutsTakeOnlyTheirSamples) {
-  MachineSettings s = shortRun();
+  MachineSettings s = quietRun();
   s.crank.drop_outs = {{2.0, 2.1}, {3.0, 3.02}};
-  const Session whole = recordSession(shortRun()), gaps = recordSession(s);
+  const Session whole = recordSession(quietRun()), gaps = recordSession(s);
   EXPECT_NEAR(static_cast<double>(whole.crank.size() - gaps.crank.size()), 120.0, 1.0);
   std::size_t j = 0;
   for (std::size_t i = 0; i < whole.crank.size(); ++i) {
@@ -128,9 +128,9 @@ TEST(Session, DropOutsTakeOnlyTheirSamples) {
 }
 
 TEST(Session, SpeedMayBeMissing) {
-  MachineSettings s = shortRun();
+  MachineSettings s = quietRun();
   s.crank.speed = false;
-  const Session with = recordSession(shortRun()), without = recordSession(s);
+  const Session with = recordSession(quietRun()), without = recordSession(s);
   ASSERT_EQ(with.crank.size(), without.crank.size());
   for (std::size_t i = 0; i < with.crank.size(); ++i) {
     ASSERT_FALSE(without.crank[i].speed);
@@ -140,7 +140,7 @@ TEST(Session, SpeedMayBeMissing) {
 }
 
 TEST(Session, JointsGiveTheTruthsPitch) {
-  const MachineSettings s = shortRun();
+  const MachineSettings s = quietRun();
   const Session session = recordSession(s);
   const WorkingMachine machine(s);
   const double h = 1e-4;
@@ -159,7 +159,7 @@ TEST(Session, JointsGiveTheTruthsPitch) {
 
 TEST(Session, HoldsAtOtherRatesAndCounts) {
   for (const double rate : {100.0, 5000.0}) {
-    MachineSettings s = shortRun();
+    MachineSettings s = quietRun();
     s.crank.rate = rate;
     s.crank.counts = 0;
     s.crank.jitter = 0.5 / rate;  // far too much: cut at 0.45 periods, order is kept

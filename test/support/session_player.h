@@ -13,6 +13,7 @@
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "settings/temporary_file.h"
+#include "support/constants.h"
 #include "support/imu_on_hull.h"
 
 namespace hammer_loads::test {
@@ -96,7 +97,6 @@ class Player {
 
 /// What a unit reads on a resting hull of that pitch [rad].
 inline ImuReading atRest(double pitch, const HullImuSettings& mounting) {
-  constexpr double kGravity = 9.80665;
   return readingOf({{kGravity * std::sin(pitch), -kGravity * std::cos(pitch)}}, mounting);
 }
 

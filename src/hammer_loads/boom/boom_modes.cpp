@@ -2,7 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
+
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -98,7 +99,6 @@ ReducedHull reducedAtTip(const BoomModes& modes, const JointVector& tip_velocity
     mobility += modal * modal;
     compliance += modal * modal / (modes.omega[k] * modes.omega[k]);
   }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {mobility > 0.0 ? 1.0 / mobility : kInfinity, compliance > 0.0 ? 1.0 / compliance : kInfinity};
 }
 

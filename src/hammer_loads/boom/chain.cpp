@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
-#include <limits>
 #include <set>
 #include <utility>
 
 #include "hammer_loads/boom/urdf_text.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool moves(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "hammer_loads/util/constants.h"
@@ -141,7 +140,6 @@ CylinderPosition Cylinder::at(double joint_angle) const noexcept {
 
 CylinderLoad Cylinder::load(const CylinderPosition& position, double joint_torque) const noexcept {
   if (position.dead_centre) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return {kNaN, kNaN, true};
   }
   const double force = -joint_torque / position.arm;

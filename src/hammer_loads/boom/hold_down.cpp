@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// How many times `load` may be added to `now` before the sum passes `limit`; each in the direction that gives.
 double factor(double now, double load, double limit) noexcept {

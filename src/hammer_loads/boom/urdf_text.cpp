@@ -44,7 +44,7 @@ class Errors : public console_bridge::OutputHandler {
 };
 
 /// Beyond these no figure of a machine lies, and no product of figures overflows.
-constexpr double kMostLength = 1e6;    // [m]
+constexpr double kMostOffset = 1e6;    // [m]
 constexpr double kMostMass = 1e9;      // [kg]
 constexpr double kMostInertia = 1e18;  // [kg m2]
 
@@ -59,9 +59,9 @@ void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
     problems.push_back(format("robot_description: mass of link %s: %.9g kg, must be >= 0 and at most %.0e kg", name,
                               body.mass, kMostMass));
   }
-  if (!within(body.origin.position, kMostLength)) {
+  if (!within(body.origin.position, kMostOffset)) {
     problems.push_back(
-        format("robot_description: centre of mass of link %s: must be within %.0e m", name, kMostLength));
+        format("robot_description: centre of mass of link %s: must be within %.0e m", name, kMostOffset));
   }
   Eigen::Matrix3d inertia;
   inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz, body.izz;
@@ -84,8 +84,8 @@ void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
 
 void checkJoint(const urdf::Joint& joint, std::vector<std::string>& problems) {
   const char* name = joint.name.c_str();
-  if (!within(joint.parent_to_joint_origin_transform.position, kMostLength)) {
-    problems.push_back(format("robot_description: origin of joint %s: must be within %.0e m", name, kMostLength));
+  if (!within(joint.parent_to_joint_origin_transform.position, kMostOffset)) {
+    problems.push_back(format("robot_description: origin of joint %s: must be within %.0e m", name, kMostOffset));
   }
   const urdf::Vector3& a = joint.axis;
   const double length = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);

@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/commands/replace_file.h"
@@ -11,6 +10,7 @@
 #include "hammer_loads/life/count_state.h"
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -163,7 +163,6 @@ int run(int argc, const char* const* argv) {
   app.footer(kNotes);
   Options options;
   auto* exact = app.add_flag("--exact", options.exact, "every value as it is");
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   auto* scale = app.add_option("--full-scale", options.full_scale, "count on a grid from LO to HI")
                     ->expected(2)
                     ->type_name("LO HI")

@@ -1,10 +1,10 @@
 /// turn_table: one turn of the hammer at constant crank speed, as CSV or as its pulse.
 #include <cmath>
 #include <iostream>
-#include <limits>
 
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/hammer/turn_table.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -13,7 +13,6 @@ constexpr std::size_t kRowsAtOnce = 4096;
 
 int run(int argc, const char* const* argv) {
   CLI::App app("Load of the hammer on its hull over one turn at constant crank speed", "turn_table");
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<std::string> files;
   std::optional<Level> level;
   double speed = 31.416, step = 1.0, pitch = 0.0;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 #include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/linkage/drive_reaction.h"
@@ -46,6 +48,11 @@ struct ShaftState {
   double torque{};         ///< net drive torque tau on the crank [N m]
   double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
 };
+
+/// Whether the tool may be met within a step of length dt [s]: 3.4 deg or 1.5 steps around the dead centre.
+inline bool isNearTool(const ShaftState& state, double dt) noexcept {
+  return std::abs(state.position.angle.offset) < std::max(0.06, 1.5 * std::abs(state.speed) * dt);
+}
 
 /// w' = (tau + weight - Jc r alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;

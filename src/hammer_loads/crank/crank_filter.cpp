@@ -23,8 +23,6 @@ constexpr double kSoundSpeeds = 2.0;       // times the largest plausible speed:
 constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
 constexpr double kNearCounts = 4.0;        // counts from the blow within which the encoder decides its side
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
-constexpr double kToolZone = 0.06;         // [rad] around the dead centre where the tool may be met: 3.4 deg
-constexpr double kToolSteps = 1.5;         // steps around it likewise
 constexpr double kToolDeviation = 0.5;     // of the crank's speed: what a tool met there may take
 constexpr double kToolSeen = 16.0;         // innovation^2 over its variance that shows it
 constexpr double kCertain = 3.0;           // deviations of the stamp within which the encoder's edge decides nothing
@@ -225,9 +223,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last) noexcept {
 /// (4) A crank that is suddenly slower near the dead centre, or just after it than any blow makes it: the tool. True
 /// where the belief has taken it up.
 bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
-  const bool zone =
-      std::abs(now_.state.position.angle.offset) < std::max(kToolZone, kToolSteps * now_.state.speed * dt);
-  if (!zone || now_.state.speed < 1.0 || mirrored_) return false;
+  if (!isNearTool(now_.state, dt) || now_.state.speed < 1.0 || mirrored_) return false;
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
   const bool by_angle = (angle.value < 0.0 || !before) && angle.ratio() > kToolSeen;
   bool by_speed = false;

@@ -9,16 +9,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kToolZone = 0.06;      // [rad] around the dead centre where the tool may be met
-constexpr double kToolSteps = 1.5;      // steps around it likewise
 constexpr double kUnseenGrowth = 2.78;  // the live filter counts 0.6 deviations of the sensor's errors that are not
                                         // seen: its noise covers the rest
-
-/// Where a sample may have been taken as before or after a tool that it is not.
-bool isNearTool(const TrackedSample& sample) noexcept {
-  const ShaftState& state = sample.belief.state;
-  return std::abs(state.position.angle.offset) < std::max(kToolZone, kToolSteps * std::abs(state.speed) * sample.step);
-}
 
 }  // namespace
 
@@ -85,7 +77,7 @@ void CrankTrack::smooth(std::size_t count) {
   for (std::size_t i = samples_.size(); i > ready_; --i) {
     TrackedSample& sample = samples_[i - 1];
     if (sample.tracking == Tracking::kOutlier) continue;
-    const bool is_doubtful = is_cut && isNearTool(later);
+    const bool is_doubtful = is_cut && isNearTool(later.belief.state, later.step);
     const std::optional<CrankBelief> smoothed = is_last || is_doubtful ? std::nullopt : before(sample, later, next);
     is_cut = !smoothed;
     const double next_factor = next.factor;

@@ -12,7 +12,7 @@ namespace {
 constexpr double kPrior = 0.05;                          // [rad]: 3 deg, far beyond what is found well
 constexpr int kFirstTurns = 4;                           // the drive inertia is learned first
 constexpr int kTurnsToKnow = 6;                          // nothing is concluded before
-constexpr double kMemory = 300.0;                        // turns: a minute at work
+constexpr double kMemoryTurns = 300.0;                   // turns: a minute at work
 constexpr double kUnmodelled[3] = {1.7e-3, 2e-3, 4e-3};  // [rad] what a clean machine shows: 0.10, 0.11, 0.23 deg
 constexpr double kUnmodelledCounts = 0.5;  // likewise, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
 constexpr double kUnmodelledDeviations = 2.5;  // likewise, where it is seen less well
@@ -48,8 +48,8 @@ void SensorErrors::endTurn(double growth, double count) noexcept {
   moment_ = square(kUnseenDeviations / unmodelled) * growth * covariance + certain * certain.transpose();
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
-  information_ *= 1.0 - 1.0 / kMemory;
-  score_ *= 1.0 - 1.0 / kMemory;
+  information_ *= 1.0 - 1.0 / kMemoryTurns;
+  score_ *= 1.0 - 1.0 / kMemoryTurns;
 }
 
 }  // namespace hammer_loads

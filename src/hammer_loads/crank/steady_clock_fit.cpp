@@ -8,7 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMemory = 4096.0;         // samples
+constexpr double kMemorySamples = 4096.0;  // samples
 constexpr double kScatterSamples = 300.0;  // over which scatter is learned, but no fewer than kWarm runs
 constexpr int kWarm = 20;                  // runs from which on the line is good enough to judge by
 constexpr int kFirst = 4;                  // runs until there is a line
@@ -40,7 +40,7 @@ void SteadyClockFit::endRun() noexcept {
   end_residual_ = end;
   if (++runs_ == 1) return;  // the first one is the line's beginning
   mean_length_ += (run_length_ - mean_length_) / std::min<double>(runs_, kScatterSamples);
-  const double n = std::min<double>(runs_, kMemory / mean_length_);
+  const double n = std::min<double>(runs_, kMemorySamples / mean_length_);
   double used = end;
   if (runs_ >= kWarm) {
     const double most = kClip * std::max(std::sqrt(end_square_), 0.01 * interval_);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLongestStep = 0.01;   ///< along the curve [rad]
 constexpr double kShortestStep = 1e-6;  ///< [rad]: a branch that needs shorter ones has no tangent there
-constexpr int kMostSteps = 100000;
+constexpr int kMostFoldSteps = 100000;
 
 /// The curve of poses and det J at one point; gradients by (theta1, theta2, theta5).
 struct Local {
@@ -76,7 +76,7 @@ class BranchWalk {
   BranchEnd follow(double span) {
     const double start = y_[0];
     double step = kLongestStep;
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMostFoldSteps; ++i) {
       const Eigen::Vector3d along = unitTangent(local_);
       Eigen::Vector3d y;
       Local local;

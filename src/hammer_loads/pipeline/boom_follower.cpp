@@ -1,7 +1,6 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "hammer_loads/boom/contact_load.h"
@@ -10,13 +9,11 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastContact = 0.02;  // of the boom's weight: pressures show no smaller force
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 BoomDeviations unknownDeviations(int joints) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Wrench unknown{Eigen::Vector3d::Constant(kNaN), Eigen::Vector3d::Constant(kNaN)};
   BoomDeviations deviations;
   deviations.torque = JointVector::Constant(joints, kNaN);

@@ -1,7 +1,8 @@
 #include "hammer_loads/pipeline/channel_values.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -22,7 +23,6 @@ void channelValues(const SampleResult& result, const HullWrench& wrench_deviatio
   const auto joints = static_cast<std::size_t>(boom->chain().joints());
   const std::size_t cylinders = boom->cylinders().size(), sections = boom->sections().size();
   if (result.boom == nullptr || result.boom->fault) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     std::fill_n(value, joints + cylinders + kSectionChannels * sections, kNaN);
     std::fill_n(deviation, joints + cylinders + kSectionChannels * sections, kNaN);
     return;

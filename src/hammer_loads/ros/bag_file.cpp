@@ -14,7 +14,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30U;  // unpacked [byte]; rosbag writes some 1e6
 
 rosbag::CompressionType packingOf(std::string_view name) {
@@ -52,15 +51,16 @@ BagFile::BagFile(const std::string& file) : descriptor_(open(file.c_str(), O_RDO
   if (descriptor_ < 0 || fstat(descriptor_, &found) != 0) throw std::runtime_error(std::strerror(errno));
   size_ = static_cast<std::uint64_t>(found.st_size);
   constexpr std::size_t kBagHeader = 4096;  // as long as this with the padding behind it
-  const std::string beginning = bytesAt(0, std::min<std::uint64_t>(size_, kMagic.size() + kBagHeader + 100));
+  const std::string beginning = bytesAt(0, std::min<std::uint64_t>(size_, kBagMagic.size() + kBagHeader + 100));
   std::string_view rest = beginning;
-  if (rest.substr(0, 9) != kMagic.substr(0, 9)) throw std::runtime_error("it does not begin as a bag");
-  if (rest.substr(0, kMagic.size()) != kMagic)
+  if (rest.substr(0, 9) != kBagMagic.substr(0, 9)) throw std::runtime_error("it does not begin as a bag");
+  if (rest.substr(0, kBagMagic.size()) != kBagMagic)
     throw std::runtime_error("a bag of another format than 2.0; `rosbag fix` converts it");
-  rest.remove_prefix(kMagic.size());
+  rest.remove_prefix(kBagMagic.size());
   const std::string_view header = BagRecord::take(rest).header;
   if (numberOf<std::uint8_t>(header, "op") != BagRecord::kBag) throw std::runtime_error("it has no bag header");
-  if (!fieldOf(header, "encryptor").empty()) throw std::runtime_error("it is encrypted; `rosbag decrypt` makes it plain");
+  if (!fieldOf(header, "encryptor").empty())
+    throw std::runtime_error("it is encrypted; `rosbag decrypt` makes it plain");
   const auto index = numberOf<std::uint64_t>(header, "index_pos");
   if (index == 0) throw rosbag::BagUnindexedException();
   readIndex(index, numberOf<std::uint32_t>(header, "conn_count"), numberOf<std::uint32_t>(header, "chunk_count"));

@@ -10,6 +10,8 @@
 
 namespace hammer_loads {
 
+constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";  ///< a bag begins with it
+
 /// Number in the bytes' first places, little end first as every machine that ROS runs on.
 template <typename T>
 T numberIn(std::string_view bytes) {

@@ -13,7 +13,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr char kMagic[] = "#ROSBAG V2.0\n";
 constexpr std::size_t kChunk = 768 * 1024;  // as rosbag's
 constexpr std::uint32_t kBagHeader = 4096;  // padded, so that it can be written again at the end
 constexpr int kBlock = 6;                   // of LZ4, as rosbag's: 1 MB
@@ -45,7 +44,7 @@ std::string pieceOf(const std::string& bytes) { return bytesOf(static_cast<std::
 BagWriter::BagWriter(const std::string& file)
     : descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) fail();
-  writeBytes(kMagic);
+  writeBytes(std::string(kBagMagic));
   writeBagHeader(0);
   chunks_.emplace_back();
 }
@@ -169,7 +168,7 @@ void BagWriter::close() {
     index += pieceOf(header) + pieceOf(data);
   }
   writeBytes(index);
-  if (lseek(descriptor_, sizeof kMagic - 1, SEEK_SET) < 0) fail();
+  if (lseek(descriptor_, kBagMagic.size(), SEEK_SET) < 0) fail();
   writeBagHeader(index_position);
   const int descriptor = std::exchange(descriptor_, -1);
   if (::close(descriptor) != 0) fail();

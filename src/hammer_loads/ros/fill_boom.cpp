@@ -1,14 +1,13 @@
 #include "hammer_loads/ros/fill_boom.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "hammer_loads/ros/stamp.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kLongestLimit = 256;  // more than a cylinder's name has
 
 void copy(const JointVector& from, std::vector<double>& to) { std::copy(from.begin(), from.end(), to.begin()); }

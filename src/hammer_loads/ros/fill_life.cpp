@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 
 #include "hammer_loads/life/life_report.h"
 #include "hammer_loads/ros/stamp.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void fillCount(const life::CycleCount& count, ChannelCycles& message) {
   message.least = count.grid.least();

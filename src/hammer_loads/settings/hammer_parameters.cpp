@@ -8,34 +8,34 @@
 namespace hammer_loads {
 namespace {
 
-using P = HammerParameters;
-
 struct HammerKey {
   const char* key;
   const char* unit;
-  double& (*field)(P&);
+  double& (*field)(HammerParameters&);
 };
 
 constexpr HammerKey kHammerKeys[] = {
-    {"crank_length_m", "m", [](P& p) -> double& { return p.lengths.crank; }},
-    {"rod_length_m", "m", [](P& p) -> double& { return p.lengths.rod; }},
-    {"rocker_length_m", "m", [](P& p) -> double& { return p.lengths.rocker; }},
-    {"pivot_distance_m", "m", [](P& p) -> double& { return p.lengths.pivot_distance; }},
-    {"rocker_com_distance_m", "m", [](P& p) -> double& { return p.rocker_com_distance; }},
-    {"rocker_com_angle_deg", "deg", [](P& p) -> double& { return p.rocker_com_angle; }},
-    {"rocker_mass_kg", "kg", [](P& p) -> double& { return p.rocker_mass; }},
-    {"rocker_inertia_about_pivot_kg_m2", "kg m2", [](P& p) -> double& { return p.rocker_inertia_about_pivot; }},
-    {"striking_distance_m", "m", [](P& p) -> double& { return p.striking_distance; }},
-    {"striking_friction", "", [](P& p) -> double& { return p.striking_friction; }},
-    {"crank_mass_kg", "kg", [](P& p) -> double& { return p.crank_mass; }},
-    {"crank_com_along_m", "m", [](P& p) -> double& { return p.crank_com_along; }},
-    {"crank_com_across_m", "m", [](P& p) -> double& { return p.crank_com_across; }},
-    {"crank_inertia_about_com_kg_m2", "kg m2", [](P& p) -> double& { return p.crank_inertia_about_com; }},
-    {"rod_mass_kg", "kg", [](P& p) -> double& { return p.rod_mass; }},
-    {"rod_com_along_m", "m", [](P& p) -> double& { return p.rod_com_along; }},
-    {"rod_com_across_m", "m", [](P& p) -> double& { return p.rod_com_across; }},
-    {"rod_inertia_about_com_kg_m2", "kg m2", [](P& p) -> double& { return p.rod_inertia_about_com; }},
-    {"drive_inertia_kg_m2", "kg m2", [](P& p) -> double& { return p.drive_inertia; }},
+    {"crank_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.crank; }},
+    {"rod_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rod; }},
+    {"rocker_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rocker; }},
+    {"pivot_distance_m", "m", [](HammerParameters& p) -> double& { return p.lengths.pivot_distance; }},
+    {"rocker_com_distance_m", "m", [](HammerParameters& p) -> double& { return p.rocker_com_distance; }},
+    {"rocker_com_angle_deg", "deg", [](HammerParameters& p) -> double& { return p.rocker_com_angle; }},
+    {"rocker_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.rocker_mass; }},
+    {"rocker_inertia_about_pivot_kg_m2", "kg m2",
+     [](HammerParameters& p) -> double& { return p.rocker_inertia_about_pivot; }},
+    {"striking_distance_m", "m", [](HammerParameters& p) -> double& { return p.striking_distance; }},
+    {"striking_friction", "", [](HammerParameters& p) -> double& { return p.striking_friction; }},
+    {"crank_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.crank_mass; }},
+    {"crank_com_along_m", "m", [](HammerParameters& p) -> double& { return p.crank_com_along; }},
+    {"crank_com_across_m", "m", [](HammerParameters& p) -> double& { return p.crank_com_across; }},
+    {"crank_inertia_about_com_kg_m2", "kg m2",
+     [](HammerParameters& p) -> double& { return p.crank_inertia_about_com; }},
+    {"rod_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.rod_mass; }},
+    {"rod_com_along_m", "m", [](HammerParameters& p) -> double& { return p.rod_com_along; }},
+    {"rod_com_across_m", "m", [](HammerParameters& p) -> double& { return p.rod_com_across; }},
+    {"rod_inertia_about_com_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.rod_inertia_about_com; }},
+    {"drive_inertia_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.drive_inertia; }},
 };
 
 constexpr const char* kRatioKey = "drive_reaction_ratio";

@@ -7,38 +7,36 @@
 namespace hammer_loads {
 namespace {
 
-using P = GrappleParameters;
-
 struct GrappleKey {
   const char* key;
   const char* unit;
-  double& (*field)(P&);
+  double& (*field)(GrappleParameters&);
 };
 
 constexpr GrappleKey kGrappleKeys[] = {
-    {"o1_x_m", "m", [](P& p) -> double& { return p.o1.re; }},
-    {"o1_y_m", "m", [](P& p) -> double& { return p.o1.im; }},
-    {"slider_line_x_m", "m", [](P& p) -> double& { return p.slider_x; }},
-    {"o1h_length_m", "m", [](P& p) -> double& { return p.o1h; }},
-    {"o1a_length_m", "m", [](P& p) -> double& { return p.o1a; }},
-    {"ho1a_angle_rad", "rad", [](P& p) -> double& { return p.ho1a; }},
-    {"gh_length_m", "m", [](P& p) -> double& { return p.gh; }},
-    {"ab_length_m", "m", [](P& p) -> double& { return p.ab; }},
-    {"ac_length_m", "m", [](P& p) -> double& { return p.ac; }},
-    {"bac_angle_rad", "rad", [](P& p) -> double& { return p.bac; }},
-    {"bd_length_m", "m", [](P& p) -> double& { return p.bd; }},
-    {"bp_length_m", "m", [](P& p) -> double& { return p.bp; }},
-    {"dbp_angle_rad", "rad", [](P& p) -> double& { return p.dbp; }},
-    {"ce_length_m", "m", [](P& p) -> double& { return p.ce; }},
-    {"od_length_m", "m", [](P& p) -> double& { return p.od; }},
-    {"oe_length_m", "m", [](P& p) -> double& { return p.oe; }},
-    {"doe_angle_rad", "rad", [](P& p) -> double& { return p.doe; }},
-    {"slider_closed_m", "m", [](P& p) -> double& { return p.slider_closed; }},
-    {"slider_open_m", "m", [](P& p) -> double& { return p.slider_open; }},
-    {"slider_margin_m", "m", [](P& p) -> double& { return p.slider_margin; }},
-    {"reference_slider_m", "m", [](P& p) -> double& { return p.reference_slider; }},
-    {"reference_ab_angle_rad", "rad", [](P& p) -> double& { return p.reference_ab; }},
-    {"reference_od_angle_rad", "rad", [](P& p) -> double& { return p.reference_od; }},
+    {"o1_x_m", "m", [](GrappleParameters& p) -> double& { return p.o1.re; }},
+    {"o1_y_m", "m", [](GrappleParameters& p) -> double& { return p.o1.im; }},
+    {"slider_line_x_m", "m", [](GrappleParameters& p) -> double& { return p.slider_x; }},
+    {"o1h_length_m", "m", [](GrappleParameters& p) -> double& { return p.o1h; }},
+    {"o1a_length_m", "m", [](GrappleParameters& p) -> double& { return p.o1a; }},
+    {"ho1a_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.ho1a; }},
+    {"gh_length_m", "m", [](GrappleParameters& p) -> double& { return p.gh; }},
+    {"ab_length_m", "m", [](GrappleParameters& p) -> double& { return p.ab; }},
+    {"ac_length_m", "m", [](GrappleParameters& p) -> double& { return p.ac; }},
+    {"bac_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.bac; }},
+    {"bd_length_m", "m", [](GrappleParameters& p) -> double& { return p.bd; }},
+    {"bp_length_m", "m", [](GrappleParameters& p) -> double& { return p.bp; }},
+    {"dbp_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.dbp; }},
+    {"ce_length_m", "m", [](GrappleParameters& p) -> double& { return p.ce; }},
+    {"od_length_m", "m", [](GrappleParameters& p) -> double& { return p.od; }},
+    {"oe_length_m", "m", [](GrappleParameters& p) -> double& { return p.oe; }},
+    {"doe_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.doe; }},
+    {"slider_closed_m", "m", [](GrappleParameters& p) -> double& { return p.slider_closed; }},
+    {"slider_open_m", "m", [](GrappleParameters& p) -> double& { return p.slider_open; }},
+    {"slider_margin_m", "m", [](GrappleParameters& p) -> double& { return p.slider_margin; }},
+    {"reference_slider_m", "m", [](GrappleParameters& p) -> double& { return p.reference_slider; }},
+    {"reference_ab_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.reference_ab; }},
+    {"reference_od_angle_rad", "rad", [](GrappleParameters& p) -> double& { return p.reference_od; }},
 };
 
 }  // namespace

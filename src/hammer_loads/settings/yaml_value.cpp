@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -21,7 +22,6 @@ std::optional<double> specialNumber(const std::string& text) {
   std::string name = text;
   const bool negative = !name.empty() && name[0] == '-';
   if (!name.empty() && (name[0] == '-' || name[0] == '+')) name.erase(0, 1);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (name == ".inf" || name == ".Inf" || name == ".INF") return negative ? -kInfinity : kInfinity;
   if (name == ".nan" || name == ".NaN" || name == ".NAN") return std::numeric_limits<double>::quiet_NaN();
   return std::nullopt;

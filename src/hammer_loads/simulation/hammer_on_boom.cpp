@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "hammer_loads/simulation/drive.h"
@@ -12,8 +11,6 @@
 
 namespace hammer_loads::simulation {
 namespace {
-
-const PlanePoint kI(0.0, 1.0);
 
 /// From the mechanism frame with its origin at A to the hull's axes with theirs at D; a reflection.
 PlanePoint inHull(double xi, double eta, double com_angle) {
@@ -25,18 +22,12 @@ using Modes = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d>;
 
 Modes modesOf(const Eigen::Vector3d& K, const Eigen::Matrix3d& M) { return Modes(K.asDiagonal(), M); }
 
-Mechanism checked(const HammerParameters& parameters) {
-  const Checked<Mechanism> made = Mechanism::make(parameters);
-  if (!made.value) throw std::invalid_argument(made.problems.front());
-  return *made.value;
-}
-
 }  // namespace
 
 HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
     : machine_(machine),
       boom_(boom),
-      links_(checked(machine.hammer), Level::kRocker),
+      links_(mechanismFrom(machine.hammer), Level::kRocker),
       rotor_(machine.drive.inertia),
       ratio_(machine.hammer.drive_reaction_ratio),
       draws_(machine.seed ^ kBlowSeed) {

@@ -1,6 +1,8 @@
 #include "hammer_loads/simulation/moving_links.h"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace hammer_loads::simulation {
 namespace {
@@ -12,6 +14,14 @@ Jet sinHalf(TurnAngle angle) noexcept {
 }
 
 }  // namespace
+
+Mechanism mechanismFrom(const HammerParameters& parameters) {
+  const Checked<Mechanism> made = Mechanism::make(parameters);
+  if (made.value) return *made.value;
+  std::string all;
+  for (const std::string& problem : made.problems) all += (all.empty() ? "" : "; ") + problem;
+  throw std::invalid_argument(all);
+}
 
 MovingLinks::MovingLinks(const Mechanism& mechanism, Level level)
     : p_(mechanism.parameters()),

@@ -51,6 +51,9 @@ struct LinkBodies {
   int count{};
 };
 
+/// Throws std::invalid_argument with every problem of the parameters.
+Mechanism mechanismFrom(const HammerParameters& parameters);
+
 /// Rocker, and at level linkage crank and rod too, as rigid bodies in a plane. Positions come from the triangle B-D-C
 /// with half angles, derivatives by the crank angle from jets. Motor and flywheel are not part of it.
 class MovingLinks {

@@ -8,6 +8,7 @@ namespace hammer_loads::simulation {
 
 /// A place in a vertical plane, x + i z [m]; a turn by q about +y is e^(-iq).
 using PlanePoint = std::complex<double>;
+constexpr PlanePoint kI{0.0, 1.0};
 
 /// A link from its joint on, in its own axes.
 struct OilBoomLink {

@@ -1,16 +1,10 @@
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
 
 #include "hammer_loads/simulation/hammer_on_boom.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::simulation {
-namespace {
-
-const PlanePoint kI(0.0, 1.0);
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 /// At the dead centre crank and rocker are free of each other: five coordinates, of which the linkage makes four again.
 void HammerOnBoom::blow() {

@@ -7,7 +7,6 @@
 namespace hammer_loads::simulation {
 namespace {
 
-const PlanePoint kI(0.0, 1.0);
 constexpr double kInstant = 2e-5;  // of differences in time [s]
 
 /// Moment about +y of a force at r.

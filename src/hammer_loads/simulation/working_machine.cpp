@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -11,14 +10,6 @@
 
 namespace hammer_loads::simulation {
 namespace {
-
-Mechanism checked(const HammerParameters& parameters) {
-  const Checked<Mechanism> made = Mechanism::make(parameters);
-  if (made.value) return *made.value;
-  std::string all;
-  for (const std::string& problem : made.problems) all += (all.empty() ? "" : "; ") + problem;
-  throw std::invalid_argument(all);
-}
 
 /// Largest value of the parabola through three points with the largest in the middle.
 double parabolaPeak(const double* t, const double* f, double t2, double f2) noexcept {
@@ -33,7 +24,7 @@ double parabolaPeak(const double* t, const double* f, double t2, double f2) noex
 
 WorkingMachine::WorkingMachine(const MachineSettings& settings)
     : settings_(settings),
-      links_(checked(settings.hammer), settings.level),
+      links_(mechanismFrom(settings.hammer), settings.level),
       crank_side_inertia_(settings.drive.inertia),
       draws_(settings.seed ^ kBlowSeed) {
   const DriveSettings& d = settings_.drive;

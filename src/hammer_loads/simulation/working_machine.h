@@ -14,17 +14,17 @@ namespace hammer_loads::simulation {
 
 /// Machine at one instant. Loads ON the hull about D, axes of hammer_hull.
 struct CrankTruth {
-  double time{};          ///< since start [s]
-  std::int64_t turn{};    ///< dead centres passed
-  double angle{};         ///< in [0, 2 pi) [rad]
-  double speed{};         ///< [rad/s]
-  double twist{};         ///< angle of the motor, where the encoder sits, less the crank's [rad]
-  double motor_speed{};   ///< [rad/s]
-  bool mirrored{};        ///< the rocker passed the dead centre without a blow and has not come back
-  double acceleration{};  ///< [rad/s2]
-  double net_torque{};    ///< motor less friction, on the shaft [N m]
-  double pressure{};      ///< at the motor [Pa]
-  double hull_pitch{};    ///< [rad]
+  double time{};              ///< since start [s]
+  std::int64_t turn{};        ///< dead centres passed
+  double angle{};             ///< in [0, 2 pi) [rad]
+  double speed{};             ///< [rad/s]
+  double twist{};             ///< angle of the motor, where the encoder sits, less the crank's [rad]
+  double motor_speed{};       ///< [rad/s]
+  bool mirrored{};            ///< the rocker passed the dead centre without a blow and has not come back
+  double acceleration{};      ///< [rad/s2]
+  double net_torque{};        ///< motor less friction, on the shaft [N m]
+  double pressure{};          ///< at the motor [Pa]
+  double hull_pitch{};        ///< [rad]
   Load load;                  ///< BY the links, weight included
   double drive_reaction_y{};  ///< BY motor and flywheel about +y [N m]
 };

@@ -1,7 +1,6 @@
-#include "hammer_loads/simulation/machine_settings.h"
-
 #include <cmath>
 
+#include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::simulation {
