@@ -342,6 +342,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
 void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept {
   if (std::abs(now_.state.speed) <= kLearnSpeed) return;
   consistency_.add(ratio);
+  const double jitter = square(now_.state.speed) * timing_.variance();
+  supply_.learn(innovation.value, innovation.total, jitter / innovation.total);
   errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.by_error.row(Belief::kAngle));
 }
 

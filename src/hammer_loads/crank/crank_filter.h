@@ -10,6 +10,7 @@
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
+#include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/timing_noise.h"
 #include "hammer_loads/crank/weighed_sample.h"
 
@@ -37,7 +38,7 @@ struct CrankFilterSettings {
 /// of model.md 6.
 ///
 /// Learned beside the state: drive inertia within a few turns; encoder count, noise of measured speeds and jitter of
-/// the stamps within some hundred samples; what the blows do within ten of them.
+/// the stamps within some hundred samples, and where they jitter the torque's walk; what the blows do within ten of them.
 ///
 /// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
 /// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
@@ -59,7 +60,7 @@ class CrankFilter final : public CrankTracker {
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
-    return hammer_loads::motionCovariance(model_, now_, grown(now_), torque_part);
+    return covarianceOf(now_, torque_part);
   }
   bool hasSpeed() const noexcept override { return has_speed_; }
   bool isPlausible() const noexcept override;
@@ -75,7 +76,10 @@ class CrankFilter final : public CrankTracker {
   const CrankBelief& belief() const noexcept { return now_; }
   /// What is expected of the next blow.
   BlowPrior blowPrior() const noexcept { return blows_.prior(); }
-  CrankWalks walks() const noexcept { return {settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk}; }
+  /// Of the next step.
+  CrankWalks walks() const noexcept {
+    return {supply_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk};
+  }
   double mostSpeed() const noexcept;  ///< from which on an estimate has diverged [rad/s]
   /// What variances are multiplied with before they are published.
   double growth() const noexcept { return consistency_.growth(); }
@@ -100,6 +104,7 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kAgrees = 12.0;  ///< worse than any flaw of a sensor in radians: a coupling of 50 Hz gives 11
 
   ShaftMatrix grown(const CrankBelief& belief) const noexcept;
+  Eigen::Matrix3d covarianceOf(const CrankBelief& belief, double torque_part) const noexcept;
   WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
   bool meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
@@ -129,6 +134,7 @@ class CrankFilter final : public CrankTracker {
   double unlearn_after_{};  ///< time until it may be taken up again [s]
   Encoder encoder_;
   TimingNoise timing_;
+  SupplyRoughness supply_;
   Consistency consistency_;
   SensorErrors errors_;
   BlowHistory blows_;

@@ -1,4 +1,5 @@
 // What the filter gives: its estimate at a sample and between the last two, with deviations.
+#include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/crank/crank_filter.h"
@@ -24,7 +25,12 @@ Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) co
   if (dt >= step_) return motionCovariance(torque_part);
   CrankBelief belief = before_;
   predict(dt, true, belief);
-  return hammer_loads::motionCovariance(model_, belief, grown(belief), torque_part);
+  return covarianceOf(belief, torque_part);
+}
+
+Eigen::Matrix3d CrankFilter::covarianceOf(const CrankBelief& belief, double torque_part) const noexcept {
+  const double part = std::min(1.0, torque_part * supply_.deviationFactor());
+  return hammer_loads::motionCovariance(model_, belief, grown(belief), part);
 }
 
 ShaftMatrix CrankFilter::grown(const CrankBelief& belief) const noexcept {

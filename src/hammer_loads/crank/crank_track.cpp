@@ -25,19 +25,20 @@ void CrankTrack::setHullMotion(const HullMotion& hull) noexcept {
 
 void CrankTrack::start(const CrankSample& sample) {
   filter_.start(sample);
-  add(Tracking::kRestarted, 0.0, model_.hullMotion(), {});
+  add({Tracking::kRestarted, 0.0, model_.hullMotion(), {}, {}, {}});
 }
 
 Tracking CrankTrack::update(double dt, const CrankSample& sample) {
-  const BlowPrior prior = filter_.blowPrior();
-  const Tracking tracking = filter_.update(dt, sample);
-  add(tracking, dt, blend(hull_, model_.hullMotion(), 0.5), prior);
-  return tracking;
+  TrackedSample tracked{{}, dt, blend(hull_, model_.hullMotion(), 0.5), filter_.walks(), filter_.blowPrior(), {}};
+  tracked.tracking = filter_.update(dt, sample);
+  add(tracked);
+  return tracked.tracking;
 }
 
-void CrankTrack::add(Tracking tracking, double step, const HullMotion& hull, const BlowPrior& prior) {
-  if (tracking == Tracking::kRevised) revise();
-  TrackedSample sample{tracking, step, hull, prior, filter_.belief()};
+/// sample: what the filter's step began with, and how it ended.
+void CrankTrack::add(TrackedSample sample) {
+  if (sample.tracking == Tracking::kRevised) revise();
+  sample.belief = filter_.belief();
   sample.growth = filter_.growth();
   sample.moment = kUnseenGrowth * filter_.sensorErrors().moment();
   sample.consistency = filter_.consistency();
@@ -48,9 +49,9 @@ void CrankTrack::add(Tracking tracking, double step, const HullMotion& hull, con
   sample.is_doubtful = filter_.isDoubtful();
   sample.is_exact = filter_.timingNoise() == 0.0;
   samples_.push_back(sample);
-  if (tracking == Tracking::kOutlier) return;
+  if (sample.tracking == Tracking::kOutlier) return;
   hull_ = model_.hullMotion();
-  span_ += step;
+  span_ += sample.step;
   if (span_ < kWindow + kOverlap) return;
   double left = span_;
   std::size_t count = ready_;
@@ -92,8 +93,7 @@ void CrankTrack::smooth(std::size_t count) {
 std::optional<CrankBelief> CrankTrack::before(const TrackedSample& sample, const TrackedSample& later,
                                               const CrankBelief& next) const noexcept {
   if (later.tracking != Tracking::kContinued || later.was_wrong != sample.was_wrong) return std::nullopt;
-  const CrankWalks walks = filter_.walks();
-  const FilterStep step{later.step, later.hull, later.prior, walks, filter_.mostSpeed()};
+  const FilterStep step{later.step, later.hull, later.prior, later.walks, filter_.mostSpeed()};
   return smoothedBelief(model_, step, sample.belief, later.belief, next);
 }
 

@@ -14,6 +14,7 @@ struct TrackedSample {
   Tracking tracking{};  ///< of a beginning: kRestarted
   double step{};        ///< since the last accepted sample [s]; of a beginning: 0
   HullMotion hull;      ///< mean over the step
+  CrankWalks walks;     ///< over it
   BlowPrior prior;      ///< for a blow within it
   CrankBelief belief;
   double growth{1.0};                                         ///< of variances
@@ -51,7 +52,7 @@ class CrankTrack {
   static constexpr double kOverlap =
       10.0;  ///< [s] after it, whose samples are used: what changes slowly is known by then
 
-  void add(Tracking tracking, double step, const HullMotion& hull, const BlowPrior& prior);
+  void add(TrackedSample sample);
   void revise() noexcept;
   void smooth(std::size_t count);
   std::optional<CrankBelief> before(const TrackedSample& sample, const TrackedSample& later,

@@ -22,13 +22,16 @@ class TimingNoise {
     const double change = innovation - last_;
     last_ = innovation;
     const double squared_speed = speed * speed, lever = squared_speed / total;
-    if (!(squared_speed * kVisible > total - squared_speed * variance())) return;  // too slow to show it
+    const double visible = std::max(kVisible, variance_);
+    if (!(squared_speed * visible > total - squared_speed * variance())) return;  // too slow to show it
     if (samples_++ == 0) information_ = lever * lever;
     const double gain = std::max(kGain, 1.0 / (samples_ + 50.0));
     information_ += gain * (lever * lever - information_);
     const double clipped = std::min(0.5 * change * change / total, samples_ < kLearning ? kMostAtFirst : kMost);
-    variance_ = std::max(0.0, variance_ + gain * (clipped - 1.0) * lever / information_);
-    variance_ = std::min(variance_, kLargest * kLargest);
+    const double before = variance_;
+    variance_ = std::clamp(variance_ + gain * (clipped - 1.0) * lever / information_, 0.0, kLargest * kLargest);
+    // Samples tell the less of a stamp the more it jitters.
+    information_ /= square(1.0 + std::sqrt(information_) * (variance_ - before));
   }
 
   /// Variance of a stamp [s2]; exactly zero where no jitter is seen.
