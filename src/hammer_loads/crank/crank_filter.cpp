@@ -25,6 +25,7 @@ constexpr double kNearCounts = 4.0;        // counts from the blow within which 
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
 constexpr double kToolDeviation = 0.5;     // of the crank's speed: what a tool met there may take
 constexpr double kToolSeen = 16.0;         // innovation^2 over its variance that shows it
+constexpr double kExplained = 9.0;         // likewise that is nothing special
 constexpr double kCertain = 3.0;           // deviations of the stamp within which the encoder's edge decides nothing
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
@@ -211,6 +212,14 @@ void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
   if (!mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed) rival_.begin(belief);
 }
 
+/// (9) What the estimate cannot explain, the rival can.
+bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept {
+  if (!rival_.isThere()) return false;
+  CrankBelief rival = rival_.belief();
+  predict(dt, mirrored_, rival);
+  return sample.ofAngle(rival).ratio() < kExplained;
+}
+
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
 void CrankFilter::rememberBlow(const CrankBelief& last) noexcept {
   const CrankPosition &from = last.state.position, &to = now_.state.position;
@@ -312,12 +321,13 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     fit_ = innovation.logLikelihood();
     timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
     sample.timing_variance = timing_.variance();
-    if (meetsTool(dt, innovation, sample)) innovation = sample.ofAngle(now_);  // (4)
-    if (isContradiction(dt, innovation) && !isLost()) {                        // (5)
+    const bool without_contact = ratio > kToolSeen && rivalExplains(dt, sample);
+    if (!without_contact && meetsTool(dt, innovation, sample)) innovation = sample.ofAngle(now_);  // (4)
+    if (!without_contact && isContradiction(dt, innovation) && !isLost()) {                        // (5)
       if (const auto result = contradict(last, dt, innovation, sample)) return *result;
       innovation = sample.ofAngle(now_);
     }
-    learnFrom(innovation, ratio);  // (10)
+    if (!without_contact) learnFrom(innovation, ratio);  // (10)
   }
   before_ = last;
   before_hull_ = now_hull_;

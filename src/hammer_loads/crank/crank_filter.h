@@ -118,6 +118,7 @@ class CrankFilter final : public CrankTracker {
   void respectCount(double reading) noexcept;
   void correctSpeed(const WeighedSample& sample) noexcept;
   void meetRival(const CrankBelief& belief) noexcept;
+  bool rivalExplains(double dt, const WeighedSample& sample) noexcept;
   void learnFrom(const Innovation& innovation, double ratio) noexcept;
   void rememberBlow(const CrankBelief& last) noexcept;
   void doubtInertia(double dt) noexcept;

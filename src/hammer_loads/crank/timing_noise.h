@@ -44,7 +44,7 @@ class TimingNoise {
   static constexpr double kGain = 0.005;
   static constexpr int kLearning = 60;         // samples: a wrong first guess of the inertia passes for jitter
   static constexpr double kMostAtFirst = 4.0;  // so that a single surprise among them counts little
-  static constexpr double kMost = 25.0;        // of innovation^2 over its variance
+  static constexpr double kMost = 9.0;         // of innovation^2 over its variance
   static constexpr double kSeen = 3.0;         // standard deviations of the estimate above zero
   static constexpr double kVisible = 9e-8;     // [s2]: a sample that could not see 0.3 ms is not asked
   static constexpr double kLargest = 0.02;     // [s]: more is no jitter
