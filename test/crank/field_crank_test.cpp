@@ -110,6 +110,18 @@ TEST(FieldCrank, LearnsHowMuchTheStampsJitter) {
   }
 }
 
+/// At 200 Hz without speeds a sample's prediction is as uncertain as 0.3 ms of its stamp.
+TEST(FieldCrank, LearnsALargeJitterFromFewSamples) {
+  Machine machine;
+  machine.jitter = 1e-3;
+  machine.rate = 200.0;
+  machine.speeds = false;
+  const Record run = follow(machine);
+  EXPECT_NEAR(run.timing / machine.jitter, 1.0, 0.2);
+  EXPECT_EQ(run.restarts, 0);
+  EXPECT_LT(run.consistency, 1.3);
+}
+
 TEST(FieldCrank, MeasuresEachBlowsFactor) {
   for (const double rate : {1000.0, 100.0}) {
     Machine machine;
