@@ -402,6 +402,27 @@ TEST(Load, CrankSensorsPlaceIsRead) {
   EXPECT_TRUE(loadShippedWith({}).value->pipeline.crank_sensor.isIdentity());
 }
 
+TEST(Load, AFlexibleShaftIsRead) {
+  EXPECT_FALSE(loadShippedWith({}).value->pipeline.coupling);
+  const TemporaryFile file("shaft: flexible\ncoupling_frequency_Hz: 35.0\ncoupling_motor_share: 0.4\n");
+  const Checked<Settings> settings = loadShippedWith({file.path()});
+  ASSERT_EQ(settings.problems, Lines{});
+  ASSERT_TRUE(settings.value->pipeline.coupling);
+  EXPECT_EQ(settings.value->pipeline.coupling->frequency, 35.0);
+  EXPECT_EQ(settings.value->pipeline.coupling->motor_share, 0.4);
+}
+
+TEST(Load, AnAbsurdCouplingIsRefusedByItsKeys) {
+  EXPECT_EQ(problemsOf("shaft: flexible\n"), Lines{});
+  EXPECT_EQ(problemsOf("shaft: soft\n").size(), 1U);
+  EXPECT_EQ(problemsOf("coupling_motor_share: 1.0\n"),
+            (Lines{"coupling_motor_share: 1, must be within 0.05 and 0.95 (FILE:1)"}));
+  EXPECT_EQ(problemsOf("coupling_frequency_Hz: 0.0\n").size(), 1U);
+  EXPECT_EQ(problemsOf("coupling_damping_ratio: 1.5\n").size(), 1U);
+  EXPECT_EQ(problemsOf("shaft: flexible\ncrank_estimator: difference\n"),
+            (Lines{"shaft: flexible, must be rigid where crank_estimator is not mechanism"}));
+}
+
 TEST(Load, ImpossibleCrankSensorIsRefusedByItsKeys) {
   EXPECT_EQ(problemsOf("crank_direction: 0\n"), (Lines{"crank_direction: 0, must be 1 or -1 (FILE:1)"}));
   EXPECT_EQ(problemsOf("crank_ratio: 2.0\ncrank_eccentricity_1_rad: 0.02\n"),

@@ -1,6 +1,7 @@
 #include "hammer_loads/bench/machine_table.h"
 
 #include <functional>
+#include <optional>
 
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/calibration/calibration.h"
@@ -18,7 +19,8 @@ struct Kind {
   std::function<void(MachineSettings&)> flaw;
   double inertia_guess{1.0};  ///< over the true one
   bool calibrated{};
-  double shift{};  ///< mean of all stamps less the instants [s]
+  double shift{};                      ///< mean of all stamps less the instants [s]
+  std::optional<Coupling> coupling{};  ///< as given
 };
 
 /// What a usual machine has of everything: zero half a degree off, 1024 counts, a PC's stamps, blows that differ.
@@ -39,6 +41,12 @@ std::vector<Kind> kinds() {
   };
   const auto loss = [](double part) { return [part](MachineSettings& s) { s.blow.crank_loss = part; }; };
   const auto counts = [](int number) { return [number](MachineSettings& s) { s.crank.counts = number; }; };
+  const auto coupled = [](double frequency) {
+    return [frequency](MachineSettings& s) {
+      s.drive.coupling_frequency = frequency, s.drive.motor_share = 0.2, s.drive.coupling_damping = 0.02;
+    };
+  };
+  const auto given = [](double frequency, double share) { return Coupling{frequency, share, 0.02, 0.3, 0.03}; };
   return {
       {"clean", {1000.0, 200.0, 100.0}, [](MachineSettings&) {}},
       {"typical", {1000.0, 200.0}, makeTypical, 1.3},
@@ -63,6 +71,11 @@ std::vector<Kind> kinds() {
        }},
       {"360 counts", {1000.0, 100.0}, counts(360)},
       {"1024 counts", {1000.0, 100.0}, counts(1024)},
+      {"coupling of 50 Hz, taken for rigid", {1000.0, 100.0}, coupled(50.0)},
+      {"coupling of 30 Hz, given as 36", {1000.0, 100.0}, coupled(30.0), 1.0, false, 0.0, given(36.0, 0.2)},
+      {"coupling of 50 Hz, given as 60", {1000.0, 100.0}, coupled(50.0), 1.0, false, 0.0, given(60.0, 0.2)},
+      {"coupling of 80 Hz, given as 64", {1000.0, 100.0}, coupled(80.0), 1.0, false, 0.0, given(64.0, 0.2)},
+      {"motor's share 0.2, given as 0.24", {1000.0, 100.0}, coupled(50.0), 1.0, false, 0.0, given(50.0, 0.24)},
       {"no speeds", {1000.0, 100.0}, [](MachineSettings& s) { s.crank.speed = false; }},
   };
 }
@@ -115,6 +128,7 @@ MachineRow rowOf(const Settings& settings, const Kind& kind, double rate) {
   HammerParameters hammer = settings.mechanism.parameters();
   hammer.drive_inertia = kind.inertia_guess * machine.drive.inertia;
   PipelineSettings pipeline = settings.pipeline;
+  pipeline.coupling = kind.coupling;
   if (kind.calibrated) applyCalibration(session, machine, hammer, pipeline);
   const SessionRun run = runSession(session, machine.start_stamp, *Mechanism::make(hammer).value, pipeline);
   return {kind.name, rate, machine.crank.speed, judgeAtStamps(run, session, machine, kind.shift)};

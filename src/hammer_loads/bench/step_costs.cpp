@@ -10,12 +10,17 @@ namespace hammer_loads::accuracy {
 namespace {
 
 constexpr double kWorkBegins = 3.0, kWorkEnds = 8.0;  // [s]
+constexpr double kDamping = 0.02;                     // of a coupling, of critical
 
-/// Crank readings of a hammer at work at 1 kHz, links with the masses that the level knows.
-std::vector<simulation::CrankReading> workingReadings(const Settings& settings, Level level) {
+/// Crank readings of a hammer at work at 1 kHz, links with the masses that the level knows; coupling_frequency [Hz]: of
+/// its shaft, 0: rigid.
+std::vector<simulation::CrankReading> workingReadings(const Settings& settings, Level level,
+                                                      double coupling_frequency = 0.0) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = settings.mechanism.parameters();
   machine.level = level;
+  machine.drive.coupling_frequency = coupling_frequency;
+  machine.drive.coupling_damping = kDamping;
   machine.drive.stop_time = kWorkEnds + 1.0;
   machine.duration = kWorkEnds;
   const std::vector<simulation::CrankReading> all = simulation::recordSession(machine).crank;
@@ -34,18 +39,29 @@ PipelineSettings settingsOf(const Settings& settings, Level level, CrankEstimato
   return s;
 }
 
-CostRow trackerCost(const Settings& settings, const char* name, Level level, CrankEstimator estimator) {
-  const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
-  const auto tracker = makeTracker(settings.mechanism, settingsOf(settings, level, estimator));
+CostRow trackerCost(const char* name, CrankTracker& tracker, const std::vector<simulation::CrankReading>& readings) {
   const auto pass = [&] {
-    tracker->start({readings.front().angle, readings.front().speed});
+    tracker.start({readings.front().angle, readings.front().speed});
     for (std::size_t i = 1; i < readings.size(); ++i) {
       const double step = 1e-9 * static_cast<double>(readings[i].stamp - readings[i - 1].stamp);
-      keep(tracker->update(step, {readings[i].angle, readings[i].speed}));
-      keep(tracker->estimate());
+      keep(tracker.update(step, {readings[i].angle, readings[i].speed}));
+      keep(tracker.estimate());
     }
   };
   return {"crank", name, costOf(readings.size(), pass), {}, {}};
+}
+
+CostRow trackerCost(const Settings& settings, const char* name, Level level, CrankEstimator estimator) {
+  const auto tracker = makeTracker(settings.mechanism, settingsOf(settings, level, estimator));
+  return trackerCost(name, *tracker, workingReadings(settings, level));
+}
+
+/// coupling_frequency [Hz]: of the machine, and as given.
+CostRow flexibleCost(const Settings& settings, const char* name, Level level, double coupling_frequency) {
+  PipelineSettings pipeline = settingsOf(settings, level, CrankEstimator::kMechanism);
+  pipeline.coupling = Coupling{coupling_frequency, 0.5, kDamping, 0.3, 0.03};
+  const auto tracker = makeTracker(settings.mechanism, pipeline);
+  return trackerCost(name, *tracker, workingReadings(settings, level, coupling_frequency));
 }
 
 /// The filter, its track and the way back: what a recording's sample costs beside the second pass.
@@ -95,6 +111,7 @@ std::vector<CostRow> stepCosts(const Settings& settings) {
           trackerCost(settings, "difference", Level::kRocker, CrankEstimator::kDifference),
           trackerCost(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
           trackerCost(settings, "mechanism, linkage", Level::kLinkage, CrankEstimator::kMechanism),
+          flexibleCost(settings, "mechanism, linkage, flexible shaft of 50 Hz", Level::kLinkage, 50.0),
           smoothedCost(settings, "mechanism, linkage, smoothed", Level::kLinkage),
           pipelineCost(settings, "rocker", Level::kRocker),
           pipelineCost(settings, "linkage", Level::kLinkage),

@@ -86,6 +86,10 @@ int run(int argc, const char* const* argv) {
   const std::optional<Settings> settings = loadOrReport(params);
   if (!settings) return kExitFailure;
   const PipelineSettings& pipeline = settings->pipeline;
+  if (pipeline.coupling) {
+    std::cerr << "shaft: flexible, must be rigid for calibrate\n";
+    return kExitFailure;
+  }
   const CrankBag bag = readCrankBag(bags, crank_topic, joint_topic, pipeline);
   if (!bag.problem.empty()) {
     std::cerr << bag.problem << '\n';

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/flexible_belief.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -32,10 +33,24 @@ void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
   covariance.col(kFactor).setZero();
   covariance(kFactor, kFactor) = square(prior.deviation);
   by_error.row(kFactor) = prior.by_error;
+  if (!motor) return;
+  motor->covariance.row(kFactor).setZero();
+  motor->by_odds[kFactor] = 0.0;
+}
+
+BlowPrior CrankBelief::priorOf(const BlowPrior& drawn) const noexcept {
+  return tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
+}
+
+void CrankBelief::widen(double by) noexcept {
+  if (motor) return widenFlexible(std::max(by, 1.0), *this);
+  if (by > 1.0) covariance.topLeftCorner<3, 3>() *= by, covariance.bottomLeftCorner<1, 3>() *= std::sqrt(by);
+  covariance.topRightCorner<3, 1>() = covariance.bottomLeftCorner<1, 3>().transpose();
 }
 
 int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
                          double most_speed, double dt, ShaftMatrix* transition) noexcept {
+  if (motor) return predictFlexible(model, walks, drawn, contact, most_speed, dt, *this);
   ShaftLoad load = model(state.position.angle);
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
@@ -43,7 +58,7 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
   int blows = 0;
   for (int i = 0; i < steps && std::abs(state.speed) < most_speed; ++i) {
     const double b = 1.0 / (state.drive_inertia + load.inertia);
-    const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
+    const BlowPrior prior = priorOf(drawn);
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
     const bool draws = step.blows > 0 && !tool_met;
     extend(step.transition, draws, transition);
@@ -79,6 +94,8 @@ void CrankBelief::move(const Vector& change) noexcept {
 
 void CrankBelief::correct(Row row, double innovation, double variance,
                           const SensorErrors::Row& measured_by_error) noexcept {
+  if (motor)
+    return correctFlexible(row == kAngle ? kMotorAngle : kMotorSpeed, innovation, variance, measured_by_error, *this);
   const double total = covariance(row, row) + variance;
   const Vector gain = covariance.col(row) / total;
   Vector change = gain * innovation;
@@ -95,19 +112,26 @@ void CrankBelief::forgetInertiaCoupling() noexcept {
   covariance.row(kInertia).setZero();
   covariance.col(kInertia).setZero();
   covariance(kInertia, kInertia) = variance;
+  if (motor) forgetCouplingsOf(*this);
 }
 
 void CrankBelief::forgetAngle(double variance) noexcept {
   covariance.row(kAngle).setZero();
   covariance.col(kAngle).setZero();
   covariance(kAngle, kAngle) = variance;
+  if (!motor) return;
+  motor->covariance.row(kAngle).setZero();
+  motor->covariance.row(kMotorAngle).setZero();
+  motor->covariance.col(MotorSide::kAngle).setZero();
+  motor->covariance(kAngle, MotorSide::kAngle) = motor->covariance(kMotorAngle, MotorSide::kAngle) = variance;
 }
 
 void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, ShaftMatrix* transition) noexcept {
-  const BlowPrior prior = tool_met ? BlowPrior{1.0, kTightFactor} : drawn;
+  const BlowPrior prior = priorOf(drawn);
   const bool draws = !tool_met && state.speed > 0.0;
   if (draws) drawFactor(prior);
   tool_met = false;
+  if (motor) return passLateFlexible(model, prior.mean, *this);
   ShaftTransition f = ShaftTransition::Identity();
   ShaftLoad load;
   passBlow(model, prior.mean, state, load, f);
@@ -137,7 +161,8 @@ void CrankBelief::meetTool(double deviation, double dt) noexcept {
 bool CrankBelief::isSound(double most_speed) const noexcept {
   return std::abs(state.position.angle.offset) <= 0.5 * kTwoPi && std::abs(state.speed) < most_speed &&
          std::isfinite(state.torque) && std::isfinite(state.drive_inertia) && std::isfinite(factor) &&
-         covariance.allFinite() && (covariance.diagonal().array() >= 0.0).all();
+         covariance.allFinite() && (covariance.diagonal().array() >= 0.0).all() &&
+         (!motor || isSoundFlexible(most_speed, *this));
 }
 
 /// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/motor_side.h"
 #include "hammer_loads/crank/sensor_errors.h"
 
 namespace hammer_loads {
@@ -34,7 +36,8 @@ struct CrankBelief {
   double factor{1.0};                                           ///< of the last blow
   double least_inertia{};                                       ///< bounds of the drive inertia [kg m2]
   double most_inertia{};                                        ///< likewise
-  bool tool_met{};  ///< before the dead centre: nothing strikes there any more
+  bool tool_met{};                 ///< before the dead centre: nothing strikes there any more
+  std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
   /// transition: multiplied by d(this after)/d(this before), rows as above, where it is wanted.
@@ -47,9 +50,9 @@ struct CrankBelief {
   void correct(Row row, double innovation, double variance, const SensorErrors::Row& by_error) noexcept;
   /// The same of a speed whose innovation has the variance `total`.
   void correctSpeed(double innovation, double total, const SensorErrors::Row& measured) noexcept {
-    correct(kSpeed, innovation, total - covariance(kSpeed, kSpeed), measured);
+    correct(kSpeed, innovation, total - encoderVariance(kSpeed), measured);
   }
-  /// The coming correction teaches nothing of the inertia.
+  /// The coming correction teaches nothing of the inertia, nor of a coupling's stiffness.
   void forgetInertiaCoupling() noexcept;
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.
   void forgetAngle(double variance) noexcept;
@@ -57,7 +60,31 @@ struct CrankBelief {
   void passLate(const ShaftModel& model, const BlowPrior& prior, ShaftMatrix* transition = nullptr) noexcept;
   /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
   void meetTool(double deviation, double dt) noexcept;
+  /// Variances of angle, speed and torque, and of a motor's own, times `by` where that is above 1.
+  void widen(double by) noexcept;
+  /// Stands exactly at the blow; a motor of its own stays where it is.
+  void standAtBlow() noexcept {
+    if (motor) state.twist += state.position.angle.offset;
+    state.position.angle.offset = 0.0;
+  }
+  /// A blow's factor and its variance are drawn.
+  void drawFactor(const BlowPrior& prior) noexcept;
+  /// What is expected where the next blow is passed.
+  BlowPrior priorOf(const BlowPrior& drawn) const noexcept;
   bool isSound(double most_speed) const noexcept;
+
+  /// Where the encoder sits: angle from the blow [rad], speed [rad/s], variance and derivative by the sensor's errors
+  /// of one of these.
+  double encoderOffset() const noexcept {
+    return motor ? state.position.angle.offset + state.twist : state.position.angle.offset;
+  }
+  double encoderSpeed() const noexcept { return motor ? state.motor_speed : state.speed; }
+  double encoderVariance(Row row) const noexcept {
+    return motor ? motor->covariance(kMotorAngle + row, row) : covariance(row, row);
+  }
+  SensorErrors::Row encoderByError(Row row) const noexcept {
+    return motor ? SensorErrors::Row(motor->by_error.row(row)) : SensorErrors::Row(by_error.row(row));
+  }
   /// The covariance grown by what the innovations show beyond the model, and by a moment of the sensor's errors, which
   /// are not corrected.
   ShaftMatrix grown(double growth, const SensorErrors::Matrix& moment) const noexcept {
@@ -67,9 +94,6 @@ struct CrankBelief {
   BlowFactor blowFactor(const ShaftMatrix& grown) const noexcept {
     return {factor, std::sqrt(grown(kFactor, kFactor)), state.drive_inertia, std::sqrt(grown(kInertia, kInertia))};
   }
-
- private:
-  void drawFactor(const BlowPrior& prior) noexcept;
 };
 
 /// Covariance of (angle, speed, acceleration) where the belief's is `covariance`; torque_part of the torque's deviation

@@ -4,7 +4,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "hammer_loads/crank/coupling.h"
 #include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/linkage/drive_reaction.h"
 #include "hammer_loads/linkage/shaft_load.h"
@@ -14,10 +16,12 @@ namespace hammer_loads {
 /// Links, weight and motion of the hull as the shaft feels them; refers to the mechanism, which must outlive it.
 class ShaftModel {
  public:
-  ShaftModel(const Mechanism& mechanism, Level level)
-      : mechanism_(&mechanism), level_(level), own_(crankWithinDrive(mechanism, level)) {}
+  ShaftModel(const Mechanism& mechanism, Level level, const std::optional<Coupling>& coupling = {})
+      : mechanism_(&mechanism), level_(level), own_(crankWithinDrive(mechanism, level)), coupling_(coupling) {}
   void setHullMotion(const HullMotion& hull) noexcept { hull_ = hull; }
   const HullMotion& hullMotion() const noexcept { return hull_; }
+  /// Nothing: the motor turns with the crank.
+  const std::optional<Coupling>& coupling() const noexcept { return coupling_; }
   ShaftLoad operator()(CrankAngle angle) const noexcept { return at(angle); }
   /// The same with zero for the slopes, whose arithmetic the compiler then leaves out: a path's rates need none.
   ShaftLoad withoutSlopes(CrankAngle angle) const noexcept {
@@ -38,15 +42,20 @@ class ShaftModel {
   const Mechanism* mechanism_;
   Level level_;
   double own_;  ///< crankWithinDrive()
+  std::optional<Coupling> coupling_;
   HullMotion hull_;
 };
 
-/// Everything that decides the crank's motion.
+/// Everything that decides the crank's motion. The last four count where there is a coupling.
 struct ShaftState {
   CrankPosition position;
   double speed{};          ///< w [rad/s]
-  double torque{};         ///< net drive torque tau on the crank [N m]
+  double torque{};         ///< net drive torque tau, on the crank or beyond the coupling on the motor [N m]
   double drive_inertia{};  ///< Jc: motor, flywheel and whatever turns with the crank [kg m2]
+  double twist{};          ///< angle of the motor less that of the crank [rad]
+  double motor_speed{};    ///< [rad/s]
+  double log_stiffness{};  ///< as in CouplingLaw
+  double log_odds{};       ///< likewise
 };
 
 /// Whether the tool may be met within a step of length dt [s]: 3.4 deg or 1.5 steps around the dead centre.
@@ -56,6 +65,8 @@ inline bool isNearTool(const ShaftState& state, double dt) noexcept {
 
 /// w' = (tau + weight - Jc r alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).
 double acceleration(const ShaftLoad& load, const ShaftState& state) noexcept;
+/// The same, or with the coupling's moment where the model has a coupling.
+double acceleration(const ShaftModel& model, const ShaftLoad& load, const ShaftState& state) noexcept;
 
 /// Order of the shaft's variables in matrices: angle, speed, torque, logarithm of the drive inertia (which keeps it
 /// positive and makes its uncertainty relative), factor of the last blow.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/flexible_belief.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -102,6 +103,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
   now_.by_error.setZero();
   now_.by_error.row(Belief::kAngle) = SensorErrors::ofAngle(s.position.angle.offset);
+  if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 
 /// (1)
@@ -118,13 +120,11 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
   if (side != 0 && ((std::abs(unexplained_) < 3 && surprises_ > kManySurprises) || isLost())) {
     innovation.variance = squared / kWiden;  // with many like it on both sides: the stamps
   } else if (side != 0) {
-    ShaftMatrix& p = now_.covariance;
-    const double factor = (0.25 * squared - innovation.variance) / p(Belief::kAngle, Belief::kAngle);
-    if (factor > 1.0) p.topLeftCorner<3, 3>() *= factor, p.bottomLeftCorner<1, 3>() *= std::sqrt(factor);
-    p.topRightCorner<3, 1>() = p.bottomLeftCorner<1, 3>().transpose();
+    const double factor = (0.25 * squared - innovation.variance) / now_.encoderVariance(Belief::kAngle);
+    now_.widen(factor);
     now_.forgetInertiaCoupling();
     // What does not fit may be the inertia itself: leave it room to be learned again.
-    double& inertia = p(Belief::kInertia, Belief::kInertia);
+    double& inertia = now_.covariance(Belief::kInertia, Belief::kInertia);
     inertia = std::max(inertia, square(kRelearn));
   }
   if (surprises_ > kManySurprises) now_.forgetInertiaCoupling();  // they would teach it nonsense
@@ -142,6 +142,7 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   now_.forgetInertiaCoupling();
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
   now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
+  if (now_.motor) doubtStiffness(*model_.coupling(), now_);
   consistency_ = {};
 }
 
@@ -178,13 +179,13 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
     predict(dt, false, now_);
     const Innovation again = sample.ofAngle(now_);
     now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
-    if (now_.state.position.isMirrored()) now_.state.position.angle.offset = 0.0;
+    if (now_.state.position.isMirrored()) now_.standAtBlow();
     return;
   }
-  const double doubt =
-      kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
+  double doubt = kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
+  if (now_.motor) doubt += kCertain * std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (angle.offset > -doubt && now_.state.speed > -1.0) {
-    angle.offset = 0.0;  // it stands or goes on, whatever a count or a stamp says
+    now_.standAtBlow();  // it stands or goes on, whatever a count or a stamp says
   } else {
     angle.side = Side::kBeforeBlow;
   }
@@ -193,7 +194,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
 /// (7) A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
 /// exact: the estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
 void CrankFilter::respectCount(double reading) noexcept {
-  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || mirrored_) return;
+  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || mirrored_ || now_.motor) return;
   const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
   const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
   const auto [low, high] = encoder_.edges(reading);
@@ -293,7 +294,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   settleSide(last, dt, sample, struck);
   respectCount(reading);
   if (sample.speed) correctSpeed(sample);
-  if (!mirrored_ && now_.state.position.isMirrored()) now_.state.position.angle.offset = 0.0;  // pushed by the speed
+  if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed
   if (contested && rival_.isThere()) {
     predict(dt, mirrored_, rival_.belief());
     rival_.follow(sample, model_, fit_, consistency_.growth(), mostSpeed());
@@ -354,7 +355,7 @@ void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept
   consistency_.add(ratio);
   const double jitter = square(now_.state.speed) * timing_.variance();
   supply_.learn(innovation.value, innovation.total, jitter / innovation.total);
-  errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.by_error.row(Belief::kAngle));
+  errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.encoderByError(Belief::kAngle));
 }
 
 }  // namespace hammer_loads

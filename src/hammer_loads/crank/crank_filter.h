@@ -10,6 +10,7 @@
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
+#include "hammer_loads/crank/estimate_between.h"
 #include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/timing_noise.h"
 #include "hammer_loads/crank/weighed_sample.h"
@@ -42,8 +43,8 @@ struct CrankFilterSettings {
 ///
 /// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
 /// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
-/// row that agrees with it is believed, and restarts the filter. Near the blow it is none: the tool may be met some degrees
-/// early or take most of the speed.
+/// row that agrees with it is believed, and restarts the filter. Near the blow it is none: the tool may be met some
+/// degrees early or take most of the speed.
 class CrankFilter final : public CrankTracker {
  public:
   /// drive_inertia: first guess [kg m2], > 0.
@@ -54,9 +55,7 @@ class CrankFilter final : public CrankTracker {
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
-  CrankEstimate estimate() const noexcept override {
-    return {now_.state.position, now_.state.speed, acceleration(load_, now_.state)};
-  }
+  CrankEstimate estimate() const noexcept override { return estimateOf(model_, load_, now_.state); }
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
@@ -68,6 +67,7 @@ class CrankFilter final : public CrankTracker {
   bool isDoubtful() const noexcept override { return rival_.isDoubtful(); }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }
+  double struckInertia() const noexcept override;
 
   const CrankFilter* filter() const noexcept override { return this; }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/estimate_between.h"
+#include "hammer_loads/crank/flexible_belief.h"
 
 namespace hammer_loads {
 
@@ -12,7 +12,18 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   load_ = model_(now_.state.position.angle);
 }
 
-BlowFactor CrankFilter::blowFactor() const noexcept { return now_.blowFactor(grown(now_)); }
+BlowFactor CrankFilter::blowFactor() const noexcept {
+  BlowFactor factor = now_.blowFactor(grown(now_));
+  if (!now_.motor) return factor;
+  const double share = 1.0 - struckInertia() / driveInertia();
+  factor.drive_inertia = struckInertia();
+  factor.inertia_deviation = std::hypot(factor.inertia_deviation, share * std::sqrt(now_.motor->odds_variance));
+  return factor;
+}
+
+double CrankFilter::struckInertia() const noexcept {
+  return now_.motor ? lawOf(*model_.coupling(), now_.state).crank_inertia : driveInertia();
+}
 
 bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torque) <= mostTorque(); }
 
@@ -30,11 +41,13 @@ Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) co
 
 Eigen::Matrix3d CrankFilter::covarianceOf(const CrankBelief& belief, double torque_part) const noexcept {
   const double part = std::min(1.0, torque_part * supply_.deviationFactor());
-  return hammer_loads::motionCovariance(model_, belief, grown(belief), part);
+  return belief.motor ? flexibleMotionCovariance(model_, belief, consistency_.growth(), errors_.moment(), part)
+                      : hammer_loads::motionCovariance(model_, belief, grown(belief), part);
 }
 
 ShaftMatrix CrankFilter::grown(const CrankBelief& belief) const noexcept {
-  return belief.grown(consistency_.growth(), errors_.moment());
+  const ShaftMatrix own = belief.grown(consistency_.growth(), errors_.moment());
+  return belief.motor ? ShaftMatrix(own + effectOfShare(*belief.motor)) : own;
 }
 
 }  // namespace hammer_loads

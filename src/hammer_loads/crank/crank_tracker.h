@@ -23,13 +23,16 @@ struct CrankEstimate {
   CrankPosition position;
   double speed{};         ///< [rad/s]
   double acceleration{};  ///< [rad/s2]
+  /// What a flexible coupling makes of the drive: mean speed [rad/s] and acceleration [rad/s2] of motor and flywheel,
+  /// by inertia, less the crank's.
+  double drive_lead_speed{}, drive_lead_acceleration{};
 };
 
 /// What a blow did to the crank: its speed after over its speed before.
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
-  double drive_inertia{};      ///< Jc, with which it gives the restitution [kg m2]; 0: not known
+  double drive_inertia{};      ///< of Jc what the blow acts on; gives the restitution [kg m2]; 0: not known
   double inertia_deviation{};  ///< relative [-]
 };
 
@@ -71,6 +74,8 @@ class CrankTracker {
   virtual BlowFactor blowFactor() const noexcept { return {}; }
   /// Jc: what turns with the crank beside the links, as far as known [kg m2].
   virtual double driveInertia() const noexcept = 0;
+  /// Of that what a blow acts on: without a motor beyond a flexible coupling [kg m2].
+  virtual double struckInertia() const noexcept { return driveInertia(); }
   /// Whether the last blow was one at all is not clear yet: what is estimated may be of the wrong branch.
   virtual bool isDoubtful() const noexcept { return false; }
   /// Enough samples have come, and they fit the model: until then a wrong unit may not show.

@@ -49,9 +49,13 @@ CrankEstimate estimateBetween(const BetweenSamples& s, double dt) noexcept {
   state.speed = forward_speed + part * (back_speed - forward_speed);
   state.torque += part * (back.torque - state.torque);
   state.drive_inertia += part * (back.drive_inertia - state.drive_inertia);
+  state.twist += part * (back.twist - state.twist);
+  state.motor_speed += part * (back.motor_speed - state.motor_speed);
+  state.log_stiffness += part * (back.log_stiffness - state.log_stiffness);
+  state.log_odds += part * (back.log_odds - state.log_odds);
   ShaftModel there = s.model;
   there.setHullMotion(blend(s.before_hull, s.now_hull, part));
-  return {state.position, state.speed, acceleration(there(angle), state)};
+  return estimateOf(there, there(angle), state);
 }
 
 }  // namespace hammer_loads

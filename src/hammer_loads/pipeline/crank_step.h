@@ -13,7 +13,7 @@ namespace hammer_loads {
 
 /// What a load needs to know of an estimate.
 inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {
-  return {crank.position.angle, crank.speed, crank.acceleration};
+  return {crank.position.angle, crank.speed, crank.acceleration, crank.drive_lead_acceleration};
 }
 
 /// Refers to the tracker, whose last update it belongs to. Times are after the step's start [s].
@@ -46,7 +46,8 @@ class CrankStep {
     return start_ + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
   }
   CrankEstimate at(double time) const noexcept { return tracker_->between(time); }
-  double driveInertia() const noexcept { return tracker_->driveInertia(); }  ///< at its end [kg m2]
+  double driveInertia() const noexcept { return tracker_->driveInertia(); }    ///< at its end [kg m2]
+  double struckInertia() const noexcept { return tracker_->struckInertia(); }  ///< likewise
   /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
   const Passage* begin() const noexcept { return passage_.data(); }
   const Passage* end() const noexcept { return passage_.data() + passages_; }

@@ -19,14 +19,16 @@ CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSet
   filter.initial_torque_deviation = s.initial_torque_deviation * inertia;
   filter.initial_inertia_deviation = s.initial_inertia_deviation;
   filter.max_speed = s.max_crank_speed;
-  filter.blow_factor = blowInertia(mechanism, s.level, mechanism.parameters().drive_inertia).smoothFactor();
+  const double drive = mechanism.parameters().drive_inertia;
+  const double struck = s.coupling ? (1.0 - s.coupling->motor_share) * drive : drive;
+  filter.blow_factor = blowInertia(mechanism, s.level, struck).smoothFactor();
   return filter;
 }
 
 std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
   if (s.crank_estimator == CrankEstimator::kMechanism)
-    return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level), mechanism.parameters().drive_inertia,
-                                         filterSettings(mechanism, s));
+    return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level, s.coupling),
+                                         mechanism.parameters().drive_inertia, filterSettings(mechanism, s));
   const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
                                                                        : PlainTracker::Acceleration::kDifference;
   return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, mechanism.parameters().drive_inertia,

@@ -16,7 +16,7 @@ LinkMomentum momentum(const HullModel& model, const CrankEstimate& crank) noexce
 LoadImpulse change(const HullModel& model, const DriveReaction& drive, const CrankEstimate& a,
                    const CrankEstimate& b) noexcept {
   const LinkMomentum from = momentum(model, a), to = momentum(model, b);
-  const double drive_y = drive.by_crank * (a.speed - b.speed);
+  const double drive_y = drive.by_crank * (a.speed - b.speed + (a.drive_lead_speed - b.drive_lead_speed));
   return {{from.x - to.x, from.z - to.z, from.about_d - to.about_d + drive_y}, drive_y};
 }
 
@@ -107,7 +107,7 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexc
         const HullWrench impulse = change(model, drive, a, b).all;
         piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
         if (ends_at == nullptr || !ends_at->strikes) return;
-        const RockerBlow blow = blowAt(model, step.driveInertia(), *ends_at);
+        const RockerBlow blow = blowAt(model, step.struckInertia(), *ends_at);
         piece.ends_in_blow = true;
         piece.blow = {blow.support_impulse_x, blow.support_impulse_z, blow.support_impulse_y + blow.drive_impulse_y};
       });

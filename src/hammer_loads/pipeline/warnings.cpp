@@ -107,8 +107,9 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   if (!inconsistent && !filter->isUnexplained()) return warnOfPlace(filter->sensorErrors(), warnings);
   warnings.push_back({"inconsistent",
                       format("crank: readings differ from the model by %s%.2g times the expected variance: a soft "
-                             "coupling between crank and encoder, a wrong hammer file or a zero far off",
-                             inconsistent ? "" : "at times ", inconsistent ? filter->consistency() : kInconsistent),
+                             "coupling between crank and encoder (%s), a wrong hammer file or a zero far off",
+                             inconsistent ? "" : "at times ", inconsistent ? filter->consistency() : kInconsistent,
+                             pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible"),
                       true});
 }
 

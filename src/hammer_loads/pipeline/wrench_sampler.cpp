@@ -85,7 +85,8 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const SampleResult& result) no
     impulse_ = {};
   } else {
     output.wrench = at_sample ? result.wrench : hullWrench(*model_, drive_, motionOf(output.crank), hull);
-    output.drive_reaction_y = drive_.torque(output.crank.acceleration, hull.acceleration);
+    const double drive_acceleration = output.crank.acceleration + output.crank.drive_lead_acceleration;
+    output.drive_reaction_y = drive_.torque(drive_acceleration, hull.acceleration);
   }
   last_output_ = stamp;
   const LinkState links = at_sample ? result.links : linkState(*model_, motionOf(output.crank));

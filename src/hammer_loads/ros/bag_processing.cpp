@@ -185,6 +185,7 @@ std::vector<std::string> prepareSmoothing(std::vector<BagRun>& runs, std::vector
   for (BagRun& run : runs) {
     if (run.settings.pipeline.crank_estimator != CrankEstimator::kMechanism)
       return {"--smooth: crank_estimator must be mechanism"};
+    if (run.settings.pipeline.coupling) return {"--smooth: shaft is flexible, must be rigid"};
     run.settings.notes.push_back(mark);
   }
   addOnce(warnings, {"smooth", mark});

@@ -56,7 +56,7 @@ void addLearned(const CrankTracker& tracker, RunRecord& record) {
   record.timing_noise = filter->timingNoise();
   record.speed_noise = filter->speedNoise();
   const BlowFactor blow = filter->blowFactor();
-  record.drive_inertia = blow.drive_inertia;
+  record.drive_inertia = filter->driveInertia();
   record.drive_inertia_deviation = blow.inertia_deviation;
 }
 

@@ -60,6 +60,20 @@ CrankSensor readCrankSensor(ParameterReader& reader) {
   return sensor.value.value_or(CrankSensor());
 }
 
+std::optional<Coupling> readCoupling(ParameterReader& reader, CrankEstimator estimator) {
+  const Shaft shaft = reader.choice("shaft", kShaftNames);
+  Coupling coupling;
+  coupling.frequency = reader.number("coupling_frequency_Hz", "Hz", NumberRule::within(10.0, 500.0));
+  coupling.motor_share = reader.number("coupling_motor_share", "", NumberRule::within(0.05, 0.95));
+  coupling.damping = reader.number("coupling_damping_ratio", "", NumberRule::within(0.0, 0.5));
+  coupling.stiffness_deviation = reader.number("coupling_stiffness_deviation", "", NumberRule::within(0.0, 1.0));
+  coupling.share_deviation = reader.number("coupling_share_deviation", "", NumberRule::within(0.0, 0.5));
+  if (shaft == Shaft::kRigid) return {};
+  if (estimator != CrankEstimator::kMechanism)
+    reader.addProblem("shaft: flexible, must be rigid where crank_estimator is not mechanism");
+  return coupling;
+}
+
 }  // namespace
 
 PipelineSettings readPipelineSettings(ParameterReader& reader) {
@@ -88,6 +102,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.crank_stamps = reader.choice("crank_stamps", kCrankStampsNames);
   s.crank_timing_noise = reader.number("crank_timing_noise_s", "s", kNotNegative);
   s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kPositive);
+  s.coupling = readCoupling(reader, s.crank_estimator);
   s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", kPositive);
   s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", kNotNegative);
   s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", kNotNegative);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/gravity.h"
+#include "hammer_loads/crank/coupling.h"
 #include "hammer_loads/crank/crank_sensor.h"
 #include "hammer_loads/crank/stamp_sequence.h"
 #include "hammer_loads/linkage/level.h"
@@ -57,6 +58,15 @@ enum class BoomModel {
   kCompliant,  ///< it also vibrates on the oil of its cylinders
   kAuto,       ///< compliant unless rigid is within rigid_tolerance for the last turn's pulse
 };
+
+/// What lies between the crank sensor and the crank.
+enum class Shaft {
+  kRigid,     ///< nothing that gives
+  kFlexible,  ///< the sensor sits on the motor, beyond a coupling that twists
+};
+
+constexpr std::array<std::pair<const char*, Shaft>, 2> kShaftNames{
+    {{"rigid", Shaft::kRigid}, {"flexible", Shaft::kFlexible}}};
 
 /// What the boom's own acceleration is taken for.
 enum class BoomAcceleration {
@@ -111,6 +121,7 @@ struct PipelineSettings {
   CrankStamps crank_stamps{};          ///< which instants the samples get
   double crank_timing_noise{};         ///< standard deviation of a sample's stamp, first guess [s], >= 0
   double crank_speed_noise{};          ///< standard deviation of a measured speed [rad/s], > 0
+  std::optional<Coupling> coupling;    ///< between the crank sensor and the crank; nothing: they turn as one
   double torque_walk{};                ///< of the net torque per rocker inertia about D [rad/s2/sqrt(s)], > 0
   double speed_walk{};                 ///< [rad/s/sqrt(s)], >= 0
   double inertia_walk{};               ///< relative to the drive inertia [1/sqrt(s)], >= 0

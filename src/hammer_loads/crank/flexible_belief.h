@@ -1,0 +1,30 @@
+/// What a prediction, a measurement and a blow do to a belief with a flexible coupling.
+#pragma once
+
+#include "hammer_loads/crank/crank_belief.h"
+
+namespace hammer_loads {
+
+/// The motor, on which the encoder sits, is where the crank is but for a twist of standard deviation
+/// torque_deviation [N m] over the stiffness.
+void beginMotor(const Coupling& coupling, double torque_deviation, CrankBelief& belief) noexcept;
+
+/// The stiffness is as in doubt as at first, its estimate the given one.
+void doubtStiffness(const Coupling& coupling, CrankBelief& belief) noexcept;
+
+/// As the members of CrankBelief, for a belief with a motor of its own.
+int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact,
+                    double most_speed, double dt, CrankBelief& belief) noexcept;
+void passLateFlexible(const ShaftModel& model, double factor, CrankBelief& belief) noexcept;
+void correctFlexible(FlexibleRow row, double innovation, double variance, const SensorErrors::Row& measured_by_error,
+                     CrankBelief& belief) noexcept;
+void widenFlexible(double factor, CrankBelief& belief) noexcept;
+
+void forgetCouplingsOf(CrankBelief& belief) noexcept;
+bool isSoundFlexible(double most_speed, const CrankBelief& belief) noexcept;
+
+/// Covariance of the crank's (angle, speed, acceleration), grown as CrankBelief::grown().
+Eigen::Matrix3d flexibleMotionCovariance(const ShaftModel& model, const CrankBelief& belief, double growth,
+                                         const SensorErrors::Matrix& moment, double torque_part) noexcept;
+
+}  // namespace hammer_loads

@@ -1,0 +1,227 @@
+#include "hammer_loads/crank/flexible_shaft.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kMaxStepAngle = 0.05;  // [rad] of the crank
+constexpr double kMaxStepPhase = 0.4;   // [rad] of the coupling's oscillation
+constexpr int kMaxSteps = 4096;         // bounds the work for absurd speeds; steps get longer beyond it
+
+/// Crank angle from the blow, h = sqrt(Jk + J) w, twist and motor speed within one half turn: rates of these have no
+/// derivative of the links' inertia, so that their linearisation needs none of second order.
+using Path = Eigen::Vector4d;
+enum : Eigen::Index { kOffset, kH, kTwist, kMotor };
+using PathMatrix = Eigen::Matrix4d;
+/// Columns: torque, logarithm of drive inertia, the coupling's two logarithms.
+using InputMatrix = Eigen::Matrix4d;
+
+struct Shaft {
+  const ShaftModel& model;
+  CouplingLaw law;
+  Side side;
+  double torque;
+
+  Path rate(const Path& at, const ShaftLoad& load) const noexcept {
+    const double inv_root = 1.0 / std::sqrt(law.crank_inertia + load.inertia), speed = at[kH] * inv_root;
+    const double moment = law.moment(at[kTwist], at[kMotor], speed);
+    return {speed, (moment + load.weight_torque - law.crank_inertia * load.hull_acceleration) * inv_root,
+            at[kMotor] - speed, (torque - moment) / law.motor_inertia - load.hull_acceleration};
+  }
+  /// first: the rate at the start.
+  Path after(const Path& start, const Path& first, double dt) const noexcept {
+    const auto rate_at = [&](const Path& at) { return rate(at, model.withoutSlopes({at[kOffset], side})); };
+    const Path k2 = rate_at(start + 0.5 * dt * first);
+    const Path k3 = rate_at(start + 0.5 * dt * k2);
+    const Path k4 = rate_at(start + dt * k3);
+    return start + dt / 6.0 * (first + 2.0 * (k2 + k3) + k4);
+  }
+};
+
+/// Derivatives of the rates of (angle, h, motor's angle, motor's speed) by these and by the inputs.
+struct Linearised {
+  PathMatrix by_path;
+  InputMatrix by_input;
+};
+
+Linearised linearised(const Shaft& s, const Path& at, const ShaftLoad& load) noexcept {
+  const CouplingLaw& c = s.law;
+  const double inv = 1.0 / (c.crank_inertia + load.inertia), inv_root = std::sqrt(inv), speed = at[kH] * inv_root;
+  const double slip = c.damping * (at[kMotor] - speed), spring = c.stiffness * at[kTwist];
+  const double torque = spring + slip + load.weight_torque - c.crank_inertia * load.hull_acceleration;
+  const double speed_by_angle = -speed * load.half_inertia_slope * inv;
+  const double per_motor = 1.0 / c.motor_inertia, moment_by_angle = -c.stiffness - c.damping * speed_by_angle;
+  Linearised d;
+  d.by_path << speed_by_angle, inv_root, 0.0, 0.0,  //
+      (moment_by_angle + load.weight_torque_slope - torque * load.half_inertia_slope * inv) * inv_root,
+      -c.damping * inv, c.stiffness * inv_root, c.damping * inv_root,  //
+      0.0, 0.0, 0.0, 1.0,                                              //
+      -moment_by_angle * per_motor, c.damping * inv_root * per_motor, -c.stiffness * per_motor, -c.damping * per_motor;
+  // By something that changes both inertias and the moment at given twist and speeds.
+  const auto by = [&](double crank, double motor, double moment) {
+    const double speed_by = -0.5 * speed * crank * inv, moment_by = moment - c.damping * speed_by;
+    return Path(speed_by, (moment_by - crank * load.hull_acceleration - 0.5 * torque * crank * inv) * inv_root, 0.0,
+                -(moment_by + (s.torque - spring - slip) * motor * per_motor) * per_motor);
+  };
+  const double on_crank = c.crank_inertia / (c.crank_inertia + c.motor_inertia), odds = on_crank * c.motor_inertia;
+  d.by_input.col(0) << 0.0, 0.0, 0.0, per_motor;
+  d.by_input.col(1) = by(c.crank_inertia, c.motor_inertia, spring + slip);
+  d.by_input.col(2) = by(0.0, 0.0, spring + 0.5 * slip);
+  d.by_input.col(3) = by(-odds, odds, (2.0 * on_crank - 1.0) * (spring + slip));
+  return d;
+}
+
+/// Of one smooth piece: exponential of the mean of both ends' linearisations, to fourth order.
+FlexibleMatrix transition(const Shaft& s, double dt, const Path& start, const ShaftLoad& load, const Path& end,
+                          const ShaftLoad& load_end) noexcept {
+  const Linearised p = linearised(s, start, load), q = linearised(s, end, load_end);
+  const PathMatrix a = 0.5 * dt * (p.by_path + q.by_path), square = a * a;
+  const PathMatrix mean = PathMatrix::Identity() + 0.5 * a + square / 6.0 + square * a / 24.0;
+  PathMatrix by_path = PathMatrix::Identity() + a * mean;
+  InputMatrix by_input = mean * (0.5 * dt * (p.by_input + q.by_input));
+  // from h to the speed, at both ends
+  const double inertia = s.law.crank_inertia,
+               by_odds = -inertia * s.law.motor_inertia / (inertia + s.law.motor_inertia);
+  const double root = std::sqrt(inertia + load.inertia), root_end = std::sqrt(inertia + load_end.inertia);
+  const double speed = start[kH] / root, speed_end = end[kH] / root_end;
+  by_input.col(1) += 0.5 * speed * inertia / root * by_path.col(kH);
+  by_input.col(3) += 0.5 * speed * by_odds / root * by_path.col(kH);
+  by_path.col(kOffset) += speed * load.half_inertia_slope / root * by_path.col(kH);
+  by_path.col(kH) *= root;
+  const double by_angle = speed_end * load_end.half_inertia_slope / root_end;
+  by_input(kH, 1) -= 0.5 * speed_end * inertia / root_end;
+  by_input(kH, 3) -= 0.5 * speed_end * by_odds / root_end;
+  by_input.row(kH) = ((by_input.row(kH) - by_angle * by_input.row(kOffset)) / root_end).eval();
+  by_path.row(kH) = ((by_path.row(kH) - by_angle * by_path.row(kOffset)) / root_end).eval();
+  constexpr Eigen::Index rows[] = {0, 1, kMotorAngle, kMotorSpeed}, inputs[] = {2, 3, kStiffness, kOdds};
+  FlexibleMatrix f = FlexibleMatrix::Identity();
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) f(rows[i], rows[k]) = by_path(i, k);
+    for (int k = 0; k < 4; ++k) f(rows[i], inputs[k]) = by_input(i, k);
+  }
+  return f;
+}
+
+bool isBeyond(Side side, double offset) noexcept { return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0; }
+
+/// Part of the step dt after which the crank is at the blow: safeguarded secant on the smooth continuation.
+double timeToBlow(const Shaft& shaft, const Path& start, const Path& first, const Path& end, double dt) noexcept {
+  double low = 0.0, high = dt, f_low = start[kOffset], f_high = end[kOffset], t = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    t = low - f_low * (high - low) / (f_high - f_low);
+    const double f = shaft.after(start, first, t)[kOffset];
+    if (std::abs(f) < 1e-13) break;
+    const bool before = std::signbit(f) == std::signbit(f_low);
+    (before ? low : high) = t;
+    (before ? f_low : f_high) = f;
+  }
+  return t;
+}
+
+struct Piece {
+  double used;
+  bool at_blow;
+};
+
+/// One smooth piece of the way, ending at dt or at the blow.
+Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state,
+                   FlexibleMatrix* total) noexcept {
+  const Shaft shaft{model, lawOf(*model.coupling(), state), state.position.angle.side, state.torque};
+  const auto load_at = [&](const CrankAngle& angle) { return total ? model(angle) : model.withoutSlopes(angle); };
+  const ShaftLoad load = load_at(state.position.angle);
+  const Path start{state.position.angle.offset, std::sqrt(shaft.law.crank_inertia + load.inertia) * state.speed,
+                   state.twist, state.motor_speed};
+  const Path first = shaft.rate(start, load);
+  Path end = shaft.after(start, first, dt);
+  const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
+  Piece piece{dt, (contact || !forward) && isBeyond(shaft.side, end[kOffset]) && !isBeyond(shaft.side, start[kOffset])};
+  if (piece.at_blow) {
+    piece.used = timeToBlow(shaft, start, first, end, dt);
+    end = shaft.after(start, first, piece.used);
+    end[kOffset] = 0.0;
+  }
+  const ShaftLoad load_end = load_at({end[kOffset], shaft.side});
+  if (total != nullptr) *total = (transition(shaft, piece.used, start, load, end, load_end) * *total).eval();
+  state.position.angle.offset = end[kOffset];
+  state.position.renormalise();
+  state.speed = end[kH] / std::sqrt(shaft.law.crank_inertia + load_end.inertia);
+  state.twist = end[kTwist];
+  state.motor_speed = end[kMotor];
+  return piece;
+}
+
+}  // namespace
+
+CouplingLaw lawOf(const Coupling& coupling, const ShaftState& state) noexcept {
+  return {coupling, state.drive_inertia, state.log_stiffness, state.log_odds};
+}
+
+double flexibleAcceleration(const Coupling& coupling, const ShaftLoad& load, const ShaftState& s) noexcept {
+  const CouplingLaw law = lawOf(coupling, s);
+  return (law.moment(s.twist, s.motor_speed, s.speed) + load.weight_torque -
+          law.crank_inertia * load.hull_acceleration - load.half_inertia_slope * s.speed * s.speed) /
+         (law.crank_inertia + load.inertia);
+}
+
+CrankEstimate flexibleEstimate(const Coupling& coupling, const ShaftLoad& load, const ShaftState& s) noexcept {
+  const CouplingLaw law = lawOf(coupling, s);
+  const double e = flexibleAcceleration(coupling, load, s), motor = motorAcceleration(coupling, load, s);
+  const double share = law.motor_inertia / (law.motor_inertia + law.crank_inertia);
+  return {s.position, s.speed, e, share * (s.motor_speed - s.speed), share * (motor - e)};
+}
+
+double motorAcceleration(const Coupling& coupling, const ShaftLoad& load, const ShaftState& s) noexcept {
+  const CouplingLaw law = lawOf(coupling, s);
+  return (s.torque - law.moment(s.twist, s.motor_speed, s.speed)) / law.motor_inertia - load.hull_acceleration;
+}
+
+int advanceFlexible(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
+                    FlexibleMatrix* total) noexcept {
+  const double rate = 2.0 * kPi * model.coupling()->frequency * std::exp(0.5 * state.log_stiffness);
+  int blows = 0;
+  double left = dt;
+  for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
+    const double needed =
+        std::ceil(std::abs(left) * std::max(std::abs(state.speed) / kMaxStepAngle, rate / kMaxStepPhase));
+    const double steps = std::clamp(needed, 1.0, static_cast<double>(kMaxSteps - i));
+    const Piece piece = advancePiece(model, left / steps, passing.contact, state, total);
+    left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
+    if (!piece.at_blow) continue;
+    blows += state.speed > 0.0;
+    passBlowFlexible(model, dt > 0.0 ? passing.factor : 1.0 / passing.factor, state, total);
+  }
+  return blows;
+}
+
+void passBlowFlexible(const ShaftModel& model, double factor, ShaftState& state, FlexibleMatrix* total) noexcept {
+  const Coupling& coupling = *model.coupling();
+  const double beyond = state.position.angle.offset, speed = state.speed, motor_angle = state.twist + beyond;
+  const double k = speed > 0.0 ? factor : 1.0;
+  const auto at = [&](Side side) {
+    state.position.angle = {0.0, side};
+    const ShaftLoad load = model(state.position.angle);
+    return std::pair(flexibleAcceleration(coupling, load, state), motorAcceleration(coupling, load, state));
+  };
+  const Side from = state.position.angle.side;
+  const auto [before, motor_before] = at(from);
+  state.speed *= k;
+  const auto [after, motor_after] = at(from == Side::kBeforeBlow ? Side::kAfterBlow : Side::kBeforeBlow);
+  constexpr double kSlow = 1.0;  // [rad/s]: a crank that creeps over the blow has no defined instant of passing it
+  const double inv = std::abs(speed) > kSlow ? 1.0 / speed : 0.0;
+  const double jump = (after - k * before) * inv, motor_jump = (motor_after - motor_before) * inv;
+  state.position.angle.offset = k * beyond;
+  state.twist = motor_angle - state.position.angle.offset;
+  state.speed += jump * beyond;
+  state.motor_speed += motor_jump * beyond;
+  if (total == nullptr) return;
+  total->row(kMotorSpeed) += motor_jump * total->row(0);
+  total->row(1) = (k * total->row(1) + jump * total->row(0)).eval();
+  total->row(0) *= k;
+  if (!(speed > 0.0)) return;
+  (*total)(0, 4) += beyond;
+  (*total)(1, 4) += speed;
+}
+
+}  // namespace hammer_loads

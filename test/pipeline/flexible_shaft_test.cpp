@@ -1,0 +1,118 @@
+// Machines with a flexible coupling, the encoder on the motor, through the whole pipeline.
+#include <gtest/gtest.h>
+
+#include "hammer_loads/bench/session_run.h"
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/settings/load.h"
+#include "support/counting_new.h"
+
+namespace hammer_loads {
+namespace {
+
+const Settings& shipped() {
+  static const Settings settings = *load(configDirectory(), {}).value;
+  return settings;
+}
+
+simulation::MachineSettings machineWith(double frequency, double share, std::uint64_t seed) {
+  simulation::MachineSettings s = simulation::workingMo100();
+  s.hammer = shipped().mechanism.parameters();
+  s.duration = 11.0;
+  s.drive.stop_time = 9.5;
+  s.drive.coupling_frequency = frequency;
+  s.drive.motor_share = share;
+  s.drive.coupling_damping = 0.02;
+  s.seed = seed;
+  return s;
+}
+
+PipelineSettings settingsWith(const std::optional<Coupling>& coupling) {
+  PipelineSettings settings = shipped().pipeline;
+  settings.coupling = coupling;
+  return settings;
+}
+
+accuracy::SessionErrors errorsOf(const simulation::MachineSettings& machine, const std::optional<Coupling>& coupling) {
+  const simulation::Session session = simulation::recordSession(machine);
+  return judge(accuracy::runSession(session, machine.start_stamp, shipped().mechanism, settingsWith(coupling)), session,
+               machine);
+}
+
+void expectGood(const accuracy::SessionErrors& e, double rms) {
+  EXPECT_LT(e.rms_z, rms);
+  EXPECT_LT(e.rms_torque, 1.5 * rms);  // the drive's part included
+  EXPECT_GT(e.covered_z, 0.88);
+  EXPECT_GT(e.blows, 20);
+  EXPECT_EQ(e.unseen_blows, 0);
+  EXPECT_EQ(e.false_blows, 0);
+}
+
+/// What a rigid shaft makes of it shows that the flaw is there.
+TEST(FlexibleShaftSession, IsAsGoodAsARigidOne) {
+  std::uint64_t seed = 900;
+  for (const double frequency : {30.0, 50.0, 80.0}) {
+    for (const double rate : {1000.0, 200.0}) {
+      simulation::MachineSettings machine = machineWith(frequency, 0.3, ++seed);
+      machine.crank.rate = rate;
+      SCOPED_TRACE(testing::Message() << frequency << " Hz at " << rate << " Hz");
+      const accuracy::SessionErrors e = errorsOf(machine, Coupling{frequency, 0.3, 0.02, 0.3, 0.03});
+      expectGood(e, 0.004);
+      EXPECT_LT(e.energy, 0.03);
+      EXPECT_LT(e.blow_time, 5e-4);
+      EXPECT_GT(errorsOf(machine, {}).rms_z, 4.0 * e.rms_z);
+    }
+  }
+}
+
+TEST(FlexibleShaftSession, AGuessedFrequencyMayBeWrong) {
+  std::uint64_t seed = 930;
+  for (const double frequency : {30.0, 50.0, 80.0}) {
+    for (const double part : {0.8, 1.2}) {
+      SCOPED_TRACE(testing::Message() << frequency << " Hz by " << part);
+      expectGood(errorsOf(machineWith(frequency, 0.3, ++seed), Coupling{part * frequency, 0.3, 0.02, 0.3, 0.03}),
+                 0.004);
+    }
+  }
+}
+
+TEST(FlexibleShaftSession, AWrongShareIsWithinTheDeviations) {
+  for (const double part : {0.8, 1.2}) {
+    SCOPED_TRACE(part);
+    expectGood(errorsOf(machineWith(50.0, 0.2, 940), Coupling{50.0, part * 0.2, 0.02, 0.3, 0.03}), 0.015);
+  }
+}
+
+TEST(FlexibleShaftSession, BlowsThatDifferAndStampsThatJitter) {
+  simulation::MachineSettings machine = machineWith(50.0, 0.3, 950);
+  machine.blow.restitution_drawn = true;
+  machine.blow.restitution_high = 0.3;
+  machine.crank.stamp_noise = 2e-4;
+  machine.crank.speed = false;
+  expectGood(errorsOf(machine, Coupling{50.0, 0.3, 0.02, 0.3, 0.03}), 0.012);
+}
+
+TEST(FlexibleShaftSession, TheWarningNamesTheParameter) {
+  const simulation::MachineSettings machine = machineWith(50.0, 0.5, 960);
+  const simulation::Session session = simulation::recordSession(machine);
+  const auto said = [&](const std::optional<Coupling>& coupling) {
+    Pipeline pipeline(shipped().mechanism, settingsWith(coupling));
+    for (const simulation::CrankReading& r : session.crank) pipeline.crankSample(r.stamp, {r.angle, r.speed});
+    std::string all;
+    for (const Warning& w : warningsOf(pipeline)) all += std::string(w.key) == "inconsistent" ? w.text : "";
+    return all;
+  };
+  EXPECT_NE(said({}).find("shaft: flexible"), std::string::npos) << said({});
+  EXPECT_EQ(said(Coupling{50.0, 0.5, 0.02, 0.3, 0.03}), "");
+}
+
+TEST(FlexibleShaftSession, AllocatesNothingPerSample) {
+  const simulation::MachineSettings machine = machineWith(50.0, 0.3, 970);
+  const simulation::Session session = simulation::recordSession(machine);
+  Pipeline pipeline(shipped().mechanism, settingsWith(Coupling{50.0, 0.3, 0.02, 0.3, 0.03}));
+  const std::size_t before = test::allocations;
+  for (const simulation::CrankReading& r : session.crank) pipeline.crankSample(r.stamp, {r.angle, r.speed});
+  EXPECT_EQ(test::allocations, before);
+}
+
+}  // namespace
+}  // namespace hammer_loads
