@@ -16,6 +16,7 @@ COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank"
           "grapple": "#b08a1e"}
 SESSION = {"none": "none", "difference": "difference",
            "mechanism, linkage, smoothed": "smoothed"}  # crank rows by estimator; all others: mechanism
+MACHINE = {"mechanism, linkage, flexible shaft of 50 Hz": "coupling of 50 Hz, given as 60"}  # rows with machines of their own
 EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage, AVX2"),
            ("crank", "mechanism, linkage"), ("pipeline", "linkage")]
 SIDE_BY_SIDE = [("clean", "clean"), ("typical", "typical"), ("typical, after calibrate", "typical, after `calibrate`")]
@@ -35,11 +36,14 @@ def worst(row):
     return NO_DIGITS if any(error is None or error > 1 for error in errors) else max(errors)
 
 
-def picture_error(row, sessions):
+def picture_error(row, figures):
     """What the picture shows: the worst relative error, for pulse its model error, for steps the session's."""
+    if row["name"] in MACHINE:
+        return next(m["rms_z"] for m in figures["machines"]
+                    if m["machine"] == MACHINE[row["name"]] and m["rate_hz"] == 1000)
     if row["group"] in ("crank", "pipeline"):
         estimator = SESSION.get(row["name"], "mechanism")
-        return next(s["rms_z"] for s in sessions
+        return next(s["rms_z"] for s in figures["sessions"]
                     if s["estimator"] == estimator and s["rate_hz"] == 1000 and s["encoder_counts"] == 4096)
     if row["name"] == "pulse":
         return row["errors"]["regular turn"]["of_peak"]
@@ -72,7 +76,7 @@ def middle(group, distance):
 
 
 def draw(figures, path):
-    points = sorted((math.log10(row["ns"]), math.log10(picture_error(row, figures["sessions"])), row)
+    points = sorted((math.log10(row["ns"]), math.log10(picture_error(row, figures)), row)
                     for row in figures["costs"] if row["errors"] or row["group"] in ("crank", "pipeline"))
     figure, axes = plt.subplots(figsize=(9.5, 6.5), dpi=110)
     for x, y, row in points:

@@ -14,14 +14,14 @@
 namespace hammer_loads {
 namespace {
 
-struct Outcome {
+struct UnitOutcome {
   bool crank_told{}, boom_told{};
   int crank_samples{};
 };
 
 /// unit: what every angle of the bag is multiplied by.
-Outcome readSession(const std::string& path, double unit) {
-  Outcome outcome;
+UnitOutcome readSession(const std::string& path, double unit) {
+  UnitOutcome outcome;
   UnitCheck check(300.0);
   HullPitch pitch({"boom_joint", "arm_joint", "hammer_joint"}, 0.0);
   rosbag::Bag bag(path, rosbag::bagmode::Read);
@@ -48,11 +48,11 @@ TEST(UnitCheckOfRecordedSessions, TellsDegreesAndNothingElse) {
     if (entry.path().extension() != ".bag") continue;
     SCOPED_TRACE(entry.path());
     ++sessions;
-    const Outcome radians = readSession(entry.path(), 1.0);
+    const UnitOutcome radians = readSession(entry.path(), 1.0);
     EXPECT_FALSE(radians.crank_told);
     EXPECT_FALSE(radians.boom_told);
     EXPECT_GT(radians.crank_samples, 1000);
-    const Outcome degrees = readSession(entry.path(), 57.29577951308232);
+    const UnitOutcome degrees = readSession(entry.path(), 57.29577951308232);
     EXPECT_TRUE(degrees.crank_told);
     EXPECT_TRUE(degrees.boom_told);
   }

@@ -11,10 +11,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr Gravity kLeaning{2.0, -9.6};
+constexpr Gravity kSlanting{2.0, -9.6};
 constexpr double kDrive = 0.6;  // [kg m2]
 
-ShaftState stateAt(double angle, double speed, double torque) {
+ShaftState twistedState(double angle, double speed, double torque) {
   ShaftState s{{0, CrankAngle::fromAngle(angle)}, speed, torque, kDrive};
   s.twist = 0.01;
   s.motor_speed = speed + 1.5;
@@ -25,7 +25,7 @@ class FlexibleShaft : public testing::Test {
  protected:
   ShaftModel modelOf(const Coupling& coupling) const {
     ShaftModel model(mechanism_, Level::kLinkage, coupling);
-    model.setHullMotion({kLeaning, 1.0, 20.0});
+    model.setHullMotion({kSlanting, 1.0, 20.0});
     return model;
   }
   static ShaftState advanced(const ShaftModel& model, double dt, ShaftState state, const Passing& passing = {}) {
@@ -54,7 +54,7 @@ TEST_F(FlexibleShaft, FollowsTheEquationsOfTwoInertias) {
         r = {y[1], (moment + load.weight_torque - crank * alpha - 0.5 * slope * y[1] * y[1]) / (crank + load.inertia),
              y[3], (120.0 - moment) / motor - alpha};
       };
-      const ShaftState from = stateAt(1.0, 20.0, 120.0);
+      const ShaftState from = twistedState(1.0, 20.0, 120.0);
       Y y{1.0, 20.0, 1.01, 21.5};
       namespace odeint = boost::numeric::odeint;
       odeint::integrate_adaptive(odeint::make_controlled(1e-12, 1e-12, odeint::runge_kutta_fehlberg78<Y>()), rates, y,
@@ -70,7 +70,7 @@ TEST_F(FlexibleShaft, FollowsTheEquationsOfTwoInertias) {
 
 TEST_F(FlexibleShaft, GoesBackTheWayItCame) {
   const ShaftModel model = modelOf({60.0, 0.4, 0.02, 0.0, 0.0});
-  const ShaftState from = stateAt(6.2, 25.0, 150.0);
+  const ShaftState from = twistedState(6.2, 25.0, 150.0);
   const Passing blow{0.8, true};
   const ShaftState back = advanced(model, -0.02, advanced(model, 0.02, from, blow), blow);
   EXPECT_NEAR(difference(back.position, from.position), 0.0, 1e-5);
@@ -82,7 +82,7 @@ TEST_F(FlexibleShaft, GoesBackTheWayItCame) {
 /// What the blow does acts on the crank alone.
 TEST_F(FlexibleShaft, ABlowLeavesTheMotorAlone) {
   const ShaftModel model = modelOf({60.0, 0.4, 0.02, 0.0, 0.0});
-  const ShaftState from = stateAt(kTwoPi - 1e-7, 20.0, 150.0), to = advanced(model, 1e-8, from, {0.5, true});
+  const ShaftState from = twistedState(kTwoPi - 1e-7, 20.0, 150.0), to = advanced(model, 1e-8, from, {0.5, true});
   ASSERT_EQ(to.position.angle.side, Side::kAfterBlow);
   EXPECT_NEAR(to.speed, 0.5 * from.speed, 1e-4);
   EXPECT_NEAR(to.motor_speed, from.motor_speed, 1e-4);
@@ -107,7 +107,7 @@ TEST_F(FlexibleShaft, ItsLinearisationFollowsFiniteDifferences) {
   const double size[] = {1e-3, 0.1, 100.0, 0.1, 0.05, 1e-3, 0.1, 0.1, 0.1};  // unit changes that matter
   for (const double angle : {0.5, 2.0, 3.5, 4.8, 5.6, 6.0, 6.2, 6.275}) {
     for (const double dt : {2e-4, 1e-3, 2e-3}) {
-      const ShaftState from = stateAt(angle, 18.0, 150.0);
+      const ShaftState from = twistedState(angle, 18.0, 150.0);
       ShaftState to = from;
       FlexibleMatrix f = FlexibleMatrix::Identity();
       const int blows = advanceFlexible(model, dt, {0.7, true}, to, &f);

@@ -16,7 +16,7 @@ namespace {
 using simulation::HammerOnBoom;
 using simulation::OnBoomTruth;
 using test::Error;
-constexpr double kMillisecond = 1e-3, kBegin = 3.0, kEnd = 8.0;
+constexpr double kMillisecond = 1e-3, kRecordBegin = 3.0, kRecordEnd = 8.0;
 using test::kMs;
 
 struct Recording {
@@ -34,7 +34,7 @@ const Recording& recording() {
     for (std::size_t i = 0; i < 3; ++i) machine.boom[i + 1] = {kPose[i], 0.0, 1.0, 0.0};
     HammerOnBoom hammer(machine);
     Recording r;
-    for (int i = 1; i * kMillisecond < kEnd; ++i) {
+    for (int i = 1; i * kMillisecond < kRecordEnd; ++i) {
       hammer.advanceTo(i * kMillisecond);
       r.truth.push_back(hammer.truth());
     }
@@ -54,7 +54,7 @@ struct Sensors {
   bool joints{};            ///< at each sample, and see the vibration; else at 50 Hz where the operator holds them
 };
 
-/// Plays the machine's sensors into a pipeline; each(truth, result) for every sample after kBegin.
+/// Plays the machine's sensors into a pipeline; each(truth, result) for every sample after kRecordBegin.
 template <typename Each>
 void play(Pipeline& pipeline, const Sensors& sensors, const Each& each) {
   std::mt19937_64 random(7);
@@ -77,7 +77,7 @@ void play(Pipeline& pipeline, const Sensors& sensors, const Each& each) {
     const SampleResult& result =
         pipeline.crankSample(stamp, {std::remainder(t.angle + sensors.zero + noise(sensors.crank_noise), kTwoPi),
                                      t.speed + noise(300.0 * sensors.crank_noise)});
-    if (t.time > kBegin) each(t, result);
+    if (t.time > kRecordBegin) each(t, result);
   }
 }
 

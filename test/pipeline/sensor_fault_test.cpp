@@ -16,7 +16,7 @@ namespace {
 
 using simulation::Session;
 
-constexpr double kFrom = 4.0, kEnd = 4.6;  // [s] faults begin within the turn after kFrom; errors count until kEnd
+constexpr double kFrom = 4.0, kCountedTo = 4.6;  // [s] faults begin within the turn after kFrom; errors count until kCountedTo
 constexpr double kTurn = 0.22;             // [s]
 constexpr double kGoodError = 0.02;        // of Fz over its peak: undisturbed sessions stay within 0.012
 
@@ -25,14 +25,14 @@ using Fault = std::function<void(double, CrankSample&)>;
 
 Session record(double rate) {
   simulation::MachineSettings machine = simulation::workingMo100();
-  machine.duration = kEnd + 0.4;
+  machine.duration = kCountedTo + 0.4;
   machine.crank.rate = rate;
   for (simulation::JointMotion& joint : machine.boom) joint.amplitude = 0.0;
   return simulation::recordSession(machine);
 }
 
 struct Result {
-  double worst{};          ///< error of Fz over its peak, of what was accepted from kFrom to kEnd
+  double worst{};          ///< error of Fz over its peak, of what was accepted from kFrom to kCountedTo
   std::uint64_t lost{};    ///< samples not accepted in the meantime
   std::uint64_t faulty{};  ///< samples that the fault changed
 };
@@ -44,7 +44,7 @@ Result play(const Session& session, const Fault& fault) {
   Result result;
   double peak = 0.0;
   for (const auto& truth : session.truth) peak = std::max(peak, std::abs(truth.load.force_z));
-  for (std::size_t i = 0; i < session.crank.size() && session.truth[i].time < kEnd; ++i) {
+  for (std::size_t i = 0; i < session.crank.size() && session.truth[i].time < kCountedTo; ++i) {
     const CrankSample good{session.crank[i].angle, session.crank[i].speed};
     CrankSample sample = good;
     fault(session.truth[i].time, sample);
