@@ -16,9 +16,10 @@ namespace {
 
 using simulation::Session;
 
-constexpr double kFrom = 4.0, kCountedTo = 4.6;  // [s] faults begin within the turn after kFrom; errors count until kCountedTo
-constexpr double kTurn = 0.22;             // [s]
-constexpr double kGoodError = 0.02;        // of Fz over its peak: undisturbed sessions stay within 0.012
+constexpr double kFrom = 4.0,
+                 kCountedTo = 4.6;   // [s] faults begin within the turn after kFrom; errors count until kCountedTo
+constexpr double kTurn = 0.22;       // [s]
+constexpr double kGoodError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
 
 /// Changes the sample at a time [s].
 using Fault = std::function<void(double, CrankSample&)>;

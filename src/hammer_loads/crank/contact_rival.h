@@ -15,8 +15,8 @@ class ContactRival {
   void begin(const CrankBelief& belief) noexcept;
   void drop() noexcept { belief_.reset(); }
   bool isThere() const noexcept { return belief_.has_value(); }
-  /// The estimate is more likely of the wrong branch than not.
-  bool isDoubtful() const noexcept { return belief_ && evidence_ > 0.0; }
+  /// The estimate is clearly more likely of the wrong branch than not.
+  bool isDoubtful() const noexcept { return belief_ && evidence_ > kDoubt; }
   /// Only where it is there.
   CrankBelief& belief() noexcept { return *belief_; }
 
@@ -28,6 +28,7 @@ class ContactRival {
   bool choose(CrankBelief& estimate, bool& mirrored) noexcept;
 
  private:
+  static constexpr double kDoubt = 2.0;                             // logarithm of its odds
   static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
 
   std::optional<CrankBelief> belief_;

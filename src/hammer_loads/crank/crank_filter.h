@@ -39,7 +39,8 @@ struct CrankFilterSettings {
 /// of model.md 6.
 ///
 /// Learned beside the state: drive inertia within a few turns; encoder count, noise of measured speeds and jitter of
-/// the stamps within some hundred samples, and where they jitter the torque's walk; what the blows do within ten of them.
+/// the stamps within some hundred samples, and where they jitter the torque's walk; what the blows do within ten of
+/// them.
 ///
 /// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
 /// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
@@ -101,7 +102,7 @@ class CrankFilter final : public CrankTracker {
 
  private:
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
-  static constexpr double kAgrees = 12.0;  ///< worse than any flaw of a sensor in radians: a coupling of 50 Hz gives 11
+  static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
 
   ShaftMatrix grown(const CrankBelief& belief) const noexcept;
   Eigen::Matrix3d covarianceOf(const CrankBelief& belief, double torque_part) const noexcept;

@@ -9,8 +9,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kUnseenGrowth = 2.78;  // the live filter counts 0.6 deviations of the sensor's errors that are not
-                                        // seen: its noise covers the rest
+// Of the live filter's share of the sensor's errors that are not seen: its noise covers more of the rest.
+constexpr double kUnseenGrowth = 1.4;
 
 }  // namespace
 

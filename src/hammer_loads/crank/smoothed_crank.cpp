@@ -67,9 +67,7 @@ Eigen::Matrix3d SmoothedCrank::covarianceOf(const CrankBelief& belief, double to
   return hammer_loads::motionCovariance(model_, belief, grown(belief), kTorquePart * torque_part);
 }
 
-BlowFactor SmoothedCrank::blowFactor() const noexcept {
-  return now_.belief.blowFactor(grown(now_.belief));
-}
+BlowFactor SmoothedCrank::blowFactor() const noexcept { return now_.belief.blowFactor(grown(now_.belief)); }
 
 ShaftMatrix SmoothedCrank::grown(const CrankBelief& belief) const noexcept {
   return belief.grown(now_.growth, now_.moment);

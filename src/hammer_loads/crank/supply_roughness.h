@@ -6,10 +6,10 @@
 
 namespace hammer_loads {
 
-/// The torque's random walk is given for rough supplies. Exact samples hardly ask for it. Stamps that jitter are averaged
-/// over many samples, and their noise passes for torque where the walk is too large: successive innovations then change
-/// their sign too often. Where it is too small they keep it. So each product of an innovation and the fading sum of
-/// those before it moves the walk a little. The given one holds while stamps are exact.
+/// The torque's random walk is given for rough supplies. Exact samples hardly ask for it. Stamps that jitter are
+/// averaged over many samples, and their noise passes for torque where the walk is too large: successive innovations
+/// then change their sign too often. Where it is too small they keep it. So each product of an innovation and the
+/// fading sum of those before it moves the walk a little. The given one holds while stamps are exact.
 class SupplyRoughness {
  public:
   /// innovation of variance `total`, of which the stamp's jitter has the part `jitter`.

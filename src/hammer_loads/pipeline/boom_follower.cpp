@@ -122,7 +122,8 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
     const Cylinder& cylinder = boom_.cylinders()[i];
     const int joint = cylinder.joint();
     const std::optional<ChamberPressures> p = pressures_.at(i, sample.stamp);
-    const CylinderPosition at = cylinder.at(motion_.position[joint]);  // of a measured force the lever as it is measured
+    const CylinderPosition at =
+        cylinder.at(motion_.position[joint]);  // of a measured force the lever as it is measured
     if (!p || at.dead_centre) continue;
     const double total = -forceOf(cylinder, *p) * at.arm;
     state_.contact_torque[joint] = total - state_.loads.total[joint];

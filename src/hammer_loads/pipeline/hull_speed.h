@@ -11,8 +11,8 @@
 namespace hammer_loads {
 
 /// The hull comes back each turn: from blow to blow its velocity has no trend, and no mean. That takes weight, offsets
-/// and the jump at the blow out of the integral of the unit's readings; what is left at both ends is the velocity at the
-/// blow, mean of before and after it. Nothing before the second blow in a row, or after a pause of the unit.
+/// and the jump at the blow out of the integral of the unit's readings; what is left at both ends is the velocity at
+/// the blow, mean of before and after it. Nothing before the second blow in a row, or after a pause of the unit.
 ///
 /// Neglects: what differs from turn to turn, and the boom's slow motion.
 class HullSpeed {

@@ -21,7 +21,8 @@ BagMessages::BagMessages(const std::vector<std::unique_ptr<BagFile>>& bags, cons
     sources_.push_back(std::move(source));
   }
   std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) {
-    return std::tie(a.chunk->first, a.source, a.chunk->position) < std::tie(b.chunk->first, b.source, b.chunk->position);
+    return std::tie(a.chunk->first, a.source, a.chunk->position) <
+           std::tie(b.chunk->first, b.source, b.chunk->position);
   });
 }
 

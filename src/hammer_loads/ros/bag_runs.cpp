@@ -44,9 +44,9 @@ RunInfos readRunInfos(const BagInputs& inputs, std::vector<BagWarning>& warnings
   while (const BagMessage* item = messages.next()) {
     const std::string& topic = item->connection->topic;
     if (!item->is<RunInfo>()) {
-      addOnce(warnings, {"definitions", topic + ": hammer_loads/RunInfo of another definition (MD5 " +
-                                            item->connection->md5sum + ", here " + ros::message_traits::md5sum<RunInfo>() +
-                                            "), is not used"});
+      addOnce(warnings,
+              {"definitions", topic + ": hammer_loads/RunInfo of another definition (MD5 " + item->connection->md5sum +
+                                  ", here " + ros::message_traits::md5sum<RunInfo>() + "), is not used"});
       continue;
     }
     item->to(info);

@@ -56,8 +56,7 @@ void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, s
   for (const Warning& warning : bridge.life().warnings()) addOnce(warnings, {warning.key, warning.text, run});
 }
 
-void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics,
-                      std::vector<BagWarning>& warnings) {
+void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings) {
   for (const std::string& name : topics) {
     const auto found = inputs.topics().find(name);
     if (found == inputs.topics().end() || found->second.publishers.size() < 2) continue;
@@ -93,8 +92,8 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warning
     list += (list.empty() ? "" : ", ") + onOneLine(name) + " (" + known->first + ")";
   }
   if (!list.empty())
-    addOnce(warnings, {"definitions", "messages of another version of this package: " + list +
-                                          "; `rosbag fix -n " + inputs.names() + " NEW.bag " + configDirectory() +
+    addOnce(warnings, {"definitions", "messages of another version of this package: " + list + "; `rosbag fix -n " +
+                                          inputs.names() + " NEW.bag " + configDirectory() +
                                           "/../migration/hammer_loads.bmr` makes them readable"});
 }
 

@@ -50,8 +50,8 @@ void LifeTables::begin(HammerBridge& bridge, std::int64_t run) {
 void LifeTables::takeTurn(const TurnLoads& message) {
   if (!message.whole) return;
   for (std::size_t i = 0; i < message.channel.size(); ++i)
-    writer_->turnLoad(run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i],
-                             message.mean[i]});
+    writer_->turnLoad(
+        run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i], message.mean[i]});
 }
 
 void LifeTables::end(const HammerBridge& bridge) {

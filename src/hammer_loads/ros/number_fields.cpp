@@ -27,10 +27,10 @@ constexpr Kind kindOf() {
 
 const std::map<std::string, Kind>& kinds() {
   static const std::map<std::string, Kind> kinds{
-      {"float64", kindOf<double>()},        {"float32", kindOf<float>()},         {"bool", kindOf<std::uint8_t>()},
-      {"int8", kindOf<std::int8_t>()},      {"uint8", kindOf<std::uint8_t>()},    {"int16", kindOf<std::int16_t>()},
-      {"uint16", kindOf<std::uint16_t>()},  {"int32", kindOf<std::int32_t>()},    {"uint32", kindOf<std::uint32_t>()},
-      {"int64", kindOf<std::int64_t>()},    {"uint64", kindOf<std::uint64_t>()}};
+      {"float64", kindOf<double>()},       {"float32", kindOf<float>()},       {"bool", kindOf<std::uint8_t>()},
+      {"int8", kindOf<std::int8_t>()},     {"uint8", kindOf<std::uint8_t>()},  {"int16", kindOf<std::int16_t>()},
+      {"uint16", kindOf<std::uint16_t>()}, {"int32", kindOf<std::int32_t>()},  {"uint32", kindOf<std::uint32_t>()},
+      {"int64", kindOf<std::int64_t>()},   {"uint64", kindOf<std::uint64_t>()}};
   return kinds;
 }
 
