@@ -4,12 +4,10 @@
 #include <cmath>
 
 #include "hammer_loads/crank/flexible_shaft.h"
+#include "hammer_loads/crank/way_piece.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kMaxStepAngle = 0.05;  // [rad]; the transfer functions change over some 0.3 rad near the blow
-constexpr int kMaxSteps = 1024;         // bounds the work for absurd speeds; steps get longer beyond it
 
 /// Offset and h within one half turn.
 struct Path {
@@ -110,43 +108,22 @@ ShaftTransition chained(const ShaftTransition& second, const ShaftTransition& fi
   return both;
 }
 
-bool isBeyond(Side side, double offset) noexcept { return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0; }
-
 /// A state on the mirrored branch is beyond already; there is nothing to pass.
 bool passesBlow(Side side, double from, double to) noexcept { return isBeyond(side, to) && !isBeyond(side, from); }
 
-/// Part of the step dt after which the path is at the blow: safeguarded secant on the smooth continuation.
-double timeToBlow(const Shaft& shaft, const Path& start, const Path& first, const Path& end, double dt) noexcept {
-  double low = 0.0, high = dt, f_low = start.offset, f_high = end.offset;
-  double t = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    t = low - f_low * (high - low) / (f_high - f_low);
-    const double f = rungeKutta(shaft, start, first, t).offset;
-    if (std::abs(f) < 1e-13) break;
-    const bool before = std::signbit(f) == std::signbit(f_low);
-    (before ? low : high) = t;
-    (before ? f_low : f_high) = f;
-  }
-  return t;
-}
-
-struct Piece {
-  double used;
-  bool at_blow;
-};
-
 /// One smooth piece of the way, ending at dt or at the blow. total: null where no linearisation is wanted; loads are
 /// without slopes then.
-Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state, ShaftLoad& load,
-                   ShaftTransition* total) noexcept {
+WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state, ShaftLoad& load,
+                      ShaftTransition* total) noexcept {
   const Shaft shaft{model, state.position.angle.side, state.torque, state.drive_inertia};
   const Path start{state.position.angle.offset, std::sqrt(state.drive_inertia + load.inertia) * state.speed};
   const Path first = rate(shaft, start.h, load);
   Path end = rungeKutta(shaft, start, first, dt);
   const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
-  Piece piece{dt, (contact || !forward) && passesBlow(shaft.side, start.offset, end.offset)};
+  WayPiece piece{dt, (contact || !forward) && passesBlow(shaft.side, start.offset, end.offset)};
   if (piece.at_blow) {
-    piece.used = timeToBlow(shaft, start, first, end, dt);
+    piece.used =
+        timeToBlow([&](double t) { return rungeKutta(shaft, start, first, t).offset; }, start.offset, end.offset, dt);
     end = rungeKutta(shaft, start, first, piece.used);
     end.offset = 0.0;
   }
@@ -169,7 +146,7 @@ int advanceAll(const ShaftModel& model, double dt, const Passing& passing, Shaft
   for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
     const double steps_needed = std::ceil(std::abs(left * state.speed) / kMaxStepAngle);
     const double steps = std::clamp(steps_needed, 1.0, static_cast<double>(kMaxSteps - i));
-    const Piece piece = advancePiece(model, left / steps, passing.contact, state, load, total);
+    const WayPiece piece = advancePiece(model, left / steps, passing.contact, state, load, total);
     left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
     if (!piece.at_blow) continue;
     const bool strikes = state.speed > 0.0;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/way_piece.h"
+
 namespace hammer_loads {
 namespace {
 
-constexpr double kMaxStepAngle = 0.05;  // [rad] of the crank
-constexpr double kMaxStepPhase = 0.4;   // [rad] of the coupling's oscillation
-constexpr int kMaxSteps = 4096;         // bounds the work for absurd speeds; steps get longer beyond it
+constexpr double kMaxStepPhase = 0.4;  // [rad] of the coupling's oscillation
 
 /// Crank angle from the blow, h = sqrt(Jk + J) w, twist and motor speed within one half turn: rates of these have no
 /// derivative of the links' inertia, so that their linearisation needs none of second order.
@@ -104,30 +104,9 @@ FlexibleMatrix transition(const Shaft& s, double dt, const Path& start, const Sh
   return f;
 }
 
-bool isBeyond(Side side, double offset) noexcept { return side == Side::kBeforeBlow ? offset > 0.0 : offset < 0.0; }
-
-/// Part of the step dt after which the crank is at the blow: safeguarded secant on the smooth continuation.
-double timeToBlow(const Shaft& shaft, const Path& start, const Path& first, const Path& end, double dt) noexcept {
-  double low = 0.0, high = dt, f_low = start[kOffset], f_high = end[kOffset], t = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    t = low - f_low * (high - low) / (f_high - f_low);
-    const double f = shaft.after(start, first, t)[kOffset];
-    if (std::abs(f) < 1e-13) break;
-    const bool before = std::signbit(f) == std::signbit(f_low);
-    (before ? low : high) = t;
-    (before ? f_low : f_high) = f;
-  }
-  return t;
-}
-
-struct Piece {
-  double used;
-  bool at_blow;
-};
-
 /// One smooth piece of the way, ending at dt or at the blow.
-Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state,
-                   FlexibleMatrix* total) noexcept {
+WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state,
+                      FlexibleMatrix* total) noexcept {
   const Shaft shaft{model, lawOf(*model.coupling(), state), state.position.angle.side, state.torque};
   const auto load_at = [&](const CrankAngle& angle) { return total ? model(angle) : model.withoutSlopes(angle); };
   const ShaftLoad load = load_at(state.position.angle);
@@ -136,9 +115,11 @@ Piece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState&
   const Path first = shaft.rate(start, load);
   Path end = shaft.after(start, first, dt);
   const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
-  Piece piece{dt, (contact || !forward) && isBeyond(shaft.side, end[kOffset]) && !isBeyond(shaft.side, start[kOffset])};
+  WayPiece piece{dt,
+                 (contact || !forward) && isBeyond(shaft.side, end[kOffset]) && !isBeyond(shaft.side, start[kOffset])};
   if (piece.at_blow) {
-    piece.used = timeToBlow(shaft, start, first, end, dt);
+    piece.used =
+        timeToBlow([&](double t) { return shaft.after(start, first, t)[kOffset]; }, start[kOffset], end[kOffset], dt);
     end = shaft.after(start, first, piece.used);
     end[kOffset] = 0.0;
   }
@@ -186,7 +167,7 @@ int advanceFlexible(const ShaftModel& model, double dt, const Passing& passing, 
     const double needed =
         std::ceil(std::abs(left) * std::max(std::abs(state.speed) / kMaxStepAngle, rate / kMaxStepPhase));
     const double steps = std::clamp(needed, 1.0, static_cast<double>(kMaxSteps - i));
-    const Piece piece = advancePiece(model, left / steps, passing.contact, state, total);
+    const WayPiece piece = advancePiece(model, left / steps, passing.contact, state, total);
     left = steps == 1.0 && !piece.at_blow ? 0.0 : left - piece.used;
     if (!piece.at_blow) continue;
     blows += state.speed > 0.0;
