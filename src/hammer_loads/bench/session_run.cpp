@@ -27,7 +27,7 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
       }
       run.blows.push_back(blow);
     }
-    if (loads.refusal) continue;
+    if (loads.refusal || loads.beside_blow) continue;
     const double deviation = loads.outputs.empty() ? 0.0 : loads.outputs.front().deviation.wrench.force_z;
     run.wrenches.push_back(
         {seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y, deviation});

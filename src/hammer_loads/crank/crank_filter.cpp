@@ -85,6 +85,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   s.speed = sample.speed.value_or(s.speed);
   s.torque = std::clamp(s.torque, -mostTorque(), mostTorque());
   has_speed_ = sample.speed.has_value();
+  read_side_.reset();
   outlier_ = 0.0;
   unexplained_ = 0;
   load_ = model_(s.position.angle);
@@ -191,21 +192,29 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
   }
 }
 
-/// (7) A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
-/// exact: the estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
-void CrankFilter::respectCount(double reading) noexcept {
-  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || mirrored_ || now_.motor) return;
+/// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is exact.
+std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
+  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || now_.motor) return std::nullopt;
   const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
   const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
   const auto [low, high] = encoder_.edges(reading);
+  if (low - doubt > -edge_tolerance) return Side::kAfterBlow;
+  if (high + doubt < edge_tolerance) return Side::kBeforeBlow;
+  return std::nullopt;
+}
+
+/// (7) The estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
+void CrankFilter::respectCount(double reading) noexcept {
   CrankAngle& angle = now_.state.position.angle;
-  if (std::abs(low) > kNearCounts * count || std::abs(angle.offset) > kNearCounts * count) return;
-  if (low - doubt > -edge_tolerance && angle.side == Side::kBeforeBlow) {
+  const double near = kNearCounts * encoder_.resolution();
+  if (!read_side_ || mirrored_ || std::abs(angle.offset) > near) return;
+  if (std::abs(encoder_.edges(reading).low) > near) return;
+  if (*read_side_ == Side::kAfterBlow && angle.side == Side::kBeforeBlow) {
     meetRival(now_);
     angle.offset = 0.0;
     now_.passLate(step_model_, blows_.prior());
   }
-  if (high + doubt < edge_tolerance && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
+  if (*read_side_ == Side::kBeforeBlow && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
 }
 
 /// A belief is about to pass the blow with contact; the rival goes on without. A crank that rests there passes nothing.
@@ -292,6 +301,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   if (std::abs(now_.state.speed) < kLearnSpeed) now_.forgetInertiaCoupling();
   correctAngle(innovation);
   settleSide(last, dt, sample, struck);
+  read_side_ = readSide(reading);
   respectCount(reading);
   if (sample.speed) correctSpeed(sample);
   if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed

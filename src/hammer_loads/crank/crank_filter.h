@@ -66,6 +66,7 @@ class CrankFilter final : public CrankTracker {
   bool isPlausible() const noexcept override;
   BlowFactor blowFactor() const noexcept override;
   bool isDoubtful() const noexcept override { return rival_.isDoubtful(); }
+  bool readingShowsSide() const noexcept override { return read_side_.has_value(); }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }
   double struckInertia() const noexcept override;
@@ -116,6 +117,7 @@ class CrankFilter final : public CrankTracker {
                const WeighedSample& sample, double reading) noexcept;
   void correctAngle(Innovation innovation) noexcept;
   void settleSide(const CrankBelief& last, double dt, const WeighedSample& sample, bool struck) noexcept;
+  std::optional<Side> readSide(double reading) const noexcept;
   void respectCount(double reading) noexcept;
   void correctSpeed(const WeighedSample& sample) noexcept;
   void meetRival(const CrankBelief& belief) noexcept;
@@ -148,6 +150,7 @@ class CrankFilter final : public CrankTracker {
   bool mirrored_{};        ///< now_ had no contact and is on the mirrored branch
   double fit_{};           ///< logarithm of the last sample's likelihood by now_
   double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
+  std::optional<Side> read_side_;  ///< of the blow, as the last reading shows it
   double outlier_{};       ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late

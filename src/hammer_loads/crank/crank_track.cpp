@@ -47,6 +47,7 @@ void CrankTrack::add(TrackedSample sample) {
   sample.is_plausible = filter_.isPlausible();
   sample.is_proven = filter_.isProven();
   sample.is_doubtful = filter_.isDoubtful();
+  sample.reading_shows_side = filter_.readingShowsSide();
   sample.is_exact = filter_.timingNoise() == 0.0;
   samples_.push_back(sample);
   if (sample.tracking == Tracking::kOutlier) return;

@@ -22,6 +22,7 @@ struct TrackedSample {
   double consistency{};
   double resolution{};  ///< of the angle sensor [rad]
   bool has_speed{}, is_plausible{}, is_proven{}, is_doubtful{};
+  bool reading_shows_side{};
   bool is_exact{};   ///< its stamp does not jitter: the encoder decides the side of a blow
   bool was_wrong{};  ///< on a branch that turned out wrong
 };

@@ -78,6 +78,8 @@ class CrankTracker {
   virtual double struckInertia() const noexcept { return driveInertia(); }
   /// Whether the last blow was one at all is not clear yet: what is estimated may be of the wrong branch.
   virtual bool isDoubtful() const noexcept { return false; }
+  /// The last sample's reading itself shows on which side of the blow it was taken: an encoder's edge, an exact stamp.
+  virtual bool readingShowsSide() const noexcept { return false; }
   /// Enough samples have come, and they fit the model: until then a wrong unit may not show.
   virtual bool isProven() const noexcept { return true; }
   /// Mean of innovation^2 over its variance: near 1 where readings and model agree; NaN before enough samples and of no

@@ -27,6 +27,7 @@ class SmoothedCrank final : public CrankTracker {
   BlowFactor blowFactor() const noexcept override;
   double driveInertia() const noexcept override { return now_.belief.state.drive_inertia; }
   bool isDoubtful() const noexcept override { return now_.is_doubtful; }
+  bool readingShowsSide() const noexcept override { return now_.reading_shows_side; }
   bool isProven() const noexcept override { return now_.is_proven; }
   double consistency() const noexcept override { return now_.consistency; }
   /// As it is after the last sample that came into the track.

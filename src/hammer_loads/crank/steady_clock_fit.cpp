@@ -14,7 +14,7 @@ constexpr int kWarm = 20;                  // runs from which on the line is goo
 constexpr int kFirst = 4;                  // runs until there is a line
 constexpr double kClip = 4.0;              // root mean squares: a stamp further off counts as that far off
 constexpr double kGap = 6.0;               // root mean squares beyond which samples were lost for certain
-constexpr double kEvidence = 7.0;          // logarithm of likelihood ratio that a sample was lost
+constexpr double kEvidence = 16.0;         // logarithm of likelihood ratio that a sample was lost: by chance in 14 h at 1 kHz
 constexpr double kLeastScatter = 0.15;     // of the interval: a run's beginning is not known better
 constexpr double kGrown = 2.0;             // scatter about the line over that of white jitter with such steps
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/pipeline/beside_blow.h"
 #include "hammer_loads/pipeline/step_impulse.h"
 
 namespace hammer_loads {
@@ -98,6 +99,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   const HullWrench wrench = hullWrench(model_, motion, hull_.motion().motion);
   if (!isPlausible(wrench)) return withhold(Refusal::kImplausible);
   result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
+  result_.beside_blow = !crank_.tracker().readingShowsSide() &&
+                        isBesideBlow(result_.crank, std::sqrt(result_.crank_covariance(0, 0)));
   followBoom();
   hullMovedAtBlow();
   hull_.vibrates(result_.boom);
@@ -109,6 +112,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.pins = pinForces(model_, motion, result_.hull.motion, settings_.near_blow);
   sampler_.sample(result_);
   ++counts_.accepted;
+  counts_.beside_blow += result_.beside_blow;
   return result_;
 }
 

@@ -40,6 +40,9 @@ struct SampleResult {
   StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence
   StampNs sample_stamp{};          ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
+  /// Which side of the blow the sample is on is not known: what belongs to its instant is of the likelier side, and not
+  /// published. What adds up over steps goes on.
+  bool beside_blow{};
   CrankEstimate crank;
   Eigen::Matrix3d crank_covariance;  ///< of angle, speed and acceleration; zero where the estimator has none
   double consistency{};              ///< CrankTracker::consistency()
@@ -49,7 +52,8 @@ struct SampleResult {
   HullWrench wrench;   ///< at the sample, of links and drive
   PinReactions pins;
   const BoomState* boom{};            ///< null: no boom; with a fault in it void but for stamp and fault
-  std::vector<WrenchOutput> outputs;  ///< one at the sample, or those on the grid of output_rate since the one before
+  std::vector<WrenchOutput> outputs;  ///< one at the sample, or those on the grid of output_rate since the one before;
+                                      ///< none beside the blow but means
   std::size_t turn_ends{};            ///< how many of `ends` are meant; more than one only for sparse samples
   std::array<TurnEnd, 4> ends;
 };

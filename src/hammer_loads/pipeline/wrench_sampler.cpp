@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hammer_loads/pipeline/beside_blow.h"
 #include "hammer_loads/pipeline/step_impulse.h"
 
 namespace hammer_loads {
@@ -38,10 +39,17 @@ void WrenchSampler::sample(SampleResult& result) noexcept {
   if (!begun_ && !begin(result)) return;
   StampNs stamp{};
   while (isDue(result.stamp, stamp)) {
-    result.outputs.push_back(output(stamp, result));
+    const WrenchOutput made = output(stamp, result);
+    if (isKnown(made, result)) result.outputs.push_back(made);
     if (stamp == result.stamp) return;
   }
   if (kind_ == OutputKind::kMean) addUpTo(step_->length());
+}
+
+/// Whether it is clear on which side of the blow the output is; a mean does not depend on it.
+bool WrenchSampler::isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept {
+  if (kind_ == OutputKind::kMean) return true;
+  return output.stamp == result.stamp ? !result.beside_blow : !isBesideBlow(output.crank, output.deviation.angle);
 }
 
 /// Stamp of the next output, if it is not after the sample.

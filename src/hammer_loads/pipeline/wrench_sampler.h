@@ -31,6 +31,7 @@ class WrenchSampler {
  private:
   bool begin(const SampleResult& result) noexcept;
   bool isDue(StampNs sample, StampNs& stamp) const noexcept;
+  bool isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept;
   WrenchOutput output(StampNs stamp, const SampleResult& result) noexcept;
   void addUpTo(double time) noexcept;
   void followHull(const HullMotion& hull) noexcept;

@@ -23,6 +23,7 @@ std::vector<std::string> textsOf(const std::vector<BagWarning>& warnings) {
 
 void add(const SampleCounts& counts, SampleCounts& sum) {
   sum.accepted += counts.accepted;
+  sum.beside_blow += counts.beside_blow;
   sum.restarts += counts.restarts;
   sum.blows += counts.blows;
   sum.backward_passes += counts.backward_passes;
@@ -36,6 +37,9 @@ std::string textOf(const BagReport& report) {
     text += std::string("crank samples without a wrench, ") + kRefusalNames[i] + ": " +
             std::to_string(report.crank.refused[i]) + "\n";
   }
+  if (report.crank.beside_blow > 0)
+    text += "crank samples closer to the blow than the angle is known, not published: " +
+            std::to_string(report.crank.beside_blow) + "\n";
   return text + report.grapple;
 }
 

@@ -45,6 +45,7 @@ void addCounts(const SampleCounts& counts, RunRecord& record) {
   record.backward_passes = counts.backward_passes;
   for (std::size_t i = 0; i < counts.refused.size(); ++i)
     record.refusals.push_back({kRefusalNames[i], counts.refused[i]});
+  record.refusals.push_back({"beside the blow", counts.beside_blow});
 }
 
 /// What the filter has learned of sensor and machine by the end of the run.

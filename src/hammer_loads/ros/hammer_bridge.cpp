@@ -144,6 +144,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;
   for (const WrenchOutput& output : result.outputs) send(output, record_time);
+  if (result.beside_blow) return;
   if (result.boom != nullptr && !result.boom->fault) sendBoom(record_time);
   // Pure functions of the result: nothing else depends on them.
   if (outputs_.mechanism.attached()) fillMechanism(result, outputs_.mechanism.message);

@@ -107,6 +107,7 @@ void NodeDiagnostics::describeCrank(Status& status) {
   for (std::size_t i = 0; i < counts.refused.size(); ++i) {
     status.add(std::string("refused: ") + kRefusalNames[i], counts.refused[i]);
   }
+  status.add("not published, closer to the blow than the angle is known", counts.beside_blow);
   status.add("restarts", counts.restarts);
   status.add("blows", counts.blows);
   status.add("passages of the blow backward", counts.backward_passes);

@@ -1,0 +1,21 @@
+/// Whether an instant is closer to the blow than the crank's angle is known.
+#pragma once
+
+#include <cmath>
+
+#include "hammer_loads/crank/crank_tracker.h"
+
+namespace hammer_loads {
+
+/// The wrench jumps at the blow (MO-100: by 9 % of its peak), so there it is one of two values and nothing says which;
+/// WrenchStamped has no deviation that could. A creeping crank jumps nowhere, nor does one on the mirrored branch.
+/// angle_deviation: of the crank [rad]; NaN: not known.
+inline bool isBesideBlow(const CrankEstimate& crank, double angle_deviation) noexcept {
+  constexpr double kDeviations = 2.0;
+  constexpr double kCreeps = 1.0;  // [rad/s]
+  const CrankPosition& at = crank.position;
+  return std::abs(at.angle.offset) < kDeviations * angle_deviation && std::abs(crank.speed) > kCreeps &&
+         !at.isMirrored();
+}
+
+}  // namespace hammer_loads
