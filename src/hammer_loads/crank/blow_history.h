@@ -16,7 +16,7 @@ class BlowHistory {
       : first_(first), mean_(first.mean), variance_(first.deviation * first.deviation) {}
 
   /// factor of a blow, its variance and its derivative by the sensor's errors, by all samples since.
-  void add(double factor, double variance, const SensorErrors::Row& by_error) noexcept {
+  void add(double factor, double variance, const ConstantErrors::Row& by_error) noexcept {
     if (!(variance < 0.25 * variance_ || variance < kLeast * kLeast)) return;  // nothing was learned of it
     if (blows_ < kLength) ++blows_;
     const double gain = 1.0 / (blows_ + kFirstCounts), off = factor - mean_;
@@ -37,7 +37,7 @@ class BlowHistory {
   static constexpr double kMost = 0.3;
   BlowPrior first_;
   double mean_, variance_;
-  SensorErrors::Row by_error_{SensorErrors::Row::Zero()};
+  ConstantErrors::Row by_error_{ConstantErrors::Row::Zero()};
   int blows_{};
 };
 

@@ -54,12 +54,18 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
   ShaftLoad load = model(state.position.angle);
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
+  const SupplyLaw& supply = walks.supply;
   const double torque = square(walks.torque) * h, speed = square(walks.speed) * h;
   int blows = 0;
   for (int i = 0; i < steps && std::abs(state.speed) < most_speed; ++i) {
     const double b = 1.0 / (state.drive_inertia + load.inertia);
     const BlowPrior prior = priorOf(drawn);
+    const double torque_before = state.torque;
+    const CrankPosition from = state.position;
+    state.torque -= 0.5 * supply.stiffness * supply.lead(state.speed * h, h);  // mean of the step
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
+    const double lead = supply.lead(difference(state.position, from), h);
+    state.torque = torque_before - supply.stiffness * lead;
     const bool draws = step.blows > 0 && !tool_met;
     extend(step.transition, draws, transition);
     if (step.blows > 0) {
@@ -68,7 +74,10 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
       tool_met = false;
     }
     const ShaftTransition& f = step.transition;
+    double& torque_by_stiffness = by_error(kTorque, ConstantErrors::kSupply);
+    torque_by_stiffness -= 0.5 * supply.unit * lead;
     by_error.topRows<2>() = (f * by_error).eval();
+    torque_by_stiffness -= 0.5 * supply.unit * lead;
     const ShaftTransition moved = f * covariance;
     covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
     covariance.topRightCorner<2, 3>() = moved.rightCols<3>();
@@ -93,7 +102,7 @@ void CrankBelief::move(const Vector& change) noexcept {
 }
 
 void CrankBelief::correct(Row row, double innovation, double variance,
-                          const SensorErrors::Row& measured_by_error) noexcept {
+                          const ConstantErrors::Row& measured_by_error) noexcept {
   if (motor)
     return correctFlexible(row == kAngle ? kMotorAngle : kMotorSpeed, innovation, variance, measured_by_error, *this);
   const double total = covariance(row, row) + variance;

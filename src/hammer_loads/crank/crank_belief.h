@@ -4,25 +4,27 @@
 #include <cmath>
 #include <optional>
 
+#include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/motor_side.h"
-#include "hammer_loads/crank/sensor_errors.h"
+#include "hammer_loads/crank/supply_law.h"
 
 namespace hammer_loads {
 
-/// What is not measured, as random walks.
+/// What is not measured, as random walks, and what is known of the torque's way.
 struct CrankWalks {
   double torque{};   ///< of the net torque [N m/sqrt(s)]
   double speed{};    ///< of the speed [rad/s/sqrt(s)]
   double inertia{};  ///< of the drive inertia, relative [1/sqrt(s)]
+  SupplyLaw supply;
 };
 
 /// What is known of a blow before it comes: the factor on the crank's speed is drawn anew each time.
 struct BlowPrior {
   double mean{1.0};                                       ///< [-], > 0
   double deviation{};                                     ///< [-]
-  SensorErrors::Row by_error{SensorErrors::Row::Zero()};  ///< d(mean)/d(sensor's errors), as it was learned with them
+  ConstantErrors::Row by_error{ConstantErrors::Row::Zero()};  ///< d(mean)/d(sensor's errors), as it was learned with them
 };
 
 /// Gaussian belief: angle, speed, torque, logarithm of drive inertia, factor of the last blow.
@@ -32,7 +34,7 @@ struct CrankBelief {
 
   ShaftState state;
   ShaftMatrix covariance{ShaftMatrix::Zero()};
-  SensorErrors::Effect by_error{SensorErrors::Effect::Zero()};  ///< d(this, rows as above)/d(sensor's errors)
+  ConstantErrors::Effect by_error{ConstantErrors::Effect::Zero()};  ///< d(this, rows as above)/d(sensor's errors)
   double factor{1.0};                                           ///< of the last blow
   double least_inertia{};                                       ///< bounds of the drive inertia [kg m2]
   double most_inertia{};                                        ///< likewise
@@ -47,9 +49,9 @@ struct CrankBelief {
   void move(const Vector& change) noexcept;
   /// Scalar measurement of one variable, Joseph form; moves. by_error: what the sensor's errors make of the
   /// measurement.
-  void correct(Row row, double innovation, double variance, const SensorErrors::Row& by_error) noexcept;
+  void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error) noexcept;
   /// The same of a speed whose innovation has the variance `total`.
-  void correctSpeed(double innovation, double total, const SensorErrors::Row& measured) noexcept {
+  void correctSpeed(double innovation, double total, const ConstantErrors::Row& measured) noexcept {
     correct(kSpeed, innovation, total - encoderVariance(kSpeed), measured);
   }
   /// The coming correction teaches nothing of the inertia, nor of a coupling's stiffness.
@@ -82,12 +84,12 @@ struct CrankBelief {
   double encoderVariance(Row row) const noexcept {
     return motor ? motor->covariance(kMotorAngle + row, row) : covariance(row, row);
   }
-  SensorErrors::Row encoderByError(Row row) const noexcept {
-    return motor ? SensorErrors::Row(motor->by_error.row(row)) : SensorErrors::Row(by_error.row(row));
+  ConstantErrors::Row encoderByError(Row row) const noexcept {
+    return motor ? ConstantErrors::Row(motor->by_error.row(row)) : ConstantErrors::Row(by_error.row(row));
   }
   /// The covariance grown by what the innovations show beyond the model, and by a moment of the sensor's errors, which
   /// are not corrected.
-  ShaftMatrix grown(double growth, const SensorErrors::Matrix& moment) const noexcept {
+  ShaftMatrix grown(double growth, const ConstantErrors::Matrix& moment) const noexcept {
     return growth * covariance + (by_error * moment) * by_error.transpose();
   }
   /// Factor of the last blow and drive inertia, with deviations by `grown`.

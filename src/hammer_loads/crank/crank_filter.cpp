@@ -45,6 +45,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       first_guess_(drive_inertia),
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
+      supply_(settings.initial_torque_deviation),
       blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;
@@ -86,6 +87,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   s.torque = std::clamp(s.torque, -mostTorque(), mostTorque());
   has_speed_ = sample.speed.has_value();
   read_side_.reset();
+  supply_.restart();
   outlier_ = 0.0;
   unexplained_ = 0;
   load_ = model_(s.position.angle);
@@ -103,7 +105,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
   p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
   now_.by_error.setZero();
-  now_.by_error.row(Belief::kAngle) = SensorErrors::ofAngle(s.position.angle.offset);
+  now_.by_error.row(Belief::kAngle) = ConstantErrors::ofAngle(s.position.angle.offset);
   if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 
@@ -231,12 +233,22 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
 }
 
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
-void CrankFilter::rememberBlow(const CrankBelief& last) noexcept {
+void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
+  supply_.pass(dt);
   const CrankPosition &from = last.state.position, &to = now_.state.position;
   if (from.angle.side != Side::kAfterBlow || to.angle.side != Side::kBeforeBlow || to.blow != from.blow + 1) return;
+  supply_.endTurn(to);
   if (from.isMirrored() || to.isMirrored()) return;
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
+  learnSupply();
   blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_error.row(Belief::kFactor));
+}
+
+/// (10) Other than the sensor's errors, that of the supply's stiffness is corrected.
+void CrankFilter::learnSupply() noexcept {
+  const double change = supply_.learn(errors_.estimate()[ConstantErrors::kSupply]);
+  now_.move(now_.by_error.col(ConstantErrors::kSupply) * change);
+  errors_.takeSupply(change);
 }
 
 /// (4) A crank that is suddenly slower near the dead centre, or just after it than any blow makes it: the tool. True
@@ -349,7 +361,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     now_ = last;
     return begin(sample);
   }
-  rememberBlow(last);
+  rememberBlow(last, dt);
   doubtInertia(dt);
   load_ = model_(now_.state.position.angle);
   now_hull_ = model_.hullMotion();
@@ -364,7 +376,7 @@ void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept
   if (std::abs(now_.state.speed) <= kLearnSpeed) return;
   consistency_.add(ratio);
   const double jitter = square(now_.state.speed) * timing_.variance();
-  supply_.learn(innovation.value, innovation.total, jitter / innovation.total);
+  roughness_.learn(innovation.value, innovation.total, jitter / innovation.total);
   errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.encoderByError(Belief::kAngle));
 }
 

@@ -11,6 +11,7 @@
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/crank/estimate_between.h"
+#include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/timing_noise.h"
 #include "hammer_loads/crank/weighed_sample.h"
@@ -40,7 +41,7 @@ struct CrankFilterSettings {
 ///
 /// Learned beside the state: drive inertia within a few turns; encoder count, noise of measured speeds and jitter of
 /// the stamps within some hundred samples, and where they jitter the torque's walk; what the blows do within ten of
-/// them.
+/// them; how the torque follows the crank within a turn, within some ten turns.
 ///
 /// An angle that the model cannot explain widens the filter's uncertainty until it can: a supply that behaves otherwise
 /// than a slow random walk is followed with less smoothing, not refused. An outlier is ignored once; a second one in a
@@ -80,8 +81,11 @@ class CrankFilter final : public CrankTracker {
   BlowPrior blowPrior() const noexcept { return blows_.prior(); }
   /// Of the next step.
   CrankWalks walks() const noexcept {
-    return {supply_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk};
+    return {roughness_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk,
+            supply_.law()};
   }
+  /// As learned.
+  const SupplyLaw& supplyLaw() const noexcept { return supply_.law(); }
   double mostSpeed() const noexcept;  ///< from which on an estimate has diverged [rad/s]
   /// What variances are multiplied with before they are published.
   double growth() const noexcept { return consistency_.growth(); }
@@ -95,7 +99,7 @@ class CrankFilter final : public CrankTracker {
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
   double consistency() const noexcept override { return consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
-  const SensorErrors& sensorErrors() const noexcept { return errors_; }
+  const ConstantErrors& constantErrors() const noexcept { return errors_; }
   /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Innovations stay far larger than the model explains, whatever the drive inertia.
@@ -123,7 +127,8 @@ class CrankFilter final : public CrankTracker {
   void meetRival(const CrankBelief& belief) noexcept;
   bool rivalExplains(double dt, const WeighedSample& sample) noexcept;
   void learnFrom(const Innovation& innovation, double ratio) noexcept;
-  void rememberBlow(const CrankBelief& last) noexcept;
+  void rememberBlow(const CrankBelief& last, double dt) noexcept;
+  void learnSupply() noexcept;
   void doubtInertia(double dt) noexcept;
   Tracking begin(const WeighedSample& sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
@@ -138,9 +143,10 @@ class CrankFilter final : public CrankTracker {
   double unlearn_after_{};  ///< time until it may be taken up again [s]
   Encoder encoder_;
   TimingNoise timing_;
-  SupplyRoughness supply_;
+  SupplyRoughness roughness_;
+  LearnedSupply supply_;
   Consistency consistency_;
-  SensorErrors errors_;
+  ConstantErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;        ///< at the last sample, corrected by it
   ShaftLoad load_;         ///< there

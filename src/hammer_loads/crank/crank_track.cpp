@@ -40,7 +40,7 @@ void CrankTrack::add(TrackedSample sample) {
   if (sample.tracking == Tracking::kRevised) revise();
   sample.belief = filter_.belief();
   sample.growth = filter_.growth();
-  sample.moment = kUnseenGrowth * filter_.sensorErrors().moment();
+  sample.moment = kUnseenGrowth * filter_.constantErrors().moment();
   sample.consistency = filter_.consistency();
   sample.resolution = filter_.angleResolution();
   sample.has_speed = filter_.hasSpeed();

@@ -18,7 +18,7 @@ struct TrackedSample {
   BlowPrior prior;      ///< for a blow within it
   CrankBelief belief;
   double growth{1.0};                                         ///< of variances
-  SensorErrors::Matrix moment{SensorErrors::Matrix::Zero()};  ///< of the sensor's errors
+  ConstantErrors::Matrix moment{ConstantErrors::Matrix::Zero()};  ///< of the sensor's errors
   double consistency{};
   double resolution{};  ///< of the angle sensor [rad]
   bool has_speed{}, is_plausible{}, is_proven{}, is_doubtful{};

@@ -9,7 +9,7 @@ namespace hammer_loads {
 namespace {
 
 using Belief = CrankBelief;
-using Effect = Eigen::Matrix<double, 9, SensorErrors::kSize>;
+using Effect = Eigen::Matrix<double, 9, ConstantErrors::kSize>;
 using Vector = Eigen::Matrix<double, 9, 1>;
 
 constexpr double kNoiseStep = 2e-3;           // [s] step over which the process noise is spread
@@ -152,7 +152,7 @@ void passLateFlexible(const ShaftModel& model, double factor, Belief& b) noexcep
   apply(f, b);
 }
 
-void correctFlexible(FlexibleRow row, double innovation, double variance, const SensorErrors::Row& measured_by_error,
+void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& measured_by_error,
                      Belief& b) noexcept {
   const FlexibleMatrix p = joint(b);
   const Vector gain = p.col(row) / (p(row, row) + variance);
@@ -197,12 +197,12 @@ bool isSoundFlexible(double most_speed, const Belief& b) noexcept {
 }
 
 Eigen::Matrix3d flexibleMotionCovariance(const ShaftModel& model, const Belief& b, double growth,
-                                         const SensorErrors::Matrix& moment, double torque_part) noexcept {
+                                         const ConstantErrors::Matrix& moment, double torque_part) noexcept {
   const AccelerationSlopes slopes = accelerationSlopes(model, b.state);
   Eigen::Matrix<double, 3, 9> jacobian = Eigen::Matrix<double, 3, 9>::Zero();
   jacobian(0, Belief::kAngle) = jacobian(1, Belief::kSpeed) = 1.0;
   jacobian.row(2) = slopes.others + slopes.by_moment;
-  const Eigen::Matrix<double, 3, SensorErrors::kSize> by_error = jacobian * jointEffect(b);
+  const Eigen::Matrix<double, 3, ConstantErrors::kSize> by_error = jacobian * jointEffect(b);
   const Eigen::Vector3d by_odds = jacobian * b.motor->by_odds;
   jacobian.row(2) = slopes.others + torque_part * slopes.by_moment;
   return growth * jacobian * joint(b) * jacobian.transpose() + by_error * moment * by_error.transpose() +

@@ -16,7 +16,7 @@ void doubtStiffness(const Coupling& coupling, CrankBelief& belief) noexcept;
 int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact,
                     double most_speed, double dt, CrankBelief& belief) noexcept;
 void passLateFlexible(const ShaftModel& model, double factor, CrankBelief& belief) noexcept;
-void correctFlexible(FlexibleRow row, double innovation, double variance, const SensorErrors::Row& measured_by_error,
+void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& measured_by_error,
                      CrankBelief& belief) noexcept;
 void widenFlexible(double factor, CrankBelief& belief) noexcept;
 
@@ -25,6 +25,6 @@ bool isSoundFlexible(double most_speed, const CrankBelief& belief) noexcept;
 
 /// Covariance of the crank's (angle, speed, acceleration), grown as CrankBelief::grown().
 Eigen::Matrix3d flexibleMotionCovariance(const ShaftModel& model, const CrankBelief& belief, double growth,
-                                         const SensorErrors::Matrix& moment, double torque_part) noexcept;
+                                         const ConstantErrors::Matrix& moment, double torque_part) noexcept;
 
 }  // namespace hammer_loads

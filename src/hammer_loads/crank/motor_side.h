@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hammer_loads/crank/flexible_shaft.h"
-#include "hammer_loads/crank/sensor_errors.h"
+#include "hammer_loads/crank/constant_errors.h"
 
 namespace hammer_loads {
 
@@ -11,7 +11,7 @@ namespace hammer_loads {
 struct MotorSide {
   enum : Eigen::Index { kAngle, kSpeed, kStiffness, kOdds };
   using Covariance = Eigen::Matrix<double, 9, 4>;
-  using Effect = Eigen::Matrix<double, 4, SensorErrors::kSize>;
+  using Effect = Eigen::Matrix<double, 4, ConstantErrors::kSize>;
 
   using Odds = Eigen::Matrix<double, 9, 1>;
 

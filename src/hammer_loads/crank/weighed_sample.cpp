@@ -5,7 +5,7 @@ namespace hammer_loads {
 Innovation WeighedSample::ofAngle(const CrankBelief& belief) const noexcept {
   const double offset = belief.encoderOffset(), variance = angleVariance(belief.encoderSpeed());
   return {CrankAngle::wrapToPi(angle - offset), belief.encoderVariance(CrankBelief::kAngle) + variance, variance,
-          SensorErrors::ofAngle(offset)};
+          ConstantErrors::ofAngle(offset)};
 }
 
 /// The stamp's jitter counts by the acceleration; it is not computed for nothing.
@@ -18,7 +18,7 @@ Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& m
     known += change * change * timing_variance;
   }
   return {*speed - belief.encoderSpeed(), known + speed_variance, speed_variance,
-          SensorErrors::ofSpeed(belief.encoderOffset(), belief.encoderSpeed())};
+          ConstantErrors::ofSpeed(belief.encoderOffset(), belief.encoderSpeed())};
 }
 
 }  // namespace hammer_loads

@@ -13,7 +13,7 @@ struct Innovation {
   double value{};                                         ///< measured less predicted
   double total{};                                         ///< its variance
   double variance{};                                      ///< the measurement's part of that
-  SensorErrors::Row by_error{SensorErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
+  ConstantErrors::Row by_error{ConstantErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
 
   double ratio() const noexcept { return value * value / total; }
   /// But for a constant.

@@ -65,12 +65,12 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, std::ve
 }
 
 /// Where the encoder sits. An error that the innovations show is named with what else looks the same.
-void warnOfPlace(const SensorErrors& errors, std::vector<Warning>& warnings) {
+void warnOfPlace(const ConstantErrors& errors, std::vector<Warning>& warnings) {
   constexpr double kDegree = kTwoPi / 360.0;
   constexpr double kZero = 0.3 * kDegree;          // from there on the wrench is some 0.9 % worse
   constexpr double kEccentricity = 0.5 * kDegree;  // likewise
   constexpr double kDeviations = 2.0;
-  const SensorErrors::Vector &found = errors.estimate(), &deviation = errors.deviation();
+  const ConstantErrors::Vector &found = errors.estimate(), &deviation = errors.deviation();
   if (std::abs(found[0]) > std::max(kZero, kDeviations * deviation[0]))
     warnings.push_back({"zero",
                         format("crank_zero_rad: the readings look as if the blow came at %.2g rad (%.2g deg, deviation "
@@ -104,7 +104,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          true});
   warnOfStamps(pipeline.crank(), *filter, warnings);
   const bool inconsistent = filter->consistency() > kInconsistent;
-  if (!inconsistent && !filter->isUnexplained()) return warnOfPlace(filter->sensorErrors(), warnings);
+  if (!inconsistent && !filter->isUnexplained()) return warnOfPlace(filter->constantErrors(), warnings);
   warnings.push_back({"inconsistent",
                       format("crank: readings differ from the model by %s%.2g times the expected variance: a soft "
                              "coupling between crank and encoder (%s), a wrong hammer file or a zero far off",

@@ -1,4 +1,4 @@
-/// What of the innovations looks like a sensor that is not where it is said to be.
+/// What of the innovations looks like a sensor that is not where it is said to be, or another supply.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,28 +8,31 @@
 
 namespace hammer_loads {
 
-/// Errors b of the crank sensor's place: reading = angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1) [rad], so that b0
-/// alone says where the blow is; b1 and b2 are an eccentricity. They are seen here, not corrected: the filter runs as
-/// if they were zero and knows beside its state what each of them would do to it (Friedland's separate-bias filter).
-/// An innovation is then its derivative by b times b, and noise: weighted least squares over some minutes.
+/// Errors b that stay. Of the crank sensor's place: reading = angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1) [rad], so
+/// that b0 alone says where the blow is; b1 and b2 are an eccentricity. b3 is that of the supply's stiffness, as the
+/// filter has it, over SupplyLaw::unit. The filter knows beside its state what each of them does to it (Friedland's
+/// separate-bias filter). An innovation is then its derivative by b times b, and noise: weighted least squares over
+/// some minutes. b0 to b2 are seen, not corrected; b3 is taken up by the supply's law.
 ///
-/// A supply whose torque follows the crank's speed within a turn looks a little like b: with the shipped machine by 0.1
-/// to 0.2 deg, with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that.
-class SensorErrors {
+/// What the law leaves of a supply's torque looks a little like b0 to b2: with the shipped machine by 0.1 to 0.2 deg,
+/// with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that. So b3 is estimated
+/// as if the sensor's place were right: together they can hardly be separated.
+class ConstantErrors {
  public:
-  static constexpr int kSize = 3;
+  static constexpr int kPlace = 3, kSize = 4;  ///< the first kPlace are of the sensor's place
+  static constexpr int kSupply = 3;            ///< index of the supply's
   using Row = Eigen::Matrix<double, 1, kSize>;     ///< derivative of a number by b
   using Effect = Eigen::Matrix<double, 5, kSize>;  ///< of the filter's variables, in ShaftMatrix' order
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-  SensorErrors() noexcept { forget(); }
+  ConstantErrors() noexcept { forget(); }
 
   /// d(reading)/db at a crank angle within half a turn of the blow [rad].
-  static Row ofAngle(double offset) noexcept { return {1.0, sine(offset), cosine(offset) - 1.0}; }
+  static Row ofAngle(double offset) noexcept { return {1.0, sine(offset), cosine(offset) - 1.0, 0.0}; }
   /// d(measured speed)/db there [1/s].
   static Row ofSpeed(double offset, double speed) noexcept {
-    return {0.0, speed * cosine(offset), -speed * sine(offset)};
+    return {0.0, speed * cosine(offset), -speed * sine(offset), 0.0};
   }
 
   /// innovation of an angle, its variance and its derivative by b.
@@ -43,7 +46,12 @@ class SensorErrors {
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 
-  /// 0 before some turns.
+  /// The supply's stiffness has been changed by so much [SupplyLaw::unit].
+  void takeSupply(double change) noexcept {
+    score_ += information_.col(kSupply) * change;
+    estimate_[kSupply] += change;
+  }
+  /// 0 before some turns. deviation: of the sensor's place alone.
   const Vector& estimate() const noexcept { return estimate_; }
   const Vector& deviation() const noexcept { return deviation_; }
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.

@@ -1,4 +1,4 @@
-#include "hammer_loads/crank/sensor_errors.h"
+#include "hammer_loads/crank/constant_errors.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,6 +10,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kPrior = 0.05;                          // [rad]: 3 deg, far beyond what is found well
+constexpr double kPriorSupply = 0.2;                    // of SupplyLaw::unit
 constexpr int kFirstTurns = 4;                           // the drive inertia is learned first
 constexpr int kTurnsToKnow = 6;                          // nothing is concluded before
 constexpr double kMemoryTurns = 300.0;                   // turns: a minute at work
@@ -24,21 +25,24 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
 
 }  // namespace
 
-void SensorErrors::forget() noexcept {
+void ConstantErrors::forget() noexcept {
   information_ = Matrix::Identity() / square(kPrior);
+  information_(kSupply, kSupply) = 1.0 / square(kPriorSupply);
   score_.setZero();
 }
 
-void SensorErrors::endTurn(double growth, double count) noexcept {
+void ConstantErrors::endTurn(double growth, double count) noexcept {
   const int samples = std::exchange(samples_, 0);
   if (++turns_ == kFirstTurns) forget();
   if (turns_ < kTurnsToKnow) return;
-  const Matrix covariance = information_.inverse();
+  Matrix covariance = Matrix::Zero();
+  covariance.topLeftCorner<kPlace, kPlace>() = information_.topLeftCorner<kPlace, kPlace>().inverse();
+  covariance(kSupply, kSupply) = 1.0 / information_(kSupply, kSupply);
   estimate_ = covariance * score_;
   const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
-  Vector doubt, certain;  // variance of what is seen; what remains after it
+  Vector doubt = Vector::Zero(), certain = Vector::Zero();  // variance of what is seen; what remains after it
   double share = 0.0;     // of b that is certain
-  for (int i = 0; i < kSize; ++i) {
+  for (int i = 0; i < kPlace; ++i) {
     doubt[i] = square(unmodelled * kUnmodelled[i]) + square(kUnmodelledDeviations) * growth * covariance(i, i);
     deviation_[i] = std::sqrt(doubt[i] + square(kUnmodelledCounts * count));
     const double excess = square(estimate_[i]) - doubt[i];

@@ -12,11 +12,11 @@ namespace hammer_loads {
 namespace {
 
 /// Angle of a sensor whose place is off by b, from the true one.
-double read(double angle, const SensorErrors::Vector& b) {
+double read(double angle, const ConstantErrors::Vector& b) {
   return angle + b[0] + b[1] * std::sin(angle) + b[2] * (std::cos(angle) - 1.0);
 }
 
-SensorErrors::Vector found(const SensorErrors::Vector& b) {
+ConstantErrors::Vector found(const ConstantErrors::Vector& b) {
   const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
   test::StrikingCrank crank(mechanism.linkage(), 0.737, 0.6);
   CrankFilter filter(ShaftModel(mechanism, Level::kRocker), 0.6, test::filterSettings(kTwoPi / 65536.0, 1e-3));
@@ -27,48 +27,48 @@ SensorErrors::Vector found(const SensorErrors::Vector& b) {
     const CrankSample sample{read(crank.angle(), b) + noise(random), std::nullopt};
     i == 1 ? filter.start(sample) : static_cast<void>(filter.update(1e-3, sample));
   }
-  return filter.sensorErrors().estimate();
+  return filter.constantErrors().estimate();
 }
 
-TEST(SensorErrors, AreSeenInTheInnovations) {
-  const SensorErrors::Vector none = found(SensorErrors::Vector::Zero());
-  for (int i = 0; i < SensorErrors::kSize; ++i) EXPECT_NEAR(none[i], 0.0, 3e-3) << i;
-  for (int i = 0; i < SensorErrors::kSize; ++i) {
-    SensorErrors::Vector b = SensorErrors::Vector::Zero();
+TEST(ConstantErrors, AreSeenInTheInnovations) {
+  const ConstantErrors::Vector none = found(ConstantErrors::Vector::Zero());
+  for (int i = 0; i < ConstantErrors::kPlace; ++i) EXPECT_NEAR(none[i], 0.0, 3e-3) << i;
+  for (int i = 0; i < ConstantErrors::kPlace; ++i) {
+    ConstantErrors::Vector b = ConstantErrors::Vector::Zero();
     b[i] = 0.01;
-    const SensorErrors::Vector estimate = found(b) - none;
-    for (int k = 0; k < SensorErrors::kSize; ++k) EXPECT_NEAR(estimate[k], b[k], 2.5e-3) << i << ' ' << k;
+    const ConstantErrors::Vector estimate = found(b) - none;
+    for (int k = 0; k < ConstantErrors::kPlace; ++k) EXPECT_NEAR(estimate[k], b[k], 2.5e-3) << i << ' ' << k;
   }
 }
 
-TEST(SensorErrors, ReadingsDerivativeIsThatOfTheSensor) {
+TEST(ConstantErrors, ReadingsDerivativeIsThatOfTheSensor) {
   for (double offset = -3.1; offset < 3.1; offset += 0.05) {
-    const SensorErrors::Row by_error = SensorErrors::ofAngle(offset);
+    const ConstantErrors::Row by_error = ConstantErrors::ofAngle(offset);
     EXPECT_EQ(by_error[0], 1.0);
     EXPECT_NEAR(by_error[1], std::sin(offset), 2e-3);
     EXPECT_NEAR(by_error[2], std::cos(offset) - 1.0, 2e-3);
-    const SensorErrors::Row by_speed = SensorErrors::ofSpeed(offset, 30.0);
+    const ConstantErrors::Row by_speed = ConstantErrors::ofSpeed(offset, 30.0);
     EXPECT_NEAR(by_speed[1], 30.0 * std::cos(offset), 0.05);
     EXPECT_NEAR(by_speed[2], -30.0 * std::sin(offset), 0.05);
   }
 }
 
-TEST(SensorErrors, NothingIsConcludedBeforeSomeTurns) {
-  SensorErrors errors;
+TEST(ConstantErrors, NothingIsConcludedBeforeSomeTurns) {
+  ConstantErrors errors;
   for (int i = 0; i < 3; ++i) {
-    errors.learn(0.1, 1e-4, SensorErrors::ofAngle(0.5));
+    errors.learn(0.1, 1e-4, ConstantErrors::ofAngle(0.5));
     errors.endTurn(1.0, kTwoPi / 4096.0);
   }
-  EXPECT_EQ(errors.estimate(), SensorErrors::Vector::Zero());
-  EXPECT_EQ(errors.moment(), SensorErrors::Matrix::Zero());
+  EXPECT_EQ(errors.estimate(), ConstantErrors::Vector::Zero());
+  EXPECT_EQ(errors.moment(), ConstantErrors::Matrix::Zero());
 }
 
 /// What is off for certain is part of the uncertainty with what is not known of it; what may be nothing is not.
-TEST(SensorErrors, WhatIsCertainCountsWithItsDeviation) {
+TEST(ConstantErrors, WhatIsCertainCountsWithItsDeviation) {
   const auto momentOf = [](double b) {
-    SensorErrors errors;
+    ConstantErrors errors;
     for (int turn = 0; turn < 12; ++turn) {
-      for (double offset = -3.1; offset < 3.1; offset += 0.2) errors.learn(b, 1e-6, SensorErrors::ofAngle(offset));
+      for (double offset = -3.1; offset < 3.1; offset += 0.2) errors.learn(b, 1e-6, ConstantErrors::ofAngle(offset));
       errors.endTurn(1.0, 0.0);
     }
     EXPECT_NEAR(errors.estimate()[0], b, 0.05 * b);

@@ -1,0 +1,55 @@
+/// How the drive's torque follows the crank within a turn.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "hammer_loads/crank/crank_state.h"
+
+namespace hammer_loads {
+
+/// A pump of constant flow feeds the motor through oil and hoses that give: where the crank leads a uniform rotation,
+/// it has taken more oil than came, and the torque falls by so much per lead. What else the torque does is a random
+/// walk.
+struct SupplyLaw {
+  double stiffness{};   ///< [N m/rad]
+  double mean_speed{};  ///< of the uniform rotation [rad/s]; 0: not known, nothing leads
+  double unit{};        ///< of the stiffness' error among ConstantErrors [N m/rad]
+
+  /// Of a crank that turned so far [rad] in dt [s]: lead [rad].
+  double lead(double turned, double dt) const noexcept { return mean_speed > 0.0 ? turned - mean_speed * dt : 0.0; }
+};
+
+/// The law, with the mean speed of the last turn and a stiffness that is learned.
+class LearnedSupply {
+ public:
+  /// unit: largest stiffness [N m/rad], > 0.
+  explicit LearnedSupply(double unit) noexcept { law_.unit = unit; }
+  const SupplyLaw& law() const noexcept { return law_; }
+  /// What lies before is not known.
+  void restart() noexcept {
+    law_.mean_speed = 0.0;
+    turn_time_ = std::numeric_limits<double>::quiet_NaN();
+  }
+  void pass(double dt) noexcept { turn_time_ += dt; }  ///< [s]
+  /// Once a turn.
+  void endTurn(const CrankPosition& at) noexcept {
+    const double speed = difference(at, from_) / turn_time_;
+    law_.mean_speed = speed > 0.0 ? speed : 0.0;
+    from_ = at;
+    turn_time_ = 0.0;
+  }
+  /// error: of the stiffness, as the innovations show it [unit]. By how much the stiffness changes [unit].
+  double learn(double error) noexcept {
+    const double change = std::clamp(law_.stiffness / law_.unit - error, 0.0, 1.0) - law_.stiffness / law_.unit;
+    law_.stiffness += law_.unit * change;
+    return change;
+  }
+
+ private:
+  SupplyLaw law_;
+  CrankPosition from_;
+  double turn_time_{std::numeric_limits<double>::quiet_NaN()};  ///< since from_ [s]; NaN: not seen from there
+};
+
+}  // namespace hammer_loads
