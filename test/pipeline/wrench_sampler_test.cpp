@@ -106,8 +106,8 @@ TEST(InstantaneousOutput, ByDefaultIsTheSamplesOwn) {
   Pipeline pipeline(test::mechanismOf(machine.hammer), settingsOf(Level::kRocker, OutputKind::kInstantaneous, 0.0));
   for (const auto& reading : session.crank) {
     const SampleResult& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
-    ASSERT_EQ(loads.outputs.size(), loads.refusal ? 0U : 1U);
-    if (loads.refusal) continue;
+    ASSERT_EQ(loads.outputs.size(), loads.refusal || loads.beside_blow ? 0U : 1U);
+    if (loads.outputs.empty()) continue;
     const WrenchOutput& output = loads.outputs.front();
     ASSERT_EQ(output.stamp, reading.stamp);
     ASSERT_EQ(output.wrench.force_z, loads.wrench.force_z);
@@ -119,10 +119,11 @@ TEST(InstantaneousOutput, AtARateOfItsOwnLiesOnTheSamplesWhereTheyMeet) {
   const MachineSettings machine = machineAt(1000.0);
   const Session session = simulation::recordSession(machine);
   Pipeline pipeline(test::mechanismOf(machine.hammer), settingsOf(Level::kRocker, OutputKind::kInstantaneous, 3000.0));
-  std::size_t outputs = 0, at_samples = 0;
+  std::size_t outputs = 0, at_samples = 0, beside = 0;
   double before = 0.0;
   for (const auto& reading : session.crank) {
     const SampleResult& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    beside += loads.beside_blow;
     for (const WrenchOutput& output : loads.outputs) {
       ++outputs;
       if (output.stamp != reading.stamp) continue;
@@ -132,8 +133,11 @@ TEST(InstantaneousOutput, AtARateOfItsOwnLiesOnTheSamplesWhereTheyMeet) {
     }
   }
   EXPECT_NE(before, 0.0);
-  EXPECT_EQ(at_samples, session.crank.size());
-  EXPECT_NEAR(static_cast<double>(outputs), 3.0 * static_cast<double>(session.crank.size()), 4.0);
+  EXPECT_EQ(at_samples + beside, session.crank.size());
+  EXPECT_LE(beside, 2u) << "of exact stamps; the crank begins at rest on the tool";
+  const double expected = 3.0 * static_cast<double>(session.crank.size());
+  EXPECT_LE(static_cast<double>(outputs), expected + 4.0);
+  EXPECT_GT(static_cast<double>(outputs), 0.998 * expected) << "but those beside the blow";
 }
 
 TEST(MeanOutput, BeginsAnewAfterADropOut) {

@@ -1,0 +1,111 @@
+// Samples and outputs that are closer to the blow than the crank's angle is known, by the simulated machine's truth.
+#include "hammer_loads/pipeline/beside_blow.h"
+
+#include <gtest/gtest.h>
+
+#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads {
+namespace {
+
+/// From 3 s on.
+struct Published {
+  std::size_t samples{}, outputs{}, beside{};
+  std::size_t wrong_withheld{};   ///< samples beside the blow whose likelier side is not the true one
+  std::size_t wrong_published{};  ///< outputs, of the other side than the truth at their stamp
+};
+
+bool isAfter(double truth_angle) { return truth_angle < 0.5 * kTwoPi; }
+bool isNear(const CrankEstimate& crank) { return std::abs(crank.position.angle.offset) < 0.1; }
+bool isAfter(const CrankEstimate& crank) { return crank.position.angle.side == Side::kAfterBlow; }
+
+/// A machine at work at 1 kHz whose stamps are off by a standard deviation [s].
+Published published(double stamp_noise, OutputKind kind, double output_rate, std::uint64_t seed) {
+  const Settings shipped = *load(configDirectory(), {}).value;
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.hammer = shipped.mechanism.parameters();
+  machine.duration = 12.0;
+  machine.drive.stop_time = 11.5;
+  machine.crank.stamp_noise = stamp_noise;
+  machine.seed = seed;
+  const simulation::Session session = simulation::recordSession(machine);
+  PipelineSettings settings = shipped.pipeline;
+  settings.output = kind;
+  settings.output_rate = output_rate;
+  Pipeline pipeline(shipped.mechanism, settings);
+  Published result;
+  std::vector<double> times;
+  std::vector<CrankEstimate> estimates;
+  std::vector<bool> sent;
+  for (const auto& reading : session.crank) {
+    const SampleResult& r = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    if (r.refusal || r.stamp < machine.start_stamp + 3'000'000'000) continue;
+    ++result.samples;
+    result.outputs += r.outputs.size();
+    result.beside += r.beside_blow;
+    const auto add = [&](StampNs stamp, const CrankEstimate& crank, bool is_sent) {
+      if (!isNear(crank)) return;
+      times.push_back(1e-9 * static_cast<double>(stamp - machine.start_stamp));
+      estimates.push_back(crank);
+      sent.push_back(is_sent);
+    };
+    for (const WrenchOutput& output : r.outputs) add(output.stamp, output.crank, true);
+    if (r.beside_blow) add(r.stamp, r.crank, false);
+  }
+  const auto truth = simulation::truthAt(machine, times);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (isAfter(truth[i].angle) == isAfter(estimates[i])) continue;
+    ++(sent[i] ? result.wrong_published : result.wrong_withheld);
+  }
+  return result;
+}
+
+TEST(BesideBlow, NoSampleIsPublishedOnTheWrongSide) {
+  std::size_t wrong = 0;
+  for (const std::uint64_t seed : {411u, 412u, 413u, 414u}) {
+    const Published p = published(5e-5, OutputKind::kInstantaneous, 0.0, seed);
+    EXPECT_EQ(p.wrong_published, 0u) << seed;
+    EXPECT_EQ(p.outputs + p.beside, p.samples) << seed;
+    EXPECT_LT(static_cast<double>(p.beside), 0.005 * static_cast<double>(p.samples)) << seed;
+    wrong += p.wrong_withheld;
+  }
+  EXPECT_GT(wrong, 0u) << "nothing to withhold in these sessions";
+}
+
+TEST(BesideBlow, AnExactStampShowsTheSide) {
+  const Published p = published(0.0, OutputKind::kInstantaneous, 0.0, 421);
+  EXPECT_LE(p.beside, 1u) << "what the model lacks may pass for a jitter of some us";
+  EXPECT_EQ(p.wrong_published, 0u);
+}
+
+TEST(BesideBlow, OutputsBetweenSamplesAreWithheldAsWell) {
+  const Published p = published(5e-5, OutputKind::kInstantaneous, 3000.0, 411);
+  EXPECT_EQ(p.wrong_published, 0u);
+  const double expected = 3000.0 * static_cast<double>(p.samples) * 1e-3;
+  EXPECT_GT(static_cast<double>(p.outputs), 0.99 * expected);
+  EXPECT_LT(static_cast<double>(p.outputs), expected);
+}
+
+TEST(BesideBlow, MeansGoOn) {
+  const Published p = published(5e-5, OutputKind::kMean, 0.0, 411);
+  EXPECT_GT(p.beside, 0u);
+  EXPECT_EQ(p.outputs, p.samples);
+}
+
+TEST(BesideBlow, IsWhereSomethingJumps) {
+  CrankEstimate crank{{3, {1e-3, Side::kAfterBlow}}, 14.0, 0.0};
+  EXPECT_TRUE(isBesideBlow(crank, 1e-3));
+  EXPECT_FALSE(isBesideBlow(crank, 1e-4));
+  EXPECT_FALSE(isBesideBlow(crank, std::nan("")));
+  crank.position.angle.side = Side::kBeforeBlow;
+  EXPECT_FALSE(isBesideBlow(crank, 1e-3)) << "on the mirrored branch the way is smooth";
+  crank.position.angle.offset = -1e-3;
+  EXPECT_TRUE(isBesideBlow(crank, 1e-3));
+  crank.speed = 0.5;
+  EXPECT_FALSE(isBesideBlow(crank, 1e-3)) << "it creeps";
+}
+
+}  // namespace
+}  // namespace hammer_loads
