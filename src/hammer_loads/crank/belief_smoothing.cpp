@@ -68,6 +68,7 @@ std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& st
 
   CrankBelief result = before;
   result.move(gain * change);
+  result.boundFactor();
   result.by_error += gain * (next.by_error - way->predicted.by_error);
   const ShaftMatrix covariance = before.covariance + gain * (next.covariance - predicted) * gain.transpose();
   result.covariance = 0.5 * (covariance + covariance.transpose());

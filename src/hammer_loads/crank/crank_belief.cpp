@@ -29,6 +29,7 @@ void extend(const ShaftTransition& f, bool drawn, ShaftMatrix* transition) noexc
 
 void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
   factor = prior.mean;
+  struck_early = false;
   covariance.row(kFactor).setZero();
   covariance.col(kFactor).setZero();
   covariance(kFactor, kFactor) = square(prior.deviation);
@@ -98,8 +99,10 @@ void CrankBelief::move(const Vector& change) noexcept {
   state.speed += change[kSpeed];
   state.torque += change[kTorque];
   state.drive_inertia = std::clamp(state.drive_inertia * std::exp(change[kInertia]), least_inertia, most_inertia);
-  factor = std::clamp(factor + change[kFactor], kLeastFactor, kMostFactor);
+  factor += change[kFactor];
 }
+
+void CrankBelief::boundFactor() noexcept { factor = std::clamp(factor, kLeastFactor, kMostFactor); }
 
 void CrankBelief::correct(Row row, double innovation, double variance,
                           const ConstantErrors::Row& measured_by_error) noexcept {

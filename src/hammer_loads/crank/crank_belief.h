@@ -39,14 +39,18 @@ struct CrankBelief {
   double least_inertia{};                                       ///< bounds of the drive inertia [kg m2]
   double most_inertia{};                                        ///< likewise
   bool tool_met{};                 ///< before the dead centre: nothing strikes there any more
+  bool struck_early{};             ///< the last blow's factor acted before the dead centre
   std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
   /// transition: multiplied by d(this after)/d(this before), rows as above, where it is wanted.
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
               double dt, ShaftMatrix* transition = nullptr) noexcept;
-  /// By a change of its variables, within their bounds. Slides the position; it may end beyond the blow.
+  /// By a change of its variables. Slides the position; it may end beyond the blow.
   void move(const Vector& change) noexcept;
+  /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
+  /// factor and the speed go together.
+  void boundFactor() noexcept;
   /// Scalar measurement of one variable, Joseph form; moves. by_error: what the sensor's errors make of the
   /// measurement.
   void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error) noexcept;
@@ -94,7 +98,8 @@ struct CrankBelief {
   }
   /// Factor of the last blow and drive inertia, with deviations by `grown`.
   BlowFactor blowFactor(const ShaftMatrix& grown) const noexcept {
-    return {factor, std::sqrt(grown(kFactor, kFactor)), state.drive_inertia, std::sqrt(grown(kInertia, kInertia))};
+    return {factor, std::sqrt(grown(kFactor, kFactor)), state.drive_inertia, std::sqrt(grown(kInertia, kInertia)),
+            struck_early};
   }
 };
 

@@ -25,6 +25,7 @@ constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured 
 constexpr double kNearCounts = 4.0;        // counts from the blow within which the encoder decides its side
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
 constexpr double kToolDeviation = 0.5;     // of the crank's speed: what a tool met there may take
+constexpr double kFactorKnown = 0.05;      // deviation of a blow's factor from which on no other one comes
 constexpr double kToolSeen = 16.0;         // innovation^2 over its variance that shows it
 constexpr double kExplained = 9.0;         // likewise that is nothing special
 constexpr double kCertain = 3.0;           // deviations of the stamp within which the encoder's edge decides nothing
@@ -159,6 +160,17 @@ void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
 }
 
+/// (7) There was no blow yet within this step, though one was predicted.
+void CrankFilter::takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept {
+  rival_.drop();
+  now_ = last;
+  predict(dt, false, now_);
+  Innovation again = sample.ofAngle(now_);
+  if (meetsTool(dt, again, sample)) again = sample.ofAngle(now_);
+  now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
+  if (now_.state.position.isMirrored()) now_.standAtBlow();
+}
+
 /// (7) The corrected angle may lie on the other side of the blow than the prediction. Forward: it passes the blow late.
 /// Back over a blow that was predicted within this very step: there was none yet.
 void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSample& sample, bool struck) noexcept {
@@ -176,15 +188,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
     angle.side = Side::kAfterBlow;
     return;
   }
-  if (struck) {
-    rival_.drop();
-    now_ = last;
-    predict(dt, false, now_);
-    const Innovation again = sample.ofAngle(now_);
-    now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
-    if (now_.state.position.isMirrored()) now_.standAtBlow();
-    return;
-  }
+  if (struck) return takeBack(last, dt, sample);
   double doubt = kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
   if (now_.motor) doubt += kCertain * std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (angle.offset > -doubt && now_.state.speed > -1.0) {
@@ -206,7 +210,8 @@ std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
 }
 
 /// (7) The estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
-void CrankFilter::respectCount(double reading) noexcept {
+void CrankFilter::respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
+                               double reading) noexcept {
   CrankAngle& angle = now_.state.position.angle;
   const double near = kNearCounts * encoder_.resolution();
   if (!read_side_ || mirrored_ || std::abs(angle.offset) > near) return;
@@ -216,7 +221,10 @@ void CrankFilter::respectCount(double reading) noexcept {
     angle.offset = 0.0;
     now_.passLate(step_model_, blows_.prior());
   }
-  if (*read_side_ == Side::kBeforeBlow && angle.side == Side::kAfterBlow) angle = {0.0, Side::kBeforeBlow};
+  if (*read_side_ == Side::kAfterBlow || angle.side == Side::kBeforeBlow) return;
+  if (struck) return takeBack(last, dt, sample);
+  angle = {0.0, Side::kBeforeBlow};
+  now_.tool_met = true;  // its factor is in the speed already
 }
 
 /// A belief is about to pass the blow with contact; the rival goes on without. A crank that rests there passes nothing.
@@ -256,6 +264,7 @@ void CrankFilter::learnSupply() noexcept {
 bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
   if (!isNearTool(now_.state, dt) || now_.state.speed < 1.0 || mirrored_) return false;
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
+  if (!before && now_.covariance(Belief::kFactor, Belief::kFactor) < square(kFactorKnown)) return false;
   const bool by_angle = (angle.value < 0.0 || !before) && angle.ratio() > kToolSeen;
   bool by_speed = false;
   if (sample.speed) {
@@ -264,7 +273,7 @@ bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSam
   }
   if (!by_angle && !by_speed) return false;
   now_.meetTool(kToolDeviation, dt);
-  now_.tool_met = before;
+  now_.tool_met = now_.struck_early = before;
   return true;
 }
 
@@ -314,9 +323,10 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   correctAngle(innovation);
   settleSide(last, dt, sample, struck);
   read_side_ = readSide(reading);
-  respectCount(reading);
+  respectCount(last, dt, struck, sample, reading);
   if (sample.speed) correctSpeed(sample);
   if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed
+  now_.boundFactor();
   if (contested && rival_.isThere()) {
     predict(dt, mirrored_, rival_.belief());
     rival_.follow(sample, model_, fit_, consistency_.growth(), mostSpeed());

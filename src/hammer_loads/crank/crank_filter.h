@@ -122,7 +122,9 @@ class CrankFilter final : public CrankTracker {
   void correctAngle(Innovation innovation) noexcept;
   void settleSide(const CrankBelief& last, double dt, const WeighedSample& sample, bool struck) noexcept;
   std::optional<Side> readSide(double reading) const noexcept;
-  void respectCount(double reading) noexcept;
+  void respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
+                    double reading) noexcept;
+  void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
   void correctSpeed(const WeighedSample& sample) noexcept;
   void meetRival(const CrankBelief& belief) noexcept;
   bool rivalExplains(double dt, const WeighedSample& sample) noexcept;

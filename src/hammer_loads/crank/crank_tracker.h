@@ -34,6 +34,7 @@ struct BlowFactor {
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
   double drive_inertia{};      ///< of Jc what the blow acts on; gives the restitution [kg m2]; 0: not known
   double inertia_deviation{};  ///< relative [-]
+  bool early{};                ///< it acted before the dead centre, where the crank passed with its speed after
 };
 
 /// How a sample was taken.

@@ -1,6 +1,7 @@
 /// A blow that has been struck and is being measured.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "hammer_loads/crank/crank_tracker.h"
@@ -12,13 +13,14 @@ namespace hammer_loads {
 /// radian, or what is known of it when the crank stops before, restarts or strikes again.
 class PendingBlow {
  public:
-  /// time: of the blow [s]; speed of the crank just before and its standard deviation [rad/s].
+  /// time: of the blow [s]; speed of the crank when it reaches the dead centre and its standard deviation [rad/s].
   void begin(double time, const CrankPosition& at, double speed, double speed_deviation) noexcept {
     waiting_ = true;
     time_ = time;
     position_ = at;
     blow_ = {};
     hull_speed_ = 0.0;
+    early_ = false;
     blow_.speed = speed;
     blow_.speed_deviation = speed_deviation;
   }
@@ -31,6 +33,7 @@ class PendingBlow {
     blow_.factor_deviation = factor.deviation;
     blow_.drive_inertia = factor.drive_inertia;
     blow_.inertia_deviation = factor.inertia_deviation;
+    early_ = factor.early;
   }
   /// The crank has gone on far enough, or long enough.
   bool isMeasured(double time, const CrankPosition& now) const noexcept {
@@ -40,10 +43,14 @@ class PendingBlow {
   void setHullSpeed(double speed) noexcept { hull_speed_ = speed; }
   double hullSpeed() const noexcept { return hull_speed_; }
   double time() const noexcept { return time_; }                                  ///< of the blow [s]
-  double crankSpeedAfter() const noexcept { return blow_.factor * blow_.speed; }  ///< [rad/s]
-  const CrankBlow& take() noexcept {
+  double crankSpeedAfter() const noexcept { return (early_ ? 1.0 : blow_.factor) * blow_.speed; }  ///< [rad/s]
+  CrankBlow take() noexcept {
     waiting_ = false;
-    return blow_;
+    if (!early_) return blow_;
+    CrankBlow blow = blow_;
+    blow.speed /= blow.factor;
+    blow.speed_deviation = std::hypot(blow_.speed_deviation, blow.speed * blow.factor_deviation) / blow.factor;
+    return blow;
   }
 
  private:
@@ -54,6 +61,7 @@ class PendingBlow {
   CrankPosition position_;
   CrankBlow blow_;
   double hull_speed_{};
+  bool early_{};  ///< the tool was met before the dead centre
 };
 
 }  // namespace hammer_loads
