@@ -166,7 +166,8 @@ void CrankFilter::takeBack(const CrankBelief& last, double dt, const WeighedSamp
   now_ = last;
   predict(dt, false, now_);
   Innovation again = sample.ofAngle(now_);
-  if (meetsTool(dt, again, sample)) again = sample.ofAngle(now_);
+  const bool may_be_tool = again.value > -std::abs(last.state.speed) * dt;  // which stops the crank at most
+  if (may_be_tool && meetsTool(dt, again, sample)) again = sample.ofAngle(now_);
   now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
   if (now_.state.position.isMirrored()) now_.standAtBlow();
 }
