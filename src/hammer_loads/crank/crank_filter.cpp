@@ -17,18 +17,11 @@ constexpr double kJump = 0.5;              // [rad] innovation that no working m
 constexpr double kKick = 0.35;             // of the speed: what no torque changes between two samples
 constexpr double kLeastInertia = 0.1;      // of the first guess: no drawing is further off
 constexpr double kMostInertia = 1000.0;    // times the first guess: a crank held at constant speed looks that heavy
-constexpr double kLearnSpeed = 5.0;        // [rad/s]: a slower crank is moved by friction and stopped by the tool
 constexpr double kRelearn = 0.05;          // relative deviation of the inertia after what it cannot explain
 constexpr double kMostTorque = 3.0;        // times its first deviation: more is what a bad sample left behind
 constexpr double kSoundSpeeds = 2.0;       // times the largest plausible speed: more is a diverged filter
 constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
-constexpr double kNearCounts = 4.0;        // counts from the blow within which the encoder decides its side
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
-constexpr double kToolDeviation = 0.5;     // of the crank's speed: what a tool met there may take
-constexpr double kFactorKnown = 0.05;      // deviation of a blow's factor from which on no other one comes
-constexpr double kToolSeen = 16.0;         // innovation^2 over its variance that shows it
-constexpr double kExplained = 9.0;         // likewise that is nothing special
-constexpr double kCertain = 3.0;           // deviations of the stamp within which the encoder's edge decides nothing
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
@@ -160,87 +153,6 @@ void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
 }
 
-/// (7) There was no blow yet within this step, though one was predicted.
-void CrankFilter::takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept {
-  rival_.drop();
-  now_ = last;
-  predict(dt, false, now_);
-  Innovation again = sample.ofAngle(now_);
-  const bool may_be_tool = again.value > -std::abs(last.state.speed) * dt;  // which stops the crank at most
-  if (may_be_tool && meetsTool(dt, again, sample)) again = sample.ofAngle(now_);
-  now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
-  if (now_.state.position.isMirrored()) now_.standAtBlow();
-}
-
-/// (7) The corrected angle may lie on the other side of the blow than the prediction. Forward: it passes the blow late.
-/// Back over a blow that was predicted within this very step: there was none yet.
-void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSample& sample, bool struck) noexcept {
-  CrankAngle& angle = now_.state.position.angle;
-  if (mirrored_) {
-    mirrored_ = now_.state.position.isMirrored();
-    return;
-  }
-  if (!now_.state.position.isMirrored()) return;
-  if (angle.side == Side::kBeforeBlow) {
-    if (now_.state.speed > 0.0) {
-      meetRival(now_);
-      return now_.passLate(step_model_, blows_.prior());
-    }
-    angle.side = Side::kAfterBlow;
-    return;
-  }
-  if (struck) return takeBack(last, dt, sample);
-  double doubt = kNearCounts * encoder_.resolution() + kCertain * std::sqrt(sample.angleVariance(now_.state.speed));
-  if (now_.motor) doubt += kCertain * std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
-  if (angle.offset > -doubt && now_.state.speed > -1.0) {
-    now_.standAtBlow();  // it stands or goes on, whatever a count or a stamp says
-  } else {
-    angle.side = Side::kBeforeBlow;
-  }
-}
-
-/// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is exact.
-std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
-  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || now_.motor) return std::nullopt;
-  const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
-  const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
-  const auto [low, high] = encoder_.edges(reading);
-  if (low - doubt > -edge_tolerance) return Side::kAfterBlow;
-  if (high + doubt < edge_tolerance) return Side::kBeforeBlow;
-  return std::nullopt;
-}
-
-/// (7) The estimate may not pass the blow before the encoder does. Matters because the wrench jumps at the blow.
-void CrankFilter::respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
-                               double reading) noexcept {
-  CrankAngle& angle = now_.state.position.angle;
-  const double near = kNearCounts * encoder_.resolution();
-  if (!read_side_ || mirrored_ || std::abs(angle.offset) > near) return;
-  if (std::abs(encoder_.edges(reading).low) > near) return;
-  if (*read_side_ == Side::kAfterBlow && angle.side == Side::kBeforeBlow) {
-    meetRival(now_);
-    angle.offset = 0.0;
-    now_.passLate(step_model_, blows_.prior());
-  }
-  if (*read_side_ == Side::kAfterBlow || angle.side == Side::kBeforeBlow) return;
-  if (struck) return takeBack(last, dt, sample);
-  angle = {0.0, Side::kBeforeBlow};
-  now_.tool_met = true;  // its factor is in the speed already
-}
-
-/// A belief is about to pass the blow with contact; the rival goes on without. A crank that rests there passes nothing.
-void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
-  if (!mirrored_ && !belief.tool_met && belief.state.speed > kLearnSpeed) rival_.begin(belief);
-}
-
-/// (9) What the estimate cannot explain, the rival can.
-bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept {
-  if (!rival_.isThere()) return false;
-  CrankBelief rival = rival_.belief();
-  predict(dt, mirrored_, rival);
-  return sample.ofAngle(rival).ratio() < kExplained;
-}
-
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
 void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   supply_.pass(dt);
@@ -258,24 +170,6 @@ void CrankFilter::learnSupply() noexcept {
   const double change = supply_.learn(errors_.estimate()[ConstantErrors::kSupply]);
   now_.move(now_.by_error.col(ConstantErrors::kSupply) * change);
   errors_.takeSupply(change);
-}
-
-/// (4) A crank that is suddenly slower near the dead centre, or just after it than any blow makes it: the tool. True
-/// where the belief has taken it up.
-bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
-  if (!isNearTool(now_.state, dt) || now_.state.speed < 1.0 || mirrored_) return false;
-  const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
-  if (!before && now_.covariance(Belief::kFactor, Belief::kFactor) < square(kFactorKnown)) return false;
-  const bool by_angle = (angle.value < 0.0 || !before) && angle.ratio() > kToolSeen;
-  bool by_speed = false;
-  if (sample.speed) {
-    const Innovation speed = sample.ofSpeed(now_, model_);
-    by_speed = speed.ratio() > kToolSeen && speed.value * angle.value > 0.0 && (angle.value < 0.0 || !before);
-  }
-  if (!by_angle && !by_speed) return false;
-  now_.meetTool(kToolDeviation, dt);
-  now_.tool_met = now_.struck_early = before;
-  return true;
 }
 
 /// (5) Following it would throw speed and torque far off: 0.3 rad at 1 kHz gave a thousand times the peak force. A

@@ -106,6 +106,8 @@ class CrankFilter final : public CrankTracker {
   bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
 
  private:
+  static constexpr double kLearnSpeed = 5.0;  ///< [rad/s]: a slower crank is moved by friction and stopped by the tool
+  static constexpr double kToolSeen = 16.0;   ///< innovation^2 over its variance that shows a tool
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
 
