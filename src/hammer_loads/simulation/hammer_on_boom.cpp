@@ -38,7 +38,9 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
   now_.v[3] = 0.0;
   now_.before_blow = machine.start_angle > kPi;
   now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
+  step_ = machine_.on_boom.step;
   followOperator();
+  standOnRock();
 }
 
 /// What the hull keeps of its mass is that of the description less rotor and rocker, whose mass the description smears
@@ -74,6 +76,7 @@ void HammerOnBoom::followOperator() {
   const Eigen::Vector3d rates = 2.0 * machine_.on_boom.damping * modes.eigenvalues().cwiseSqrt();
   const Eigen::Matrix3d inertia = M * modes.eigenvectors();
   damping_ = inertia * rates.asDiagonal() * inertia.transpose();
+  rock_height_ = rockHeight();
 }
 
 Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
@@ -181,6 +184,10 @@ Eigen::Vector3d HammerOnBoom::holding(const State& s) const {
 HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Vector4& inertia) const {
   Vector4 Q = weight(s) - inertia;
   Q.head<3>() += holding(s);
+  if (machine_.on_boom.rock.stiffness > 0.0) {
+    const Foot at = foot(s);
+    Q.head<3>() += rockForce(at) * at.lift;
+  }
   Q[3] += netTorque(machine_.drive, s.pressure, s.v[3]);
   return Q;
 }
@@ -242,7 +249,7 @@ void HammerOnBoom::advanceTo(double time) {
     letGo();
     followOperator();
     const double left = time - now_.time;
-    double dt = std::min(machine_.on_boom.step, left);
+    double dt = std::min(step_, left);
     State next = stepped(now_, dt);
     const bool meets = now_.before_blow ? next.x[3] > 0.0 : next.x[3] < 0.0;
     if (meets) {

@@ -18,6 +18,7 @@ struct OnBoomTruth : CrankTruth {
   Eigen::Vector3d rates;         ///< [rad/s]
   Eigen::Vector3d displacement;  ///< of the joints from where the operator holds them [rad]
   Eigen::Vector3d hold;          ///< BY the cylinders ON the joints [N m]
+  Load rock;                     ///< BY the rock ON the hull's foot, blows aside, about D, axes of the hull
   std::array<Load, 3> cut;       ///< BY the steel beyond each cut ON that before it, about it, axes of the link
   double imu_x{}, imu_z{};       ///< specific force at the unit, in its axes [m/s2]
   double imu_rate{};             ///< about +y [rad/s]
@@ -30,9 +31,9 @@ struct OnBoomTruth : CrankTruth {
 /// linear spring, as stiff as at that place.
 ///
 /// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
-/// impulse within the linkage, or with a restitution that is drawn. The rock holds the tool and nothing else: what a
-/// hull that is pressed down would put on it is left out, and so is the boom's swing about the vertical. Of BlowTruth
-/// force and impulses of the turn are not followed: not-a-number.
+/// impulse within the linkage, or with a restitution that is drawn. settings.on_boom.rock holds the hull up where it is
+/// pressed on the tool; without it the hull hangs free and the rock holds the tool alone. The boom's swing about the
+/// vertical is left out. Of BlowTruth force and impulses of the turn are not followed: not-a-number.
 class HammerOnBoom {
  public:
   /// Level rocker, rigid coupling; throws std::invalid_argument when the hammer's linkage is impossible.
@@ -78,6 +79,17 @@ class HammerOnBoom {
   Eigen::Vector3d stiffness(const State& held) const;
   void followOperator();
   Eigen::Vector3d holding(const State& s) const;
+  PlanePoint footPlace(const State& s) const;
+  /// The hull's foot along the tool, from where it stands as the operator holds it.
+  struct Foot {
+    double height{}, speed{};  ///< [m], [m/s]
+    Eigen::Vector3d lift;      ///< by the joints' angles [m]
+  };
+  Foot foot(const State& s) const;
+  void standOnRock();
+  double rockHeight() const;
+  double rockForce(const Foot& foot) const;
+  Load rockLoad() const;
   Vector4 force(const State& s, const Vector4& inertia) const;
   Vector4 acceleration(const State& s) const;
   State stepped(const State& s, double dt) const;
@@ -101,6 +113,8 @@ class HammerOnBoom {
   MovingLinks links_;
   double rotor_{}, ratio_{};  ///< Jc [kg m2], drive_reaction_ratio
   Eigen::Matrix3d damping_;
+  double rock_height_{};  ///< over the foot of a hull that is held without rock [m]
+  double step_{};         ///< longest [s]
   State now_;
   std::int64_t turn_{};
   double last_blow_{}, released_{-1.0};  ///< [s]

@@ -104,12 +104,21 @@ struct PressureSensors {
   double preload{};  ///< in the unloaded chamber at rest [Pa]
 };
 
+/// What the tool stands on. It holds the hull up at its foot and lets go of it: a spring with a loss, along the tool.
+/// It gives way as fast as the operator moves the hull on.
+struct RockSettings {
+  double stiffness{};    ///< of rock and tool [N/m]; 0: no rock, the hull hangs free
+  double damping{};      ///< the spring's force counts 1 + this times the speed of going down [s/m]
+  double press_force{};  ///< of the operator on the hull before it works [N], >= 0
+};
+
 /// Hull and boom that move on the oil of their cylinders; all dimensions in oil_boom.h.
 struct OnBoomSettings {
   bool on{};                  ///< else the hull has no motion but its pitch, and no sensors
   double oil_stiffness{1.0};  ///< over that of a bulk modulus of 1e9 Pa [-], > 0
   double damping{0.05};       ///< ratio of every mode [-], in [0, 1)
   double step{4e-4};          ///< longest integration step [s], > 0
+  RockSettings rock;
   HullImuSensor imu;
   PressureSensors pressures;
 };

@@ -43,6 +43,7 @@ struct OilBoom {
   std::array<OilBoomLink, 3> links;
   std::array<OilCylinder, 3> cylinders;
   std::array<OilBoomCut, 3> cuts;
+  PlanePoint foot;        ///< where the hull bears on the tool's shoulder, from D in the hull's axes
   double bulk_modulus{};  ///< [Pa]
 };
 

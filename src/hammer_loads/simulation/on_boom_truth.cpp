@@ -52,6 +52,10 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const OilBoom
   Links links = boom_.links;
   links[cut.link] = {links[cut.link].to_next, cut.beyond.com, cut.beyond.mass, cut.beyond.inertia};
   Load load = loadOf(a, links, cut.link, about, axes);
+  const PlanePoint foot = footPlace(now_) - about,
+                   by_rock = PlanePoint(t.rock.force_x, t.rock.force_z) * std::exp(-kI * hullAngle(now_));
+  const PlanePoint rock_here = by_rock * std::exp(kI * axes);
+  load.force_x += rock_here.real(), load.force_z += rock_here.imag(), load.torque_y += moment(foot, by_rock);
   for (std::size_t k = cut.link; k < 3; ++k) {
     const OilCylinder& c = boom_.cylinders[k];
     const bool rod_beyond = k > cut.link || c.rod.real() > cut.place.real();
@@ -104,6 +108,7 @@ OnBoomTruth HammerOnBoom::truth() const {
   t.angles = now_.x.head<3>(), t.rates = now_.v.head<3>();
   t.displacement = t.angles - heldAt(now_.time).x.head<3>();
   t.hold = holding(now_);
+  t.rock = rockLoad();
   for (std::size_t i = 0; i < t.cut.size(); ++i) t.cut[i] = cutLoad(t, a, boom_.cuts[i]);
   const PlanePoint acceleration =
       (imuPlace(along(now_, a, kInstant)) - 2.0 * imuPlace(now_) + imuPlace(along(now_, a, -kInstant))) /

@@ -1,0 +1,71 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/simulation/hammer_on_boom.h"
+#include "hammer_loads/util/constants.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kStepsPerSwing = 60.0;  // of the hull on the rock's spring
+
+}  // namespace
+
+PlanePoint HammerOnBoom::footPlace(const State& s) const {
+  return jointPlace(s, 3) + std::exp(-kI * hullAngle(s)) * boom_.foot;
+}
+
+/// The rock's face stands across the tool of a hull that is held, and goes with it.
+HammerOnBoom::Foot HammerOnBoom::foot(const State& s) const {
+  const State held = heldAt(s.time);
+  const PlanePoint up = kI * std::exp(-kI * hullAngle(held));
+  const auto along = [&](PlanePoint p) { return (p * std::conj(up)).real(); };
+  const PlanePoint place = footPlace(s), held_place = footPlace(held);
+  Foot foot;
+  foot.height = along(place - held_place);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int j = static_cast<int>(k);
+    foot.lift[j] = along(-kI * (place - jointPlace(s, k)));
+    foot.speed += foot.lift[j] * s.v[j] - along(-kI * (held_place - jointPlace(held, k))) * held.v[j];
+  }
+  return foot;
+}
+
+/// The oil of all cylinders gives way to the press force, and so does the rock.
+double HammerOnBoom::rockHeight() const {
+  const RockSettings& rock = machine_.on_boom.rock;
+  if (rock.stiffness == 0.0) return 0.0;
+  const State held = heldAt(now_.time);
+  const Eigen::Vector3d lift = foot(held).lift;
+  return rock.press_force * (1.0 / rock.stiffness + lift.cwiseAbs2().cwiseQuotient(stiffness(held)).sum());
+}
+
+/// At the start, at rest, with steps that are short enough for the rock.
+void HammerOnBoom::standOnRock() {
+  const RockSettings& rock = machine_.on_boom.rock;
+  if (rock.stiffness == 0.0) return;
+  const State held = heldAt(now_.time);
+  const Eigen::Vector3d lift = foot(held).lift;
+  now_.x.head<3>() += rock.press_force * lift.cwiseQuotient(stiffness(held));
+  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>();
+  const double mass = 1.0 / lift.dot(M.ldlt().solve(lift));
+  step_ = std::min(step_, kTwoPi * std::sqrt(mass / rock.stiffness) / kStepsPerSwing);
+}
+
+/// Grows from nothing where they meet; never pulls.
+double HammerOnBoom::rockForce(const Foot& foot) const {
+  const RockSettings& rock = machine_.on_boom.rock;
+  const double depth = rock_height_ - foot.height;
+  return rock.stiffness * std::max(0.0, depth) * std::max(0.0, 1.0 - rock.damping * foot.speed);
+}
+
+Load HammerOnBoom::rockLoad() const {
+  if (machine_.on_boom.rock.stiffness == 0.0) return {};
+  const double turned = hullAngle(now_) - hullAngle(heldAt(now_.time));  // of the hull against the rock's face
+  const PlanePoint force = rockForce(foot(now_)) * kI * std::exp(kI * turned);
+  const PlanePoint r = boom_.foot;
+  return {force.real(), force.imag(), r.imag() * force.real() - r.real() * force.imag()};
+}
+
+}  // namespace hammer_loads::simulation
