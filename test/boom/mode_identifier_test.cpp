@@ -92,8 +92,7 @@ class Session {
   void observePressures() {
     for (int j = 1; j < 4; ++j) {
       const double hold = machine_.hold()[j - 1] * 1.0 + machine_.noise(200.0);
-      // Load on the joint less the hammer's own torque: -M x''.
-      see(j, jointTorqueReading(boom_->vibration().modes(), j, hold - torque_[j]), 200.0, 1000.0, 100.0);
+      see(j, oilTorqueReading(4, j, hold), 200.0, 1000.0, 100.0);
     }
   }
   void see(int channel, VibrationReading reading, double noise, double offset, double walk) {

@@ -39,8 +39,15 @@ struct BoomLoads {
 
 /// Errors of the hammer's load that are independent of each other, one standard deviation each.
 struct WrenchSpread {
-  int count{};                 ///< at most 3: of the crank's angle, speed and acceleration, say
-  std::array<Wrench, 3> part;  ///< on the tip, as the load
+  int count{};                 ///< at most 4: of the crank's angle, speed and acceleration, of the rock, say
+  std::array<Wrench, 4> part;  ///< on the tip, as the load
+};
+
+/// Errors where cylinders' forces are measured, independent of each other, one standard deviation each.
+struct MeasuredSpread {
+  std::size_t count{};
+  std::array<JointVector, VibrationSpread::kMaxRuns> acceleration;  ///< of the joints' vibration [rad/s2]
+  std::array<Wrench, VibrationSpread::kMaxRuns> tip;                ///< of the load on the tip with it
 };
 
 /// Standard deviations; at a dead centre as SteelLoads.
@@ -102,6 +109,8 @@ class Boom {
   /// such move of a joint.
   void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                   BoomDeviations& result) noexcept;
+  /// The same where cylinders' forces are measured.
+  void deviations(const MeasuredSpread& spread, BoomDeviations& result) noexcept;
   /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
@@ -134,6 +143,8 @@ class Boom {
   std::array<CylinderPosition, kMaxJoints> at_;
 
   void findResponse() noexcept;
+  template <typename Shares>
+  void sumRuns(const Shares& shares, bool first_two_exclude, BoomDeviations& result) noexcept;
   void takeDeviations(BoomDeviations& result) const noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   /// Columns: joint accelerations, force and moment on the tip. Rows: joint torques, sections, joints (force and moment

@@ -6,8 +6,10 @@
 namespace hammer_loads {
 namespace {
 
+constexpr std::size_t kRuns = VibrationSpread::kMaxRuns;
 /// One number for each run of a spread.
-using Runs = Eigen::Array<double, VibrationSpread::kMaxRuns, 1>;
+using Runs = Eigen::Array<double, kRuns, 1>;
+using RunColumns = Eigen::Matrix<double, kMaxJoints, kRuns>;
 
 /// What makes the runs differ from the loads: how much each column of the response counts, and joint torques beside.
 struct Shares {
@@ -23,17 +25,9 @@ struct Shares {
   }
 };
 
-Shares sharesOf(const VibrationSpread& spread, const Vibration& vibration, const WrenchSpread& w_tip, bool rigid,
+/// acceleration, torque: a column for each run; tip: of each run.
+Shares sharesOf(const RunColumns& acceleration, const RunColumns& torque, const std::array<Wrench, kRuns>& tip,
                 Eigen::Index joints) noexcept {
-  using Columns = Eigen::Matrix<double, kMaxJoints, VibrationSpread::kMaxRuns>;
-  Columns acceleration = Columns::Zero(), torque = Columns::Zero();
-  const int runs = rigid || !vibration.known() ? 0 : std::min(spread.runs(), VibrationSpread::kLoads + w_tip.count);
-  const JointVector of_vibration = vibration.acceleration();
-  for (int run = 0; run < runs; ++run) {
-    const JointVector of_run = spread.accelerationDifference(run, of_vibration);
-    acceleration.col(run).head(joints) = of_run;
-    torque.col(run).head(joints) = -vibration.modes().mass.lazyProduct(of_run);
-  }
   Shares shares;
   for (Eigen::Index j = 0; j < joints; ++j) {
     shares.add(j, acceleration.row(j).transpose());
@@ -41,10 +35,7 @@ Shares sharesOf(const VibrationSpread& spread, const Vibration& vibration, const
   }
   for (int k = 0; k < 6; ++k) {
     Runs share = Runs::Zero();
-    for (int i = 0; i < w_tip.count; ++i) {
-      const Wrench& w = w_tip.part[static_cast<std::size_t>(i)];
-      share[VibrationSpread::kLoads + i] = (k < 3 ? w.force : w.torque)[k % 3];
-    }
+    for (std::size_t i = 0; i < kRuns; ++i) share[static_cast<int>(i)] = (k < 3 ? tip[i].force : tip[i].torque)[k % 3];
     shares.add(joints + k, share);
   }
   return shares;
@@ -96,20 +87,48 @@ void Boom::findResponse() noexcept {
   }
 }
 
-void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
-                      BoomDeviations& result) noexcept {
-  findResponse();
-  const Shares shares = sharesOf(spread, vibration_, w_tip, rigid, chain_.joints());
+template <typename Shares>
+void Boom::sumRuns(const Shares& shares, bool first_two_exclude, BoomDeviations& result) noexcept {
   for (Eigen::Index row = 0; row < response_.rows(); ++row) {
     Runs difference = row < chain_.joints() ? shares.torque[static_cast<std::size_t>(row)] : Runs(Runs::Zero());
     for (std::size_t i = 0; i < shares.count; ++i) difference += response_(row, shares.column[i]) * shares.by[i];
-    const Runs square = difference.square();
-    // Stiffer and softer exclude each other.
-    deviation_[row] = std::max(square[VibrationSpread::kStiffer], square[VibrationSpread::kSofter]);
-    for (int run = VibrationSpread::kDamped; run < VibrationSpread::kMaxRuns; ++run) deviation_[row] += square[run];
+    Runs square = difference.square();
+    if (first_two_exclude) square[0] = std::max(square[0], square[1]), square[1] = 0.0;
+    deviation_[row] = square.sum();
   }
   deviation_ = deviation_.cwiseSqrt();  // two at a time
   takeDeviations(result);
+}
+
+void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
+                      BoomDeviations& result) noexcept {
+  findResponse();
+  RunColumns acceleration = RunColumns::Zero(), torque = RunColumns::Zero();
+  std::array<Wrench, kRuns> tip{};
+  const Eigen::Index joints = chain_.joints();
+  const int runs = rigid || !vibration_.known() ? 0 : std::min(spread.runs(), VibrationSpread::kLoads + w_tip.count);
+  const JointVector of_vibration = vibration_.acceleration();
+  for (int run = 0; run < runs; ++run) {
+    const JointVector of_run = spread.accelerationDifference(run, of_vibration);
+    acceleration.col(run).head(joints) = of_run;
+    torque.col(run).head(joints) = -vibration_.modes().mass.lazyProduct(of_run);
+  }
+  for (int i = 0; i < w_tip.count; ++i)
+    tip[static_cast<std::size_t>(VibrationSpread::kLoads + i)] = w_tip.part[static_cast<std::size_t>(i)];
+  // Stiffer and softer exclude each other.
+  static_assert(VibrationSpread::kStiffer == 0 && VibrationSpread::kSofter == 1);
+  sumRuns(sharesOf(acceleration, torque, tip, joints), true, result);
+}
+
+void Boom::deviations(const MeasuredSpread& spread, BoomDeviations& result) noexcept {
+  findResponse();
+  RunColumns acceleration = RunColumns::Zero(), torque = RunColumns::Zero();
+  const Eigen::Index joints = chain_.joints();
+  for (std::size_t run = 0; run < spread.count; ++run) {
+    acceleration.col(static_cast<int>(run)).head(joints) = spread.acceleration[run];
+    torque.col(static_cast<int>(run)).head(joints) = -vibration_.modes().mass.lazyProduct(spread.acceleration[run]);
+  }
+  sumRuns(sharesOf(acceleration, torque, spread.tip, joints), false, result);
 }
 
 /// From deviation_.

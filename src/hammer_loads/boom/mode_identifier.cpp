@@ -8,72 +8,42 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCommonDeviation = 0.15;  // of log frequency, of all modes together
-constexpr double kOwnDeviation = 0.05;     // and of each
-constexpr double kDampingDeviation = 0.5;  // of log damping
-constexpr double kFrequencyWalk = 0.002;   // of log frequency in a second: oil that warms up, a pose that changes
-constexpr double kDampingWalk = 0.01;      // of log damping in a second
-constexpr double kForcePart = 0.05;        // deviation of the modal force over its root mean square
-constexpr double kForceTime = 0.01;        // for which a force stays wrong the same way [s]
-constexpr double kForceMemory = 2.0;       // of the mean square [s]
-constexpr double kUnknownRate = 0.05;      // joint velocity where nothing is known [rad/s]
-constexpr double kFarOff = 3.0;            // standard deviations beyond which a reading counts less
-constexpr double kKnown = 0.03;            // deviation of log frequency of a mode that is known
-constexpr double kMostRatio = 1.0;         // of log frequency: e
+constexpr double kCommonDeviation = 0.15;        // of log frequency, of all modes together
+constexpr double kOwnDeviation = 0.05;           // and of each
+constexpr double kDampingDeviation = 0.5;        // of log damping
+constexpr double kFrequencyWalk = 0.002;         // of log frequency in a second: oil that warms up, a pose that changes
+constexpr double kDampingWalk = 0.01;            // of log damping in a second
+constexpr double kForcePart = 0.05;              // deviation of the modal force over its root mean square
+constexpr double kForceTime = 0.01;              // for which a force stays wrong the same way [s]
+constexpr double kForceMemory = 2.0;             // of the mean square [s]
+constexpr double kUnknownRate = 0.05;            // joint velocity where nothing is known [rad/s]
+constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
+constexpr double kKnown = 0.03;                  // deviation of log frequency of a mode that is known
+constexpr double kMostRatio = 1.0;               // of log frequency: e
+constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
+constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
+constexpr double kWorstSurprise = 25.0;          // what one can add at most
+constexpr double kContactWalk = 1.3e5;           // of the rock's force [N/sqrt(s)]
+constexpr double kUnknownContact = 1e4;          // of it at the start [N]
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
-
-VibrationReading emptyReading(Eigen::Index joints) {
-  VibrationReading reading;
-  reading.displacement = reading.velocity = reading.acceleration = JointVector::Zero(joints);
-  return reading;
-}
 
 }  // namespace
 
-VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, double rate) {
-  VibrationReading reading = emptyReading(J.cols());
-  reading.velocity = J.bottomRows<3>().transpose() * n_T;
-  reading.value = rate;
-  return reading;
+ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns) : damping_ratio_(damping_ratio), learns_(learns) {
+  if (learns) setFirstGuesses();
+  covariance_(kContact, kContact) = square(kUnknownContact);
+  ratio_.fill(1.0);
+  damping_.fill(damping_ratio);
+  slot_.fill(-1);
 }
 
-VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
-                                        const Eigen::Vector3d& g_T, double acceleration) {
-  VibrationReading reading = emptyReading(J.cols());
-  for (Eigen::Index j = 0; j < J.cols(); ++j) {
-    const Eigen::Vector3d v = J.col(j).head<3>(), omega = J.col(j).tail<3>();
-    reading.acceleration[j] = n_T.dot(v + omega.cross(p_T));
-    // The vibration tilts the sensor: gravity turns against it.
-    reading.displacement[j] = n_T.dot(omega.cross(g_T));
-  }
-  reading.value = acceleration + n_T.dot(g_T);
-  return reading;
-}
-
-VibrationReading jointAngleReading(int joints, int joint, double angle) {
-  VibrationReading reading = emptyReading(joints);
-  reading.displacement[joint] = 1.0;
-  reading.value = angle;
-  return reading;
-}
-
-VibrationReading jointTorqueReading(const BoomModes& modes, int joint, double torque) {
-  VibrationReading reading = emptyReading(modes.mass.rows());
-  reading.acceleration = -modes.mass.row(joint).transpose();
-  reading.value = torque;
-  return reading;
-}
-
-ModeIdentifier::ModeIdentifier(double damping_ratio) : damping_ratio_(damping_ratio) {
+void ModeIdentifier::setFirstGuesses() noexcept {
   for (int k = 0; k < kMaxJoints; ++k) {
     for (int l = 0; l < kMaxJoints; ++l)
       covariance_(at(k, kFrequency), at(l, kFrequency)) =
           square(kCommonDeviation) + (k == l ? square(kOwnDeviation) : 0);
     covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
   }
-  ratio_.fill(1.0);
-  damping_.fill(damping_ratio);
-  slot_.fill(-1);
 }
 
 double ModeIdentifier::frequencyDeviation(int mode) const noexcept {
@@ -103,6 +73,37 @@ JointVector ModeIdentifier::velocity() const noexcept {
   return jointsOf(modes_, v);
 }
 
+JointMatrix ModeIdentifier::accelerationSpread() const noexcept {
+  constexpr int kEntries = kParts + 1;
+  std::array<std::array<double, kEntries>, kMaxJoints> row{};
+  const auto index = [](int mode, int entry) {
+    return entry == kParts ? kContact : at(mode, static_cast<Part>(entry));
+  };
+  for (int k = 0; k < count_; ++k) {
+    const Mode m = modeAt(k);
+    const ModeState s = motion(k);
+    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
+    row[static_cast<std::size_t>(k)] = {-stiff, -damped, -2.0 * stiff * s.x - damped * s.v, -damped * s.v, contact_[k]};
+  }
+  JointMatrix covariance(count_, count_);
+  for (int k = 0; k < count_; ++k) {
+    for (int l = 0; l < count_; ++l) {
+      covariance(k, l) = 0.0;
+      for (int i = 0; i < kEntries; ++i) {
+        for (int j = 0; j < kEntries; ++j)
+          covariance(k, l) += row[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] *
+                              covariance_(index(k, i), index(l, j)) *
+                              row[static_cast<std::size_t>(l)][static_cast<std::size_t>(j)];
+      }
+    }
+  }
+  for (int k = 0; k < count_; ++k) covariance(k, k) *= 1.0 + 1e-9;  // positive for all that is rounded
+  const JointMatrix modal = covariance.llt().matrixL();
+  JointMatrix joints(modes_.mass.rows(), count_);
+  for (int k = 0; k < count_; ++k) joints.col(k) = jointsOf(modes_, modal.col(k));
+  return joints;
+}
+
 void ModeIdentifier::setModes(const BoomModes& given) noexcept {
   const bool carries = moving_known_ && count_ == given.count;
   JointMatrix T(given.count, given.count);  // new modal displacements of the old ones, through the joints
@@ -115,7 +116,7 @@ void ModeIdentifier::setModes(const BoomModes& given) noexcept {
   }
   modes_ = given;
   count_ = given.count;
-  if (force_.size() != count_) force_.setZero(count_);
+  if (force_.size() != count_) force_.setZero(count_), contact_.setZero(count_);
   if (!carries) {
     forgetMotion();
   } else {
@@ -138,20 +139,37 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   force_ = (T * force_).eval();
 }
 
+void ModeIdentifier::forget(int state, double deviation) noexcept {
+  state_[state] = 0.0;
+  covariance_.row(state).setZero();
+  covariance_.col(state).setZero();
+  covariance_(state, state) = square(deviation);
+}
+
+void ModeIdentifier::leaveContact() noexcept {
+  if (!follows_contact_) return;
+  follows_contact_ = false;
+  forget(kContact, kUnknownContact);
+}
+
 void ModeIdentifier::forgetMotion() noexcept {
   moving_known_ = count_ > 0;
   force_.setZero(count_);
+  forget(kContact, kUnknownContact);
   for (int k = 0; k < kMaxJoints; ++k) {
     for (Part part : {kX, kV}) {
       const int i = at(k, part);
-      state_[i] = 0.0;
-      covariance_.row(i).setZero();
-      covariance_.col(i).setZero();
+      forget(i, 0.0);
       if (k >= count_) continue;
       const double rate = kUnknownRate / modes_.shape.col(k).cwiseAbs().maxCoeff();
       covariance_(i, i) = square(part == kV ? rate : rate / modeAt(k).omega);
     }
   }
+}
+
+void ModeIdentifier::followContact(const JointVector& torque) noexcept {
+  follows_contact_ = true;
+  contact_ = modalForce(modes_, torque);
 }
 
 void ModeIdentifier::advance(double step, const TorqueStep& torque) noexcept {
@@ -166,6 +184,7 @@ void ModeIdentifier::advance(double step, const TorqueStep& torque) noexcept {
   }
   force_ = to;
   for (double& age : age_) age += step;
+  if (follows_contact_) covariance_(kContact, kContact) += square(kContactWalk) * step;
   if (!finite()) keepWithinBounds();
 }
 
@@ -191,6 +210,7 @@ void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) 
     covariance_.block<1, kParts>(i, x) = (covariance_.block<1, kParts>(i, x) * F.transpose()).eval();
   }
   state_[x + kX] = next.x, state_[x + kV] = next.v;
+  if (follows_contact_) addContact(mode, r);
 
   const double power = force_power_[static_cast<std::size_t>(mode)];
   const double v_walk = square(kForcePart) * power * 2.0 * kForceTime * step;
@@ -199,8 +219,21 @@ void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) 
   const auto walk = [&](int i, double per_second, double most) {
     if (covariance_(i, i) < most * most) covariance_(i, i) += square(per_second) * step;
   };
+  if (!learns_) return;
   walk(x + kFrequency, kFrequencyWalk, kCommonDeviation);
   walk(x + kDamping, kDampingWalk, kDampingDeviation);
+}
+
+/// The rock's force, the same over the step, on a mode's displacement and velocity.
+void ModeIdentifier::addContact(int mode, const ModeResponse& response) noexcept {
+  const std::array<double, 2> by{response.step * contact_[mode], response.impulse * contact_[mode]};
+  const int x = at(mode, kX), first = begin(), n = states();
+  for (int part : {kX, kV}) {
+    const double gain = by[static_cast<std::size_t>(part)];
+    state_[x + part] += gain * state_[kContact];
+    covariance_.row(x + part).segment(first, n) += gain * covariance_.row(kContact).segment(first, n);
+    covariance_.col(x + part).segment(first, n) += gain * covariance_.col(kContact).segment(first, n);
+  }
 }
 
 void ModeIdentifier::strike(const JointVector& impulse) noexcept {
@@ -232,21 +265,27 @@ ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading&
   row[offsetAt(channel)] = 1.0;
   predicted = state_[offsetAt(channel)];
   for (int k = 0; k < count_; ++k) {
-    double by_x = 0.0, by_v = 0.0, by_a = 0.0;  // per modal displacement, velocity, acceleration
+    double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
     for (int i = 0; i < count_; ++i) {
       const int joint = modes_.joint[static_cast<std::size_t>(i)];
       by_x += reading.displacement[joint] * modes_.shape(i, k);
       by_v += reading.velocity[joint] * modes_.shape(i, k);
       by_a += reading.acceleration[joint] * modes_.shape(i, k);
+      by_oil += reading.oil[joint] * modes_.inertia(joint, k);
     }
     const Mode m = modeAt(k);
     const ModeState s{state_[at(k, kX)], state_[at(k, kV)]};
-    predicted += by_x * s.x + by_v * s.v + by_a * acceleration(m, s, force_[k]);
-    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
-    row[at(k, kX)] = by_x - by_a * stiff;
-    row[at(k, kV)] = by_v - by_a * damped;
-    row[at(k, kFrequency)] = -by_a * (2.0 * stiff * s.x + damped * s.v);
-    row[at(k, kDamping)] = -by_a * damped * s.v;
+    const double rock = follows_contact_ ? contact_[k] : 0.0;
+    const double a = acceleration(m, s, force_[k] + rock * state_[kContact]);
+    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega, held = by_oil - by_a;
+    const double of_x = by_x + held * stiff, of_v = by_v + held * damped;
+    predicted += by_x * s.x + by_v * s.v + by_a * a + by_oil * (stiff * s.x + damped * s.v) +
+                 reading.ahead * (of_x * s.v + of_v * a);
+    row[kContact] += by_a * rock;
+    row[at(k, kX)] = of_x;
+    row[at(k, kV)] = of_v + reading.ahead * of_x;
+    row[at(k, kFrequency)] = held * (2.0 * stiff * s.x + damped * s.v);
+    row[at(k, kDamping)] = held * damped * s.v;
   }
   return row;
 }
@@ -262,10 +301,23 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise);
   const double difference = reading.value - predicted;
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
+  if (!reading.acceleration.isZero(0.0)) {
+    explains_ = explains_ ? surprise_ < kSurprised || (learns_ && !identified()) : surprise_ < kCalm;
+    surprise_ += kSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - surprise_);
+  }
   S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
   state_.segment(first, n) += gain_S.head(n) * (difference / S);
   for (int i = 0; i < n; ++i) covariance_.col(first + i).segment(first, n) -= gain_S.head(n) * (gain_S[i] / S);
+  if (learns_ && !explains_) forgetOil();
   keepWithinBounds();
+}
+
+void ModeIdentifier::forgetOil() noexcept {
+  for (int k = 0; k < kMaxJoints; ++k) {
+    forget(at(k, kFrequency), 0.0);
+    forget(at(k, kDamping), 0.0);
+  }
+  setFirstGuesses();
 }
 
 /// What is not finite anywhere reaches the diagonal with the next step.
@@ -276,7 +328,9 @@ bool ModeIdentifier::finite() const noexcept {
 void ModeIdentifier::keepWithinBounds() noexcept {
   if (!finite()) {
     const BoomModes modes = modes_;
-    *this = ModeIdentifier(damping_ratio_);
+    const bool follows = follows_contact_;
+    *this = ModeIdentifier(damping_ratio_, learns_);
+    follows_contact_ = follows;
     setModes(modes);
     return;
   }

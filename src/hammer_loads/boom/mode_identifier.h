@@ -2,34 +2,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "hammer_loads/boom/boom_modes.h"
-#include "hammer_loads/boom/chain_pose.h"
 #include "hammer_loads/boom/mode.h"
+#include "hammer_loads/boom/vibration_reading.h"
 
 namespace hammer_loads {
-
-/// What one channel of a sensor reads: offset + displacement . q + velocity . q' + acceleration . q'' of the joints'
-/// vibration q. Whatever else it sees (weight, the boom's slow motion) must be taken off value first, as far as known;
-/// the offset takes up what is left of it.
-struct VibrationReading {
-  JointVector displacement, velocity, acceleration;
-  double value{};
-  double noise{};             ///< standard deviation of one reading, unit of value
-  double offset_deviation{};  ///< of its offset at the start, unit of value
-  double offset_walk{};       ///< how far the offset wanders in a second, unit of value
-};
-
-/// Turning rate [rad/s] about a unit vector n in the tip's axes; J of tipJacobian().
-VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, double rate);
-/// What an accelerometer at p reads along n [m/s2], acceleration less gravity g (all in the tip's axes).
-VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
-                                        const Eigen::Vector3d& g_T, double acceleration);
-/// A joint's angle [rad]: above 100 Hz it shows the vibration.
-VibrationReading jointAngleReading(int joints, int joint, double angle);
-/// Torque of the load on a joint by its cylinder's measured force [N m] (-force times arm), less hammer, weight and
-/// motion: -M q''.
-VibrationReading jointTorqueReading(const BoomModes& modes, int joint, double torque);
 
 /// Extended Kalman filter: per mode displacement, velocity, logarithm of frequency over the given one and of damping
 /// over the given one; per channel an offset. Steps are the same as those of Vibration, between them come readings in
@@ -38,11 +17,18 @@ VibrationReading jointTorqueReading(const BoomModes& modes, int joint, double to
 ///
 /// First guesses: frequencies wrong by 15 % together (bulk modulus by 30 %) and 5 % each beside, damping by a
 /// factor 1.6. Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
+///
+/// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
+/// should be, frequencies and damping are those given.
+///
+/// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
+/// 6 ms. Pressures then tell displacements, what they cannot be without the force tells it.
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
 
-  explicit ModeIdentifier(double damping_ratio);
+  /// learns: frequencies and damping; else they are exact as given, and only the motion is followed.
+  explicit ModeIdentifier(double damping_ratio, bool learns = true);
 
   /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
   /// of the joints carry over.
@@ -53,8 +39,15 @@ class ModeIdentifier {
   void strike(const JointVector& impulse) noexcept;
   /// Vibration unknown, as after a gap; what is known of frequencies and damping stays.
   void forgetMotion() noexcept;
-  /// A reading at the present time; channel in [0, kMaxChannels) keeps its offset. A reading far off counts less.
+  /// From now on a force of the rock is followed; torque: on the joints per newton of it [N m/N]. Call at each pose.
+  void followContact(const JointVector& torque) noexcept;
+  /// No more: the hull counts as free.
+  void leaveContact() noexcept;
+  /// A reading at the present time or a little before; channel in [0, kMaxChannels) keeps its offset. A reading far off
+  /// counts less.
   void observe(int channel, const VibrationReading& reading) noexcept;
+  /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them.
+  bool explains() const noexcept { return explains_; }
 
   int modes() const noexcept { return count_; }
   int channels() const noexcept { return channels_; }  ///< that have had a reading
@@ -66,21 +59,32 @@ class ModeIdentifier {
   double dampingDeviation(int mode) const noexcept;    ///< standard deviation of its logarithm [-]
   /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
   bool identified() const noexcept;
+  bool learns() const noexcept { return learns_; }
+  ModeState motion(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }  ///< as estimated
   JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
+  bool followsContact() const noexcept { return follows_contact_; }
+  double contact() const noexcept { return state_[kContact]; }  ///< the rock's force [N]; below 0: an error
+  double contactDeviation() const noexcept { return std::sqrt(covariance_(kContact, kContact)); }  ///< standard [N]
+  /// Independent errors of the joints' accelerations, one standard deviation each, a column for each mode [rad/s2].
+  JointMatrix accelerationSpread() const noexcept;
 
  private:
-  static constexpr int kMaxStates = 4 * kMaxJoints + kMaxChannels;
+  static constexpr int kContact = kMaxChannels, kMaxStates = kContact + 1 + 4 * kMaxJoints;
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
   enum Part { kX, kV, kFrequency, kDamping, kParts };
 
-  static constexpr int at(int mode, Part part) noexcept { return kMaxChannels + kParts * mode + part; }
+  static constexpr int at(int mode, Part part) noexcept { return kContact + 1 + kParts * mode + part; }
   /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
   int begin() const noexcept { return kMaxChannels - channels_; }
-  int states() const noexcept { return channels_ + kParts * count_; }
+  int states() const noexcept { return channels_ + 1 + kParts * count_; }
 
+  void setFirstGuesses() noexcept;
+  void forgetOil() noexcept;
+  void forget(int state, double deviation) noexcept;
+  void addContact(int mode, const ModeResponse& response) noexcept;
   void advanceMode(int mode, double step, const ModeForce& force) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void useChannel(int channel, const VibrationReading& reading) noexcept;
@@ -89,8 +93,13 @@ class ModeIdentifier {
   void keepWithinBounds() noexcept;
 
   double damping_ratio_;
+  bool learns_;
+  bool explains_{true};
+  double surprise_{1.0};  ///< mean square of accelerations' errors over what it should be [-]
   BoomModes modes_;
   int count_{};
+  bool follows_contact_{};
+  JointVector contact_;  ///< modal force of the rock per newton
   bool moving_known_{};  ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   Covariance covariance_ = Covariance::Zero();

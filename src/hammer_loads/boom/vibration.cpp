@@ -4,6 +4,11 @@
 #include <utility>
 
 namespace hammer_loads {
+namespace {
+
+constexpr double kContactMemory = 0.5;  // of the rock's mean force: some turns [s]
+
+}  // namespace
 
 Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings)
     : dynamics_(chain),
@@ -31,6 +36,7 @@ void Vibration::setPose(const JointVector& position) noexcept {
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
   if (!position_.allFinite()) position_ = position;
   findModes(dynamics_, cylinders_, position_, modes_);
+  if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
   posed_ = true;
   if (identifier_) identifier_->setModes(modes_);
   useIdentified();
@@ -46,6 +52,7 @@ void Vibration::rest() noexcept {
   x_.setZero(modes_.count);
   v_.setZero(modes_.count);
   torque_.setZero();
+  contact_ = mean_contact_ = 0.0;
   if (identifier_) identifier_->forgetMotion();
   posed_ = false;
 }
@@ -55,12 +62,15 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   const JointVector mean = modalForce(modes_, torque.mean);
   for (int k = 0; k < modes_.count; ++k) {
     const ModeResponse& r = response_[static_cast<std::size_t>(k)].at(mode(k), step);
-    const ModeState next = advanced(mode(k), {x_[k], v_[k]}, {from[k], to[k], mean[k]}, step, r);
+    const double rock = contactAtLoad(k);
+    const ModeForce force{from[k] + rock, to[k] + rock, mean[k] + rock};
+    const ModeState next = advanced(mode(k), {x_[k], v_[k]}, force, step, r);
     x_[k] = next.x;
     v_[k] = next.v;
   }
   torque_ = torque.to;
   if (identifier_) identifier_->advance(step, torque);
+  if (identifier_) mean_contact_ += std::min(1.0, step / kContactMemory) * (identifier_->contact() - mean_contact_);
   restIfNotFinite();
 }
 
@@ -74,6 +84,32 @@ void Vibration::observe(int channel, const VibrationReading& reading) noexcept {
   if (!identifier_) return;
   identifier_->observe(channel, reading);
   useIdentified();
+  useContact();
+}
+
+void Vibration::followContact(const JointVector& torque, double least_force) noexcept {
+  if (!identifier_) {
+    identifier_.emplace(settings_.damping_ratio, false);
+    identifier_->setModes(modes_);
+  }
+  identifier_->followContact(torque);
+  contact_by_newton_ = modalForce(modes_, torque);
+  least_contact_ = least_force;
+}
+
+void Vibration::leaveContact() noexcept {
+  if (identifier_) identifier_->leaveContact();
+  contact_ = mean_contact_ = 0.0;
+}
+
+/// A landing shakes the hull at once; whether it stands on rock at all shows in the mean.
+void Vibration::useContact() noexcept {
+  const bool bears = identifier_->followsContact() && mean_contact_ > least_contact_;
+  contact_ = bears ? identifier_->contact() : 0.0;
+  for (int k = 0; k < modes_.count && bears; ++k) {
+    const ModeState seen = identifier_->motion(k);
+    x_[k] = seen.x, v_[k] = seen.v;
+  }
 }
 
 void Vibration::useIdentified() noexcept {
@@ -100,8 +136,24 @@ double Vibration::energy() const noexcept {
 
 JointVector Vibration::modalAcceleration() const noexcept {
   JointVector result = modalForce(modes_, torque_);
-  for (int k = 0; k < modes_.count; ++k) result[k] = hammer_loads::acceleration(mode(k), {x_[k], v_[k]}, result[k]);
+  for (int k = 0; k < modes_.count; ++k)
+    result[k] = hammer_loads::acceleration(mode(k), {x_[k], v_[k]}, result[k] + contactAtLoad(k));
   return result;
+}
+
+Vibration::OilTorque Vibration::oilTorque() const noexcept {
+  const JointVector force = modalForce(modes_, torque_);
+  JointVector now(modes_.count), rate(modes_.count);
+  const bool seen = identifier_ && identifier_->followsContact();
+  for (int k = 0; k < modes_.count; ++k) {
+    const Mode m = mode(k);
+    const ModeState s = seen ? identifier_->motion(k) : ModeState{x_[k], v_[k]};
+    const double rock = (seen ? identifier_->contact() : contact_) * contact_by_newton_[k];
+    const double a = hammer_loads::acceleration(m, s, force[k] + rock);
+    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
+    now[k] = stiff * s.x + damped * s.v, rate[k] = stiff * s.v + damped * a;
+  }
+  return {modes_.inertia * now, modes_.inertia * rate};
 }
 
 }  // namespace hammer_loads

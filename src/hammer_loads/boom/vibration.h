@@ -37,10 +37,19 @@ class Vibration {
 
   /// Frequencies and damping as readings show them, from now on (`boom_stiffness: identified`).
   void identify() { identifier_.emplace(settings_.damping_ratio); }
-  /// A sensor's reading at the end of the last step; nothing without identify(). Displacement and velocity stay those
-  /// of the hammer's load, with better modes.
+  bool identifies() const noexcept { return identifier_ && identifier_->learns(); }
+  /// From now on the rock may bear on the hull: its force is followed with the motion that readings show. torque: on
+  /// the joints per newton [N m/N]; call at each pose. Where its mean over some 0.5 s is less than least_force [N] the
+  /// hull counts as free.
+  void followContact(const JointVector& torque, double least_force) noexcept;
+  void leaveContact() noexcept;  ///< no more: the hull counts as free
+  /// A sensor's reading at the end of the last step; nothing without identify() or followContact(). While the rock
+  /// bears on the hull displacement and velocity become those of the readings; else they stay those of the hammer's
+  /// load, with better modes.
   void observe(int channel, const VibrationReading& reading) noexcept;
+  /// What follows the readings, if anything does.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
+  double contact() const noexcept { return contact_; }  ///< the rock's force [N]; 0 for a hull that counts as free
 
   bool known() const noexcept { return modes_.count > 0; }
   JointVector displacement() const noexcept;  ///< [rad], zero for held joints
@@ -49,6 +58,11 @@ class Vibration {
   /// -M q'': what vibration adds to the static torque of the load, so that hammer + vibration = what the cylinders hold
   /// (K q + C q') for the joints that they hold, and likewise for the held ones [N m].
   JointVector torque() const noexcept;
+  /// What the oil carries, K q + C q', and how fast that changes; of the readings where they are followed [N m, N m/s].
+  struct OilTorque {
+    JointVector now, rate;
+  };
+  OilTorque oilTorque() const noexcept;
   /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
   double energy() const noexcept;
   const BoomModes& modes() const noexcept { return modes_; }
@@ -60,6 +74,8 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
+  void useContact() noexcept;
+  double contactAtLoad(int mode) const noexcept { return contact_ * contact_by_newton_[mode]; }
 
   ChainDynamics dynamics_;
   std::vector<Cylinder> cylinders_;
@@ -69,9 +85,11 @@ class Vibration {
   JointVector position_;  ///< where the modes belong
   JointVector last_;      ///< as last given
   bool posed_{};
-  std::array<KeptResponse, kMaxJoints> response_;  ///< of each mode
-  JointVector x_, v_;                              ///< modal displacements and velocities
-  JointVector torque_;                             ///< of the load at the end of the last step
+  std::array<KeptResponse, kMaxJoints> response_;        ///< of each mode
+  JointVector x_, v_;                                    ///< modal displacements and velocities
+  JointVector contact_by_newton_;                        ///< modal force of the rock
+  double contact_{}, mean_contact_{}, least_contact_{};  ///< [N]
+  JointVector torque_;                                   ///< of the load at the end of the last step
 };
 
 }  // namespace hammer_loads

@@ -13,7 +13,7 @@ constexpr OilDeviation kLeft{0.005, 0.1};
 void VibrationSpread::follow(const Vibration& vibration) noexcept {
   const BoomModes& now = vibration.modes();
   const bool same = now.count == modes_.count && now.count > 0 && now.shape == modes_.shape;
-  if (same && !vibration.identifier()) return;  // as it was
+  if (same && !vibration.identifies()) return;  // as it was
   if (now.count != modes_.count) {
     modes_ = now;
     rest();
@@ -27,7 +27,7 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
     const auto i = static_cast<std::size_t>(k);
     OilDeviation& deviation = deviation_[i];
     deviation = given_;
-    if (vibration.identifier()) {
+    if (vibration.identifies()) {
       const auto known = [](double identified, double left) { return std::hypot(identified, left); };
       const ModeIdentifier& found = *vibration.identifier();
       deviation.frequency = std::min(given_.frequency, known(found.frequencyDeviation(k), kLeft.frequency));

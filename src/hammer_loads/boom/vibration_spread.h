@@ -16,13 +16,13 @@ struct OilDeviation {
 
 /// Errors of the hammer's load that are independent of each other, one standard deviation each; they last, as that of
 /// an encoder's zero does. Columns: joint torques of each [N m].
-using LoadSpread = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, 3>;
+using LoadSpread = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, 4>;
 
 /// Runs beside a Vibration, with its steps: one run for each thing that may be otherwise. Not linearised in the
 /// frequency, whose error changes phases. No allocation.
 class VibrationSpread {
  public:
-  static constexpr int kStiffer = 0, kSofter = 1, kDamped = 2, kLoads = 3, kMaxRuns = 6;
+  static constexpr int kStiffer = 0, kSofter = 1, kDamped = 2, kLoads = 3, kMaxRuns = 7;
 
   explicit VibrationSpread(const OilDeviation& given = {}) : given_(given) {}
 

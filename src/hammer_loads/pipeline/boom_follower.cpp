@@ -1,5 +1,6 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,7 +10,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastContact = 0.02;  // of the boom's weight: pressures show no smaller force
+constexpr double kLeastContact = 0.05;      // of the boom's weight, which is no better known
+constexpr double kUnexplainedMemory = 1.0;  // [s]
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -80,7 +82,8 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     if (!continued) boom_.vibration().rest(), spread_.rest();
     boom_.moveCompliant(takesCompliant() ? held_.motion() : motion_, g_B);
     spread_.follow(boom_.vibration());
-    if (continued && !swung) vibrate(step, sample.spread);
+    followContact(sample.stamp);
+    if (continued && !swung) vibrate(step, spreadWithRock(sample.spread));
     observe(sample, seconds(sample.stamp - last_stamp_));
   } else {
     boom_.move(motion_, g_B);
@@ -98,55 +101,125 @@ void BoomFollower::findLoads(const BoomSample& sample) noexcept {
   const bool rigid = !state_.choice.compliant;
   boom_.loads(w_tip, rigid, state_.loads);
   takeMeasured(sample);
-  boom_.steelLoads({w_tip.force + contact_.force, w_tip.torque + contact_.torque}, rigid, state_.steel);
-  if (sample.spread.count > 0) boom_.deviations(spread_, sample.spread, rigid, state_.deviations);
+  boom_.steelLoads({w_tip.force + state_.contact.force, w_tip.torque + state_.contact.torque}, rigid, state_.steel);
+  findDeviations(spreadWithRock(sample.spread), rigid);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
 }
 
-/// Frequencies and damping as sensors show them.
+/// Where all pressures are known: without them the force would stay as it was.
+void BoomFollower::followContact(StampNs stamp) noexcept {
+  bool measured = pressures_.accepted() > 0;
+  for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.at(i, stamp).has_value();
+  if (measured) {
+    boom_.vibration().followContact(boom_.hammerTorque(onTip({0.0, 1.0, striking_distance_})), least_contact_);
+  } else {
+    boom_.vibration().leaveContact();
+  }
+}
+
+/// Motion, frequencies and damping as sensors show them.
 void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
-  if (sample.imu) observer_.imu(boom_, held_, *sample.imu);
+  if (sample.imu) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (pressures_.accepted() == 0) return;
   boom_.loads(onTip(sample.motion_wrench), true, state_.loads);
   observer_.pressures(boom_, sample.stamp, pressures_, state_.loads);
 }
 
+/// What hammer and oil as given do not make of the hull's acceleration is a force on its mass.
+void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noexcept {
+  const ModeIdentifier& identifier = *boom_.vibration().identifier();
+  state_.contact_unknown = !identifier.explains() && identifier.learns() && !identifier.followsContact();
+  if (!std::isfinite(state_.reduced.mass)) return;
+  const double felt = reading.specific_force.z() + boom_.gravityAtTip().z();
+  const double force = state_.reduced.mass * (felt - boom_.tipVibration().acceleration[2]);
+  unexplained_ += std::clamp(step / kUnexplainedMemory, 0.0, 1.0) * (force * force - unexplained_);
+}
+
+/// A rock that is not measured is an error of the load, as large as what shows of it.
+WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const noexcept {
+  WrenchSpread spread = of_crank;
+  if (!state_.contact_unknown || of_crank.count == 0) return spread;
+  const double force = std::sqrt(unexplained_);
+  spread.part[static_cast<std::size_t>(spread.count++)] = onTip({0.0, force, striking_distance_ * force});
+  return spread;
+}
+
 /// A measured force holds what acts on its joint, whatever the model says; the difference is the rock's.
 void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
   state_.contact_torque.setZero();
-  contact_ = {};
+  state_.contact = {};
+  state_.measured = state_.press_force_lost = contact_known_ = false;
+  if (pressures_.accepted() == 0) return;
+  BoomLoads& loads = state_.loads;
+  measured_.follow(boom_, motion_.position, loads.weight + loads.motion, sample.stamp, pressures_);
   std::size_t measured = 0;
-  for (std::size_t i = 0; i < boom_.cylinders().size() && pressures_.accepted() > 0; ++i) {
+  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
+    const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
+    if (!torque) continue;
     const Cylinder& cylinder = boom_.cylinders()[i];
     const int joint = cylinder.joint();
-    const std::optional<ChamberPressures> p = pressures_.at(i, sample.stamp);
-    const CylinderPosition at =
-        cylinder.at(motion_.position[joint]);  // of a measured force the lever as it is measured
-    if (!p || at.dead_centre) continue;
-    const double total = -forceOf(cylinder, *p) * at.arm;
-    state_.contact_torque[joint] = total - state_.loads.total[joint];
-    state_.loads.total[joint] = total;
-    state_.loads.cylinder[i] = cylinder.load(at, total);
+    state_.contact_torque[joint] = torque->value - loads.total[joint];
+    loads.total[joint] = torque->value;
+    loads.cylinder[i] = cylinder.load(cylinder.at(motion_.position[joint]), torque->value);
     ++measured;
   }
   state_.measured = measured > 0 && measured == boom_.cylinders().size();
   findContact();
 }
 
-/// Three cylinders in a plane give the force; of others the torques alone are known.
-void BoomFollower::findContact() noexcept {
-  state_.press_force_lost = false;
-  if (!state_.measured || boom_.cylinders().size() != 3) return;
+/// Three cylinders in a plane tell a load on the tip; of others the torques alone are known.
+std::optional<Wrench> BoomFollower::tipLoad(const JointVector& torque) const noexcept {
   const auto& c = boom_.cylinders();
+  if (c.size() != 3) return std::nullopt;
   const std::array<int, 3> joints{c[0].joint(), c[1].joint(), c[2].joint()};
-  const Eigen::Vector3d torque(state_.contact_torque[joints[0]], state_.contact_torque[joints[1]],
-                               state_.contact_torque[joints[2]]);
-  const std::optional<Wrench> load = inPlaneTipLoad(boom_.pose(), joints, torque);
+  return inPlaneTipLoad(boom_.pose(), joints, {torque[joints[0]], torque[joints[1]], torque[joints[2]]});
+}
+
+/// No force is one that is not seen beside its error.
+void BoomFollower::findContact() noexcept {
+  if (!state_.measured) return;
+  const std::optional<Wrench> load = tipLoad(state_.contact_torque);
   if (!load) return;
-  contact_ = *load;
-  state_.press_force_lost = contact_.force.z() < least_contact_;
+  contact_known_ = true;
+  state_.contact = *load;
+  const auto& observer = boom_.vibration().identifier();
+  const double error = observer && observer->followsContact() ? observer->contactDeviation() : 0.0;
+  state_.press_force_lost = state_.contact.force.z() < std::max(least_contact_, error);
+}
+
+/// Of what is measured the error is the measurement's: whatever the vibration's is, the contact makes up for it.
+void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
+  BoomDeviations& deviations = state_.deviations;
+  if (spread.count > 0) boom_.deviations(spread_, spread, rigid, deviations);
+  if (contact_known_) boom_.deviations(measuredSpread(rigid), deviations);
+  if (pressures_.accepted() == 0) return;
+  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
+    const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
+    if (!torque) continue;
+    deviations.torque[boom_.cylinders()[i].joint()] = torque->deviation;
+    deviations.cylinder[i] = torque->deviation / std::abs(boom_.cylinderPosition(i).arm);
+  }
+}
+
+MeasuredSpread BoomFollower::measuredSpread(bool rigid) const noexcept {
+  MeasuredSpread spread;
+  const JointVector zero = JointVector::Zero(boom_.chain().joints());
+  const auto add = [&](const JointVector& acceleration, const JointVector& torque) {
+    spread.acceleration[spread.count] = acceleration;
+    spread.tip[spread.count++] = tipLoad(torque).value_or(Wrench{});
+  };
+  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
+    JointVector torque = zero;
+    torque[boom_.cylinders()[i].joint()] = measured_.of(i)->deviation;
+    add(zero, torque);
+  }
+  if (rigid || !boom_.vibration().known()) return spread;
+  const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
+  for (int k = 0; k < of_vibration.cols(); ++k)
+    add(of_vibration.col(k), boom_.vibration().modes().mass * of_vibration.col(k));
+  return spread;
 }
 
 void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept {
@@ -204,14 +277,13 @@ void BoomFollower::fillVibration() noexcept {
 
 void BoomFollower::fillModes() noexcept {
   const Vibration& vibration = boom_.vibration();
-  const auto& identifier = vibration.identifier();
   const auto count = state_.frequency.size();
   state_.damping.resize(count), state_.frequency_deviation.resize(count);
   for (int k = 0; k < count; ++k) {
     state_.damping[k] = vibration.mode(k).zeta;
     state_.frequency_deviation[k] = spread_.deviation(k).frequency * state_.frequency[k];
   }
-  state_.identified = identifier && identifier->identified();
+  state_.identified = vibration.identifies() && vibration.identifier()->identified();
 }
 
 void BoomFollower::turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept {

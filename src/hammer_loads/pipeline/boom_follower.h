@@ -13,6 +13,7 @@
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/held_pose.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
+#include "hammer_loads/pipeline/measured_torques.h"
 #include "hammer_loads/pipeline/mode_observer.h"
 #include "hammer_loads/pipeline/tip_velocity.h"
 #include "hammer_loads/pipeline/wrench_history.h"
@@ -47,16 +48,18 @@ struct BoomState {
   SteelLoads steel;           ///< sections and joints as Boom orders them
   BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
-  bool dead_centre{};                  ///< a cylinder does not hold its joint: no modes, taken as rigid
-  JointVector frequency;               ///< natural frequencies, per mode [Hz]; none when vibration is not followed
-  JointVector frequency_deviation;     ///< standard [Hz]
-  JointVector damping;                 ///< of each mode [-]
-  bool identified{};                   ///< frequencies and damping follow the sensors
-  JointVector contact_torque;          ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
-  bool measured{};                     ///< the cylinders' forces are those of measured pressures
-  bool press_force_lost{};             ///< the rock does not press on the hull, by measured pressures
-  ReducedHull reduced;                 ///< along hull z; infinite without modes
-  Boom::TipVibration tip;              ///< zero for a rigid boom
+  bool dead_centre{};               ///< a cylinder does not hold its joint: no modes, taken as rigid
+  JointVector frequency;            ///< natural frequencies, per mode [Hz]; none when vibration is not followed
+  JointVector frequency_deviation;  ///< standard [Hz]
+  JointVector damping;              ///< of each mode [-]
+  bool identified{};                ///< frequencies and damping follow the sensors
+  JointVector contact_torque;       ///< BY the rock ON the hull beyond the blows, as torque on the joints [N m]
+  Wrench contact;                   ///< the same on the tip, axes of the tip; zero where it is not measured
+  bool measured{};                  ///< the cylinders' forces are those of measured pressures
+  bool contact_unknown{};           ///< the IMU shows that the rock bears on the hull, pressures do not show its force
+  bool press_force_lost{};          ///< the rock does not press on the hull, by measured pressures
+  ReducedHull reduced;              ///< along hull z; infinite without modes
+  Boom::TipVibration tip;           ///< zero for a rigid boom
   std::optional<TipVelocity> at_blow;  ///< by vibration, mean of before and after the step's last blow; none: no blow
   BoomChoice choice;
   std::optional<HoldDown> hold_down;  ///< against the mean press force of the last turn that had one
@@ -110,8 +113,14 @@ class BoomFollower {
   void strike(const HullWrench& impulse) noexcept;
   void findLoads(const BoomSample& sample) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
+  void weighUnexplained(const ImuReading& reading, double step) noexcept;
+  WrenchSpread spreadWithRock(const WrenchSpread& of_crank) const noexcept;
   void takeMeasured(const BoomSample& sample) noexcept;
+  std::optional<Wrench> tipLoad(const JointVector& torque) const noexcept;
+  void followContact(StampNs stamp) noexcept;
   void findContact() noexcept;
+  void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
+  MeasuredSpread measuredSpread(bool rigid) const noexcept;
   void fillVibration() noexcept;
   void fillModes() noexcept;
 
@@ -119,6 +128,7 @@ class BoomFollower {
   VibrationSpread spread_;
   JointBuffer joints_;
   CylinderPressures pressures_;
+  MeasuredTorques measured_;
   HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;
@@ -128,7 +138,8 @@ class BoomFollower {
   BoomState state_;
   JointMotion motion_;
   TorqueStep torque_;
-  Wrench contact_;          ///< BY the rock ON the tip beyond the blows, where measured pressures tell it
+  bool contact_known_{};
+  double unexplained_{};    ///< mean square of the force along z that would explain the IMU's readings [N2]
   double least_contact_{};  ///< along z: less is none [N]
   StampNs last_stamp_{};    ///< of the last sample without a fault
   bool known_{};

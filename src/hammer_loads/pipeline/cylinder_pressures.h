@@ -1,6 +1,7 @@
 /// Measured pressures in the chambers of the boom's cylinders at the instants of the crank samples.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -26,6 +27,10 @@ class CylinderPressures {
   /// Nothing unless both chambers are known.
   std::optional<ChamberPressures> at(std::size_t cylinder, StampNs stamp) const noexcept;
 
+  /// Of a cylinder's last reading.
+  StampNs newest(std::size_t cylinder) const noexcept {
+    return std::max(tracks_[cylinder][0].now.stamp, tracks_[cylinder][1].now.stamp);
+  }
   std::uint64_t accepted() const noexcept { return accepted_; }
   std::uint64_t refused() const noexcept { return refused_; }
   /// Readings taken of a cylinder: what it has more than before is new.

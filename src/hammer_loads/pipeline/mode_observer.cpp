@@ -62,14 +62,17 @@ void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures
   for (std::size_t i = 0; i < cylinders; ++i) {
     if (pressures.count(i) == pressures_[i]) continue;
     pressures_[i] = pressures.count(i);
-    const std::optional<ChamberPressures> p = pressures.at(i, sample);
+    const StampNs stamp = pressures.newest(i);
+    const std::optional<ChamberPressures> p = pressures.at(i, stamp);
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
     const CylinderPosition& at = boom.cylinderPosition(i);
     if (!p || at.dead_centre || !boom.vibration().known()) continue;
-    const double torque = -forceOf(cylinder, *p) * at.arm - loads.hammer[j] - loads.weight[j] - loads.motion[j];
-    see(boom, kImuChannels + static_cast<int>(cylinders + i), jointTorqueReading(boom.vibration().modes(), j, torque),
-        kTorque, cylinder.greatestPush() * std::abs(at.arm));
+    const double torque = -forceOf(cylinder, *p) * at.arm - loads.weight[j] - loads.motion[j];
+    VibrationReading reading = oilTorqueReading(boom.chain().joints(), j, torque);
+    reading.ahead = seconds(stamp - sample);
+    see(boom, kImuChannels + static_cast<int>(cylinders + i), reading, kTorque,
+        cylinder.greatestPush() * std::abs(at.arm));
   }
 }
 

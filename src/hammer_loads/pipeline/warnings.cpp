@@ -128,13 +128,18 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
 void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   const SampleResult& result = pipeline.result();
   if (pipeline.boom() && pipeline.counts().accepted > 0) {
-    const auto& identifier = pipeline.boom()->boom().vibration().identifier();
-    if (identifier && identifier->channels() == 0)
+    const Vibration& vibration = pipeline.boom()->boom().vibration();
+    if (vibration.identifies() && vibration.identifier()->channels() == 0)
       warnings.push_back({"boom stiffness",
                           "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
                           "cylinder_pressures came: as the boom file gives it",
                           true});
   }
+  if (result.boom != nullptr && result.boom->contact_unknown)
+    warnings.push_back({"rock",
+                        "hull_imu shows that the rock bears on the hull: without cylinder_pressures its force is in no "
+                        "joint torque and in no section, and the boom's modes are those of the boom file",
+                        true});
   if (result.boom == nullptr || !result.boom->fault) return;
   warnings.push_back({"boom joints",
                       "boom joints: no loads for " + count(pipeline.boom()->faults()) +

@@ -1,0 +1,32 @@
+/// What sensors read of the boom's vibration, as rows over its joints.
+#pragma once
+
+#include "hammer_loads/boom/boom_modes.h"
+#include "hammer_loads/boom/chain_pose.h"
+
+namespace hammer_loads {
+
+/// What one channel of a sensor reads: offset + displacement . q + velocity . q' + acceleration . q'' + oil . (K q + C
+/// q') of the joints' vibration q. Whatever else it sees (weight, the boom's slow motion) must be taken off value
+/// first, as far as known; the offset takes up what is left of it.
+struct VibrationReading {
+  JointVector displacement, velocity, acceleration, oil;
+  double value{};
+  double ahead{};             ///< of the reading's instant over the present one [s]; negative: it is older
+  double noise{};             ///< standard deviation of one reading, unit of value
+  double offset_deviation{};  ///< of its offset at the start, unit of value
+  double offset_walk{};       ///< how far the offset wanders in a second, unit of value
+};
+
+/// Turning rate [rad/s] about a unit vector n in the tip's axes; J of tipJacobian().
+VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, double rate);
+/// What an accelerometer at p reads along n [m/s2], acceleration less gravity g (all in the tip's axes).
+VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
+                                        const Eigen::Vector3d& g_T, double acceleration);
+/// A joint's angle [rad]: above 100 Hz it shows the vibration.
+VibrationReading jointAngleReading(int joints, int joint, double angle);
+/// Torque of the load on a joint by its cylinder's measured force [N m] (-force times arm), less weight and motion:
+/// what the oil carries of hammer and rock.
+VibrationReading oilTorqueReading(int joints, int joint, double torque);
+
+}  // namespace hammer_loads

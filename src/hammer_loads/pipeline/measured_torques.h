@@ -1,0 +1,45 @@
+/// Torques of the load on the joints, as the pressures of their cylinders show them.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/pipeline/cylinder_pressures.h"
+
+namespace hammer_loads {
+
+/// At a reading the torque is the reading's; from there to the crank sample it changes as the oil's does in the
+/// vibration or along the line through the last two readings, whichever was nearer to the readings that came: the line
+/// where the oil is not as given, the oil where readings are rare or the hull lands on rock. No allocation.
+class MeasuredTorques {
+ public:
+  struct Torque {
+    double value{};      ///< of the load on the cylinder's joint [N m]
+    double deviation{};  ///< standard: how far the last readings were from what was said before them [N m]
+  };
+
+  /// After the vibration has taken the readings. steady: weight and motion [N m]; position: as joint sensors show it.
+  void follow(const Boom& boom, const JointVector& position, const JointVector& steady, StampNs sample,
+              const CylinderPressures& pressures) noexcept;
+  /// Index as in Boom::cylinders(); nothing without both pressures or at a dead centre.
+  const std::optional<Torque>& of(std::size_t cylinder) const noexcept { return torque_[cylinder]; }
+
+ private:
+  struct Track {
+    std::uint64_t readings{};            ///< taken
+    StampNs stamp{};                     ///< of the last one
+    double torque{};                     ///< by it, less weight and motion [N m]
+    double oil{};                        ///< of the oil then, by the vibration that has taken it [N m]
+    double slope{};                      ///< of the line through the last two [N m/s]
+    double oil_square{}, line_square{};  ///< mean of the squares by which each way was off at a reading [N2 m2]
+  };
+  static void take(Track& track, StampNs stamp, double torque, double oil, double oil_before) noexcept;
+
+  std::array<Track, kMaxJoints> tracks_;
+  std::array<std::optional<Torque>, kMaxJoints> torque_;
+  Vibration::OilTorque oil_;  ///< at the last sample
+  StampNs sample_{};
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,133 @@
+// The pipeline on a hammer that stands on rock: the rock holds the hull up and lets go of it at each recoil. What
+// sensors there are decides what is known.
+#include <random>
+
+#include "pipeline/on_boom_session.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::errorsOf, test::SessionMisses;
+
+constexpr char kByPressures[] = "hull_motion: model\nboom_stiffness: identified\n";
+constexpr char kByImuToo[] = "hull_motion: imu\nboom_stiffness: identified\n";
+
+struct Rock {
+  double press_force;       ///< [N]
+  double stiffness;         ///< [N/m]
+  double oil{1.0};          ///< over the boom file's
+  unsigned pose{};          ///< 0: as the other sessions; else drawn
+  double pressures{500.0};  ///< their rate [Hz]
+  friend std::ostream& operator<<(std::ostream& out, const Rock& r) {
+    return out << r.press_force << " N on " << r.stiffness << " N/m, oil " << r.oil << ", pose " << r.pose;
+  }
+};
+
+simulation::MachineSettings machineOn(const Rock& rock) {
+  simulation::MachineSettings m = test::machineOnBoom(rock.oil, 50.0);
+  m.on_boom.rock = {rock.stiffness, 3.0, rock.press_force};
+  m.on_boom.pressures.rate = rock.pressures;
+  if (rock.pose == 0) return m;
+  std::mt19937 random(rock.pose);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  m.boom[1].mean = between(-0.75, -0.15), m.boom[2].mean = between(0.7, 1.5);
+  m.boom[3].mean = between(-0.35, 0.35) - m.boom[1].mean - m.boom[2].mean;
+  return m;
+}
+
+class OnRock : public testing::TestWithParam<Rock> {};
+
+void expectLoads(const SessionMisses& e) {
+  EXPECT_LT(e.worstTorque(), 0.02);
+  EXPECT_LT(e.worstSection(), 0.04);
+  EXPECT_GT(e.leastCorrelation(), 0.99);
+  EXPECT_LT(std::abs(e.energy), 0.02);
+  EXPECT_GT(e.covered(), 0.85);
+  EXPECT_GT(e.sectionsCovered(), 0.85);
+  EXPECT_GT(e.part(e.lost_as_shown), 0.8);
+  EXPECT_EQ(e.unknown, 0U);
+  EXPECT_FALSE(e.warned_of_rock);
+}
+
+TEST_P(OnRock, PressuresTellWhatTheBoomCarries) {
+  const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
+  const SessionMisses e = errorsOf("pressures", session, kByPressures, {false, true});
+  expectLoads(e);
+  EXPECT_LT(e.contact.rmsOfRange(), 0.2) << "a landing is over before it has moved the oil";
+  EXPECT_LT(e.moment.rms(), 0.06);
+}
+
+TEST_P(OnRock, PressuresAndImuTellTheRocksForceToo) {
+  const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
+  const SessionMisses e = errorsOf("pressures and imu", session, kByImuToo, {true, true});
+  expectLoads(e);
+  EXPECT_LT(e.contact.rmsOfRange(), 0.05);
+  EXPECT_GT(e.contact.correlation(), 0.95);
+  EXPECT_LT(e.moment.rms(), 0.02);
+}
+
+/// The torques lack the rock's force, up to nine tenths of them: the flag says so, and the deviations are as wide.
+TEST_P(OnRock, AnImuAloneSaysThatTheRocksForceIsNotKnown) {
+  const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
+  const SessionMisses e = errorsOf("imu", session, kByImuToo, {true, false});
+  EXPECT_GT(e.worstTorque(), 0.3) << "what there is to say";
+  EXPECT_GT(e.part(e.unknown), 0.95);
+  EXPECT_TRUE(e.warned_of_rock);
+  EXPECT_GT(e.covered(), 0.6);
+  EXPECT_LT(e.moment.rms(), 0.025) << "the hammer's own loads are as ever";
+  EXPECT_LT(std::abs(e.energy), 0.02);
+  EXPECT_NEAR(
+      e.frequency,
+      simulation::HammerOnBoom(machineOn(GetParam())).frequencies(test::kJudgedTo)[0] / std::sqrt(GetParam().oil), 0.05)
+      << "as the boom file gives it: nothing is learned from a hull that bounces";
+}
+
+INSTANTIATE_TEST_SUITE_P(PressForces, OnRock,
+                         testing::Values(Rock{0.0, 3e7}, Rock{1500.0, 1e8, 1.0, 11}, Rock{4000.0, 3e7},
+                                         Rock{4000.0, 1e7, 0.7, 12}, Rock{12000.0, 3e7, 1.4, 13}));
+
+/// Readings every 5 ms, landings of 10 ms: the change between readings is the vibration's.
+TEST(OnRockSession, PressuresAt200HzAreEnough) {
+  const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7, 1.0, 0, 200.0}));
+  const SessionMisses pressures = errorsOf("200 Hz", session, kByPressures, {false, true});
+  EXPECT_LT(pressures.worstTorque(), 0.05);
+  EXPECT_LT(pressures.worstSection(), 0.04);
+  EXPECT_GT(pressures.covered(), 0.85);
+  expectLoads(errorsOf("200 Hz and imu", session, kByImuToo, {true, true}));
+}
+
+/// What was measured is not held on to when its sensors fall silent, and comes back with them.
+TEST(OnRockSession, ARockThatIsNoLongerMeasuredIsForgotten) {
+  const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7}));
+  test::Player player(test::settingsWith(std::string("boom: compliant\n") + kByPressures), true, session);
+  player.imu_speaks = false;
+  bool measured = false;
+  double contact = 0.0;
+  const auto look = [&](double, const SampleResult& result) {
+    ASSERT_NE(result.boom, nullptr);
+    measured = result.boom->measured;
+    contact = result.boom->contact.force.norm();
+    ASSERT_TRUE(result.boom->loads.total.allFinite());
+  };
+  player.playTo(5.0, look);
+  EXPECT_TRUE(measured);
+  player.pressures_speak = false;
+  player.playTo(7.0, look);
+  EXPECT_FALSE(measured);
+  EXPECT_EQ(contact, 0.0);
+  EXPECT_EQ(player.pipeline.boom()->boom().vibration().contact(), 0.0);
+  player.pressures_speak = true;
+  player.playTo(test::kJudgedTo, look);
+  EXPECT_TRUE(measured);
+}
+
+/// Right oil, as given: the rock's force is found without learning.
+TEST(OnRockSession, TheOilMayBeAsGiven) {
+  const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7}));
+  expectLoads(errorsOf("as given", session, "hull_motion: model\nboom_stiffness: given\n", {false, true}));
+  EXPECT_GT(errorsOf("without pressures", session, "hull_motion: model\n", {}).worstTorque(), 0.3)
+      << "what pressures are for";
+}
+
+}  // namespace
+}  // namespace hammer_loads
