@@ -48,6 +48,24 @@ TEST(HeldPose, LeavesLittleOfAVibration) {
   }
 }
 
+/// Blows every 0.21 s shake the joint as fast as the operator drives it.
+TEST(HeldPose, TellsTheOperatorsRateAtABlow) {
+  HeldPose held;
+  EXPECT_EQ(held.rateAtBlow().size(), 0);
+  double next_blow = 0.0, worst = 0.0;
+  for (double t = 0.0; t < 20.0; t += kStep) {
+    const double shaken = 0.007 * std::sin(kTwoPi * t / 0.21), rate = 0.15 * std::cos(t);
+    held.follow(joint(0.15 * std::sin(t) + shaken, 0.0), kStep);
+    if (t < next_blow) continue;
+    next_blow += 0.21;
+    held.struck();
+    if (t > 3.0) worst = std::max(worst, std::abs(held.rateAtBlow()[0] - rate));
+  }
+  EXPECT_LT(worst, 0.1 * 0.15);
+  held.follow(joint(2.0, 0.0), kStep);
+  EXPECT_EQ(held.rateAtBlow()[0], 0.0) << "the joint is another's";
+}
+
 TEST(HeldPose, IsAsMeasuredAtTheStartAndWhileDriven) {
   HeldPose held;
   bool was_driven = false;

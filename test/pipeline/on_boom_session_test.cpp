@@ -91,6 +91,7 @@ TEST(OnBoomSession, ABoomThatIsDrivenFastKeepsTheModesAsGiven) {
   const SessionMisses given = errorsOf("driven, as given", session, kModel, {});
   const SessionMisses followed = errorsOf("driven, imu and joint states", session, kIdentified, {true, false});
   EXPECT_LT(followed.worstTorque(), 1.05 * given.worstTorque());
+  EXPECT_LT(std::abs(given.energy), 0.02) << "the tool meets the rock as fast as hull and operator let it";
   EXPECT_GT(followed.covered(), 0.85);
   EXPECT_LT(errorsOf("driven, pressures", session, kIdentified, {false, true}).worstTorque(), 0.05);
 }

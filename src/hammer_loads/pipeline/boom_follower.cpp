@@ -236,6 +236,7 @@ void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread
 }
 
 void BoomFollower::strike(const HullWrench& impulse) noexcept {
+  held_.struck();
   const Jacobian J = tipJacobian(boom_.pose());
   const JointVector before = boom_.vibration().velocity(), torque = boom_.hammerTorque(onTip(impulse));
   boom_.vibration().strike(torque);
@@ -246,7 +247,7 @@ void BoomFollower::strike(const HullWrench& impulse) noexcept {
 
 TipVelocity BoomFollower::drivenTip() const noexcept {
   if (!known_) return {};
-  const Vector6 velocity = tipJacobian(boom_.pose()) * held_.slowRate();
+  const Vector6 velocity = tipJacobian(boom_.pose()) * held_.rateAtBlow();
   return {velocity[2], velocity[4]};
 }
 

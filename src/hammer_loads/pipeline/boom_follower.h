@@ -86,7 +86,7 @@ class BoomFollower {
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Through a crank sample that gives no loads: the boom swings on, without pieces as if free.
   void swing(StampNs stamp, const WrenchHistory& step) noexcept;
-  /// How the operator moves the tip, vibration left out, some 0.5 s late.
+  /// How the operator moves the tip at the last blow, vibration left out.
   TipVelocity drivenTip() const noexcept;
   /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
   /// 0.1 ms.

@@ -8,17 +8,21 @@ namespace {
 
 constexpr double kMemory = 0.5, kLost = 0.5;  // of each filter [s]; of an angle that winds or came back [rad]
 constexpr double kFast = 0.05, kRest = 2.0;   // [rad/s]: its acceleration hides the vibration; [s] to wait then
+constexpr double kTurnAtMost = 1.0;           // from blow to blow [s]
 constexpr double kStart = 1.0;                // [s] until a boom that is driven at the start is seen to be
 
 }  // namespace
 
 void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   motion_ = measured;
+  angle_ = measured.position;
+  since_blow_ += step;
   const bool lost = first_.size() != measured.position.size() || !(step < kMemory) ||
                     (measured.position - first_).cwiseAbs().maxCoeff() > kLost;
   if (lost) {
     first_ = slow_ = slowest_ = measured.position;
     unrest_ = kStart;
+    at_blow_.resize(0), of_turn_.resize(0), of_turn_before_.resize(0);
     return;
   }
   const double part = step / kMemory;
@@ -29,6 +33,18 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   if (isDriven()) return;
   motion_.position = 3.0 * (first_ - slow_) + slowest_;
   motion_.velocity = slowRate();
+}
+
+void HeldPose::struck() noexcept {
+  const bool turned = at_blow_.size() == angle_.size() && since_blow_ > 0.0 && since_blow_ < kTurnAtMost;
+  if (turned) {
+    const JointVector rate = (angle_ - at_blow_) / since_blow_;
+    of_turn_ = of_turn_before_.size() > 0 ? JointVector(1.5 * rate - 0.5 * of_turn_before_) : rate;
+    of_turn_before_ = rate;
+  } else {
+    of_turn_.resize(0), of_turn_before_.resize(0);
+  }
+  at_blow_ = angle_, since_blow_ = 0.0;
 }
 
 JointVector HeldPose::slowRate() const noexcept { return (first_ - slow_) / kMemory; }
