@@ -121,6 +121,23 @@ TEST(OnRockSession, ARockThatIsNoLongerMeasuredIsForgotten) {
   EXPECT_TRUE(measured);
 }
 
+/// Without vibration the change between readings is the line's.
+TEST(OnRockSession, ARigidBoomTakesMeasuredTorquesToo) {
+  const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7}));
+  test::Player player(test::settingsWith("boom: rigid\n"), true, session);
+  player.imu_speaks = false;
+  test::Error torque;
+  std::size_t i = 0;
+  player.playTo(test::kJudgedTo, [&](double time, const SampleResult& result) {
+    const simulation::OnBoomTruth& truth = session.on_boom[i++];
+    if (time < test::kJudgedFrom) return;
+    ASSERT_TRUE(result.boom->measured);
+    ASSERT_GT(result.boom->deviations.torque[1], 0.0);
+    for (int j = 0; j < 3; ++j) torque.add(result.boom->loads.total[j + 1], -truth.hold[j]);
+  });
+  EXPECT_LT(torque.rms(), 0.02);
+}
+
 /// Right oil, as given: the rock's force is found without learning.
 TEST(OnRockSession, TheOilMayBeAsGiven) {
   const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7}));

@@ -192,8 +192,11 @@ void BoomFollower::findContact() noexcept {
 /// Of what is measured the error is the measurement's: whatever the vibration's is, the contact makes up for it.
 void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
   BoomDeviations& deviations = state_.deviations;
-  if (spread.count > 0) boom_.deviations(spread_, spread, rigid, deviations);
-  if (contact_known_) boom_.deviations(measuredSpread(rigid), deviations);
+  if (contact_known_) {
+    boom_.deviations(measuredSpread(rigid), deviations);
+  } else if (spread.count > 0) {
+    boom_.deviations(spread_, spread, rigid, deviations);
+  }
   if (pressures_.accepted() == 0) return;
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
