@@ -84,7 +84,7 @@ class OnRock {
   double time_{};
 };
 
-TEST(ContactFollowing, PressuresTellWhatTheOilCarriesAndTheForceLate) {
+TEST(ContactFollowing, PressuresShowWhatTheOilCarriesAndTheForceLate) {
   OnRock run(false, true);
   run.run(4.0, 1.0);
   EXPECT_LT(run.torque.rms(), 0.05);

@@ -49,7 +49,7 @@ TEST(HeldPose, LeavesLittleOfAVibration) {
 }
 
 /// Blows every 0.21 s shake the joint as fast as the operator drives it.
-TEST(HeldPose, TellsTheOperatorsRateAtABlow) {
+TEST(HeldPose, KnowsTheOperatorsRateAtABlow) {
   HeldPose held;
   EXPECT_EQ(held.rateAtBlow().size(), 0);
   double next_blow = 0.0, worst = 0.0;

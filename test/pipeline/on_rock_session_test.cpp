@@ -49,7 +49,7 @@ void expectLoads(const SessionMisses& e) {
   EXPECT_FALSE(e.warned_of_rock);
 }
 
-TEST_P(OnRock, PressuresTellWhatTheBoomCarries) {
+TEST_P(OnRock, PressuresShowWhatTheBoomCarries) {
   const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
   const SessionMisses e = errorsOf("pressures", session, kByPressures, {false, true});
   expectLoads(e);
@@ -57,7 +57,7 @@ TEST_P(OnRock, PressuresTellWhatTheBoomCarries) {
   EXPECT_LT(e.moment.rms(), 0.06);
 }
 
-TEST_P(OnRock, PressuresAndImuTellTheRocksForceToo) {
+TEST_P(OnRock, PressuresAndImuShowTheRocksForceToo) {
   const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
   const SessionMisses e = errorsOf("pressures and imu", session, kByImuToo, {true, true});
   expectLoads(e);

@@ -22,7 +22,7 @@ namespace hammer_loads {
 /// should be, frequencies and damping are those given.
 ///
 /// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
-/// 6 ms. Pressures then tell displacements, what they cannot be without the force tells it.
+/// 6 ms. Pressures show the displacements; the force is what these need.
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;

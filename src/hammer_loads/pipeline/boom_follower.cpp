@@ -169,7 +169,7 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
   findContact();
 }
 
-/// Three cylinders in a plane tell a load on the tip; of others the torques alone are known.
+/// Three cylinders in a plane give a load on the tip; of others the torques alone are known.
 std::optional<Wrench> BoomFollower::tipLoad(const JointVector& torque) const noexcept {
   const auto& c = boom_.cylinders();
   if (c.size() != 3) return std::nullopt;
