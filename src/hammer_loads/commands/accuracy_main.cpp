@@ -65,16 +65,16 @@ std::string printTables(const Settings& settings, const std::string& only) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Cost table: cost and error of every way to the loads, errors over simulated working sessions",
-               "accuracy");
+  CommandLine line("Cost table: cost and error of every way to the loads, errors over simulated working sessions",
+                   "accuracy");
   std::vector<std::string> files;
   std::string json_file, only;
   bool force = false;
-  addParamsOption(app, files);
-  app.add_option("--json", json_file, "also write the figures to this file, which must not exist");
-  app.add_flag("--force", force, "replace that file if this command wrote it");
-  app.add_option("--only", only, "one of the two parts")->check(CLI::IsMember({"costs", "sessions"}));
-  if (const auto code = parse(app, argc, argv)) return *code;
+  addParamsOption(line, files);
+  line.option("--json", json_file, "also write the figures to this file, which must not exist");
+  line.flag("--force", force, "replace that file if this command wrote it");
+  line.option("--only", only, "one of the two parts").oneOf({"costs", "sessions"});
+  if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;

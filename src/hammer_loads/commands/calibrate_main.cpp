@@ -49,25 +49,23 @@ calibration::Globals inForce(const CrankSensor& sensor) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Crank sensor's place and drive's inertia from a recording of the hammer at work", "calibrate");
+  CommandLine line("Crank sensor's place and drive's inertia from a recording of the hammer at work", "calibrate");
   std::vector<std::string> bags, params;
   std::string output, crank_topic = "/hammer/crank", joint_topic = "/joint_states";
   bool force = false;
   double rocker_deviation = 0.02;
-  app.add_option("input", bags, "bags to read, splits of one recording in their order")
-      ->required()
-      ->type_name("IN.bag");
-  app.add_option("--write", output, "parameters found, for --params; the picture goes beside it as .svg")
-      ->required()
-      ->type_name("FILE.yaml");
-  addParamsOption(app, params);
-  app.add_option("--crank-topic", crank_topic)->capture_default_str();
-  app.add_option("--joint-states-topic", joint_topic, "for the hull's pitch")->capture_default_str();
-  app.add_option("--rocker-inertia-deviation", rocker_deviation, "of the given rocker inertia, relative")
-      ->check(numberWithin(1e-6, 1.0, ""))
-      ->capture_default_str();
-  app.add_flag("--force", force, "replaces files that exist");
-  if (const auto code = parse(app, argc, argv)) return *code;
+  line.option("input", bags, "bags to read, splits of one recording in their order").required().type("IN.bag");
+  line.option("--write", output, "parameters found, for --params; the picture goes beside it as .svg")
+      .required()
+      .type("FILE.yaml");
+  addParamsOption(line, params);
+  line.option("--crank-topic", crank_topic).showDefault();
+  line.option("--joint-states-topic", joint_topic, "for the hull's pitch").showDefault();
+  line.option("--rocker-inertia-deviation", rocker_deviation, "of the given rocker inertia, relative")
+      .within(1e-6, 1.0, "")
+      .showDefault();
+  line.flag("--force", force, "replaces files that exist");
+  if (const auto code = line.parse(argc, argv)) return *code;
   const std::string picture = pictureBeside(output);
   std::vector<std::string> inputs = bags;
   inputs.insert(inputs.end(), params.begin(), params.end());

@@ -1,86 +1,39 @@
 #include "hammer_loads/commands/command_line.h"
 
-#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <sstream>
-#include <string_view>
-
-#include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
-namespace {
-
-std::string ruleText(double least, double most) {
-  std::string rule = "a finite number";
-  if (std::isfinite(least)) rule += (least == 0.0 ? " > " : " >= ") + numberText(least);
-  if (std::isfinite(most)) rule += (std::isfinite(least) ? " and <= " : " <= ") + numberText(most);
-  return rule;
+void addParamsOption(CommandLine& line, std::vector<std::string>& files) {
+  line.option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
+      .oneEachTime()
+      .type("FILE.yaml");
 }
 
-}  // namespace
-
-void addParamsOption(CLI::App& app, std::vector<std::string>& files) {
-  app.add_option("--params", files, "parameters over the shipped ones; may be repeated, the last one wins")
-      ->allow_extra_args(false)
-      ->type_name("FILE.yaml");
-}
-
-void addLevelOption(CLI::App& app, std::optional<Level>& level) {
+void addLevelOption(CommandLine& line, std::optional<Level>& level) {
   std::vector<std::string> words;
   for (const auto& [word, meaning] : kLevelNames) words.emplace_back(word);
-  app.add_option_function<std::string>(
-         "--level",
-         [&level](const std::string& given) {
-           for (const auto& [word, meaning] : kLevelNames) {
-             if (given == word) level = meaning;
-           }
-         },
-         "how much of the mechanism has mass; without it as in the parameters")
-      ->check(CLI::IsMember(words))
-      ->type_name("LEVEL");
+  const auto take = [&level](const std::string& given) {
+    for (const auto& [word, meaning] : kLevelNames) {
+      if (given == word) level = meaning;
+    }
+  };
+  line.call("--level", take, "how much of the mechanism has mass; without it as in the parameters")
+      .oneOf(words)
+      .type("LEVEL");
 }
 
-CLI::Validator numberWithin(double least, double most, const std::string& unit) {
-  return CLI::Validator(
-      [=](std::string& text) {
-        const std::optional<double> value = asNumber(YAML::Node(text));
-        const bool positive = least != 0.0 || (value && *value > 0.0);
-        const bool good = value && std::isfinite(*value) && *value >= least && *value <= most && positive;
-        return good ? std::string{} : text + (unit.empty() ? "" : " " + unit) + ", must be " + ruleText(least, most);
-      },
-      "");
-}
-
-std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
-  app.add_flag("--version", "print the version and end");
-  // Before parsing: it needs no other argument.
-  if (std::find(argv, argv + argc, std::string_view("--version")) != argv + argc) {
-    std::cout << "hammer_loads " HAMMER_LOADS_VERSION << '\n';
-    return finishOutput();
-  }
-  try {
-    app.parse(argc, argv);
-    return std::nullopt;
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    std::cerr << app.get_name() << ": " << onOneLine(error.what()) << " (--help shows the options)\n";
-    return kExitWrongUsage;
-  }
+void addUrdfOption(CommandLine& line, std::string& file) {
+  line.option("--urdf", file, "robot description; with it the boom's loads as well").type("FILE.urdf");
 }
 
 int finishOutput() {
   if (std::cout.flush()) return 0;
   std::cerr << "stdout: cannot be written\n";
   return kExitFailure;
-}
-
-void addUrdfOption(CLI::App& app, std::string& file) {
-  app.add_option("--urdf", file, "robot description; with it the boom's loads as well")->type_name("FILE.urdf");
 }
 
 Checked<std::string> fileText(const std::string& file) {

@@ -1,11 +1,11 @@
 /// What the commands share: options in, one line per error on stderr, exit codes.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "hammer_loads/commands/options.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
@@ -14,22 +14,16 @@ constexpr int kExitFailure = 1;     ///< bad parameters or input
 constexpr int kExitWrongUsage = 2;  ///< bad command line
 
 /// Adds `--params FILE.yaml`, which may be repeated.
-void addParamsOption(CLI::App& app, std::vector<std::string>& files);
+void addParamsOption(CommandLine& line, std::vector<std::string>& files);
 
 /// Adds `--level`, limited to the levels of the model; without it `level` stays as it is.
-void addLevelOption(CLI::App& app, std::optional<Level>& level);
-
-/// For an option: a finite number in [least, most]; least itself is excluded when it is 0.
-CLI::Validator numberWithin(double least, double most, const std::string& unit);
-
-/// Nothing when the command may go on, else the exit code (0 after --help).
-std::optional<int> parse(CLI::App& app, int argc, const char* const* argv);
+void addLevelOption(CommandLine& line, std::optional<Level>& level);
 
 /// Exit code of a command that has written its result to stdout; reports when that cannot be written.
 int finishOutput();
 
 /// Adds `--urdf FILE`, the robot description that the boom is made from.
-void addUrdfOption(CLI::App& app, std::string& file);
+void addUrdfOption(CommandLine& line, std::string& file);
 
 /// All of a file that holds something; why not, in one line.
 Checked<std::string> fileText(const std::string& file);

@@ -159,22 +159,21 @@ int countAll(const Options& options) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Load cycles of any series: one number a line on stdin, CSV on stdout", "count_cycles");
-  app.footer(kNotes);
+  CommandLine line("Load cycles of any series: one number a line on stdin, CSV on stdout", "count_cycles", kNotes);
   Options options;
-  auto* exact = app.add_flag("--exact", options.exact, "every value as it is");
-  auto* scale = app.add_option("--full-scale", options.full_scale, "count on a grid from LO to HI")
-                    ->expected(2)
-                    ->type_name("LO HI")
-                    ->check(numberWithin(-kInfinity, kInfinity, ""))
-                    ->excludes(exact);
-  app.add_option("--classes", options.classes, "of the grid")
-      ->type_name("N")
-      ->check(CLI::Range(std::int64_t{2}, std::int64_t{life::LoadGrid::kMostClasses}))
-      ->needs(scale)
-      ->capture_default_str();
-  app.add_option("--state", options.state, "go on from this file and replace it")->type_name("FILE");
-  if (const auto code = parse(app, argc, argv)) return *code;
+  line.flag("--exact", options.exact, "every value as it is");
+  line.option("--full-scale", options.full_scale, "count on a grid from LO to HI")
+      .values(2, 2)
+      .type("LO HI")
+      .within(-kInfinity, kInfinity, "")
+      .excludes({"--exact"});
+  line.option("--classes", options.classes, "of the grid")
+      .type("N")
+      .withinIntegers(2, life::LoadGrid::kMostClasses)
+      .needs("--full-scale")
+      .showDefault();
+  line.option("--state", options.state, "go on from this file and replace it").type("FILE");
+  if (const auto code = line.parse(argc, argv)) return *code;
   std::ios::sync_with_stdio(false);
   return countAll(options);
 }

@@ -14,13 +14,12 @@ constexpr char kColumns[] =
     "Out: these as given, then the results with 17 digits, for all rows or, if any row is bad, for none.";
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Loads of the hammer for given states: CSV on stdin, CSV on stdout", "evaluate");
-  app.footer(kColumns);
+  CommandLine line("Loads of the hammer for given states: CSV on stdin, CSV on stdout", "evaluate", kColumns);
   std::vector<std::string> files;
   std::optional<Level> level;
-  addParamsOption(app, files);
-  addLevelOption(app, level);
-  if (const auto code = parse(app, argc, argv)) return *code;
+  addParamsOption(line, files);
+  addLevelOption(line, level);
+  if (const auto code = line.parse(argc, argv)) return *code;
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;
 

@@ -13,16 +13,13 @@ constexpr char kNotes[] =
     "an S-N curve damage and hours until it is 1 at the rate so far; then the same by day. A run may write meanwhile.";
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Life of a machine from its ledger", "life");
-  app.footer(kNotes);
+  CommandLine line("Life of a machine from its ledger", "life", kNotes);
   std::string file;
   bool as_json = false, as_csv = false;
-  app.add_option("ledger", file, "file that the node or process_bag --ledger wrote")
-      ->required()
-      ->type_name("LEDGER.sqlite");
-  auto* json = app.add_flag("--json", as_json, "as JSON");
-  app.add_flag("--csv", as_csv, "as CSV")->excludes(json);
-  if (const auto code = parse(app, argc, argv)) return *code;
+  line.option("ledger", file, "file that the node or process_bag --ledger wrote").required().type("LEDGER.sqlite");
+  line.flag("--json", as_json, "as JSON");
+  line.flag("--csv", as_csv, "as CSV").excludes({"--json"});
+  if (const auto code = line.parse(argc, argv)) return *code;
 
   Checked<life::LedgerReader> reader = life::LedgerReader::open(file);
   std::vector<std::string> problems = reader.problems;

@@ -22,37 +22,36 @@ struct Arguments {
   bool force{}, no_bag{};
 };
 
-void addOptions(CLI::App& app, Arguments& given, BagJob& job) {
-  app.add_option("bags", given.bags,
-                 "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
-      ->required()
-      ->expected(1, 1000000);
-  const auto no_bag = app.add_flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
-  app.add_option("--db", given.tables, "write the results as tables, which must not exist")->type_name("FILE.sqlite");
-  app.add_option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
-      ->type_name("FILE.sqlite");
-  app.add_flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
-  addParamsOption(app, given.params);
-  app.get_option("--params")->description("parameters instead of those of a run_info in the bags; may be repeated");
-  addUrdfOption(app, given.urdf);
+void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
+  line.option("bags", given.bags,
+              "IN.bag... OUT.bag: the bags of one recording, then the bag to write, which must not exist")
+      .required()
+      .values(1, 1000000);
+  line.flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
+  line.option("--db", given.tables, "write the results as tables, which must not exist").type("FILE.sqlite");
+  line.option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
+      .type("FILE.sqlite");
+  line.flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
+  addParamsOption(line, given.params);
+  line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
+  addUrdfOption(line, given.urdf);
   const auto topic = [&](const char* option, std::string& name, const std::string& by_default) {
-    app.add_option(option, name)->type_name("TOPIC")->default_str("as in run_info, else " + by_default);
+    line.option(option, name).type("TOPIC").showDefault("as in run_info, else " + by_default);
   };
   topic("--crank-topic", job.topics.crank, kDefaultTopics.crank);
   topic("--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
   topic("--imu-topic", job.topics.hull_imu, kDefaultTopics.hull_imu);
   topic("--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures);
-  app.get_option("--pressures-topic")
-      ->description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
-  app.add_option("--output-prefix", job.output_prefix, "of every topic written")->capture_default_str();
-  app.add_flag("--smooth", job.smooth, "the crank by later samples as well: more exact than the live node can be")
-      ->excludes("--ledger");
-  app.add_flag("--pins", job.pins, "pin forces as well")->excludes(no_bag);
-  app.add_option("--grapple", given.grapple, "the grapple as well, from --joint-states-topic; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("FILE.yaml")
-      ->excludes(no_bag);
-  app.add_option("--grapple-prefix", job.grapple_prefix, "of the grapple's topics")->capture_default_str();
+  line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
+  line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
+  line.flag("--smooth", job.smooth, "the crank by later samples as well: more exact than the live node can be")
+      .excludes({"--ledger"});
+  line.flag("--pins", job.pins, "pin forces as well").excludes({"--no-bag"});
+  line.option("--grapple", given.grapple, "the grapple as well, from --joint-states-topic; may be repeated")
+      .oneEachTime()
+      .type("FILE.yaml")
+      .excludes({"--no-bag"});
+  line.option("--grapple-prefix", job.grapple_prefix, "of the grapple's topics").showDefault();
 }
 
 int fail(const std::vector<std::string>& problems) {
@@ -159,11 +158,11 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
 
 int run(int argc, const char* const* argv) {
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);  // rosbag formats a line for every message
-  CLI::App app("Loads of the hammer, motion of the grapple from a recorded bag", "process_bag");
+  CommandLine line("Loads of the hammer, motion of the grapple from a recorded bag", "process_bag");
   Arguments given;
   BagJob job;
-  addOptions(app, given, job);
-  if (const auto code = parse(app, argc, argv)) return *code;
+  addOptions(line, given, job);
+  if (const auto code = line.parse(argc, argv)) return *code;
   const std::string usage = usageProblem(given);
   if (!usage.empty()) {
     std::cerr << "process_bag: " << usage << " (--help shows the options)\n";

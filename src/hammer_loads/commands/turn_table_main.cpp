@@ -12,28 +12,24 @@ namespace {
 constexpr std::size_t kRowsAtOnce = 4096;
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Load of the hammer on its hull over one turn at constant crank speed", "turn_table");
+  CommandLine line("Load of the hammer on its hull over one turn at constant crank speed", "turn_table");
   std::vector<std::string> files;
   std::optional<Level> level;
   double speed = 31.416, step = 1.0, pitch = 0.0;
   bool summary = false, pins = false;
-  addParamsOption(app, files);
-  addLevelOption(app, level);
-  app.add_option("--speed", speed, "crank speed [rad/s]")
-      ->check(numberWithin(0.0, kInfinity, "rad/s"))
-      ->capture_default_str();
-  app.add_option("--step-deg", step, "between rows [deg]")
-      ->check(numberWithin(1e-6, 360.0, "deg"))
-      ->capture_default_str();
-  const CLI::Option* with_weight = app.add_option("--pitch", pitch, "include the weight, at this hull pitch [rad]")
-                                       ->check(numberWithin(-kInfinity, kInfinity, "rad"));
-  app.add_flag("--summary", summary, "print the turn's pulse instead of the table");
-  app.add_flag("--pins", pins, "add the pin forces and the drive torque to the table");
-  if (const auto code = parse(app, argc, argv)) return *code;
+  addParamsOption(line, files);
+  addLevelOption(line, level);
+  line.option("--speed", speed, "crank speed [rad/s]").within(0.0, kInfinity, "rad/s").showDefault();
+  line.option("--step-deg", step, "between rows [deg]").within(1e-6, 360.0, "deg").showDefault();
+  const Option with_weight = line.option("--pitch", pitch, "include the weight, at this hull pitch [rad]")
+                                 .within(-kInfinity, kInfinity, "rad");
+  line.flag("--summary", summary, "print the turn's pulse instead of the table");
+  line.flag("--pins", pins, "add the pin forces and the drive torque to the table");
+  if (const auto code = line.parse(argc, argv)) return *code;
   const std::optional<Settings> settings = loadOrReport(files);
   if (!settings) return kExitFailure;
 
-  const double g = with_weight->count() > 0 ? settings->pipeline.gravity : 0.0;
+  const double g = with_weight.given() ? settings->pipeline.gravity : 0.0;
   const Gravity gravity{g * std::sin(pitch), -g * std::cos(pitch)};
   const HullModel model(settings->mechanism, level.value_or(settings->pipeline.level));
   const TurnTable table{model, speed, gravity, step, pins};
