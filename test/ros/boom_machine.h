@@ -5,7 +5,6 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <hammer_loads/BoomVibration.h>
 #include <hammer_loads/JointLoads.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
@@ -18,16 +17,16 @@
 #include <vector>
 
 #include "hammer_loads/simulation/session.h"
+#include "ros/eventually.h"
 
 namespace hammer_loads::test {
 
-constexpr double kDeadline = 20.0;  ///< [s] of wall time for what takes a second at most
 inline const std::vector<std::string> kJoints(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
 
 /// Messages of one output by stamp; a stamp that comes twice counts.
 template <typename Message>
-struct Output {
-  Output(ros::NodeHandle& node, const std::string& topic)
+struct Heard {
+  Heard(ros::NodeHandle& node, const std::string& topic)
       : subscriber(node.subscribe<Message>("hammer_loads/" + topic, 20000, [this](const auto& m) {
           repeated += !messages.emplace(m->header.stamp, *m).second;
         })) {}
@@ -41,16 +40,6 @@ struct Output {
   int repeated{};
   ros::Subscriber subscriber;
 };
-
-/// Spins until a condition holds or the deadline passes.
-inline bool eventually(const std::function<bool()>& condition) {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kDeadline);
-  while (!condition()) {
-    if (ros::WallTime::now() > deadline || !ros::ok()) return false;
-    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
-  }
-  return true;
-}
 
 /// A machine that keeps its pose and soon strikes, with what a node says to it.
 class Machine {
@@ -81,7 +70,7 @@ class Machine {
     return eventually([this] { return hull.last() >= samples.back(); });
   }
   bool workUntil(const std::function<bool()>& condition) {
-    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kDeadline);
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20.0);
     while (!condition()) {
       if (ros::WallTime::now() > deadline || !work()) return false;
     }
@@ -148,10 +137,10 @@ class Machine {
   std::map<std::string, std::string> statuses_;
 
  public:
-  Output<Wrench> hull{node_, "hull_wrench"}, arm{node_, "boom_wrench/arm_link"};
-  Output<Wrench> gauge{node_, "boom_wrench/strain_gauge"};
-  Output<JointLoads> loads{node_, "joint_loads"};
-  Output<BoomVibration> vibration{node_, "boom_vibration"};
+  Heard<Wrench> hull{node_, "hull_wrench"}, arm{node_, "boom_wrench/arm_link"};
+  Heard<Wrench> gauge{node_, "boom_wrench/strain_gauge"};
+  Heard<JointLoads> loads{node_, "joint_loads"};
+  Heard<BoomVibration> vibration{node_, "boom_vibration"};
 };
 
 }  // namespace hammer_loads::test

@@ -192,10 +192,3 @@ TEST_F(BoomTest, ABadDescriptionEndsTheNodeWithOneLine) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "boom_rostest");
-  ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}

@@ -169,10 +169,3 @@ TEST_F(GrappleNodeTest, ExplainsItselfInRunInfo) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "grapple_rostest");
-  ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}

@@ -95,10 +95,3 @@ TEST_F(LatencyTest, TheNodeAddsLittleToABareRelay) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "latency_rostest");
-  ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}

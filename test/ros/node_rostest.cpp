@@ -254,10 +254,3 @@ TEST_F(NodeTest, ExplainsItselfInRunInfo) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "node_rostest");
-  ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}

@@ -127,9 +127,3 @@ TEST(Replay, LosesNoSampleAndEqualsProcessBagButForTheOrderOfJointAngles) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "replay_rostest");
-  return RUN_ALL_TESTS();
-}

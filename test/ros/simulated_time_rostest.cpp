@@ -220,10 +220,3 @@ TEST_F(SimulatedTime, FarForwardItBeginsAnewAndALateStampIsRefused) {
 
 }  // namespace
 }  // namespace hammer_loads
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "simulated_time_rostest");
-  ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
