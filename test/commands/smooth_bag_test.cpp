@@ -86,6 +86,9 @@ TEST_F(SmoothBag, WhatItWouldMixOrCannotSmoothIsRefused) {
   const test::TemporaryFile plain("crank_estimator: difference\n");
   expectRefused(run(kSession + " " + path("out.bag") + " --smooth --params " + plain.path()),
                 {"--smooth", "crank_estimator", "mechanism"});
+  const test::TemporaryFile flexible("shaft: flexible\n");
+  expectRefused(run(kSession + " " + path("out.bag") + " --smooth --params " + flexible.path()),
+                {"--smooth", "shaft", "rigid"});
   EXPECT_EQ(names(), std::vector<std::string>{});
 }
 

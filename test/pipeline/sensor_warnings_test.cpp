@@ -41,7 +41,7 @@ Heard hear(const simulation::MachineSettings& machine) {
     const simulation::CrankReading& reading = session.crank[i];
     const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
     take(result);
-    if (result.refusal || session.truth[i].time < 4.0) continue;
+    if (result.refusal || result.beside_blow || session.truth[i].time < 4.0) continue;
     const double error = result.outputs.front().wrench.force_z - session.truth[i].load.force_z;
     judged += 1.0;
     heard.covered += std::abs(error) <= 2.0 * result.outputs.front().deviation.wrench.force_z;

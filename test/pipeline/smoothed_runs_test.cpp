@@ -112,7 +112,7 @@ Judged judge(const MachineSettings& machine, const Session& session, const Track
       blow_squares += std::pow(result.ends[k].blow.restitution - true_restitution, 2);
       ++blows;
     }
-    if (result.refusal) return;
+    if (result.refusal || result.beside_blow) return;
     judged.forces.push_back(result.wrench.force_z);
     const double time = since(result.stamp);
     if (time < kJudgedFrom || time > machine.drive.stop_time - 0.3) return;

@@ -10,7 +10,7 @@ namespace hammer_loads {
 namespace {
 
 // Of the live filter's share of the sensor's errors that are not seen: its noise covers more of the rest.
-constexpr double kUnseenGrowth = 1.4;
+constexpr double kUnseenGrowth = 1.8;
 
 }  // namespace
 

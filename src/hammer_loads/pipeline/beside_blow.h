@@ -8,13 +8,13 @@
 namespace hammer_loads {
 
 /// The wrench jumps at the blow (MO-100: by 9 % of its peak), so there it is one of two values and nothing says which;
-/// WrenchStamped has no deviation that could. A creeping crank jumps nowhere, nor does one on the mirrored branch.
+/// WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored branch nowhere.
 /// angle_deviation: of the crank [rad]; NaN: not known.
 inline bool isBesideBlow(const CrankEstimate& crank, double angle_deviation) noexcept {
   constexpr double kDeviations = 2.0;
-  constexpr double kCreeps = 1.0;  // [rad/s]
+  constexpr double kSlow = 5.0;  // [rad/s]
   const CrankPosition& at = crank.position;
-  return std::abs(at.angle.offset) < kDeviations * angle_deviation && std::abs(crank.speed) > kCreeps &&
+  return std::abs(at.angle.offset) < kDeviations * angle_deviation && std::abs(crank.speed) > kSlow &&
          !at.isMirrored();
 }
 
