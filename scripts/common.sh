@@ -76,7 +76,7 @@ checkLocalhost() {
 }
 
 # cmake_options: more of them. A build directory keeps its generator. Headers that many files include are compiled once,
-# and eight files of a target as one, which about halves the processor time of a clean build.
+# and eight files of a target as one, which halves the processor time of a clean build.
 cmake_options=()
 configure() {
   local log generator=()
