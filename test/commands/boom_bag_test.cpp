@@ -249,8 +249,9 @@ TEST_F(BoomBag, ReadsTheCylindersPressures) {
     ASSERT_TRUE(with[i].flags & JointLoads::FLAG_MEASURED);
     ASSERT_FALSE(without[i].flags & JointLoads::FLAG_MEASURED);
     // After some readings it is known that they stand still, whatever the oil of the model does between them.
-    if (with[i].header.stamp - timeOf(machine(false).start_stamp) > ros::Duration(0.2))
+    if (with[i].header.stamp - timeOf(machine(false).start_stamp) > ros::Duration(0.2)) {
       ASSERT_NEAR(with[i].cylinder_force_N[2], kBore * area - kRod * rod_area, 1e-6);
+    }
     for (std::size_t j = 0; j < 4; ++j) {
       const double model = with[i].hammer_torque_Nm[j] + with[i].weight_torque_Nm[j] + with[i].motion_torque_Nm[j] +
                            with[i].vibration_torque_Nm[j];
