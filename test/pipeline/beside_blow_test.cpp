@@ -5,7 +5,7 @@
 
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
-#include "hammer_loads/simulation/session.h"
+#include "pipeline/shipped_machine.h"
 
 namespace hammer_loads {
 namespace {
@@ -24,12 +24,8 @@ bool isAfter(const CrankEstimate& crank) { return crank.position.angle.side == S
 /// A machine at work at 1 kHz whose stamps are off by a standard deviation [s].
 Published published(double stamp_noise, OutputKind kind, double output_rate, std::uint64_t seed) {
   const Settings shipped = *load(configDirectory(), {}).value;
-  simulation::MachineSettings machine = simulation::workingMo100();
-  machine.hammer = shipped.mechanism.parameters();
-  machine.duration = 12.0;
-  machine.drive.stop_time = 11.5;
+  simulation::MachineSettings machine = test::shippedMachine(shipped, 12.0, seed);
   machine.crank.stamp_noise = stamp_noise;
-  machine.seed = seed;
   const simulation::Session session = simulation::recordSession(machine);
   PipelineSettings settings = shipped.pipeline;
   settings.output = kind;

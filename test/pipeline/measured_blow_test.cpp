@@ -3,6 +3,7 @@
 
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/settings/load.h"
+#include "pipeline/shipped_machine.h"
 
 namespace hammer_loads {
 namespace {
@@ -14,13 +15,9 @@ struct Worst {
 
 Worst worstOf(const simulation::BlowSettings& blow, double rate, std::uint64_t seed) {
   const Settings shipped = *load(configDirectory(), {}).value;
-  simulation::MachineSettings machine = simulation::workingMo100();
-  machine.hammer = shipped.mechanism.parameters();
-  machine.duration = 13.0;
-  machine.drive.stop_time = 12.5;
+  simulation::MachineSettings machine = test::shippedMachine(shipped, 13.0, seed);
   machine.crank.rate = rate;
   machine.blow = blow;
-  machine.seed = seed;
   const simulation::Session session = simulation::recordSession(machine);
   Worst worst;
   for (const accuracy::BlowAt& b :
