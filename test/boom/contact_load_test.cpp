@@ -24,20 +24,21 @@ TEST(ContactLoad, IsFoundFromThePressuresThatHoldIt) {
     boom.loads({hammer.force + rock.force, hammer.torque + rock.torque}, true, with);
     boom.loads(hammer, true, without);
     // Pressures as gauges read them, with the chamber that is not loaded at 3 bar.
-    Eigen::Vector3d unexplained;
+    JointVector unexplained = JointVector::Zero(4);
     for (std::size_t k = 0; k < 3; ++k) {
       const Cylinder& c = boom.cylinders()[k];
       const double force = with.cylinder[k].force;
       const ChamberPressures p = force > 0.0 ? ChamberPressures{(force + 3e5 * c.rodArea()) / c.boreArea(), 3e5}
                                              : ChamberPressures{3e5, (-force + 3e5 * c.boreArea()) / c.rodArea()};
       EXPECT_NEAR(forceOf(c, p), force, 1e-9 * std::abs(force) + 1e-9);
-      unexplained[static_cast<int>(k)] = -forceOf(c, p) * c.at(q[c.joint()]).arm - without.total[c.joint()];
+      unexplained[c.joint()] = -forceOf(c, p) * c.at(q[c.joint()]).arm - without.total[c.joint()];
     }
-    const std::optional<Wrench> contact = inPlaneTipLoad(boom.pose(), {1, 2, 3}, unexplained);
-    if (!contact) continue;
+    const std::optional<InPlaneTip> tip = InPlaneTip::make(boom.tipJacobian(), {1, 2, 3});
+    if (!tip) continue;
     ++found;
-    EXPECT_LT((contact->force - rock.force).norm(), 1e-7);
-    EXPECT_LT((contact->torque - rock.torque).norm(), 1e-7);
+    const Wrench contact = tip->load(unexplained);
+    EXPECT_LT((contact.force - rock.force).norm(), 1e-7);
+    EXPECT_LT((contact.torque - rock.torque).norm(), 1e-7);
   }
   EXPECT_GT(found, 150);
 }
@@ -51,9 +52,9 @@ TEST(ContactLoad, IsNotKnownWhereBoomAndArmAreInLine) {
   const Chain chain = *Chain::make(urdf, {"base_link", "tip", {}}).value;
   ChainPose pose;
   forwardKinematics(chain, test::joints({0.3, 0.0, 0.4}), pose);
-  EXPECT_FALSE(inPlaneTipLoad(pose, {0, 1, 2}, Eigen::Vector3d::Constant(1e3)));
+  EXPECT_FALSE(InPlaneTip::make(tipJacobian(pose), {0, 1, 2}));
   forwardKinematics(chain, test::joints({0.3, 0.5, 0.4}), pose);
-  EXPECT_TRUE(inPlaneTipLoad(pose, {0, 1, 2}, Eigen::Vector3d::Constant(1e3)));
+  EXPECT_TRUE(InPlaneTip::make(tipJacobian(pose), {0, 1, 2}));
 }
 
 }  // namespace

@@ -115,9 +115,12 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
       vibration_(chain, cylinders_, parameters.vibration),
       steel_(chain, cylinders_, std::move(sections)) {
   const JointVector zero = JointVector::Zero(chain.joints());
-  const Eigen::Index joints = chain.joints(), cylinder_count = static_cast<Eigen::Index>(cylinders_.size());
-  response_.setZero(7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * cylinder_count,
-                    joints + 6);
+  const Eigen::Index joints = chain.joints(), held = static_cast<Eigen::Index>(cylinders_.size());
+  response_.setZero(7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * held, held + 6);
+  response_in_plane_.setZero(response_.rows(), held + 3);
+  rows_in_plane_.setZero(response_.rows());
+  difference_.setZero(response_.rows(), VibrationSpread::kMaxRuns);
+  square_.setZero(response_.rows());
   deviation_.setZero(response_.rows());
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
@@ -127,6 +130,7 @@ void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept 
   joints_ = motion;
   g_B_ = g_B;
   forwardKinematics(chain_, joints_.position, pose_);
+  jacobian_ = hammer_loads::tipJacobian(pose_);
   for (std::size_t i = 0; i < cylinders_.size(); ++i)
     at_[i] = cylinders_[i].at(joints_.position[cylinders_[i].joint()]);
   weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
@@ -139,14 +143,13 @@ void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) 
 }
 
 Boom::TipVibration Boom::tipVibration() const noexcept {
-  const Jacobian J = tipJacobian(pose_);
+  const Jacobian& J = jacobian_;
   return {J.lazyProduct(vibration_.displacement()), J.lazyProduct(vibration_.velocity()),
           J.lazyProduct(vibration_.acceleration())};
 }
 
 ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {
-  const Jacobian J = tipJacobian(pose_);
-  return reducedAtTip(vibration_.modes(), J.topRows<3>().transpose() * direction);
+  return reducedAtTip(vibration_.modes(), hammerTorque({direction, Eigen::Vector3d::Zero()}));
 }
 
 bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {

@@ -43,8 +43,8 @@ struct WrenchSpread {
   std::array<Wrench, 4> part;  ///< on the tip, as the load
 };
 
-/// Errors where cylinders' forces are measured, independent of each other, one standard deviation each.
-struct MeasuredSpread {
+/// Errors of what acts on the boom, independent of each other, one standard deviation each.
+struct LoadErrors {
   std::size_t count{};
   std::array<JointVector, VibrationSpread::kMaxRuns> acceleration;  ///< of the joints' vibration [rad/s2]
   std::array<Wrench, VibrationSpread::kMaxRuns> tip;                ///< of the load on the tip with it
@@ -81,7 +81,12 @@ class Boom {
   const ChainPose& pose() const noexcept { return pose_; }
   /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
   Eigen::Vector3d gravityAtTip() const noexcept { return pose_.tip().linear().transpose() * g_B_; }
-  JointVector hammerTorque(const Wrench& w_tip) const noexcept { return jointTorqueOfTipLoad(pose_, w_tip); }
+  /// tipJacobian() of the pose.
+  const Jacobian& tipJacobian() const noexcept { return jacobian_; }
+  JointVector hammerTorque(const Wrench& w_tip) const noexcept { return jointTorqueOfTipLoad(jacobian_, w_tip); }
+
+  /// Of weight and motion on a joint [N m].
+  double steadyTorque(int joint) const noexcept { return weight_[joint] + motion_[joint]; }
 
   Vibration& vibration() noexcept { return vibration_; }
   const Vibration& vibration() const noexcept { return vibration_; }
@@ -109,8 +114,8 @@ class Boom {
   /// such move of a joint.
   void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                   BoomDeviations& result) noexcept;
-  /// The same where cylinders' forces are measured.
-  void deviations(const MeasuredSpread& spread, BoomDeviations& result) noexcept;
+  /// The same by errors as they are, as where cylinders' forces are measured.
+  void deviations(const LoadErrors& errors, BoomDeviations& result) noexcept;
   /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
@@ -138,20 +143,29 @@ class Boom {
   Vibration vibration_;
   SteelLoadFinder steel_;
   ChainPose pose_;
+  Jacobian jacobian_;
   JointMotion joints_;
   JointVector weight_, motion_;
   std::array<CylinderPosition, kMaxJoints> at_;
 
+  using Shares = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints + 6, VibrationSpread::kMaxRuns>;
   void findResponse() noexcept;
-  template <typename Shares>
-  void sumRuns(const Shares& shares, bool first_two_exclude, BoomDeviations& result) noexcept;
-  void takeDeviations(BoomDeviations& result) const noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
-  /// Columns: joint accelerations, force and moment on the tip. Rows: joint torques, sections, joints (force and moment
-  /// of each), cylinders' forces on their rods' pins.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> response_;
-  JointVector response_at_;    ///< where it belongs; NaN: nowhere yet
-  Eigen::VectorXd deviation_;  ///< one entry a row
+  void gatherRowsInPlane() noexcept;
+  Shares sharesOf(const LoadErrors& errors) const noexcept;
+  void sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDeviations& result) noexcept;
+  void takeDeviations(BoomDeviations& result) const noexcept;
+  /// Columns: accelerations of the cylinders' joints, then of the load on the tip what lies in the boom's plane, then
+  /// what lies across it. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces on their
+  /// rods' pins.
+  Eigen::MatrixXd response_;
+  /// Without the columns across the plane, and without the rows, half of all, that are zero then.
+  Eigen::MatrixXd response_in_plane_;
+  Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them
+  Eigen::Index in_plane_{};
+  JointVector response_at_;     ///< where it belongs; NaN: nowhere yet
+  Eigen::MatrixXd difference_;         ///< a column for each error
+  Eigen::VectorXd square_, deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

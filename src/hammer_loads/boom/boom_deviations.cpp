@@ -6,39 +6,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::size_t kRuns = VibrationSpread::kMaxRuns;
-/// One number for each run of a spread.
-using Runs = Eigen::Array<double, kRuns, 1>;
-using RunColumns = Eigen::Matrix<double, kMaxJoints, kRuns>;
+constexpr double kRounded = 1e-12;  // of a column: what rounding makes of zero
 
-/// What makes the runs differ from the loads: how much each column of the response counts, and joint torques beside.
-struct Shares {
-  std::size_t count{};  ///< of columns that any run has
-  std::array<Eigen::Index, kMaxJoints + 6> column;
-  std::array<Runs, kMaxJoints + 6> by;
-  std::array<Runs, kMaxJoints> torque;  ///< by the modes' mass matrix
-
-  void add(Eigen::Index of_column, const Runs& share) noexcept {
-    if (!(share != 0.0).any()) return;
-    column[count] = of_column;
-    by[count++] = share;
-  }
-};
-
-/// acceleration, torque: a column for each run; tip: of each run.
-Shares sharesOf(const RunColumns& acceleration, const RunColumns& torque, const std::array<Wrench, kRuns>& tip,
-                Eigen::Index joints) noexcept {
-  Shares shares;
-  for (Eigen::Index j = 0; j < joints; ++j) {
-    shares.add(j, acceleration.row(j).transpose());
-    shares.torque[static_cast<std::size_t>(j)] = torque.row(j).transpose();
-  }
-  for (int k = 0; k < 6; ++k) {
-    Runs share = Runs::Zero();
-    for (std::size_t i = 0; i < kRuns; ++i) share[static_cast<int>(i)] = (k < 3 ? tip[i].force : tip[i].torque)[k % 3];
-    shares.add(joints + k, share);
-  }
-  return shares;
+/// Components of a wrench within the boom's plane, and across it.
+Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
+Eigen::Vector3d across(const Wrench& w) noexcept { return {w.force.y(), w.torque.x(), w.torque.z()}; }
+Wrench wrenchOf(const Eigen::Vector3d& in_plane, const Eigen::Vector3d& across) noexcept {
+  return {{in_plane[0], across[0], in_plane[1]}, {across[1], in_plane[2], across[2]}};
 }
 
 }  // namespace
@@ -63,72 +37,101 @@ void Boom::storeResponse(Eigen::Index column, const JointVector& torque, const S
   for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].rod);
 }
 
+void Boom::gatherRowsInPlane() noexcept {
+  const Eigen::Index columns = response_in_plane_.cols();
+  in_plane_ = 0;
+  for (Eigen::Index row = 0; row < response_.rows(); ++row) {
+    bool zero = true;
+    for (Eigen::Index c = 0; c < columns; ++c)
+      zero = zero && std::abs(response_(row, c)) <= kRounded * response_.col(c).cwiseAbs().maxCoeff();
+    if (zero) continue;
+    response_in_plane_.row(in_plane_) = response_.row(row).head(columns);
+    rows_in_plane_[in_plane_++] = static_cast<int>(row);
+  }
+}
+
 /// Every load is linear in wrench and accelerations: the difference of two states is the load of their difference.
 void Boom::findResponse() noexcept {
   if ((joints_.position - response_at_).cwiseAbs().maxCoeff() <= parameters_.vibration.refresh_angle) return;
   response_at_ = joints_.position;
   const Eigen::Index joints = chain_.joints();
   const JointVector zero = JointVector::Zero(joints);
-  const Eigen::Vector3d weightless = Eigen::Vector3d::Zero();
-  const Wrench none;
+  const Eigen::Vector3d weightless = Eigen::Vector3d::Zero(), none = weightless;
   SteelLoads load;
   JointMotion motion{joints_.position, zero, zero};
-  for (Eigen::Index j = 0; j < joints; ++j) {
-    motion.acceleration = JointVector::Unit(joints, j);
-    steel_.find({pose_, motion, weightless, none, at_.data()}, load);
-    storeResponse(j, zero, load);
+  Eigen::Index column = 0;
+  for (const Cylinder& cylinder : cylinders_) {
+    motion.acceleration = JointVector::Unit(joints, cylinder.joint());
+    steel_.find({pose_, motion, weightless, {none, none}, at_.data()}, load);
+    storeResponse(column++, dynamics_.torqueOfMotion(pose_, motion), load);
   }
   motion.acceleration = zero;
   for (int k = 0; k < 6; ++k) {
-    Wrench unit;
-    (k < 3 ? unit.force : unit.torque)[k % 3] = 1.0;
+    const Wrench unit = k < 3 ? wrenchOf(Eigen::Vector3d::Unit(k), none) : wrenchOf(none, Eigen::Vector3d::Unit(k - 3));
     steel_.find({pose_, motion, weightless, unit, at_.data()}, load);
-    storeResponse(joints + k, hammerTorque(unit), load);
+    storeResponse(column++, hammerTorque(unit), load);
   }
+  gatherRowsInPlane();
 }
 
-template <typename Shares>
-void Boom::sumRuns(const Shares& shares, bool first_two_exclude, BoomDeviations& result) noexcept {
-  for (Eigen::Index row = 0; row < response_.rows(); ++row) {
-    Runs difference = row < chain_.joints() ? shares.torque[static_cast<std::size_t>(row)] : Runs(Runs::Zero());
-    for (std::size_t i = 0; i < shares.count; ++i) difference += response_(row, shares.column[i]) * shares.by[i];
-    Runs square = difference.square();
-    if (first_two_exclude) square[0] = std::max(square[0], square[1]), square[1] = 0.0;
-    deviation_[row] = square.sum();
+Boom::Shares Boom::sharesOf(const LoadErrors& errors) const noexcept {
+  Shares shares(response_.cols(), static_cast<Eigen::Index>(errors.count));
+  const auto held = static_cast<Eigen::Index>(cylinders_.size());
+  for (std::size_t run = 0; run < errors.count; ++run) {
+    auto share = shares.col(static_cast<Eigen::Index>(run));
+    for (Eigen::Index i = 0; i < held; ++i)
+      share[i] = errors.acceleration[run][cylinders_[static_cast<std::size_t>(i)].joint()];
+    share.segment<3>(held) = inPlane(errors.tip[run]);
+    share.tail<3>() = across(errors.tip[run]);
   }
-  deviation_ = deviation_.cwiseSqrt();  // two at a time
+  return shares;
+}
+
+void Boom::sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDeviations& result) noexcept {
+  const Shares shares = sharesOf(errors);
+  const bool in_plane = shares.bottomRows<3>().isZero(0.0);
+  const Eigen::MatrixXd& response = in_plane ? response_in_plane_ : response_;
+  const Eigen::Index rows = in_plane ? in_plane_ : response.rows();
+  auto square = square_.head(rows);
+  square.setZero();
+  for (Eigen::Index run = 0; run < shares.cols(); ++run) {
+    auto difference = difference_.col(run).head(rows);
+    difference.setZero();
+    for (Eigen::Index c = 0; c < response.cols(); ++c)
+      if (shares(c, run) != 0.0) difference += shares(c, run) * response.col(c).head(rows);
+    square += difference.cwiseAbs2();
+  }
+  if (first_two_exclude)
+    square -= difference_.col(0).head(rows).cwiseAbs2().cwiseMin(difference_.col(1).head(rows).cwiseAbs2());
+  square = square.cwiseSqrt();
+  deviation_.setZero();
+  for (Eigen::Index row = 0; row < rows; ++row)
+    deviation_[in_plane ? rows_in_plane_[row] : row] = square[row];
   takeDeviations(result);
 }
 
 void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                       BoomDeviations& result) noexcept {
   findResponse();
-  RunColumns acceleration = RunColumns::Zero(), torque = RunColumns::Zero();
-  std::array<Wrench, kRuns> tip{};
-  const Eigen::Index joints = chain_.joints();
-  const int runs = rigid || !vibration_.known() ? 0 : std::min(spread.runs(), VibrationSpread::kLoads + w_tip.count);
+  const bool vibrates = !rigid && vibration_.known();
   const JointVector of_vibration = vibration_.acceleration();
-  for (int run = 0; run < runs; ++run) {
-    const JointVector of_run = spread.accelerationDifference(run, of_vibration);
-    acceleration.col(run).head(joints) = of_run;
-    torque.col(run).head(joints) = -vibration_.modes().mass.lazyProduct(of_run);
-  }
-  for (int i = 0; i < w_tip.count; ++i)
-    tip[static_cast<std::size_t>(VibrationSpread::kLoads + i)] = w_tip.part[static_cast<std::size_t>(i)];
+  LoadErrors errors;
+  const auto add = [&](int run, const Wrench& tip) {
+    const bool runs = vibrates && run < spread.runs();
+    errors.acceleration[errors.count] =
+        runs ? spread.accelerationDifference(run, of_vibration) : JointVector(JointVector::Zero(of_vibration.size()));
+    errors.tip[errors.count++] = tip;
+  };
+  for (int run = 0; run < VibrationSpread::kLoads && vibrates; ++run) add(run, {});
+  for (int i = 0; i < w_tip.count; ++i) add(VibrationSpread::kLoads + i, w_tip.part[static_cast<std::size_t>(i)]);
   // Stiffer and softer exclude each other.
   static_assert(VibrationSpread::kStiffer == 0 && VibrationSpread::kSofter == 1);
-  sumRuns(sharesOf(acceleration, torque, tip, joints), true, result);
+  sumErrors(errors, vibrates, result);
 }
 
-void Boom::deviations(const MeasuredSpread& spread, BoomDeviations& result) noexcept {
+void Boom::deviations(const LoadErrors& errors, BoomDeviations& result) noexcept {
   findResponse();
-  RunColumns acceleration = RunColumns::Zero(), torque = RunColumns::Zero();
-  const Eigen::Index joints = chain_.joints();
-  for (std::size_t run = 0; run < spread.count; ++run) {
-    acceleration.col(static_cast<int>(run)).head(joints) = spread.acceleration[run];
-    torque.col(static_cast<int>(run)).head(joints) = -vibration_.modes().mass.lazyProduct(spread.acceleration[run]);
-  }
-  sumRuns(sharesOf(acceleration, torque, spread.tip, joints), false, result);
+  sumErrors(errors, false, result);
 }
 
 /// From deviation_.

@@ -50,16 +50,10 @@ Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexce
   return shifted(pose.link(link).inverse() * pose.tip(), w_tip);
 }
 
-JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_tip) noexcept {
-  JointVector torque(pose.joints);
-  const Pose& X_BT = pose.tip();
-  const Eigen::Vector3d f_B = X_BT.linear() * w_tip.force;
-  const Eigen::Vector3d t_B = X_BT.linear() * w_tip.torque;
-  for (int j = 0; j < pose.joints; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    torque[j] = pose.prismatic[i] ? pose.axis_B[i].dot(f_B)
-                                  : pose.axis_B[i].dot(t_B + (X_BT.translation() - pose.p_BJ_B[i]).cross(f_B));
-  }
+JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept {
+  JointVector torque(tip.cols());
+  for (Eigen::Index j = 0; j < tip.cols(); ++j)
+    torque[j] = tip.col(j).head<3>().dot(w_tip.force) + tip.col(j).tail<3>().dot(w_tip.torque);
   return torque;
 }
 

@@ -31,7 +31,10 @@ Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexce
 
 /// J^T w of a load on the tip: what it does per joint rate, so torque of the load on the joint about its axis, positive
 /// when it drives the joint forward [N m] ([N] for a prismatic joint). What holds the joint gives the opposite.
-JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_tip) noexcept;
+JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept;
+inline JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_tip) noexcept {
+  return jointTorqueOfTipLoad(tipJacobian(pose), w_tip);
+}
 
 /// Likewise of the links' weight, with g_B the gravity in the root's axes [m/s2].
 JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept;

@@ -5,9 +5,7 @@
 
 namespace hammer_loads {
 
-std::optional<Wrench> inPlaneTipLoad(const ChainPose& pose, const std::array<int, 3>& joints,
-                                     const Eigen::Vector3d& torque) noexcept {
-  const Jacobian J = tipJacobian(pose);
+std::optional<InPlaneTip> InPlaneTip::make(const Jacobian& J, const std::array<int, 3>& joints) noexcept {
   Eigen::Matrix3d rows;  // torque = rows . (force x, force z, moment y)
   for (int i = 0; i < 3; ++i) {
     const int joint = joints[static_cast<std::size_t>(i)];
@@ -15,8 +13,15 @@ std::optional<Wrench> inPlaneTipLoad(const ChainPose& pose, const std::array<int
   }
   const double size = rows.col(0).norm() * rows.col(1).norm() * rows.col(2).norm();
   if (!(std::abs(rows.determinant()) > 1e-3 * size)) return std::nullopt;
-  const Eigen::Vector3d load = rows.inverse() * torque;
-  return Wrench{{load[0], 0.0, load[1]}, {0.0, load[2], 0.0}};
+  InPlaneTip tip;
+  tip.joints_ = joints;
+  tip.inverse_ = rows.inverse();
+  return tip;
+}
+
+Wrench InPlaneTip::load(const JointVector& torque) const noexcept {
+  const Eigen::Vector3d load = inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
+  return {{load[0], 0.0, load[1]}, {0.0, load[2], 0.0}};
 }
 
 }  // namespace hammer_loads

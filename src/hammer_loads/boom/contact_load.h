@@ -7,11 +7,20 @@
 
 namespace hammer_loads {
 
-/// Load on the tip, forces along its x and z and moment about its y, that makes these torques on three joints of the
-/// chain: what a cylinder's measured force holds (-force times arm) less hammer, weight, motion and vibration. About
-/// the tip's origin, axes of the tip; force across the plane zero. Nothing where the three joints do not move the tip
-/// in its plane independently (boom and arm in line). Errors grow as 1/sine of the angle between boom and arm.
-std::optional<Wrench> inPlaneTipLoad(const ChainPose& pose, const std::array<int, 3>& joints,
-                                     const Eigen::Vector3d& torque) noexcept;
+/// Loads on the tip, forces along its x and z and moment about its y, by the torques that they make on three joints of
+/// the chain: what a cylinder's measured force holds (-force times arm) less hammer, weight, motion and vibration.
+/// About the tip's origin, axes of the tip; force across the plane zero. Errors grow as 1/sine of the angle between
+/// boom and arm.
+class InPlaneTip {
+ public:
+  /// J of tipJacobian(); nothing where the three joints do not move the tip in its plane independently (boom and arm in line).
+  static std::optional<InPlaneTip> make(const Jacobian& J, const std::array<int, 3>& joints) noexcept;
+  /// Of torques on all joints of the chain [N m]; linear in them.
+  Wrench load(const JointVector& torque) const noexcept;
+
+ private:
+  std::array<int, 3> joints_{};
+  Eigen::Matrix3d inverse_;  ///< (force x, force z, moment y) by torques on the joints
+};
 
 }  // namespace hammer_loads

@@ -84,15 +84,17 @@ class ModeIdentifier {
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
-  void addContact(int mode, const ModeResponse& response) noexcept;
   void advanceMode(int mode, double step, const ModeForce& force) noexcept;
+  void walk(int mode, double step) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void useChannel(int channel, const VibrationReading& reading) noexcept;
   State rowOf(int channel, const VibrationReading& reading, double& predicted) const noexcept;
   bool finite() const noexcept;
-  void keepWithinBounds() noexcept;
+  void startAnew() noexcept;
+  void useOil() noexcept;
 
   double damping_ratio_;
+  double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_;
   bool explains_{true};
   double surprise_{1.0};  ///< mean square of accelerations' errors over what it should be [-]
@@ -107,7 +109,8 @@ class ModeIdentifier {
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
-  std::array<double, kMaxJoints> ratio_{}, damping_{};  ///< of state_
+  std::array<double, kMaxJoints> ratio_{}, damping_{};                 ///< of state_
+  std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};  ///< logarithms of these
   int channels_{};                                      ///< in use
   std::array<int, kMaxChannels> slot_{};                ///< state of each channel's offset; -1: not in use
   std::array<double, kMaxChannels> age_{};              ///< since the channel's last reading [s]

@@ -16,7 +16,7 @@ Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const 
       settings_(settings),
       position_(JointVector::Zero(chain.joints())),
       last_(position_),
-      torque_(JointVector::Zero(chain.joints())) {
+      torque_(last_) {
   modes_.mass = JointMatrix::Zero(chain.joints(), chain.joints());
   modes_.inertia.resize(chain.joints(), 0);
   rest();
@@ -40,6 +40,7 @@ void Vibration::setPose(const JointVector& position) noexcept {
   posed_ = true;
   if (identifier_) identifier_->setModes(modes_);
   useIdentified();
+  force_ = modalForce(modes_, torque_);
   if (kept) {
     x_ = modalOf(modes_, displacement);
     v_ = modalOf(modes_, velocity);
@@ -52,6 +53,7 @@ void Vibration::rest() noexcept {
   x_.setZero(modes_.count);
   v_.setZero(modes_.count);
   torque_.setZero();
+  force_.setZero(modes_.count);
   contact_ = mean_contact_ = 0.0;
   if (identifier_) identifier_->forgetMotion();
   posed_ = false;
@@ -69,6 +71,7 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
     v_[k] = next.v;
   }
   torque_ = torque.to;
+  force_ = to;
   if (identifier_) identifier_->advance(step, torque);
   if (identifier_) mean_contact_ += std::min(1.0, step / kContactMemory) * (identifier_->contact() - mean_contact_);
   restIfNotFinite();
@@ -135,21 +138,20 @@ double Vibration::energy() const noexcept {
 }
 
 JointVector Vibration::modalAcceleration() const noexcept {
-  JointVector result = modalForce(modes_, torque_);
+  JointVector result(modes_.count);
   for (int k = 0; k < modes_.count; ++k)
-    result[k] = hammer_loads::acceleration(mode(k), {x_[k], v_[k]}, result[k] + contactAtLoad(k));
+    result[k] = hammer_loads::acceleration(mode(k), {x_[k], v_[k]}, force_[k] + contactAtLoad(k));
   return result;
 }
 
 Vibration::OilTorque Vibration::oilTorque() const noexcept {
-  const JointVector force = modalForce(modes_, torque_);
   JointVector now(modes_.count), rate(modes_.count);
   const bool seen = identifier_ && identifier_->followsContact();
   for (int k = 0; k < modes_.count; ++k) {
     const Mode m = mode(k);
     const ModeState s = seen ? identifier_->motion(k) : ModeState{x_[k], v_[k]};
     const double rock = (seen ? identifier_->contact() : contact_) * contact_by_newton_[k];
-    const double a = hammer_loads::acceleration(m, s, force[k] + rock);
+    const double a = hammer_loads::acceleration(m, s, force_[k] + rock);
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
     now[k] = stiff * s.x + damped * s.v, rate[k] = stiff * s.v + damped * a;
   }

@@ -89,7 +89,7 @@ class Vibration {
   JointVector x_, v_;                                    ///< modal displacements and velocities
   JointVector contact_by_newton_;                        ///< modal force of the rock
   double contact_{}, mean_contact_{}, least_contact_{};  ///< [N]
-  JointVector torque_;                                   ///< of the load at the end of the last step
+  JointVector torque_, force_;                           ///< of the load at the end of the last step; modal
 };
 
 }  // namespace hammer_loads

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "hammer_loads/boom/contact_load.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
@@ -109,7 +108,7 @@ void BoomFollower::findLoads(const BoomSample& sample) noexcept {
 /// Where all pressures are known: without them the force would stay as it was.
 void BoomFollower::followContact(StampNs stamp) noexcept {
   bool measured = pressures_.accepted() > 0;
-  for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.at(i, stamp).has_value();
+  for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.known(i, stamp);
   if (measured) {
     boom_.vibration().followContact(boom_.hammerTorque(onTip({0.0, 1.0, striking_distance_})), least_contact_);
   } else {
@@ -123,17 +122,17 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (sample.imu) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (pressures_.accepted() == 0) return;
-  boom_.loads(onTip(sample.motion_wrench), true, state_.loads);
-  observer_.pressures(boom_, sample.stamp, pressures_, state_.loads);
+  observer_.pressures(boom_, sample.stamp, pressures_);
 }
 
 /// What hammer and oil as given do not make of the hull's acceleration is a force on its mass.
 void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noexcept {
   const ModeIdentifier& identifier = *boom_.vibration().identifier();
   state_.contact_unknown = !identifier.explains() && identifier.learns() && !identifier.followsContact();
-  if (!std::isfinite(state_.reduced.mass)) return;
+  if (identifier.followsContact() || !std::isfinite(state_.reduced.mass)) return;
   const double felt = reading.specific_force.z() + boom_.gravityAtTip().z();
-  const double force = state_.reduced.mass * (felt - boom_.tipVibration().acceleration[2]);
+  const double explained = boom_.tipJacobian().row(2).dot(boom_.vibration().acceleration());
+  const double force = state_.reduced.mass * (felt - explained);
   unexplained_ += std::clamp(step / kUnexplainedMemory, 0.0, 1.0) * (force * force - unexplained_);
 }
 
@@ -150,7 +149,8 @@ WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const no
 void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
   state_.contact_torque.setZero();
   state_.contact = {};
-  state_.measured = state_.press_force_lost = contact_known_ = false;
+  state_.measured = state_.press_force_lost = false;
+  tip_.reset();
   if (pressures_.accepted() == 0) return;
   BoomLoads& loads = state_.loads;
   measured_.follow(boom_, motion_.position, loads.weight + loads.motion, sample.stamp, pressures_);
@@ -158,11 +158,10 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
     if (!torque) continue;
-    const Cylinder& cylinder = boom_.cylinders()[i];
-    const int joint = cylinder.joint();
+    const int joint = boom_.cylinders()[i].joint();
     state_.contact_torque[joint] = torque->value - loads.total[joint];
     loads.total[joint] = torque->value;
-    loads.cylinder[i] = cylinder.load(cylinder.at(motion_.position[joint]), torque->value);
+    loads.cylinder[i] = boom_.cylinders()[i].load(torque->at, torque->value);
     ++measured;
   }
   state_.measured = measured > 0 && measured == boom_.cylinders().size();
@@ -170,20 +169,18 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
 }
 
 /// Three cylinders in a plane give a load on the tip; of others the torques alone are known.
-std::optional<Wrench> BoomFollower::tipLoad(const JointVector& torque) const noexcept {
+std::optional<InPlaneTip> BoomFollower::inPlaneTip() const noexcept {
   const auto& c = boom_.cylinders();
   if (c.size() != 3) return std::nullopt;
-  const std::array<int, 3> joints{c[0].joint(), c[1].joint(), c[2].joint()};
-  return inPlaneTipLoad(boom_.pose(), joints, {torque[joints[0]], torque[joints[1]], torque[joints[2]]});
+  return InPlaneTip::make(boom_.tipJacobian(), {c[0].joint(), c[1].joint(), c[2].joint()});
 }
 
 /// No force is one that is not seen beside its error.
 void BoomFollower::findContact() noexcept {
   if (!state_.measured) return;
-  const std::optional<Wrench> load = tipLoad(state_.contact_torque);
-  if (!load) return;
-  contact_known_ = true;
-  state_.contact = *load;
+  tip_ = inPlaneTip();
+  if (!tip_) return;
+  state_.contact = tip_->load(state_.contact_torque);
   const auto& observer = boom_.vibration().identifier();
   const double error = observer && observer->followsContact() ? observer->contactDeviation() : 0.0;
   state_.press_force_lost = state_.contact.force.z() < std::max(least_contact_, error);
@@ -192,8 +189,8 @@ void BoomFollower::findContact() noexcept {
 /// Of what is measured the error is the measurement's: whatever the vibration's is, the contact makes up for it.
 void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
   BoomDeviations& deviations = state_.deviations;
-  if (contact_known_) {
-    boom_.deviations(measuredSpread(rigid), deviations);
+  if (tip_) {
+    boom_.deviations(measuredErrors(rigid), deviations);
   } else if (spread.count > 0) {
     boom_.deviations(spread_, spread, rigid, deviations);
   }
@@ -206,23 +203,23 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
   }
 }
 
-MeasuredSpread BoomFollower::measuredSpread(bool rigid) const noexcept {
-  MeasuredSpread spread;
+LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
+  LoadErrors errors;
   const JointVector zero = JointVector::Zero(boom_.chain().joints());
   const auto add = [&](const JointVector& acceleration, const JointVector& torque) {
-    spread.acceleration[spread.count] = acceleration;
-    spread.tip[spread.count++] = tipLoad(torque).value_or(Wrench{});
+    errors.acceleration[errors.count] = acceleration;
+    errors.tip[errors.count++] = tip_->load(torque);
   };
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     JointVector torque = zero;
     torque[boom_.cylinders()[i].joint()] = measured_.of(i)->deviation;
     add(zero, torque);
   }
-  if (rigid || !boom_.vibration().known()) return spread;
+  if (rigid || !boom_.vibration().known()) return errors;
   const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
   for (int k = 0; k < of_vibration.cols(); ++k)
     add(of_vibration.col(k), boom_.vibration().modes().mass * of_vibration.col(k));
-  return spread;
+  return errors;
 }
 
 void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept {
@@ -240,17 +237,16 @@ void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread
 
 void BoomFollower::strike(const HullWrench& impulse) noexcept {
   held_.struck();
-  const Jacobian J = tipJacobian(boom_.pose());
   const JointVector before = boom_.vibration().velocity(), torque = boom_.hammerTorque(onTip(impulse));
   boom_.vibration().strike(torque);
   spread_.strike(torque);
-  const Vector6 velocity = J * (0.5 * (before + boom_.vibration().velocity()));
+  const Vector6 velocity = boom_.tipJacobian() * (0.5 * (before + boom_.vibration().velocity()));
   state_.at_blow = TipVelocity{velocity[2], velocity[4]};
 }
 
 TipVelocity BoomFollower::drivenTip() const noexcept {
   if (!known_) return {};
-  const Vector6 velocity = tipJacobian(boom_.pose()) * held_.rateAtBlow();
+  const Vector6 velocity = boom_.tipJacobian() * held_.rateAtBlow();
   return {velocity[2], velocity[4]};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/boom/contact_load.h"
 #include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
@@ -116,11 +117,11 @@ class BoomFollower {
   void weighUnexplained(const ImuReading& reading, double step) noexcept;
   WrenchSpread spreadWithRock(const WrenchSpread& of_crank) const noexcept;
   void takeMeasured(const BoomSample& sample) noexcept;
-  std::optional<Wrench> tipLoad(const JointVector& torque) const noexcept;
+  std::optional<InPlaneTip> inPlaneTip() const noexcept;
   void followContact(StampNs stamp) noexcept;
   void findContact() noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
-  MeasuredSpread measuredSpread(bool rigid) const noexcept;
+  LoadErrors measuredErrors(bool rigid) const noexcept;
   void fillVibration() noexcept;
   void fillModes() noexcept;
 
@@ -138,7 +139,7 @@ class BoomFollower {
   BoomState state_;
   JointMotion motion_;
   TorqueStep torque_;
-  bool contact_known_{};
+  std::optional<InPlaneTip> tip_;  ///< at the sample; none: the rock's force is not measured
   double unexplained_{};    ///< mean square of the force along z that would explain the IMU's readings [N2]
   double least_contact_{};  ///< along z: less is none [N]
   StampNs last_stamp_{};    ///< of the last sample without a fault

@@ -30,8 +30,8 @@ bool CylinderPressures::update(StampNs stamp, std::size_t cylinder, Chamber cham
 }
 
 std::optional<double> CylinderPressures::at(const Track& track, StampNs stamp) const noexcept {
-  if (track.readings == 0 || std::abs(seconds(stamp - track.now.stamp)) > max_age_) return std::nullopt;
-  if (track.readings == 1) return track.now.pressure;
+  if (!known(track, stamp)) return std::nullopt;
+  if (track.readings == 1 || stamp == track.now.stamp) return track.now.pressure;
   const double interval = seconds(track.now.stamp - track.before.stamp);
   const double part = std::clamp(seconds(stamp - track.now.stamp) / interval, -1.0, 1.0);
   return track.now.pressure + part * (track.now.pressure - track.before.pressure);

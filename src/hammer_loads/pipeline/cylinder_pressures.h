@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -24,6 +25,10 @@ class CylinderPressures {
   /// Gauge pressure [Pa] of a cylinder of the boom. One that is not finite, beyond what steel holds or not newer than
   /// the last is refused and counted; time running back is believed from the second reading on.
   bool update(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept;
+  /// Both chambers are.
+  bool known(std::size_t cylinder, StampNs stamp) const noexcept {
+    return known(tracks_[cylinder][0], stamp) && known(tracks_[cylinder][1], stamp);
+  }
   /// Nothing unless both chambers are known.
   std::optional<ChamberPressures> at(std::size_t cylinder, StampNs stamp) const noexcept;
 
@@ -46,6 +51,9 @@ class CylinderPressures {
     int readings{};  ///< in a row, counted up to 2
     std::optional<StampNs> rewound;
   };
+  bool known(const Track& track, StampNs stamp) const noexcept {
+    return track.readings > 0 && std::abs(seconds(stamp - track.now.stamp)) <= max_age_;
+  }
   std::optional<double> at(const Track& track, StampNs stamp) const noexcept;
 
   double max_age_;

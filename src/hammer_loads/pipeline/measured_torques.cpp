@@ -33,11 +33,11 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
     const CylinderPosition at = cylinder.at(position[j]);  // of a measured force the lever as it is measured
-    const StampNs stamp = pressures.newest(i);
-    const std::optional<ChamberPressures> read = pressures.at(i, stamp);
     Track& track = tracks_[i];
     torque_[i].reset();
-    if (!read || !pressures.at(i, sample) || at.dead_centre) {
+    const StampNs stamp = pressures.newest(i);
+    const std::optional<ChamberPressures> read = pressures.at(i, stamp);
+    if (!read || !pressures.known(i, sample) || at.dead_centre) {
       track = {};
       continue;
     }
@@ -50,7 +50,8 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const double age = std::min(seconds(sample - stamp), kLongestLine);
     const bool by_oil = track.oil_square <= track.line_square;
     const double change = by_oil ? oil.now[j] - track.oil : age * track.slope;
-    torque_[i] = Torque{steady[j] + track.torque + change, std::sqrt(by_oil ? track.oil_square : track.line_square)};
+    const double off = std::sqrt(by_oil ? track.oil_square : track.line_square);
+    torque_[i] = Torque{steady[j] + track.torque + change, off, at};
   }
   oil_ = oil, sample_ = sample;
 }

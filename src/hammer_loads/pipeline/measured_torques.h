@@ -15,8 +15,9 @@ namespace hammer_loads {
 class MeasuredTorques {
  public:
   struct Torque {
-    double value{};      ///< of the load on the cylinder's joint [N m]
-    double deviation{};  ///< standard: how far the last readings were from what was said before them [N m]
+    double value{};       ///< of the load on the cylinder's joint [N m]
+    double deviation{};   ///< standard: how far the last readings were from what was said before them [N m]
+    CylinderPosition at;  ///< as the joint's sensor shows it
   };
 
   /// After the vibration has taken the readings. steady: weight and motion [N m]; position: as joint sensors show it.

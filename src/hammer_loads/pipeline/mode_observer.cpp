@@ -27,7 +27,7 @@ void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, 
 
 void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& reading) noexcept {
   if (held.isDriven()) return;
-  const Jacobian J = tipJacobian(boom.pose());
+  const Jacobian& J = boom.tipJacobian();
   const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
   see(boom, 0, tipAccelerationReading(J, imu_position_, x, g_T, reading.specific_force.x()), kAcceleration);
@@ -56,8 +56,7 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
   }
 }
 
-void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures,
-                             const BoomLoads& loads) noexcept {
+void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures) noexcept {
   const auto cylinders = boom.cylinders().size();
   for (std::size_t i = 0; i < cylinders; ++i) {
     if (pressures.count(i) == pressures_[i]) continue;
@@ -68,7 +67,7 @@ void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures
     const int j = cylinder.joint();
     const CylinderPosition& at = boom.cylinderPosition(i);
     if (!p || at.dead_centre || !boom.vibration().known()) continue;
-    const double torque = -forceOf(cylinder, *p) * at.arm - loads.weight[j] - loads.motion[j];
+    const double torque = -forceOf(cylinder, *p) * at.arm - boom.steadyTorque(j);
     VibrationReading reading = oilTorqueReading(boom.chain().joints(), j, torque);
     reading.ahead = seconds(stamp - sample);
     see(boom, kImuChannels + static_cast<int>(cylinders + i), reading, kTorque,
