@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "boom/vibrating_machine.h"
+#include "hammer_loads/bench/signal_error.h"
 #include "hammer_loads/boom/mode_identifier.h"
 #include "support/counting_new.h"
-#include "support/error_of_signal.h"
 
 namespace hammer_loads {
 namespace {
@@ -55,7 +55,7 @@ class OnRock {
   }
 
   Boom boom = test::shippedBoom();
-  test::Error force, torque;
+  accuracy::SignalError force, torque;
   std::size_t allocations{};
 
  private:

@@ -6,9 +6,9 @@
 #include <map>
 
 #include "commands/recording_sink.h"
+#include "hammer_loads/bench/signal_error.h"
 #include "hammer_loads/ros/stamp.h"
 #include "support/command.h"
-#include "support/error_of_signal.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
@@ -284,7 +284,7 @@ TEST_F(BoomBag, TellsWhatTheSteelOfAMachineOnSofterOilCarries) {
   std::map<StampNs, const simulation::OnBoomTruth*> truth;
   for (std::size_t i = 0; i < session.crank.size(); ++i) truth[session.crank[i].stamp] = &session.on_boom[i];
   const StampNs from = m.start_stamp + 4000000000;
-  test::Error section[3], torque[3];
+  accuracy::SignalError section[3], torque[3];
   for (const SectionLoads& loads : test::messagesIn<SectionLoads>(path("out.bag"), "/hammer_loads/section_loads")) {
     const StampNs stamp = stampOf(loads.header.stamp);
     for (std::size_t i = 0; stamp > from && i < 3; ++i)

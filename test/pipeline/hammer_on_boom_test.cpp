@@ -1,4 +1,5 @@
 // The pipeline against a machine whose hull, boom, crank and flywheel move together: a truth of its own equations.
+#include "hammer_loads/bench/signal_error.h"
 #include "hammer_loads/simulation/hammer_on_boom.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +8,6 @@
 
 #include "hammer_loads/simulation/session.h"
 #include "support/constants.h"
-#include "support/error_of_signal.h"
 #include "support/session_player.h"
 
 namespace hammer_loads {
@@ -15,7 +15,7 @@ namespace {
 
 using simulation::HammerOnBoom;
 using simulation::OnBoomTruth;
-using test::Error;
+using Error = accuracy::SignalError;
 constexpr double kMillisecond = 1e-3, kRecordBegin = 3.0, kRecordEnd = 8.0;
 using test::kMs;
 

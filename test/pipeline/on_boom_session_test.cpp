@@ -5,28 +5,29 @@ namespace hammer_loads {
 namespace {
 
 using simulation::Session;
-using test::errorsOf, test::SessionMisses, test::addBlows;
+using accuracy::BoomErrors;
+using test::errorsOf;
 constexpr double kBegin = test::kJudgedFrom, kEnd = test::kJudgedTo;
 
 constexpr char kModel[] = "hull_motion: model\nboom_stiffness: given\n";
 constexpr char kIdentified[] = "hull_motion: model\nboom_stiffness: identified\n";
 constexpr char kByImu[] = "hull_motion: imu\nboom_stiffness: identified\n";
 
-void expectAsTheTruth(const SessionMisses& e, const std::string& name) {
+void expectAsTheTruth(const BoomErrors& e, const std::string& name) {
   EXPECT_LT(e.worstTorque(), 0.05) << name;
   EXPECT_LT(e.moment.rms(), 0.02) << name;
   EXPECT_LT(e.force_z.rmsOfLargest(), 0.006) << name;
   EXPECT_LT(e.force_z.worstOfLargest(), 0.04) << name;
   EXPECT_LT(e.worstSection(), 0.04) << name;
   EXPECT_GT(e.leastCorrelation(), 0.99) << name;
-  EXPECT_LT(std::abs(e.energy), 0.02) << name;
+  EXPECT_LT(std::abs(e.energy()), 0.02) << name;
   EXPECT_GT(e.covered(), 0.85) << name;
 }
 
 /// The second mode is twice the blow rate: of all poses one of the worst, where 0.1 % of stiffness is 1 % of torque.
 TEST(OnBoomSession, TheRightOilNeedsNoMoreSensors) {
   const Session session = simulation::recordSession(test::machineOnBoom(1.0, 50.0));
-  const SessionMisses model = errorsOf("right oil", session, kModel, {});
+  const BoomErrors model = errorsOf("right oil", session, kModel, {});
   expectAsTheTruth(model, "right oil");
   EXPECT_LT(model.worstTorque(), 0.02);
   expectAsTheTruth(errorsOf("right oil, hull by imu", session, "hull_motion: imu\n", {true, false}), "imu");
@@ -41,12 +42,12 @@ TEST(OnBoomSession, TheImuTakesTheHullsOwnSpeedOutOfTheEnergy) {
     const Session session = simulation::recordSession(m);
     const auto error = [&](const std::string& hull_motion) {
       test::Player player(test::settingsWith("boom: none\nhull_motion: " + hull_motion, false), false, session);
-      SessionMisses e;  // of energy alone
+      BoomErrors e;  // of energy alone
       player.playTo(kEnd, [&](double time, const SampleResult& result) {
-        if (time > kBegin) addBlows(session, result, e);
+        if (time > kBegin) e.addBlows(session, result);
       });
       EXPECT_GT(e.blows, 15U);
-      return e.energy / static_cast<double>(e.blows);
+      return e.energy();
     };
     const double fixed = error("fixed"), imu = error("imu\nimu_x_m: 0.05\nimu_z_m: 0.1\nimu_pitch_rad: 0.2\n");
     std::printf("energy at %.0f Hz: %.2f %% on a hull taken as fixed, %.2f %% with its IMU\n", crank_rate,
@@ -61,14 +62,14 @@ class WrongOil : public testing::TestWithParam<double> {};
 TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {
   const simulation::MachineSettings m = test::machineOnBoom(GetParam(), 50.0);
   const Session session = simulation::recordSession(m);
-  const SessionMisses given = errorsOf("as given", session, kModel, {});
+  const BoomErrors given = errorsOf("as given", session, kModel, {});
   EXPECT_GT(given.worstTorque(), 0.5) << "what the others must do better";
   const double frequency = simulation::HammerOnBoom(m).frequencies(kEnd)[0];
-  const SessionMisses imu = errorsOf("imu", session, kIdentified, {true, false});
+  const BoomErrors imu = errorsOf("imu", session, kIdentified, {true, false});
   EXPECT_NEAR(imu.frequency / frequency, 1.0, 0.03);
   expectAsTheTruth(imu, "imu");
   expectAsTheTruth(errorsOf("hull by imu", session, kByImu, {true, false}), "hull by imu");
-  const SessionMisses pressures = errorsOf("pressures", session, kIdentified, {false, true});
+  const BoomErrors pressures = errorsOf("pressures", session, kIdentified, {false, true});
   EXPECT_NEAR(pressures.frequency / frequency, 1.0, 0.03);
   expectAsTheTruth(pressures, "pressures");
   expectAsTheTruth(errorsOf("all sensors", session, kByImu, {true, true}), "all sensors");
@@ -77,7 +78,7 @@ TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {
 TEST_P(WrongOil, IsMeasuredByJointStatesAbove100Hz) {
   const simulation::MachineSettings m = test::machineOnBoom(GetParam(), 400.0);
   const Session session = simulation::recordSession(m);
-  const SessionMisses e = errorsOf("joint states", session, kIdentified, {});
+  const BoomErrors e = errorsOf("joint states", session, kIdentified, {});
   EXPECT_NEAR(e.frequency / simulation::HammerOnBoom(m).frequencies(kEnd)[0], 1.0, 0.03);
   expectAsTheTruth(e, "joint states");
 }
@@ -88,10 +89,10 @@ TEST(OnBoomSession, ABoomThatIsDrivenFastKeepsTheModesAsGiven) {
   m.boom[1].amplitude = 0.15, m.boom[1].period = 6.0;
   m.boom[2].amplitude = 0.20, m.boom[2].period = 5.0;
   const Session session = simulation::recordSession(m);
-  const SessionMisses given = errorsOf("driven, as given", session, kModel, {});
-  const SessionMisses followed = errorsOf("driven, imu and joint states", session, kIdentified, {true, false});
+  const BoomErrors given = errorsOf("driven, as given", session, kModel, {});
+  const BoomErrors followed = errorsOf("driven, imu and joint states", session, kIdentified, {true, false});
   EXPECT_LT(followed.worstTorque(), 1.05 * given.worstTorque());
-  EXPECT_LT(std::abs(given.energy), 0.02) << "the tool meets the rock as fast as hull and operator let it";
+  EXPECT_LT(std::abs(given.energy()), 0.02) << "the tool meets the rock as fast as hull and operator let it";
   EXPECT_GT(followed.covered(), 0.85);
   EXPECT_LT(errorsOf("driven, pressures", session, kIdentified, {false, true}).worstTorque(), 0.05);
 }

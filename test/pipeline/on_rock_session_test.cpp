@@ -7,7 +7,8 @@
 namespace hammer_loads {
 namespace {
 
-using test::errorsOf, test::SessionMisses;
+using accuracy::BoomErrors;
+using test::errorsOf;
 
 constexpr char kByPressures[] = "hull_motion: model\nboom_stiffness: identified\n";
 constexpr char kByImuToo[] = "hull_motion: imu\nboom_stiffness: identified\n";
@@ -37,11 +38,11 @@ simulation::MachineSettings machineOn(const Rock& rock) {
 
 class OnRock : public testing::TestWithParam<Rock> {};
 
-void expectLoads(const SessionMisses& e) {
+void expectLoads(const BoomErrors& e) {
   EXPECT_LT(e.worstTorque(), 0.02);
   EXPECT_LT(e.worstSection(), 0.04);
   EXPECT_GT(e.leastCorrelation(), 0.99);
-  EXPECT_LT(std::abs(e.energy), 0.02);
+  EXPECT_LT(std::abs(e.energy()), 0.02);
   EXPECT_GT(e.covered(), 0.85);
   EXPECT_GT(e.sectionsCovered(), 0.85);
   EXPECT_GT(e.part(e.lost_as_shown), 0.8);
@@ -51,7 +52,7 @@ void expectLoads(const SessionMisses& e) {
 
 TEST_P(OnRock, PressuresShowWhatTheBoomCarries) {
   const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
-  const SessionMisses e = errorsOf("pressures", session, kByPressures, {false, true});
+  const BoomErrors e = errorsOf("pressures", session, kByPressures, {false, true});
   expectLoads(e);
   EXPECT_LT(e.contact.rmsOfRange(), 0.2) << "a landing is over before it has moved the oil";
   EXPECT_LT(e.moment.rms(), 0.06);
@@ -59,7 +60,7 @@ TEST_P(OnRock, PressuresShowWhatTheBoomCarries) {
 
 TEST_P(OnRock, PressuresAndImuShowTheRocksForceToo) {
   const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
-  const SessionMisses e = errorsOf("pressures and imu", session, kByImuToo, {true, true});
+  const BoomErrors e = errorsOf("pressures and imu", session, kByImuToo, {true, true});
   expectLoads(e);
   EXPECT_LT(e.contact.rmsOfRange(), 0.05);
   EXPECT_GT(e.contact.correlation(), 0.95);
@@ -69,13 +70,13 @@ TEST_P(OnRock, PressuresAndImuShowTheRocksForceToo) {
 /// The torques lack the rock's force, up to nine tenths of them: the flag says so, and the deviations are as wide.
 TEST_P(OnRock, AnImuAloneSaysThatTheRocksForceIsNotKnown) {
   const simulation::Session session = simulation::recordSession(machineOn(GetParam()));
-  const SessionMisses e = errorsOf("imu", session, kByImuToo, {true, false});
+  const BoomErrors e = errorsOf("imu", session, kByImuToo, {true, false});
   EXPECT_GT(e.worstTorque(), 0.3) << "what there is to say";
   EXPECT_GT(e.part(e.unknown), 0.95);
   EXPECT_TRUE(e.warned_of_rock);
   EXPECT_GT(e.covered(), 0.6);
   EXPECT_LT(e.moment.rms(), 0.025) << "the hammer's own loads are as ever";
-  EXPECT_LT(std::abs(e.energy), 0.02);
+  EXPECT_LT(std::abs(e.energy()), 0.02);
   EXPECT_NEAR(
       e.frequency,
       simulation::HammerOnBoom(machineOn(GetParam())).frequencies(test::kJudgedTo)[0] / std::sqrt(GetParam().oil), 0.05)
@@ -89,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(PressForces, OnRock,
 /// Readings every 5 ms, landings of 10 ms: the change between readings is the vibration's.
 TEST(OnRockSession, PressuresAt200HzAreEnough) {
   const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7, 1.0, 0, 200.0}));
-  const SessionMisses pressures = errorsOf("200 Hz", session, kByPressures, {false, true});
+  const BoomErrors pressures = errorsOf("200 Hz", session, kByPressures, {false, true});
   EXPECT_LT(pressures.worstTorque(), 0.05);
   EXPECT_LT(pressures.worstSection(), 0.04);
   EXPECT_GT(pressures.covered(), 0.85);
@@ -126,7 +127,7 @@ TEST(OnRockSession, ARigidBoomTakesMeasuredTorquesToo) {
   const simulation::Session session = simulation::recordSession(machineOn({4000.0, 3e7}));
   test::Player player(test::settingsWith("boom: rigid\n"), true, session);
   player.imu_speaks = false;
-  test::Error torque;
+  accuracy::SignalError torque;
   std::size_t i = 0;
   player.playTo(test::kJudgedTo, [&](double time, const SampleResult& result) {
     const simulation::OnBoomTruth& truth = session.on_boom[i++];

@@ -53,6 +53,7 @@ TEST(Blows, EveryWayOfMeetingTheToolBalancesItsEnergy) {
       if (way == 3) s.blow.blank_share = 0.2;
       if (way == 4) s.drive.coupling_frequency = 50.0;
       if (way == 5) s.blow.crank_loss = 0.1, s.blow.blank_share = 0.1, s.drive.coupling_frequency = 80.0;
+      s.step = 5e-5;  // for the account's tenth digit
       WorkingMachine machine(s);
       machine.advanceTo(s.duration);
       expectAllAccountedFor(machine.energy());

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "boom/booms.h"
-#include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "settings/temporary_file.h"
@@ -44,55 +44,9 @@ inline const simulation::Session& session() {
 }
 
 /// Plays a session's sensors into a pipeline in the order of their stamps.
-class Player {
- public:
+struct Player : accuracy::SessionPlayer {
   explicit Player(const Settings& settings, bool with_boom = true, const simulation::Session& played = session())
-      : pipeline(settings.mechanism, settings.pipeline, with_boom ? settings.boom : std::nullopt), session_(played) {}
-
-  /// Crank samples of times before `time` [s]; each(time, loads) for all of them.
-  template <typename Each>
-  void playTo(double time, const Each& each) {
-    for (; crank_ < session_.crank.size() && session_.truth[crank_].time < time; ++crank_) {
-      const simulation::CrankReading& reading = session_.crank[crank_];
-      for (; joint_ < session_.joints.size() && session_.joints[joint_].stamp <= reading.stamp; ++joint_)
-        if (joints_speak) tellJoints(session_.joints[joint_]);
-      for (; imu_ < session_.imu.size() && session_.imu[imu_].stamp <= reading.stamp; ++imu_)
-        if (imu_speaks) tellImu(session_.imu[imu_]);
-      for (; pressure_ < session_.pressures.size() && session_.pressures[pressure_].stamp <= reading.stamp; ++pressure_)
-        if (pressures_speak) tellPressures(session_.pressures[pressure_]);
-      if (imu) pipeline.hullImu(reading.stamp, *imu);
-      angle_[0] = reading.angle, speed_[0] = *reading.speed;
-      each(session_.truth[crank_].time, pipeline.crankJoint(reading.stamp, crank_name_, angle_, speed_));
-    }
-  }
-
-  Pipeline pipeline;
-  bool joints_speak{true}, imu_speaks{true}, pressures_speak{true};
-  std::optional<ImuReading> imu;  ///< told with each crank sample
-
- private:
-  void tellJoints(const simulation::JointReading& reading) {
-    std::copy(reading.position.begin(), reading.position.end(), position_.begin());
-    std::copy(reading.velocity.begin(), reading.velocity.end(), velocity_.begin());
-    pipeline.boomJoints(reading.stamp, joint_names_, position_, velocity_);
-  }
-
-  void tellImu(const simulation::HullImuReading& r) {
-    pipeline.hullImu(
-        r.stamp, {{r.specific_force[0], r.specific_force[1], r.specific_force[2]}, {r.rate[0], r.rate[1], r.rate[2]}});
-  }
-  void tellPressures(const simulation::PressureReading& r) {
-    for (std::size_t i = 0; i < r.bore.size(); ++i) {
-      pipeline.cylinderPressure(r.stamp, i, Chamber::kBore, r.bore[i]);
-      pipeline.cylinderPressure(r.stamp, i, Chamber::kRod, r.rod[i]);
-    }
-  }
-
-  const std::vector<std::string> crank_name_{"hammer_crank_joint"};
-  const std::vector<std::string> joint_names_{simulation::kBoomJoints.begin(), simulation::kBoomJoints.end()};
-  const simulation::Session& session_;
-  std::size_t crank_{}, joint_{}, imu_{}, pressure_{};
-  std::vector<double> angle_{0.0}, speed_{0.0}, position_ = std::vector<double>(4), velocity_ = position_;
+      : SessionPlayer(settings.mechanism, settings.pipeline, with_boom ? settings.boom : std::nullopt, played) {}
 };
 
 /// What a unit reads on a resting hull of that pitch [rad].

@@ -1,23 +1,16 @@
 #include "hammer_loads/bench/session_run.h"
 
-#include <string>
+#include "hammer_loads/bench/session_player.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::accuracy {
 
 SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
                       const PipelineSettings& settings, const TrackerMaker& make) {
-  Pipeline pipeline(mechanism, settings, {}, {}, make);
-  const std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
+  SessionPlayer player(mechanism, settings, {}, session, make);
   const auto seconds = [start](std::int64_t stamp) { return 1e-9 * static_cast<double>(stamp - start); };
-  std::size_t next_joints = 0;
   SessionRun run;
-  for (const simulation::CrankReading& reading : session.crank) {
-    for (; next_joints < session.joints.size() && session.joints[next_joints].stamp <= reading.stamp; ++next_joints) {
-      const simulation::JointReading& joints = session.joints[next_joints];
-      pipeline.boomJoints(joints.stamp, names, {joints.position.begin(), joints.position.end()},
-                          {joints.velocity.begin(), joints.velocity.end()});
-    }
-    const SampleResult& loads = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+  player.playTo(kInfinity, [&](double, const SampleResult& loads) {
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
       const TurnEnd& end = loads.ends[i];
       BlowAt blow{seconds(end.stamp), end.blow.energy, end.blow.tool_impulse_z};
@@ -27,12 +20,12 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
       }
       run.blows.push_back(blow);
     }
-    if (loads.refusal || loads.beside_blow) continue;
+    if (loads.refusal || loads.beside_blow) return;
     const double deviation = loads.outputs.empty() ? 0.0 : loads.outputs.front().deviation.wrench.force_z;
     run.wrenches.push_back(
         {seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y, deviation});
-  }
-  run.counts = pipeline.counts();
+  });
+  run.counts = player.pipeline.counts();
   return run;
 }
 

@@ -1,5 +1,6 @@
 #include "hammer_loads/bench/step_costs.h"
 
+#include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/make_tracker.h"
 #include "hammer_loads/pipeline/pipeline.h"
@@ -10,6 +11,7 @@ namespace hammer_loads::accuracy {
 namespace {
 
 constexpr double kWorkBegins = 3.0, kWorkEnds = 8.0;  // [s]
+constexpr double kOnBoomEnds = 4.0;                   // [s], from rest
 constexpr double kDamping = 0.02;                     // of a coupling, of critical
 
 /// Crank readings of a hammer at work at 1 kHz, links with the masses that the level knows; coupling_frequency [Hz]: of
@@ -89,6 +91,18 @@ CostRow pipelineCost(const Settings& settings, const char* name, Level level) {
   return {"pipeline", name, costOf(readings.size(), pass), {}, {}};
 }
 
+/// With the shipped boom under it, level rocker.
+CostRow onBoomCost(const char* name, const simulation::Session& session, const char* keys,
+                   const SensorsOnBoom& sensors) {
+  const Settings settings = shippedBoom(keys);
+  const auto pass = [&] {
+    SessionPlayer player(settings.mechanism, settings.pipeline, settings.boom, session);
+    player.imu_speaks = sensors.imu, player.pressures_speak = sensors.pressures;
+    player.playTo(kInfinity, [](double, const SampleResult& result) { keep(result); });
+  };
+  return {"pipeline", name, costOf(session.crank.size(), pass), {}, {}};
+}
+
 /// Pipeline, turn loads and cycles of the shipped channels.
 CostRow countedCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
@@ -107,6 +121,7 @@ CostRow countedCost(const Settings& settings, const char* name, Level level) {
 }  // namespace
 
 std::vector<CostRow> stepCosts(const Settings& settings) {
+  const simulation::Session on_boom = simulation::recordSession(machineOnBoom(kOnBoomEnds));
   return {trackerCost(settings, "none", Level::kRocker, CrankEstimator::kNone),
           trackerCost(settings, "difference", Level::kRocker, CrankEstimator::kDifference),
           trackerCost(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
@@ -116,7 +131,10 @@ std::vector<CostRow> stepCosts(const Settings& settings) {
           pipelineCost(settings, "rocker", Level::kRocker),
           pipelineCost(settings, "linkage", Level::kLinkage),
           countedCost(settings, "rocker, turn loads and cycles", Level::kRocker),
-          countedCost(settings, "linkage, turn loads and cycles", Level::kLinkage)};
+          countedCost(settings, "linkage, turn loads and cycles", Level::kLinkage),
+          onBoomCost("rocker, boom by its model", on_boom, "{boom: compliant, hull_motion: model}", {}),
+          onBoomCost("rocker, boom, IMU and pressures", on_boom,
+                     "{boom: compliant, boom_stiffness: identified, hull_motion: imu}", {true, true})};
 }
 
 }  // namespace hammer_loads::accuracy

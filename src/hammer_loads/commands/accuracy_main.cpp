@@ -2,6 +2,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "hammer_loads/bench/boom_table.h"
 #include "hammer_loads/bench/cost_table.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_table.h"
@@ -11,7 +12,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ";
+constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
+               kBoom[] = "\"boom\": ";
 
 /// Why an existing file must stay; empty: this command wrote it.
 std::string whyFileMustStay(const std::string& name) {
@@ -57,9 +59,11 @@ std::string printTables(const Settings& settings, const std::string& only) {
     const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
     const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
     std::cout << "\n### Machines as they are\n\n" << accuracy::markdown(machines);
+    const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
+    std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
     std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
     json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
-            (kMachines + accuracy::json(machines));
+            (kMachines + accuracy::json(machines)) + ",\n" + (kBoom + accuracy::json(boom));
   }
   return json;
 }

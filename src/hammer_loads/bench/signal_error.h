@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hammer_loads::test {
+namespace hammer_loads::accuracy {
 
 /// Errors over root mean square and over the largest of the truth.
-struct Error {
+struct SignalError {
   double square{}, size{}, worst{}, largest{}, sum[2]{}, squares[2]{}, product{};
   double lowest{1e300}, highest{-1e300};
   int count{};
@@ -29,4 +29,4 @@ struct Error {
   double worstOfLargest() const { return worst / largest; }
 };
 
-}  // namespace hammer_loads::test
+}  // namespace hammer_loads::accuracy

@@ -1,0 +1,106 @@
+#include "hammer_loads/bench/boom_errors.h"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads::accuracy {
+namespace {
+
+constexpr double kSameBlow = 0.005;    // [s]
+constexpr double kLeastContact = 1.0;  // [N]
+
+}  // namespace
+
+Settings shippedBoom(const std::string& keys) {
+  const std::string shipped = configDirectory();
+  std::vector<std::string> problems;
+  ParameterMap given = *parameterMap(YAML::Load(keys), "", problems);
+  addFiles({shipped + "/boom_eo2621.yaml"}, given, problems);
+  std::ostringstream urdf;
+  urdf << std::ifstream(shipped + "/../urdf/eo2621_mo100.urdf").rdbuf();
+  Checked<Settings> settings = load(shipped, given, urdf.str());
+  problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
+  if (!problems.empty() || !settings.value->boom) throw std::runtime_error("shipped boom: " + problems.front());
+  return *std::move(settings.value);
+}
+
+simulation::MachineSettings machineOnBoom(double duration) {
+  simulation::MachineSettings m = simulation::workingMo100();
+  m.hammer.drive_reaction_ratio = 1.0;
+  m.duration = duration;
+  m.drive.stop_time = duration + 1.0;
+  m.joint_rate = 50.0;
+  m.joint_noise = 1e-4;
+  m.on_boom.on = true;
+  m.on_boom.imu = {1000.0, 0.0, 0.0, 0.0, 0.1, 0.003};
+  m.on_boom.pressures = {500.0, 2e4, 6e6};
+  return m;
+}
+
+std::string BoomErrors::text() const {
+  return format(
+      "Fz %.2f|%.2f  My %.2f  torques %.2f %.2f %.2f  sections %.2f %.2f %.2f (correlation %.4f)  energy %.2f  covered "
+      "%.0f %% %.0f %%  %.2f Hz  contact %.2f  flag %.0f %%",
+      100 * force_z.rmsOfLargest(), 100 * force_z.worstOfLargest(), 100 * moment.rms(), 100 * torque[0].rms(),
+      100 * torque[1].rms(), 100 * torque[2].rms(), 100 * section[0].rmsOfRange(), 100 * section[1].rmsOfRange(),
+      100 * section[2].rmsOfRange(), leastCorrelation(), 100 * energy(), 100 * covered(), 100 * sectionsCovered(),
+      frequency, 100 * contact.rmsOfRange(), 100 * part(lost_as_shown));
+}
+
+void BoomErrors::addBlows(const simulation::Session& session, const SampleResult& result) {
+  for (std::size_t k = 0; k < result.turn_ends; ++k) {
+    const double time = seconds(result.ends[k].stamp - simulation::workingMo100().start_stamp);
+    for (const simulation::BlowTruth& blow : session.blows) {
+      if (std::abs(blow.time - time) > kSameBlow) continue;
+      energy_sum += result.ends[k].blow.energy / blow.strike.energy - 1.0;
+      ++blows;
+    }
+  }
+}
+
+void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleResult& result) {
+  ++samples;
+  force_z.add(result.wrench.force_z, truth.load.force_z);
+  moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
+  const BoomState& boom = *result.boom;
+  for (int j = 0; j < 3; ++j) {
+    const double weight = boom.loads.weight[j + 1], total = boom.loads.total[j + 1];
+    torque[j].add(total - weight, -truth.hold[j] - weight);
+    within += std::abs(total + truth.hold[j]) <= 2.0 * boom.deviations.torque[j + 1];
+  }
+  for (std::size_t s = 0; s < 3; ++s) {
+    const double bending = boom.steel.section[s].torque.y(), right = truth.cut[s].torque_y;
+    section[s].add(bending, right);
+    sections_within += std::abs(bending - right) <= 2.0 * boom.deviations.section[s].torque.y();
+  }
+  contact.add(boom.contact.force.z(), truth.rock.force_z);
+  lost_as_shown += boom.press_force_lost == (truth.rock.force_z < kLeastContact);
+  unknown += boom.contact_unknown;
+  frequency = boom.frequency.size() > 0 ? boom.frequency[0] : 0.0;
+}
+
+BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mechanism, const PipelineSettings& settings,
+                      const Boom& boom, const SensorsOnBoom& sensors, double from, double to) {
+  SessionPlayer player(mechanism, settings, boom, session);
+  player.imu_speaks = sensors.imu, player.pressures_speak = sensors.pressures;
+  BoomErrors errors;
+  std::size_t i = 0;
+  player.playTo(to, [&](double time, const SampleResult& result) {
+    const simulation::OnBoomTruth& truth = session.on_boom[i++];
+    if (time < from) return;
+    errors.addBlows(session, result);
+    const bool known = !result.refusal && result.boom != nullptr && !result.boom->fault;
+    if (known) errors.addSample(truth, result);
+    errors.refused += !known;
+  });
+  for (const Warning& warning : warningsOf(player.pipeline))
+    errors.warned_of_rock |= std::string(warning.key) == "rock";
+  return errors;
+}
+
+}  // namespace hammer_loads::accuracy

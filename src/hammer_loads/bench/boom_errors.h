@@ -1,0 +1,56 @@
+/// Loads of steel on a machine that stands on the oil of its boom, judged by its truth.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "hammer_loads/bench/session_player.h"
+#include "hammer_loads/bench/signal_error.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads::accuracy {
+
+/// The torques are those of hammer, motion, vibration and rock, without weight; the sections those of the shipped file.
+struct BoomErrors {
+  SignalError force_z, moment, torque[3], section[3], contact;
+  std::size_t samples{}, refused{}, within{}, blows{};
+  std::size_t sections_within{};  ///< bending moments within two deviations
+  std::size_t lost_as_shown{};    ///< the flag of a press force that is lost is right
+  bool warned_of_rock{};
+  std::size_t unknown{};  ///< the rock's force is said not to be known
+  double energy_sum{};    ///< of the blows, relative
+  double frequency{};     ///< of the lowest mode at the end [Hz]
+
+  double worstTorque() const { return std::max({torque[0].rms(), torque[1].rms(), torque[2].rms()}); }
+  double worstSection() const {
+    return std::max({section[0].rmsOfRange(), section[1].rmsOfRange(), section[2].rmsOfRange()});
+  }
+  double leastCorrelation() const {
+    return std::min({section[0].correlation(), section[1].correlation(), section[2].correlation()});
+  }
+  double part(std::size_t count) const { return static_cast<double>(count) / static_cast<double>(samples); }
+  double sectionsCovered() const { return part(sections_within) / 3.0; }
+  double covered() const { return static_cast<double>(within) / static_cast<double>(3 * samples); }
+  double energy() const { return energy_sum / static_cast<double>(std::max<std::size_t>(1, blows)); }  ///< mean
+  std::string text() const;  ///< one line
+
+  void addBlows(const simulation::Session& session, const SampleResult& result);
+  void addSample(const simulation::OnBoomTruth& truth, const SampleResult& result);
+};
+
+/// The shipped settings with the shipped boom and description and with `keys` (a map of YAML) over them. Throws
+/// std::runtime_error when one of these files cannot be read.
+Settings shippedBoom(const std::string& keys);
+/// The simulated EO-2621 on its oil at work to the end [s]: joint sensors of 50 Hz that see the vibration, IMU of 1 kHz,
+/// pressures of 500 Hz, each with noise.
+simulation::MachineSettings machineOnBoom(double duration);
+
+struct SensorsOnBoom {
+  bool imu{}, pressures{};
+};
+
+/// Over the samples from a time to another [s]; nothing of the session is left out before. boom: the shipped one.
+BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mechanism, const PipelineSettings& settings,
+                      const Boom& boom, const SensorsOnBoom& sensors, double from, double to);
+
+}  // namespace hammer_loads::accuracy

@@ -1,0 +1,111 @@
+#include "hammer_loads/bench/boom_table.h"
+
+#include <cmath>
+#include <random>
+
+#include "hammer_loads/bench/boom_errors.h"
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads::accuracy {
+namespace {
+
+constexpr unsigned kPoses = 3;
+constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
+
+struct Kind {
+  const char* name;
+  double oil;          // over the boom file's
+  double press_force;  // on rock [N]; 0: the hull hangs
+  double drive;        // of the operator [rad/s]
+};
+constexpr Kind kKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0},
+                           {"bulk modulus 30 % lower", 0.7, 0.0, 0.0},
+                           {"bulk modulus 40 % higher", 1.4, 0.0, 0.0},
+                           {"boom driven with 0.15 rad/s", 1.0, 0.0, 0.15},
+                           {"hull pressed on rock with 4 kN", 1.0, 4000.0, 0.0}};
+
+struct Way {
+  const char* name;
+  const char* keys;
+  SensorsOnBoom sensors;
+};
+constexpr Way kWays[] = {
+    {"none", "{boom: compliant, hull_motion: model}", {false, false}},
+    {"IMU", "{boom: compliant, boom_stiffness: identified, hull_motion: imu}", {true, false}},
+    {"pressures", "{boom: compliant, boom_stiffness: identified, hull_motion: model}", {false, true}},
+    {"both", "{boom: compliant, boom_stiffness: identified, hull_motion: imu}", {true, true}}};
+
+simulation::MachineSettings machineOf(const Kind& kind, unsigned pose) {
+  simulation::MachineSettings m = machineOnBoom(kJudgedTo);
+  m.seed = 40 + pose;
+  m.on_boom.oil_stiffness = kind.oil;
+  if (kind.press_force > 0.0) m.on_boom.rock = {3e7, 3.0, kind.press_force};
+  std::mt19937 random(pose);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  m.boom[1].mean = between(-0.75, -0.15), m.boom[2].mean = between(0.7, 1.5);
+  m.boom[3].mean = between(-0.35, 0.35) - m.boom[1].mean - m.boom[2].mean;
+  if (kind.drive > 0.0) m.boom[1].period = 6.0, m.boom[1].amplitude = kind.drive * m.boom[1].period / kTwoPi;
+  return m;
+}
+
+void takeWorst(const BoomErrors& e, BoomRow& row) {
+  row.torque = std::max(row.torque, e.worstTorque());
+  row.section = std::max(row.section, e.worstSection());
+  row.moment = std::max(row.moment, e.moment.rms());
+  row.force_z = std::max(row.force_z, e.force_z.rmsOfLargest());
+  row.worst_z = std::max(row.worst_z, e.force_z.worstOfLargest());
+  row.energy = std::max(row.energy, std::abs(e.energy()));
+  row.contact = std::max(row.contact, e.contact.rmsOfRange());
+  row.covered = std::min(row.covered, e.covered());
+}
+
+std::string percent(double part) { return std::isfinite(part) ? format("%.1f %%", 100.0 * part) : "not known"; }
+std::string number(double value) { return std::isfinite(value) ? format("%.4g", value) : "null"; }
+
+}  // namespace
+
+std::vector<BoomRow> boomTable() {
+  std::vector<BoomRow> rows;
+  for (const Kind& kind : kKinds) {
+    std::vector<simulation::Session> sessions;
+    for (unsigned pose = 1; pose <= kPoses; ++pose) sessions.push_back(simulation::recordSession(machineOf(kind, pose)));
+    for (const Way& way : kWays) {
+      const Settings settings = shippedBoom(way.keys);
+      BoomRow row{kind.name, way.name};
+      for (const simulation::Session& session : sessions)
+        takeWorst(boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, way.sensors, kJudgedFrom,
+                             kJudgedTo),
+                  row);
+      if (!(kind.press_force > 0.0) || !way.sensors.pressures) row.contact = kNaN;
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+std::string markdown(const std::vector<BoomRow>& rows) {
+  std::string text =
+      "| machine | sensors | joint torques | bending | hull moment | Fz | worst sample | energy | rock's force | torques "
+      "within two deviations |\n|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const BoomRow& r : rows) {
+    text += format("| %s | %s |", r.machine.c_str(), r.sensors.c_str());
+    for (const double part : {r.torque, r.section, r.moment, r.force_z, r.worst_z, r.energy, r.contact})
+      text += ' ' + percent(part) + " |";
+    text += format(" %.0f %% |\n", 100.0 * r.covered);
+  }
+  return text;
+}
+
+std::string json(const std::vector<BoomRow>& rows) {
+  std::string text = "[";
+  for (const BoomRow& r : rows)
+    text += format(
+        "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %.4g, \"section\": %.4g, \"moment\": %.4g, "
+        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g}",
+        &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), r.torque, r.section, r.moment, r.force_z,
+        r.worst_z, r.energy, number(r.contact).c_str(), r.covered);
+  return text + "\n]";
+}
+
+}  // namespace hammer_loads::accuracy

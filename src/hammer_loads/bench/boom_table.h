@@ -1,0 +1,29 @@
+/// Cost table, fourth part: loads of steel on the shipped boom, by what sensors there are.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hammer_loads::accuracy {
+
+/// Errors as parts of one: root mean squares over those of the truth, of sections and the rock's force over its range,
+/// of Fz over its peak. Each the worst of the poses.
+struct BoomRow {
+  std::string machine, sensors;
+  double torque{};      ///< of the joint that is worst, weight aside
+  double section{};     ///< bending at the cut that is worst
+  double moment{};      ///< torque about D
+  double force_z{}, worst_z{};
+  double energy{};      ///< mean of the blows
+  double contact{};     ///< of the rock's force; not-a-number without rock or pressures
+  double covered{1.0};  ///< torques within two deviations, the least
+};
+
+/// The simulated EO-2621 on its oil with the shipped boom file, which may be wrong of the oil; poses drawn, the same on
+/// every run. Some half a minute of computing.
+std::vector<BoomRow> boomTable();
+
+std::string markdown(const std::vector<BoomRow>& rows);
+std::string json(const std::vector<BoomRow>& rows);
+
+}  // namespace hammer_loads::accuracy
