@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <boost/numeric/odeint.hpp>
+#include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
 #include "boom/booms.h"
 #include "hammer_loads/hammer/hull_wrench.h"
@@ -152,7 +154,7 @@ class Reference {
       if (!by_angle) return;
       for (double& entry : dy) entry /= now[kSpeed];
     };
-    const auto stepper = make_controlled(1e-15, 1e-10, runge_kutta_fehlberg78<State>());
+    const auto stepper = make_controlled(1e-15, 1e-10, runge_kutta_dopri5<State>());
     integrate_adaptive(stepper, system, y, 0.0, span, 0.1 * span);
   }
 

@@ -1,7 +1,7 @@
 /// FreeHull at work: its motion under a constant drive torque, through the blows.
 #pragma once
 
-#include <boost/numeric/odeint.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
 #include "support/free_hull.h"
 
