@@ -86,7 +86,7 @@ def draw(figures, path):
             axes.annotate(row["name"], xy=(10**x, 10**y), xytext=(10**place, 10**above), rotation=60, fontsize=8,
                           color=COLORS[row["group"]], ha="left", va="bottom", rotation_mode="anchor",
                           arrowprops={"arrowstyle": "-", "color": "#c8c8c8", "linewidth": 0.6, "shrinkB": 4})
-    axes.set(xscale="log", yscale="log", xlim=(1, 1e4), ylim=(1e-16, 1e7), xlabel="time per evaluation or sample [ns]",
+    axes.set(xscale="log", yscale="log", xlim=(1, 3e4), ylim=(1e-16, 1e7), xlabel="time per evaluation or sample [ns]",
              ylabel="worst error")
     decades = range(-16, 1, 2)
     axes.set_yticks([10.0**e for e in decades] + [NO_DIGITS],
@@ -100,7 +100,7 @@ def draw(figures, path):
         axes.spines[side].set_visible(False)
     for group, color in COLORS.items():
         axes.plot([], [], "o", color=color, label=group)
-    axes.legend(loc="lower right", frameon=False, fontsize=9)
+    axes.legend(loc=(0.6, 0.03), frameon=False, fontsize=9)
     figure.tight_layout()
     figure.savefig(path)
 

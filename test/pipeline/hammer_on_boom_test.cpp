@@ -1,11 +1,11 @@
 // The pipeline against a machine whose hull, boom, crank and flywheel move together: a truth of its own equations.
-#include "hammer_loads/bench/signal_error.h"
 #include "hammer_loads/simulation/hammer_on_boom.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "hammer_loads/bench/signal_error.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/constants.h"
 #include "support/session_player.h"

@@ -4,8 +4,8 @@
 namespace hammer_loads {
 namespace {
 
-using simulation::Session;
 using accuracy::BoomErrors;
+using simulation::Session;
 using test::errorsOf;
 constexpr double kBegin = test::kJudgedFrom, kEnd = test::kJudgedTo;
 

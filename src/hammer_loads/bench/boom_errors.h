@@ -32,7 +32,7 @@ struct BoomErrors {
   double sectionsCovered() const { return part(sections_within) / 3.0; }
   double covered() const { return static_cast<double>(within) / static_cast<double>(3 * samples); }
   double energy() const { return energy_sum / static_cast<double>(std::max<std::size_t>(1, blows)); }  ///< mean
-  std::string text() const;  ///< one line
+  std::string text() const;                                                                            ///< one line
 
   void addBlows(const simulation::Session& session, const SampleResult& result);
   void addSample(const simulation::OnBoomTruth& truth, const SampleResult& result);
@@ -41,8 +41,8 @@ struct BoomErrors {
 /// The shipped settings with the shipped boom and description and with `keys` (a map of YAML) over them. Throws
 /// std::runtime_error when one of these files cannot be read.
 Settings shippedBoom(const std::string& keys);
-/// The simulated EO-2621 on its oil at work to the end [s]: joint sensors of 50 Hz that see the vibration, IMU of 1 kHz,
-/// pressures of 500 Hz, each with noise.
+/// The simulated EO-2621 on its oil at work to the end [s]: joint sensors of 50 Hz that see the vibration, IMU of 1
+/// kHz, pressures of 500 Hz, each with noise.
 simulation::MachineSettings machineOnBoom(double duration);
 
 struct SensorsOnBoom {

@@ -69,7 +69,8 @@ std::vector<BoomRow> boomTable() {
   std::vector<BoomRow> rows;
   for (const Kind& kind : kKinds) {
     std::vector<simulation::Session> sessions;
-    for (unsigned pose = 1; pose <= kPoses; ++pose) sessions.push_back(simulation::recordSession(machineOf(kind, pose)));
+    for (unsigned pose = 1; pose <= kPoses; ++pose)
+      sessions.push_back(simulation::recordSession(machineOf(kind, pose)));
     for (const Way& way : kWays) {
       const Settings settings = shippedBoom(way.keys);
       BoomRow row{kind.name, way.name};
@@ -86,7 +87,8 @@ std::vector<BoomRow> boomTable() {
 
 std::string markdown(const std::vector<BoomRow>& rows) {
   std::string text =
-      "| machine | sensors | joint torques | bending | hull moment | Fz | worst sample | energy | rock's force | torques "
+      "| machine | sensors | joint torques | bending | hull moment | Fz | worst sample | energy | rock's force | "
+      "torques "
       "within two deviations |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const BoomRow& r : rows) {
     text += format("| %s | %s |", r.machine.c_str(), r.sensors.c_str());

@@ -10,9 +10,9 @@ namespace hammer_loads::accuracy {
 /// of Fz over its peak. Each the worst of the poses.
 struct BoomRow {
   std::string machine, sensors;
-  double torque{};      ///< of the joint that is worst, weight aside
-  double section{};     ///< bending at the cut that is worst
-  double moment{};      ///< torque about D
+  double torque{};   ///< of the joint that is worst, weight aside
+  double section{};  ///< bending at the cut that is worst
+  double moment{};   ///< torque about D
   double force_z{}, worst_z{};
   double energy{};      ///< mean of the blows
   double contact{};     ///< of the rock's force; not-a-number without rock or pressures
@@ -20,7 +20,7 @@ struct BoomRow {
 };
 
 /// The simulated EO-2621 on its oil with the shipped boom file, which may be wrong of the oil; poses drawn, the same on
-/// every run. Some half a minute of computing.
+/// every run. A quarter of a minute of computing.
 std::vector<BoomRow> boomTable();
 
 std::string markdown(const std::vector<BoomRow>& rows);

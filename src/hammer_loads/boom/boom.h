@@ -163,8 +163,8 @@ class Boom {
   Eigen::MatrixXd response_in_plane_;
   Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
-  JointVector response_at_;     ///< where it belongs; NaN: nowhere yet
-  Eigen::MatrixXd difference_;         ///< a column for each error
+  JointVector response_at_;             ///< where it belongs; NaN: nowhere yet
+  Eigen::MatrixXd difference_;          ///< a column for each error
   Eigen::VectorXd square_, deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };

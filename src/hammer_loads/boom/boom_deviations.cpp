@@ -105,8 +105,7 @@ void Boom::sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDevia
     square -= difference_.col(0).head(rows).cwiseAbs2().cwiseMin(difference_.col(1).head(rows).cwiseAbs2());
   square = square.cwiseSqrt();
   deviation_.setZero();
-  for (Eigen::Index row = 0; row < rows; ++row)
-    deviation_[in_plane ? rows_in_plane_[row] : row] = square[row];
+  for (Eigen::Index row = 0; row < rows; ++row) deviation_[in_plane ? rows_in_plane_[row] : row] = square[row];
   takeDeviations(result);
 }
 

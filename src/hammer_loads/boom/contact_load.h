@@ -13,7 +13,8 @@ namespace hammer_loads {
 /// boom and arm.
 class InPlaneTip {
  public:
-  /// J of tipJacobian(); nothing where the three joints do not move the tip in its plane independently (boom and arm in line).
+  /// J of tipJacobian(); nothing where the three joints do not move the tip in its plane independently (boom and arm in
+  /// line).
   static std::optional<InPlaneTip> make(const Jacobian& J, const std::array<int, 3>& joints) noexcept;
   /// Of torques on all joints of the chain [N m]; linear in them.
   Wrench load(const JointVector& torque) const noexcept;

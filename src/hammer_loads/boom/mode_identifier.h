@@ -109,11 +109,11 @@ class ModeIdentifier {
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
-  std::array<double, kMaxJoints> ratio_{}, damping_{};                 ///< of state_
+  std::array<double, kMaxJoints> ratio_{}, damping_{};                ///< of state_
   std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};  ///< logarithms of these
-  int channels_{};                                      ///< in use
-  std::array<int, kMaxChannels> slot_{};                ///< state of each channel's offset; -1: not in use
-  std::array<double, kMaxChannels> age_{};              ///< since the channel's last reading [s]
+  int channels_{};                                                    ///< in use
+  std::array<int, kMaxChannels> slot_{};    ///< state of each channel's offset; -1: not in use
+  std::array<double, kMaxChannels> age_{};  ///< since the channel's last reading [s]
 };
 
 }  // namespace hammer_loads
