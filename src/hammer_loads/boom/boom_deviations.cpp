@@ -39,13 +39,13 @@ void Boom::storeResponse(Eigen::Index column, const JointVector& torque, const S
 
 void Boom::gatherRowsInPlane() noexcept {
   const Eigen::Index columns = response_in_plane_.cols();
+  Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxJoints + 3> least(columns);
+  for (Eigen::Index c = 0; c < columns; ++c) least[c] = kRounded * response_.col(c).cwiseAbs().maxCoeff();
   in_plane_ = 0;
   for (Eigen::Index row = 0; row < response_.rows(); ++row) {
-    bool zero = true;
-    for (Eigen::Index c = 0; c < columns; ++c)
-      zero = zero && std::abs(response_(row, c)) <= kRounded * response_.col(c).cwiseAbs().maxCoeff();
-    if (zero) continue;
-    response_in_plane_.row(in_plane_) = response_.row(row).head(columns);
+    const auto in_plane = response_.row(row).head(columns);
+    if ((in_plane.array().abs() <= least).all()) continue;
+    response_in_plane_.row(in_plane_) = in_plane;
     rows_in_plane_[in_plane_++] = static_cast<int>(row);
   }
 }
