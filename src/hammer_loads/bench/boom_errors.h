@@ -30,7 +30,7 @@ struct BoomErrors {
   }
   double part(std::size_t count) const { return static_cast<double>(count) / static_cast<double>(samples); }
   double sectionsCovered() const { return part(sections_within) / 3.0; }
-  double covered() const { return static_cast<double>(within) / static_cast<double>(3 * samples); }
+  double covered() const { return part(within) / 3.0; }
   double energy() const { return energy_sum / static_cast<double>(std::max<std::size_t>(1, blows)); }  ///< mean
   std::string text() const;                                                                            ///< one line
 

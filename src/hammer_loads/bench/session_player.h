@@ -39,7 +39,7 @@ class SessionPlayer {
 
   Pipeline pipeline;
   bool joints_speak{true}, imu_speaks{true}, pressures_speak{true};
-  std::optional<ImuReading> imu;  ///< told with each crank sample
+  std::optional<ImuReading> imu;  ///< given with each crank sample
 
  private:
   void tellJoints(const simulation::JointReading& reading) {
