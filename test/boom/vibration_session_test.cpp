@@ -176,7 +176,7 @@ struct Errors {
 Errors session(double rate, double amplitude, bool with_mean) {
   Boom boom = test::shippedBoom();
   Reference reference(boom, amplitude);
-  boom.vibration().setPose(reference.position(0.0));
+  boom.vibration().setPose(reference.position(0.0), Eigen::Vector3d::Zero());
   const JointVector still = JointVector::Zero(4);
   Errors errors;
   TorqueStep torque;

@@ -42,6 +42,75 @@ TEST_F(ShippedBoom, ModesSolveTheEquationOfMotion) {
   }
 }
 
+TEST_F(ShippedBoom, ItsWeightStiffensOrSoftensIt) {
+  const ChainDynamics dynamics(boom_.chain());
+  std::mt19937 random(43);
+  for (int i = 0; i < 30; ++i) {
+    const JointVector q = test::randomPosition(boom_.chain(), random);
+    const Eigen::Vector3d g_B = test::randomVector(random, 10.0);
+    const auto torqueAt = [&](const JointVector& position) {
+      ChainPose there;
+      forwardKinematics(boom_.chain(), position, there);
+      return jointTorqueOfWeight(boom_.chain(), there, g_B);
+    };
+    Eigen::Matrix4d slope;
+    constexpr double h = 1e-4;
+    for (int j = 0; j < 4; ++j) {
+      const JointVector step = h * JointVector::Unit(4, j);
+      slope.col(j) = (torqueAt(q + step) - torqueAt(q - step)) / (2.0 * h);
+    }
+    const Eigen::Matrix4d K = dynamics.weightStiffness(q, g_B);
+    ASSERT_LT((K + slope).norm(), 1e-6 * slope.norm());
+    // What it does to the frequencies, to first order: half of what the strain energy of a mode gains.
+    vibration().rest();  // each time: modes are found where the joints stand
+    pose(q);
+    if (modes().count == 0) continue;  // a dead centre
+    const BoomModes without = modes();
+    vibration().rest();
+    boom_.moveCompliant({q, kZero, kZero}, g_B);
+    for (int k = 0; k < 3; ++k) {
+      const double gained = without.shape.col(k).dot(K.bottomRightCorner<3, 3>() * without.shape.col(k));
+      const double square = without.omega[k] * without.omega[k];
+      EXPECT_NEAR(modes().omega[k] * modes().omega[k] - square, gained, 0.02 * std::abs(gained) + 1e-5 * square);
+    }
+  }
+}
+
+TEST(Vibration, OilThatCouldNotHoldTheWeightHasItsOwnModes) {
+  BoomParameters soft = test::shippedBoomParameters();
+  soft.bulk_modulus = 1.0;
+  Boom boom = Boom::make(test::shippedUrdf(), soft).value.value();
+  boom.moveCompliant({test::workingPosition(), kZero, kZero}, test::kLevel);
+  ASSERT_EQ(boom.vibration().modes().count, 3);
+  const JointVector omega = boom.vibration().modes().omega;
+  EXPECT_TRUE(omega.allFinite());
+  EXPECT_GT(omega.minCoeff(), 0.0);
+}
+
+TEST_F(ShippedBoom, StandsWhereTheVibrationTakesIt) {
+  const JointVector torque = boom_.hammerTorque(push_);
+  for (int i = 0; i < 40; ++i) steadyLoad(1e-3, torque);
+  const JointVector q = test::workingPosition(), x = vibration().displacement() + 1e-3 * vibration().velocity();
+  ASSERT_GT(x.norm(), 1e-3);
+  ASSERT_LT(x.norm(), 0.1);
+  boom_.moveVibrating({q, kZero, kZero}, 1e-3, test::kLevel);
+  ChainPose there;
+  forwardKinematics(boom_.chain(), q + x, there);
+  EXPECT_LT((boom_.pose().tip().matrix() - there.tip().matrix()).norm(), 1e-12);
+  // Its cylinders and its steel know the same lever arms and the same velocities.
+  BoomLoads loads;
+  SteelLoads steel;
+  ASSERT_TRUE(boom_.loads(push_, false, loads) && boom_.steelLoads(push_, false, steel));
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(steel.pins[i].rod.norm(), std::abs(loads.cylinder[i].force), 1e-9 * steel.pins[i].rod.norm());
+  // A swing that is no small vibration any more moves no link.
+  for (int i = 0; i < 100; ++i) steadyLoad(1e-3, 100.0 * torque);
+  ASSERT_GT(vibration().displacement().norm(), 0.2);
+  boom_.moveVibrating({q, kZero, kZero}, 1e-3, test::kLevel);
+  forwardKinematics(boom_.chain(), q, there);
+  EXPECT_LT((boom_.pose().tip().matrix() - there.tip().matrix()).norm(), 1e-12);
+}
+
 TEST_F(ShippedBoom, VibratesAtAFewHertz) {
   EXPECT_GT(modes().omega[0] / (2.0 * kPi), 1.0);
   EXPECT_LT(modes().omega[0] / (2.0 * kPi), 6.0);
@@ -98,7 +167,7 @@ TEST_F(ShippedBoom, EnergyComesBackWithThePose) {
   VibrationSettings settings = boom_.parameters().vibration;
   settings.damping_ratio = 1e-9;
   Vibration free(boom_.chain(), boom_.cylinders(), settings);
-  free.setPose(test::workingPosition());
+  free.setPose(test::workingPosition(), Eigen::Vector3d::Zero());
   free.strike(test::joints({0.0, 500.0, 0.0, 0.0}));
   const double start = free.energy();
   const double omega = free.modes().omega[0];
@@ -106,7 +175,7 @@ TEST_F(ShippedBoom, EnergyComesBackWithThePose) {
   constexpr int kSteps = 40000;
   for (int i = 1; i <= kSteps; ++i) {
     const double sway = 0.25 * std::sin(2.0 * kPi * i / kSteps);
-    free.setPose(test::workingPosition() + test::joints({0.0, sway, -sway, 0.5 * sway}));
+    free.setPose(test::workingPosition() + test::joints({0.0, sway, -sway, 0.5 * sway}), Eigen::Vector3d::Zero());
     free.advance(1e-3, {kZero, kZero, kZero});
     least = std::min(least, free.energy()), most = std::max(most, free.energy());
     softest = std::min(softest, free.modes().omega[0]), hardest = std::max(hardest, free.modes().omega[0]);

@@ -184,7 +184,9 @@ TEST(BoomFollower, AutoIsCompliantUntilALongPulseShowsThatRigidSuffices) {
   // The vibration went on meanwhile, as in a boom that is always compliant.
   Follower always(BoomModel::kCompliant);
   for (int i = 0; i < 4; ++i) always.sample(kLoad);
-  EXPECT_EQ(always.follower.state().loads.vibration, automatic.follower.state().loads.vibration);
+  const JointVector went_on = automatic.follower.state().loads.vibration,
+                    went = always.follower.state().loads.vibration;
+  EXPECT_LT((went_on - went).norm(), 1e-4 * went.norm()) << "but for levers that the vibration itself changes";
   // A turn without a pulse tells nothing new.
   automatic.follower.turnEnded(std::nullopt, 300.0);
   EXPECT_TRUE(automatic.sample(kLoad).choice.compliant);

@@ -128,6 +128,7 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
 
 void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
   joints_ = motion;
+  steady_position_ = motion.position;
   g_B_ = g_B;
   forwardKinematics(chain_, joints_.position, pose_);
   jacobian_ = hammer_loads::tipJacobian(pose_);
@@ -139,7 +140,15 @@ void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept 
 
 void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
   move(motion, g_B);
-  vibration_.setPose(joints_.position);
+  vibration_.setPose(motion.position, g_B);
+}
+
+void Boom::moveVibrating(const JointMotion& motion, double step, const Eigen::Vector3d& g_B) noexcept {
+  vibration_.setPose(motion.position, g_B);
+  JointMotion displaced = motion;
+  displaced.position += vibration_.displacementAfter(step);
+  move(displaced, g_B);
+  steady_position_ = motion.position;
 }
 
 Boom::TipVibration Boom::tipVibration() const noexcept {
@@ -152,6 +161,13 @@ ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {
   return reducedAtTip(vibration_.modes(), hammerTorque({direction, Eigen::Vector3d::Zero()}));
 }
 
+JointMotion Boom::vibratingMotion() const noexcept {
+  JointMotion motion = joints_;
+  motion.velocity += vibration_.velocity();
+  motion.acceleration += vibration_.acceleration();
+  return motion;
+}
+
 bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
   result.hammer = hammerTorque(w_tip);
   result.weight = weight_;
@@ -159,7 +175,7 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexc
   if (rigid) {
     result.vibration.setZero(chain_.joints());
   } else {
-    result.vibration = vibration_.torque();
+    result.vibration = dynamics_.torqueOfMotion(pose_, vibratingMotion()) - motion_;
   }
   result.total = result.hammer + result.weight + result.motion + result.vibration;
   bool finite = result.total.allFinite();
@@ -173,9 +189,7 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexc
 }
 
 bool Boom::steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
-  JointMotion motion = joints_;
-  if (!rigid) motion.acceleration += vibration_.acceleration();
-  return steel_.find({pose_, motion, g_B_, w_tip, at_.data()}, result);
+  return steel_.find({pose_, rigid ? joints_ : vibratingMotion(), g_B_, w_tip, at_.data()}, result);
 }
 
 RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {

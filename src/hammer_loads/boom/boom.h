@@ -77,6 +77,9 @@ class Boom {
   void move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
   /// Also brings the vibration to this pose: only then modes are found.
   void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
+  /// The same for a motion without the vibration: the modes are those of its pose, the links where the vibration takes
+  /// them by the end of the step [s] that it takes next.
+  void moveVibrating(const JointMotion& motion, double step, const Eigen::Vector3d& g_B) noexcept;
 
   const ChainPose& pose() const noexcept { return pose_; }
   /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
@@ -104,8 +107,7 @@ class Boom {
   /// vibration. False: the input is so large that a result is not finite and must not be used; a cylinder at its dead
   /// centre does not count as that.
   bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept;
-  /// What the steel carries, with w_tip and rigid as for loads(). The cylinders' forces are those of loads() but for
-  /// the mass matrix: here that of the pose, there that of the modes, at most refresh_angle beside. False: as there.
+  /// What the steel carries, with w_tip and rigid as for loads(), and with the same cylinders' forces. False: as there.
   bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept;
   /// Joint torques of the errors of a load: what VibrationSpread::advance() takes.
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
@@ -145,9 +147,11 @@ class Boom {
   ChainPose pose_;
   Jacobian jacobian_;
   JointMotion joints_;
+  JointVector steady_position_;  ///< of joints_, without the vibration
   JointVector weight_, motion_;
   std::array<CylinderPosition, kMaxJoints> at_;
 
+  JointMotion vibratingMotion() const noexcept;
   using Shares = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints + 6, VibrationSpread::kMaxRuns>;
   void findResponse() noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
@@ -163,7 +167,7 @@ class Boom {
   Eigen::MatrixXd response_in_plane_;
   Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
-  JointVector response_at_;             ///< where it belongs; NaN: nowhere yet
+  JointVector response_at_;             ///< steady_position_ where it belongs; NaN: nowhere yet
   Eigen::MatrixXd difference_;          ///< a column for each error
   Eigen::VectorXd square_, deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();

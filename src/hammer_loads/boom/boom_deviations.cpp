@@ -52,8 +52,8 @@ void Boom::gatherRowsInPlane() noexcept {
 
 /// Every load is linear in wrench and accelerations: the difference of two states is the load of their difference.
 void Boom::findResponse() noexcept {
-  if ((joints_.position - response_at_).cwiseAbs().maxCoeff() <= parameters_.vibration.refresh_angle) return;
-  response_at_ = joints_.position;
+  if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= parameters_.vibration.refresh_angle) return;
+  response_at_ = steady_position_;
   const Eigen::Index joints = chain_.joints();
   const JointVector zero = JointVector::Zero(joints);
   const Eigen::Vector3d weightless = Eigen::Vector3d::Zero(), none = weightless;

@@ -17,7 +17,7 @@ void clear(BoomModes& modes) noexcept {
 }  // namespace
 
 void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
-               BoomModes& modes) noexcept {
+               const Eigen::Vector3d& g_B, BoomModes& modes) noexcept {
   modes.count = static_cast<int>(cylinders.size());
   modes.dead_centre = false;
   modes.mass = dynamics.massMatrix(position);
@@ -38,12 +38,20 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
   JointMatrix M(n, n), columns(modes.mass.rows(), n);
   for (int i = 0; i < n; ++i) columns.col(i) = modes.mass.col(modes.joint[static_cast<std::size_t>(i)]);
   for (int i = 0; i < n; ++i) M.row(i) = columns.row(modes.joint[static_cast<std::size_t>(i)]);
-  // K^-1/2 M K^-1/2 y = y/omega^2: symmetric, and well conditioned since every K is positive.
+  // With the cylinders' K: K^-1/2 M K^-1/2 y = (1 + weight's share) y/omega^2, well conditioned since every K is
+  // positive.
   const JointVector soft = modes.stiffness.cwiseSqrt().cwiseInverse();
-  JointMatrix scaled = M;
-  for (int j = 0; j < n; ++j) scaled.col(j).array() *= soft.array() * soft[j];
-  Eigen::SelfAdjointEigenSolver<JointMatrix> solver(n);
-  solver.compute(scaled);
+  const JointMatrix by_weight = dynamics.weightStiffness(position, g_B);
+  JointMatrix scaled = M, stiff = JointMatrix::Identity(n, n);
+  for (int j = 0; j < n; ++j) {
+    scaled.col(j).array() *= soft.array() * soft[j];
+    for (int i = 0; i < n; ++i)
+      stiff(i, j) += soft[i] * soft[j] *
+                     by_weight(modes.joint[static_cast<std::size_t>(i)], modes.joint[static_cast<std::size_t>(j)]);
+  }
+  if (stiff.llt().info() != Eigen::Success) stiff.setIdentity();  // oil too soft to hold the weight: no boom's
+  Eigen::GeneralizedSelfAdjointEigenSolver<JointMatrix> solver(n);
+  solver.compute(scaled, stiff);
   // Rounding makes a pose without inertia about some axis look a little positive or negative.
   if (!(solver.eigenvalues()[0] > 1e-14 * solver.eigenvalues()[n - 1])) {
     clear(modes);

@@ -9,16 +9,16 @@
 
 namespace hammer_loads {
 
-/// Small vibration about a pose, M q'' + C q' + K q = Q: M from the chain, K diagonal from the cylinders, C by one
-/// damping ratio for every mode. Joints without a cylinder are held. Modes in the order of their frequencies.
+/// Small vibration about a pose, M q'' + C q' + K q = Q: M from the chain, K from the cylinders and the weight, C by
+/// one damping ratio for every mode. Joints without a cylinder are held. Modes in the order of their frequencies.
 ///
-/// Neglects: flexibility of links, pins, machine and ground; stiffness from weight and from the cylinders' pre-load;
-/// oil moving between chambers (valves shut); forces from the boom's slow motion on its vibration.
+/// Neglects: flexibility of links, pins, machine and ground; that the cylinders' pre-load turns with them (EO-2621: 0.3
+/// % of a stiffness); oil moving between chambers (valves shut).
 struct BoomModes {
   int count{};                          ///< modes = joints with a cylinder; 0 at a dead centre or without inertia
   bool dead_centre{};                   ///< some cylinder does not hold its joint: there are no modes
   std::array<int, kMaxJoints> joint{};  ///< index in the chain of the joints that vibrate
-  JointVector stiffness;                ///< K of those [N m/rad]
+  JointVector stiffness;                ///< of the cylinders of those [N m/rad]
   JointMatrix mass;                     ///< M of all joints [kg m2]
   JointVector omega;                    ///< natural frequencies, as identified where they are [rad/s]
   JointVector given_omega;              ///< those of the stiffness given [rad/s]
@@ -32,9 +32,9 @@ struct TorqueStep {
   JointVector mean;      ///< over the step; linear between the ends makes it their mean
 };
 
-/// Modes at a pose; at most one cylinder per joint. No allocation.
+/// Modes at a pose; at most one cylinder per joint. g_B: gravity in the root's axes [m/s2]. No allocation.
 void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
-               BoomModes& modes) noexcept;
+               const Eigen::Vector3d& g_B, BoomModes& modes) noexcept;
 
 /// Modal forces of joint torques [N m] and the joint displacements or velocities that modal ones make, of all joints.
 JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) noexcept;

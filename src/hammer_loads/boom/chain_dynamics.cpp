@@ -47,6 +47,32 @@ JointVector ChainDynamics::torqueOfMotion(const ChainPose& pose, const JointMoti
   return torque;
 }
 
+/// Second derivatives of the weight's potential: a joint turns everything beyond it, or slides it, against gravity.
+JointMatrix ChainDynamics::weightStiffness(const JointVector& position, const Eigen::Vector3d& g_B) const noexcept {
+  const Chain& chain = solvers_->chain;
+  ChainPose pose;
+  forwardKinematics(chain, position, pose);
+  JointMatrix K = JointMatrix::Zero(pose.joints, pose.joints);
+  double mass = 0.0;
+  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  // mass times centre of mass, of all links so far from the tip
+  for (int i = chain.links() - 1; i > 0; --i) {
+    const ChainLink& link = chain.link(i);
+    mass += link.body.mass;
+    moment_B += link.body.mass * (pose.link(i) * link.body.p);
+    if (link.joint < 0) continue;
+    const auto j = static_cast<std::size_t>(link.joint);
+    const Eigen::Vector3d& axis = pose.axis_B[j];
+    const Eigen::Vector3d moved =
+        link.prismatic ? Eigen::Vector3d(mass * axis) : Eigen::Vector3d(axis.cross(moment_B - mass * pose.p_BJ_B[j]));
+    for (int k = 0; k <= link.joint; ++k) {
+      const auto before = static_cast<std::size_t>(k);
+      if (pose.prismatic[before]) continue;
+      K(k, link.joint) = K(link.joint, k) = -pose.axis_B[before].dot(moved.cross(g_B));
+    }
+  }
+  return K;
+}
+
 JointMatrix ChainDynamics::massMatrix(const JointVector& position) noexcept {
   Solvers& s = *solvers_;
   s.position.data = position;

@@ -6,7 +6,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kContactMemory = 0.5;  // of the rock's mean force: some turns [s]
+constexpr double kContactMemory = 0.5;         // of the rock's mean force: some turns [s]
+constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
 
 }  // namespace
 
@@ -22,7 +23,7 @@ Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const 
   rest();
 }
 
-void Vibration::setPose(const JointVector& position) noexcept {
+void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept {
   const JointVector middle = posed_ ? JointVector(0.5 * (last_ + position)) : position;
   const double step = posed_ ? (position - last_).cwiseAbs().maxCoeff() : 0.0;
   last_ = position;
@@ -35,7 +36,7 @@ void Vibration::setPose(const JointVector& position) noexcept {
   position_ = middle;
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
   if (!position_.allFinite()) position_ = position;
-  findModes(dynamics_, cylinders_, position_, modes_);
+  findModes(dynamics_, cylinders_, position_, g_B, modes_);
   if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
   posed_ = true;
   if (identifier_) identifier_->setModes(modes_);
@@ -128,6 +129,12 @@ void Vibration::restIfNotFinite() noexcept {
 JointVector Vibration::displacement() const noexcept { return jointsOf(modes_, x_); }
 
 JointVector Vibration::velocity() const noexcept { return jointsOf(modes_, v_); }
+
+JointVector Vibration::displacementAfter(double step) const noexcept {
+  JointVector q = displacement() + std::clamp(step, 0.0, kShort) * velocity();
+  if (!(q.cwiseAbs().maxCoeff() < kSmall)) q.setZero();
+  return q;
+}
 
 JointVector Vibration::acceleration() const noexcept { return jointsOf(modes_, modalAcceleration()); }
 

@@ -25,8 +25,9 @@ class Vibration {
  public:
   Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings);
 
-  /// Pose at the end of the step that advance() takes next. Finds new modes when a joint has moved far enough.
-  void setPose(const JointVector& position) noexcept;
+  /// Pose at the end of the step that advance() takes next, g_B: gravity in the root's axes [m/s2]. Finds new modes
+  /// when a joint has moved far enough.
+  void setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
   /// At rest without load, as after a gap in the samples; the next setPose() finds new modes.
   void rest() noexcept;
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
@@ -54,11 +55,14 @@ class Vibration {
   bool known() const noexcept { return modes_.count > 0; }
   JointVector displacement() const noexcept;  ///< [rad], zero for held joints
   JointVector velocity() const noexcept;      ///< [rad/s]
+  /// Displacement a short step [s] on, by the velocity [rad]; zero where it is no small vibration any more.
+  JointVector displacementAfter(double step) const noexcept;
   JointVector acceleration() const noexcept;  ///< [rad/s2]
   /// -M q'': what vibration adds to the static torque of the load, so that hammer + vibration = what the cylinders hold
   /// (K q + C q') for the joints that they hold, and likewise for the held ones [N m].
   JointVector torque() const noexcept;
   /// What the oil carries, K q + C q', and how fast that changes; of the readings where they are followed [N m, N m/s].
+  /// With the weight's share of K: the torque beside that of the weight where the vibration has taken it.
   struct OilTorque {
     JointVector now, rate;
   };

@@ -19,6 +19,13 @@ struct HullWrench {
   double torque_y{};  ///< about +y [N m]
 };
 
+inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {
+  return {a.force_x + b.force_x, a.force_z + b.force_z, a.torque_y + b.torque_y};
+}
+inline HullWrench operator*(double factor, const HullWrench& a) noexcept {
+  return {factor * a.force_x, factor * a.force_z, factor * a.torque_y};
+}
+
 /// Momentum of the moving links relative to the hull, axes of hammer_hull, angular momentum about D.
 /// The impulse of the wrench without weight over any interval between blows is minus its change (model.md 3); in a
 /// hull that moves, that of the wrench without frameWrench, in the hull's axes.

@@ -40,7 +40,7 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
   motion_ = {zero, zero, zero};
   torque_ = {zero, zero, zero};
   state_.frequency.resize(0), state_.frequency_deviation.resize(0), state_.damping.resize(0);
-  state_.contact_torque = zero;
+  state_.contact_torque = beside_modes_ = zero;
   state_.deviations = unknownDeviations(boom_.chain().joints());
   state_.reduced = {kInfinity, kInfinity};
   state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
@@ -73,17 +73,17 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     ++faults_;
     return state_;
   }
-  held_.follow(motion_, seconds(sample.stamp - last_stamp_));
+  const double since = seconds(sample.stamp - last_stamp_);
   const Eigen::Vector3d g_B = gravityInRoot(sample.gravity, base_);
   if (follow_vibration_) {
     const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
     const bool continued = swung || (known_ && step.count > 0);
-    if (!continued) boom_.vibration().rest(), spread_.rest();
-    boom_.moveCompliant(takesCompliant() ? held_.motion() : motion_, g_B);
+    if (!continued) boom_.vibration().rest(), spread_.rest(), beside_modes_.setZero();
+    pose(since, g_B);
     spread_.follow(boom_.vibration());
     followContact(sample.stamp);
-    if (continued && !swung) vibrate(step, spreadWithRock(sample.spread));
-    observe(sample, seconds(sample.stamp - last_stamp_));
+    if (continued && !swung) vibrate(step, sample.displaced_links, spreadWithRock(sample.spread));
+    observe(sample, since);
   } else {
     boom_.move(motion_, g_B);
   }
@@ -95,10 +95,23 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   return state_;
 }
 
+/// Joint sensors see the vibration too; what is left without it is the operator's.
+void BoomFollower::pose(double since, const Eigen::Vector3d& g_B) noexcept {
+  JointMotion operated = motion_;
+  operated.position -= boom_.vibration().displacementAfter(since);
+  held_.follow(operated, since);
+  if (takesCompliant()) {
+    boom_.moveVibrating(held_.motion(), since, g_B);
+  } else {
+    boom_.moveCompliant(motion_, g_B);
+  }
+}
+
 void BoomFollower::findLoads(const BoomSample& sample) noexcept {
-  const Wrench w_tip = onTip(sample.motion_wrench);
   const bool rigid = !state_.choice.compliant;
+  const Wrench w_tip = onTip(rigid ? sample.motion_wrench : sample.motion_wrench + sample.displaced_links);
   boom_.loads(w_tip, rigid, state_.loads);
+  if (!rigid) beside_modes_ = state_.loads.vibration - boom_.vibration().torque();
   takeMeasured(sample);
   boom_.steelLoads({w_tip.force + state_.contact.force, w_tip.torque + state_.contact.torque}, rigid, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
@@ -222,17 +235,30 @@ LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
   return errors;
 }
 
-void BoomFollower::vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept {
+/// displaced_links: at the step's end; on a line from the last ones.
+void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displaced_links,
+                           const WrenchSpread& spread) noexcept {
   const LoadSpread errors = boom_.spreadTorque(spread);
+  const auto torqueOf = [this](const HullWrench& motion, const HullWrench& displaced) {
+    return JointVector(boom_.hammerTorque(onTip(motion + displaced)) + beside_modes_);
+  };
+  const double length = step.length();
+  double end = 0.0;
+  HullWrench from = displaced_links_;
   for (std::size_t i = 0; i < step.count; ++i) {
     const SmoothPiece& piece = step.pieces[i];
-    torque_.from = boom_.hammerTorque(onTip(piece.from));
-    torque_.to = boom_.hammerTorque(onTip(piece.to));
-    torque_.mean = boom_.hammerTorque(onTip(piece.mean));
+    end += piece.duration;
+    const double part = length > 0.0 ? end / length : 1.0;
+    const HullWrench to = (1.0 - part) * displaced_links_ + part * displaced_links;
+    torque_.from = torqueOf(piece.from, from);
+    torque_.to = torqueOf(piece.to, to);
+    torque_.mean = torqueOf(piece.mean, 0.5 * (from + to));
+    from = to;
     boom_.vibration().advance(piece.duration, torque_);
     spread_.advance(piece.duration, torque_, errors);
     if (piece.ends_in_blow) strike(piece.blow);
   }
+  displaced_links_ = displaced_links;
 }
 
 void BoomFollower::strike(const HullWrench& impulse) noexcept {
@@ -256,7 +282,7 @@ void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
   freely.count = 1;
   state_.at_blow.reset();
   freely.pieces[0].duration = seconds(stamp - last_stamp_);
-  vibrate(step.count > 0 ? step : freely, {});
+  vibrate(step.count > 0 ? step : freely, displaced_links_, {});
   last_stamp_ = stamp;
   state_.stamp = stamp;
   fillVibration();

@@ -29,6 +29,7 @@ struct BoomSample {
   double gravity{};          ///< [m/s2]
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
+  HullWrench displaced_links;       ///< DisplacedLinks, at the sample; counts for a boom that vibrates
 };
 
 /// Why the boom is taken as rigid or compliant.
@@ -110,8 +111,9 @@ class BoomFollower {
  private:
   static Wrench onTip(const HullWrench& w) noexcept;
   bool takesCompliant() const noexcept;
-  void vibrate(const WrenchHistory& step, const WrenchSpread& spread) noexcept;
+  void vibrate(const WrenchHistory& step, const HullWrench& displaced_links, const WrenchSpread& spread) noexcept;
   void strike(const HullWrench& impulse) noexcept;
+  void pose(double since, const Eigen::Vector3d& g_B) noexcept;
   void findLoads(const BoomSample& sample) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
   void weighUnexplained(const ImuReading& reading, double step) noexcept;
@@ -139,6 +141,8 @@ class BoomFollower {
   BoomState state_;
   JointMotion motion_;
   TorqueStep torque_;
+  HullWrench displaced_links_;     ///< at the last sample
+  JointVector beside_modes_;       ///< torque of inertia that modes of one pose leave out: its change by the vibration
   std::optional<InPlaneTip> tip_;  ///< at the sample; none: the rock's force is not measured
   double unexplained_{};           ///< mean square of the force along z that would explain the IMU's readings [N2]
   double least_contact_{};         ///< along z: less is none [N]

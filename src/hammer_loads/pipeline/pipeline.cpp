@@ -22,6 +22,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
     : mechanism_(mechanism),
       settings_(settings),
       model_(mechanism_, settings.level),
+      displaced_links_(model_),
       crank_(model_, settings_, make),
       hull_(settings_, boom),
       turn_(model_, crank_.step(), crank_.tracker()),
@@ -99,8 +100,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   const HullWrench wrench = hullWrench(model_, motion, hull_.motion().motion);
   if (!isPlausible(wrench)) return withhold(Refusal::kImplausible);
   result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
-  result_.beside_blow = !crank_.tracker().readingShowsSide() &&
-                        isBesideBlow(result_.crank, std::sqrt(result_.crank_covariance(0, 0)));
+  result_.beside_blow =
+      !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, std::sqrt(result_.crank_covariance(0, 0)));
   followBoom();
   hullMovedAtBlow();
   hull_.vibrates(result_.boom);
@@ -155,11 +156,13 @@ void Pipeline::followBoom() noexcept {
   result_.boom = nullptr;
   if (!boom_) return;
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
-  const HullWrench motion = motionWrench(model_, drive, motionOf(result_.crank));
+  const CrankMotion crank = motionOf(result_.crank);
+  const HullWrench motion = motionWrench(model_, drive, crank);
+  const HullWrench displaced = displaced_links_.wrench(crank, hull_.motion().motion);
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, result_.crank_covariance);
-  result_.boom =
-      &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp)}, step);
+  result_.boom = &boom_->sample(
+      {result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp), displaced}, step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i)
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);

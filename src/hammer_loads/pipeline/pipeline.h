@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/hammer/displaced_links.h"
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/crank_follower.h"
 #include "hammer_loads/pipeline/hull_state.h"
@@ -64,6 +65,7 @@ class Pipeline {
   Mechanism mechanism_;
   PipelineSettings settings_;
   HullModel model_;
+  DisplacedLinks displaced_links_;
   CrankFollower crank_;
   HullState hull_;
   TurnFollower turn_;

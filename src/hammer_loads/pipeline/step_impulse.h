@@ -43,11 +43,4 @@ LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, con
 /// WrenchHistory holds are left out (a step of several turns).
 WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept;
 
-inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {
-  return {a.force_x + b.force_x, a.force_z + b.force_z, a.torque_y + b.torque_y};
-}
-inline HullWrench operator*(double factor, const HullWrench& a) noexcept {
-  return {factor * a.force_x, factor * a.force_z, factor * a.torque_y};
-}
-
 }  // namespace hammer_loads

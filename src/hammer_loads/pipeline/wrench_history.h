@@ -22,6 +22,12 @@ struct SmoothPiece {
 struct WrenchHistory {
   std::size_t count{};
   std::array<SmoothPiece, 5> pieces;
+
+  double length() const noexcept {  ///< [s]
+    double sum = 0.0;
+    for (std::size_t i = 0; i < count; ++i) sum += pieces[i].duration;
+    return sum;
+  }
 };
 
 }  // namespace hammer_loads

@@ -1,0 +1,24 @@
+/// What the moving links add to a hull whose mass holds them where they are on average.
+#pragma once
+
+#include "hammer_loads/hammer/hammer_model.h"
+
+namespace hammer_loads {
+
+/// A robot description's hull includes the mass and the inertia of the moving links at the mean of their places over a
+/// turn. This is the rest: their weight and what the hull's motion does to them (frameWrench) where they are, less the
+/// same at that mean. Refers to the model, which must outlive it.
+class DisplacedLinks {
+ public:
+  explicit DisplacedLinks(const HullModel& model);
+
+  /// ON the hull about D, axes of hammer_hull. No allocation.
+  HullWrench wrench(const CrankMotion& crank, const HullMotion& hull) const noexcept;
+
+ private:
+  const HullModel* model_;
+  HullWrench by_gravity_x_, by_gravity_z_;  ///< mean over a turn per gravity [kg, kg m]
+  HullWrench by_acceleration_, by_square_;  ///< and per turning acceleration and square of the rate [kg m, kg m2]
+};
+
+}  // namespace hammer_loads
