@@ -319,7 +319,11 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   }
   S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
   state_.segment(first, n) += gain_S.head(n) * (difference / S);
-  for (int i = 0; i < n; ++i) covariance_.col(first + i).segment(first, n) -= gain_S.head(n) * (gain_S[i] / S);
+  for (int i = 0; i < n; ++i) {
+    double* column = &covariance_(first, first + i);
+    const double part = gain_S[i] / S;
+    for (int j = 0; j < n; ++j) column[j] -= part * gain_S[j];
+  }
   if (learns_ && !explains_) forgetOil();
   if (!state_.segment(first, n).allFinite()) return startAnew();
   if (learns_) useOil();
