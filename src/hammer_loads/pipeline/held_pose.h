@@ -14,7 +14,7 @@ namespace hammer_loads {
 /// 2 s after that and 1 s after the start the joints count as they are measured. No allocation.
 class HeldPose {
  public:
-  /// The joints as they are measured, a step [s] after the call before.
+  /// The joints as they are measured, less the vibration as far as it is known, a step [s] after the call before.
   void follow(const JointMotion& measured, double step) noexcept;
   /// A blow was struck in the last step.
   void struck() noexcept;
