@@ -55,7 +55,9 @@ Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
 }
 
 Wrench BoomFollower::wrenchAtLink(int link, const HullWrench& load) const noexcept {
-  return hammer_loads::wrenchAtLink(boom_.pose(), link, onTip(load));
+  ChainPose pose;  // as whoever follows the joints' sensors has it
+  forwardKinematics(boom_.chain(), motion_.position, pose);
+  return hammer_loads::wrenchAtLink(pose, link, onTip(load));
 }
 
 bool BoomFollower::takesCompliant() const noexcept {

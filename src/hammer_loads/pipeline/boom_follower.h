@@ -96,7 +96,7 @@ class BoomFollower {
 
   /// Index in the chain, for wrenchAtLink(); nothing for what is another TF frame.
   std::optional<int> linkIndex(const std::string& link) const noexcept { return boom_.chain().linkIndex(link); }
-  /// A load on the hull about D at the origin of a link, its axes, at the last sample's pose.
+  /// A load on the hull about D at the origin of a link, its axes, at the last sample's pose by the joints' sensors.
   Wrench wrenchAtLink(int link, const HullWrench& load) const noexcept;
 
   const BoomState& state() const noexcept { return state_; }

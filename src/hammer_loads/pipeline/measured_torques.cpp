@@ -13,22 +13,23 @@ constexpr double kLongestLine = 0.02;  // beyond a reading [s]
 
 }  // namespace
 
-/// oil: of the vibration at the reading, after it was taken and as it was said before.
-void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double oil, double oil_before) noexcept {
+/// model: at the reading, after it was taken and as it was said before.
+void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept {
   const double step = seconds(stamp - track.stamp);
   if (track.readings > 0 && step > 0.0) {
     const double change = torque - track.torque;
-    track.oil_square += kShare * (square(change - (oil_before - track.oil)) - track.oil_square);
+    track.oil_square += kShare * (square(change - (model_before - track.model)) - track.oil_square);
     track.line_square += kShare * (square(change - step * track.slope) - track.line_square);
     track.slope = change / step;
   }
-  track.stamp = stamp, track.torque = torque, track.oil = oil;
+  track.stamp = stamp, track.torque = torque, track.model = model;
 }
 
 void MeasuredTorques::follow(const Boom& boom, const JointVector& position, const JointVector& steady, StampNs sample,
                              const CylinderPressures& pressures) noexcept {
-  const Vibration::OilTorque oil = boom.vibration().oilTorque();
-  if (oil_.now.size() != oil.now.size()) oil_ = oil, sample_ = sample;
+  Vibration::OilTorque model = boom.vibration().oilTorque();
+  model.now += steady;
+  if (model_.now.size() != model.now.size()) model_ = model, sample_ = sample;
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
@@ -42,18 +43,18 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       continue;
     }
     if (pressures.count(i) != track.readings) {
-      const double before = oil_.now[j] + seconds(stamp - sample_) * oil_.rate[j];
-      const double now = oil.now[j] + seconds(stamp - sample) * oil.rate[j];
-      take(track, stamp, -forceOf(cylinder, *read) * at.arm - steady[j], now, before);
+      const double before = model_.now[j] + seconds(stamp - sample_) * model_.rate[j];
+      const double now = model.now[j] + seconds(stamp - sample) * model.rate[j];
+      take(track, stamp, -forceOf(cylinder, *read) * at.arm, now, before);
       track.readings = pressures.count(i);
     }
     const double age = std::min(seconds(sample - stamp), kLongestLine);
     const bool by_oil = track.oil_square <= track.line_square;
-    const double change = by_oil ? oil.now[j] - track.oil : age * track.slope;
+    const double change = by_oil ? model.now[j] - track.model : age * track.slope;
     const double off = std::sqrt(by_oil ? track.oil_square : track.line_square);
-    torque_[i] = Torque{steady[j] + track.torque + change, off, at};
+    torque_[i] = Torque{track.torque + change, off, at};
   }
-  oil_ = oil, sample_ = sample;
+  model_ = model, sample_ = sample;
 }
 
 }  // namespace hammer_loads

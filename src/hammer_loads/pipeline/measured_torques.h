@@ -30,16 +30,16 @@ class MeasuredTorques {
   struct Track {
     std::uint64_t readings{};            ///< taken
     StampNs stamp{};                     ///< of the last one
-    double torque{};                     ///< by it, less weight and motion [N m]
-    double oil{};                        ///< of the oil then, by the vibration that has taken it [N m]
+    double torque{};                     ///< by it [N m]
+    double model{};                      ///< of weight, motion and oil then, by the vibration that has taken it [N m]
     double slope{};                      ///< of the line through the last two [N m/s]
     double oil_square{}, line_square{};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
-  static void take(Track& track, StampNs stamp, double torque, double oil, double oil_before) noexcept;
+  static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
 
   std::array<Track, kMaxJoints> tracks_;
   std::array<std::optional<Torque>, kMaxJoints> torque_;
-  Vibration::OilTorque oil_;  ///< at the last sample
+  Vibration::OilTorque model_;  ///< with weight and motion, at the last sample
   StampNs sample_{};
 };
 
