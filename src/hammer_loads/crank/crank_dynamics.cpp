@@ -141,7 +141,7 @@ WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftSta
 /// Forward blows passed; total as in advancePiece().
 int advanceAll(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state, ShaftLoad& load,
                ShaftTransition* total) noexcept {
-  int blows = 0;
+  int blows = 0, creeping = 0;
   double left = dt;
   for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
     const double steps_needed = std::ceil(std::abs(left * state.speed) / kMaxStepAngle);
@@ -153,6 +153,7 @@ int advanceAll(const ShaftModel& model, double dt, const Passing& passing, Shaft
     ShaftTransition unused = ShaftTransition::Identity();
     passBlow(model, dt > 0.0 ? passing.factor : 1.0 / passing.factor, state, load, total != nullptr ? *total : unused);
     blows += strikes;
+    if (std::abs(state.speed) < kCreeping && ++creeping == kMostCreepingPasses) break;
   }
   return blows;
 }
@@ -181,8 +182,7 @@ void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLo
   const double before = at(from);
   state.speed *= k;
   const double after = at(from == Side::kBeforeBlow ? Side::kAfterBlow : Side::kBeforeBlow);
-  constexpr double kSlow = 1.0;  // [rad/s]: a crank that creeps over the blow has no defined instant of passing it
-  const double jump = std::abs(speed) > kSlow ? (after - k * before) / speed : 0.0;
+  const double jump = std::abs(speed) > kCreeping ? (after - k * before) / speed : 0.0;
   total.row(1) = k * total.row(1) + jump * total.row(0);
   total.row(0) *= k;
   total(1, 4) += speed > 0.0 ? speed : 0.0;

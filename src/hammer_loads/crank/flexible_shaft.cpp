@@ -161,7 +161,7 @@ double motorAcceleration(const Coupling& coupling, const ShaftLoad& load, const 
 int advanceFlexible(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
                     FlexibleMatrix* total) noexcept {
   const double rate = 2.0 * kPi * model.coupling()->frequency * std::exp(0.5 * state.log_stiffness);
-  int blows = 0;
+  int blows = 0, creeping = 0;
   double left = dt;
   for (int i = 0; i < kMaxSteps && left != 0.0; ++i) {
     const double needed =
@@ -172,6 +172,7 @@ int advanceFlexible(const ShaftModel& model, double dt, const Passing& passing, 
     if (!piece.at_blow) continue;
     blows += state.speed > 0.0;
     passBlowFlexible(model, dt > 0.0 ? passing.factor : 1.0 / passing.factor, state, total);
+    if (std::abs(state.speed) < kCreeping && ++creeping == kMostCreepingPasses) break;
   }
   return blows;
 }
@@ -189,8 +190,7 @@ void passBlowFlexible(const ShaftModel& model, double factor, ShaftState& state,
   const auto [before, motor_before] = at(from);
   state.speed *= k;
   const auto [after, motor_after] = at(from == Side::kBeforeBlow ? Side::kAfterBlow : Side::kBeforeBlow);
-  constexpr double kSlow = 1.0;  // [rad/s]: a crank that creeps over the blow has no defined instant of passing it
-  const double inv = std::abs(speed) > kSlow ? 1.0 / speed : 0.0;
+  const double inv = std::abs(speed) > kCreeping ? 1.0 / speed : 0.0;
   const double jump = (after - k * before) * inv, motor_jump = (motor_after - motor_before) * inv;
   state.position.angle.offset = k * beyond;
   state.twist = motor_angle - state.position.angle.offset;
