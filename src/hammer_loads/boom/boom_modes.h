@@ -12,8 +12,8 @@ namespace hammer_loads {
 /// Small vibration about a pose, M q'' + C q' + K q = Q: M from the chain, K from the cylinders and the weight, C by
 /// one damping ratio for every mode. Joints without a cylinder are held. Modes in the order of their frequencies.
 ///
-/// Neglects: flexibility of links, pins, machine and ground; that the cylinders' pre-load turns with them (EO-2621: 0.2
-/// % of a stiffness); oil moving between chambers (valves shut).
+/// Neglects: flexibility of links, pins, machine and ground; that the cylinders' pre-load turns with them (0.2 % of a
+/// stiffness of the EO-2621); oil moving between chambers (valves shut).
 struct BoomModes {
   int count{};                          ///< modes = joints with a cylinder; 0 at a dead centre or without inertia
   bool dead_centre{};                   ///< some cylinder does not hold its joint: there are no modes

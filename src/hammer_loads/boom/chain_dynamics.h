@@ -25,8 +25,8 @@ class ChainDynamics {
   /// Mass matrix M(q) [kg m2], symmetric, positive definite. KDL's composite rigid bodies, its arrays made once.
   JointMatrix massMatrix(const JointVector& position) noexcept;
 
-  /// What the weight adds to a stiffness about a pose, minus the derivative of jointTorqueOfWeight(): symmetric [N
-  /// m/rad].
+  /// The weight's part of a stiffness about a pose, minus the derivative of jointTorqueOfWeight(): symmetric
+  /// [N m/rad].
   JointMatrix weightStiffness(const JointVector& position, const Eigen::Vector3d& g_B) const noexcept;
 
  private:

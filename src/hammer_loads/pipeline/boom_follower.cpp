@@ -113,6 +113,7 @@ void BoomFollower::findLoads(const BoomSample& sample) noexcept {
   const bool rigid = !state_.choice.compliant;
   const Wrench w_tip = onTip(rigid ? sample.motion_wrench : sample.motion_wrench + sample.displaced_links);
   boom_.loads(w_tip, rigid, state_.loads);
+  beside_modes_.setZero();
   if (!rigid) beside_modes_ = state_.loads.vibration - boom_.vibration().torque();
   takeMeasured(sample);
   boom_.steelLoads({w_tip.force + state_.contact.force, w_tip.torque + state_.contact.torque}, rigid, state_.steel);
@@ -284,6 +285,7 @@ void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
   freely.count = 1;
   state_.at_blow.reset();
   freely.pieces[0].duration = seconds(stamp - last_stamp_);
+  beside_modes_.setZero();  // no loads are found that would tell it
   vibrate(step.count > 0 ? step : freely, displaced_links_, {});
   last_stamp_ = stamp;
   state_.stamp = stamp;
