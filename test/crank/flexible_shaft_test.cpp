@@ -8,6 +8,7 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <cmath>
 
+#include "hammer_loads/crank/way_piece.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -37,6 +38,27 @@ class FlexibleShaft : public testing::Test {
 
   Mechanism mechanism_{test::mechanismOf(test::mo100LinkageParameters())};
 };
+
+/// As a rigid one, see CrankDynamics.
+TEST_F(FlexibleShaft, WhereBothSidesPushItBackItPassesAFewTimesOnly) {
+  const ShaftModel model = modelOf({50.0, 0.2, 0.03, 0.0, 0.0});
+  int most = 0;
+  for (const Side side : {Side::kBeforeBlow, Side::kAfterBlow}) {
+    for (const double torque : {-100.0, -52.0, -10.0, 10.0, 52.0}) {
+      for (const double speed : {-0.1, -0.0158, 0.0158, 0.1}) {
+        for (const double dt : {-0.02, 0.005, 0.02}) {
+          ShaftState s{{0, {0.0, side}}, speed, torque, kDrive};
+          s.motor_speed = speed;
+          const int blows = advanceFlexible(model, dt, {}, s, nullptr);
+          EXPECT_LE(blows, kMostCreepingPasses);
+          EXPECT_TRUE(std::isfinite(s.speed));
+          most = std::max(most, blows);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(most, kMostCreepingPasses) << "what there is to bound";
+}
 
 /// Independent: both equations of motion with the coupling's constants from its frequency, the inertia's slope by
 /// differences, by boost.odeint. Tolerances: 2e-3 of the twist after ten oscillations, whose phase is wrong by 1e-4 a
