@@ -39,8 +39,9 @@ class NodeSession:
         self.wrenches = []
         self.subscriber = rospy.Subscriber(node + '/hull_wrench', WrenchStamped, self.wrenches.append, queue_size=None,
                                            tcp_nodelay=True)
-        self.crank = rospy.Publisher(crank, JointState, queue_size=100000)
-        self.joints = rospy.Publisher(joints, JointState, queue_size=10000)
+        # Without queues, so that neither topic's thread can fall behind the other's.
+        self.crank = rospy.Publisher(crank, JointState, queue_size=None)
+        self.joints = rospy.Publisher(joints, JointState, queue_size=None)
         assert self.connected(), 'the node must be there'
 
     def connected(self):
