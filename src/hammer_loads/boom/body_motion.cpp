@@ -16,16 +16,9 @@ RigidBody bodyOf(const KDL::Segment& segment) {
   return body;
 }
 
-}  // namespace
-
-std::vector<RigidBody> bodiesOf(const Chain& chain) {
-  std::vector<RigidBody> bodies(1);
-  for (const KDL::Segment& segment : chain.kdl().segments) bodies.push_back(bodyOf(segment));
-  return bodies;
-}
-
+/// root_acceleration: against gravity it stands for the weight.
 void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
-                 const Eigen::Vector3d& root_acceleration, BodyMotions& result) noexcept {
+                 const Eigen::Vector3d& root_acceleration, std::array<BodyMotion, kMaxLinks>& result) noexcept {
   result[0] = {};
   result[0].acceleration = root_acceleration;
   for (int i = 1; i < chain.links(); ++i) {
@@ -46,6 +39,36 @@ void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& m
       now.angular_acceleration += acceleration + before.rate.cross(velocity);
     }
   }
+}
+
+}  // namespace
+
+std::vector<RigidBody> bodiesOf(const Chain& chain) {
+  std::vector<RigidBody> bodies(1);
+  for (const KDL::Segment& segment : chain.kdl().segments) bodies.push_back(bodyOf(segment));
+  return bodies;
+}
+
+void findChainLoads(const Chain& chain, const std::vector<RigidBody>& bodies, const ChainPose& pose,
+                    const JointMotion& motion, const Eigen::Vector3d& g_B, ChainLoads& result) noexcept {
+  findMotions(chain, pose, motion, -g_B, result.motion);
+  Wrench load;
+  for (int i = chain.links() - 1; i > 0; --i) {
+    const auto here = static_cast<std::size_t>(i);
+    load = load + bodyLoad(bodies[here], pose.link(i), result.motion[here]);
+    result.beyond[here] = load;
+  }
+}
+
+JointVector jointTorque(const Chain& chain, const ChainPose& pose, const ChainLoads& loads) noexcept {
+  JointVector torque(pose.joints);
+  for (int j = 0; j < pose.joints; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    const Wrench& load = loads.beyond[static_cast<std::size_t>(chain.linkBeyond(j))];
+    torque[j] = pose.prismatic[i] ? pose.axis_B[i].dot(load.force)
+                                  : pose.axis_B[i].dot(load.torque - pose.p_BJ_B[i].cross(load.force));
+  }
+  return torque;
 }
 
 Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion) noexcept {

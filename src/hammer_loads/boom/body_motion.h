@@ -20,16 +20,22 @@ struct BodyMotion {
   }
 };
 
-/// Of each link, index as in Chain.
-using BodyMotions = std::array<BodyMotion, kMaxLinks>;
-
-/// root_acceleration: of the chain's root [m/s2]; against gravity it stands for the weight. No allocation.
-void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
-                 const Eigen::Vector3d& root_acceleration, BodyMotions& result) noexcept;
+/// Index of links as in Chain; the root has no load: its own goes into the ground.
+struct ChainLoads {
+  std::array<BodyMotion, kMaxLinks> motion;  ///< accelerations less gravity
+  std::array<Wrench, kMaxLinks> beyond;      ///< by inertia and weight of a link and all beyond it, in the root's frame
+};
 
 /// Mass and inertia of each link with what is fixed to it beside the chain; the root has none: its own load goes into
 /// the ground.
 std::vector<RigidBody> bodiesOf(const Chain& chain);
+
+/// bodies: of bodiesOf(); g_B: gravity in the root's axes [m/s2]. No allocation.
+void findChainLoads(const Chain& chain, const std::vector<RigidBody>& bodies, const ChainPose& pose,
+                    const JointMotion& motion, const Eigen::Vector3d& g_B, ChainLoads& result) noexcept;
+
+/// Of inertia and weight on the joints, positive drives the joint forward [N m] ([N] for a prismatic one).
+JointVector jointTorque(const Chain& chain, const ChainPose& pose, const ChainLoads& loads) noexcept;
 
 /// Of a body's inertia, in the root's frame.
 Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion) noexcept;

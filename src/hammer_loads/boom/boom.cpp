@@ -116,11 +116,10 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
       steel_(chain, cylinders_, std::move(sections)) {
   const JointVector zero = JointVector::Zero(chain.joints());
   const Eigen::Index joints = chain.joints(), held = static_cast<Eigen::Index>(cylinders_.size());
-  response_.setZero(7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * held, held + 6);
+  const Eigen::Index rows = 7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * held;
+  response_.setZero(rows + kRowsAtOnce - rows % kRowsAtOnce, held + 6);
   response_in_plane_.setZero(response_.rows(), held + 3);
   rows_in_plane_.setZero(response_.rows());
-  difference_.setZero(response_.rows(), VibrationSpread::kMaxRuns);
-  square_.setZero(response_.rows());
   deviation_.setZero(response_.rows());
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
@@ -168,14 +167,20 @@ JointMotion Boom::vibratingMotion() const noexcept {
   return motion;
 }
 
-bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
+ChainLoads Boom::chainLoads(bool rigid) const noexcept {
+  ChainLoads links;
+  dynamics_.chainLoads(pose_, rigid ? joints_ : vibratingMotion(), g_B_, links);
+  return links;
+}
+
+bool Boom::loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomLoads& result) const noexcept {
   result.hammer = hammerTorque(w_tip);
   result.weight = weight_;
   result.motion = motion_;
-  if (rigid) {
+  if (rigid || vibration_.rests()) {
     result.vibration.setZero(chain_.joints());
   } else {
-    result.vibration = dynamics_.torqueOfMotion(pose_, vibratingMotion()) - motion_;
+    result.vibration = jointTorque(chain_, pose_, links) - weight_ - motion_;
   }
   result.total = result.hammer + result.weight + result.motion + result.vibration;
   bool finite = result.total.allFinite();
@@ -188,8 +193,8 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexc
   return finite;
 }
 
-bool Boom::steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
-  return steel_.find({pose_, rigid ? joints_ : vibratingMotion(), g_B_, w_tip, at_.data()}, result);
+bool Boom::steelLoads(const Wrench& w_tip, const ChainLoads& links, SteelLoads& result) const noexcept {
+  return steel_.find({pose_, links, w_tip, at_.data()}, result);
 }
 
 RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {

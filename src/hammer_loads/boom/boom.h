@@ -102,13 +102,21 @@ class Boom {
   /// Along a unit vector in the tip's axes, at the pose of the modes.
   ReducedHull reducedHull(const Eigen::Vector3d& direction) const noexcept;
 
+  /// What inertia and weight of the links make of the present motion; rigid: without vibration.
+  ChainLoads chainLoads(bool rigid) const noexcept;
   /// w_tip: load of the hammer on the tip from the motion of its moving links relative to the hull. Not their weight
-  /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. rigid: without
-  /// vibration. False: the input is so large that a result is not finite and must not be used; a cylinder at its dead
-  /// centre does not count as that.
-  bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept;
-  /// What the steel carries, with w_tip and rigid as for loads(), and with the same cylinders' forces. False: as there.
-  bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept;
+  /// nor what the boom's motion does to them: the hull's mass in the description includes theirs. links: of
+  /// chainLoads(rigid), found here where they are not given. False: the input is so large that a result is not finite
+  /// and must not be used; a cylinder at its dead centre does not count as that.
+  bool loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomLoads& result) const noexcept;
+  bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
+    return loads(w_tip, rigid, chainLoads(rigid), result);
+  }
+  /// What the steel carries, likewise and with the same cylinders' forces.
+  bool steelLoads(const Wrench& w_tip, const ChainLoads& links, SteelLoads& result) const noexcept;
+  bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
+    return steelLoads(w_tip, chainLoads(rigid), result);
+  }
   /// Joint torques of the errors of a load: what VibrationSpread::advance() takes.
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
   /// How far loads() and steelLoads() may be off by the hammer's load and, unless rigid, the oil. Not by masses,
@@ -152,7 +160,8 @@ class Boom {
   std::array<CylinderPosition, kMaxJoints> at_;
 
   JointMotion vibratingMotion() const noexcept;
-  using Shares = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints + 6, VibrationSpread::kMaxRuns>;
+  /// A column for each error, zeros for those that are not there.
+  using Shares = Eigen::Matrix<double, Eigen::Dynamic, VibrationSpread::kMaxRuns, Eigen::RowMajor, kMaxJoints + 6>;
   void findResponse() noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void gatherRowsInPlane() noexcept;
@@ -161,15 +170,15 @@ class Boom {
   void takeDeviations(BoomDeviations& result) const noexcept;
   /// Columns: accelerations of the cylinders' joints, then of the load on the tip what lies in the boom's plane, then
   /// what lies across it. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces on their
-  /// rods' pins.
+  /// rods' pins; then zeros, one at least, up to a multiple of kRowsAtOnce.
   Eigen::MatrixXd response_;
+  static constexpr Eigen::Index kRowsAtOnce = 2;
   /// Without the columns across the plane, and without the rows, half of all, that are zero then.
   Eigen::MatrixXd response_in_plane_;
-  Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them
+  Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them; then the last, a zero
   Eigen::Index in_plane_{};
-  JointVector response_at_;             ///< steady_position_ where it belongs; NaN: nowhere yet
-  Eigen::MatrixXd difference_;          ///< a column for each error
-  Eigen::VectorXd square_, deviation_;  ///< one entry a row
+  JointVector response_at_;    ///< steady_position_ where it belongs; NaN: nowhere yet
+  Eigen::VectorXd deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

@@ -42,6 +42,8 @@ void Boom::gatherRowsInPlane() noexcept {
   Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxJoints + 3> least(columns);
   for (Eigen::Index c = 0; c < columns; ++c) least[c] = kRounded * response_.col(c).cwiseAbs().maxCoeff();
   in_plane_ = 0;
+  response_in_plane_.setZero();
+  rows_in_plane_.setConstant(static_cast<int>(response_.rows()) - 1);
   for (Eigen::Index row = 0; row < response_.rows(); ++row) {
     const auto in_plane = response_.row(row).head(columns);
     if ((in_plane.array().abs() <= least).all()) continue;
@@ -58,24 +60,27 @@ void Boom::findResponse() noexcept {
   const JointVector zero = JointVector::Zero(joints);
   const Eigen::Vector3d weightless = Eigen::Vector3d::Zero(), none = weightless;
   SteelLoads load;
+  ChainLoads links;
   JointMotion motion{joints_.position, zero, zero};
   Eigen::Index column = 0;
   for (const Cylinder& cylinder : cylinders_) {
     motion.acceleration = JointVector::Unit(joints, cylinder.joint());
-    steel_.find({pose_, motion, weightless, {none, none}, at_.data()}, load);
-    storeResponse(column++, dynamics_.torqueOfMotion(pose_, motion), load);
+    dynamics_.chainLoads(pose_, motion, weightless, links);
+    steel_.find({pose_, links, {none, none}, at_.data()}, load);
+    storeResponse(column++, jointTorque(chain_, pose_, links), load);
   }
   motion.acceleration = zero;
+  dynamics_.chainLoads(pose_, motion, weightless, links);
   for (int k = 0; k < 6; ++k) {
     const Wrench unit = k < 3 ? wrenchOf(Eigen::Vector3d::Unit(k), none) : wrenchOf(none, Eigen::Vector3d::Unit(k - 3));
-    steel_.find({pose_, motion, weightless, unit, at_.data()}, load);
+    steel_.find({pose_, links, unit, at_.data()}, load);
     storeResponse(column++, hammerTorque(unit), load);
   }
   gatherRowsInPlane();
 }
 
 Boom::Shares Boom::sharesOf(const LoadErrors& errors) const noexcept {
-  Shares shares(response_.cols(), static_cast<Eigen::Index>(errors.count));
+  Shares shares = Shares::Zero(response_.cols(), VibrationSpread::kMaxRuns);
   const auto held = static_cast<Eigen::Index>(cylinders_.size());
   for (std::size_t run = 0; run < errors.count; ++run) {
     auto share = shares.col(static_cast<Eigen::Index>(run));
@@ -92,20 +97,23 @@ void Boom::sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDevia
   const bool in_plane = shares.bottomRows<3>().isZero(0.0);
   const Eigen::MatrixXd& response = in_plane ? response_in_plane_ : response_;
   const Eigen::Index rows = in_plane ? in_plane_ : response.rows();
-  auto square = square_.head(rows);
-  square.setZero();
-  for (Eigen::Index run = 0; run < shares.cols(); ++run) {
-    auto difference = difference_.col(run).head(rows);
-    difference.setZero();
-    for (Eigen::Index c = 0; c < response.cols(); ++c)
-      if (shares(c, run) != 0.0) difference += shares(c, run) * response.col(c).head(rows);
-    square += difference.cwiseAbs2();
+  if (in_plane) deviation_.setZero();
+  using Rows = Eigen::Array<double, kRowsAtOnce, 1>;
+  for (Eigen::Index first = 0; first < rows; first += kRowsAtOnce) {
+    std::array<Rows, VibrationSpread::kMaxRuns> difference;
+    difference.fill(Rows::Zero());
+    for (Eigen::Index c = 0; c < response.cols(); ++c) {
+      const Rows by = response.col(c).segment<kRowsAtOnce>(first);
+      for (std::size_t run = 0; run < difference.size(); ++run)
+        difference[run] += shares(c, static_cast<Eigen::Index>(run)) * by;
+    }
+    Rows sum = Rows::Zero();
+    for (const Rows& one : difference) sum += one.square();
+    if (first_two_exclude) sum -= difference[0].square().min(difference[1].square());
+    const Rows deviation = sum.sqrt();
+    for (Eigen::Index i = 0; i < kRowsAtOnce; ++i)
+      deviation_[in_plane ? rows_in_plane_[first + i] : first + i] = deviation[i];
   }
-  if (first_two_exclude)
-    square -= difference_.col(0).head(rows).cwiseAbs2().cwiseMin(difference_.col(1).head(rows).cwiseAbs2());
-  square = square.cwiseSqrt();
-  deviation_.setZero();
-  for (Eigen::Index row = 0; row < rows; ++row) deviation_[in_plane ? rows_in_plane_[row] : row] = square[row];
   takeDeviations(result);
 }
 

@@ -78,6 +78,11 @@ JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) 
   return force;
 }
 
+TorqueStep modalForces(const BoomModes& modes, const TorqueStep& joint_torque) noexcept {
+  return {modalForce(modes, joint_torque.from), modalForce(modes, joint_torque.to),
+          modalForce(modes, joint_torque.mean)};
+}
+
 JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept {
   JointVector joints = JointVector::Zero(modes.mass.rows());
   for (int i = 0; i < modes.count; ++i) {

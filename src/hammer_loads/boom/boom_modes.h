@@ -38,6 +38,7 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
 
 /// Modal forces of joint torques [N m] and the joint displacements or velocities that modal ones make, of all joints.
 JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) noexcept;
+TorqueStep modalForces(const BoomModes& modes, const TorqueStep& joint_torque) noexcept;
 JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept;
 /// Modal displacements or velocities of those of the joints; held joints do not count.
 JointVector modalOf(const BoomModes& modes, const JointVector& joints) noexcept;

@@ -2,8 +2,6 @@
 
 #include <kdl/chaindynparam.hpp>
 
-#include "hammer_loads/boom/body_motion.h"
-
 namespace hammer_loads {
 
 struct ChainDynamics::Solvers {
@@ -30,21 +28,15 @@ ChainDynamics& ChainDynamics::operator=(ChainDynamics&&) noexcept = default;
 
 JointVector ChainDynamics::torqueOfMotion(const ChainPose& pose, const JointMotion& motion) const noexcept {
   const Chain& chain = solvers_->chain;
-  JointVector torque = JointVector::Zero(chain.joints());
-  if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return torque;
-  BodyMotions links;
-  findMotions(chain, pose, motion, Eigen::Vector3d::Zero(), links);
-  Wrench load;
-  for (int i = chain.links() - 1; i > 0; --i) {
-    const auto here = static_cast<std::size_t>(i);
-    load = load + bodyLoad(solvers_->bodies[here], pose.link(i), links[here]);
-    const ChainLink& link = chain.link(i);
-    if (link.joint < 0) continue;
-    const auto j = static_cast<std::size_t>(link.joint);
-    torque[link.joint] = link.prismatic ? pose.axis_B[j].dot(load.force)
-                                        : pose.axis_B[j].dot(load.torque - pose.p_BJ_B[j].cross(load.force));
-  }
-  return torque;
+  if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return JointVector::Zero(chain.joints());
+  ChainLoads loads;
+  chainLoads(pose, motion, Eigen::Vector3d::Zero(), loads);
+  return jointTorque(chain, pose, loads);
+}
+
+void ChainDynamics::chainLoads(const ChainPose& pose, const JointMotion& motion, const Eigen::Vector3d& g_B,
+                               ChainLoads& result) const noexcept {
+  findChainLoads(solvers_->chain, solvers_->bodies, pose, motion, g_B, result);
 }
 
 /// Second derivatives of the weight's potential: a joint turns everything beyond it, or slides it, against gravity.

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "hammer_loads/boom/chain_pose.h"
+#include "hammer_loads/boom/body_motion.h"
 
 namespace hammer_loads {
 
@@ -21,6 +21,10 @@ class ChainDynamics {
   /// Positive drives the joint forward, as in jointTorqueOfTipLoad(). pose: of motion.position. Recursive Newton-Euler;
   /// nothing is computed at rest.
   JointVector torqueOfMotion(const ChainPose& pose, const JointMotion& motion) const noexcept;
+
+  /// What inertia and weight of the links make; g_B: gravity in the root's axes [m/s2].
+  void chainLoads(const ChainPose& pose, const JointMotion& motion, const Eigen::Vector3d& g_B,
+                  ChainLoads& result) const noexcept;
 
   /// Mass matrix M(q) [kg m2], symmetric, positive definite. KDL's composite rigid bodies, its arrays made once.
   JointMatrix massMatrix(const JointVector& position) noexcept;

@@ -78,28 +78,25 @@ JointVector ModeIdentifier::velocity() const noexcept {
 }
 
 JointMatrix ModeIdentifier::accelerationSpread() const noexcept {
-  constexpr int kEntries = kParts + 1;
-  std::array<std::array<double, kEntries>, kMaxJoints> row{};
-  const auto index = [](int mode, int entry) {
-    return entry == kParts ? kContact : at(mode, static_cast<Part>(entry));
-  };
+  const int own = 1 + kParts * count_;
+  std::array<Eigen::Matrix<double, kParts, 1>, kMaxJoints> row;  // of a mode's acceleration
   for (int k = 0; k < count_; ++k) {
     const Mode m = modeAt(k);
     const ModeState s = motion(k);
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
-    row[static_cast<std::size_t>(k)] = {-stiff, -damped, -2.0 * stiff * s.x - damped * s.v, -damped * s.v, contact_[k]};
+    row[static_cast<std::size_t>(k)] << -stiff, -damped, -2.0 * stiff * s.x - damped * s.v, -damped * s.v;
   }
   JointMatrix covariance(count_, count_);
-  for (int k = 0; k < count_; ++k) {
-    for (int l = 0; l < count_; ++l) {
-      covariance(k, l) = 0.0;
-      for (int i = 0; i < kEntries; ++i) {
-        for (int j = 0; j < kEntries; ++j)
-          covariance(k, l) += row[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] *
-                              covariance_(index(k, i), index(l, j)) *
-                              row[static_cast<std::size_t>(l)][static_cast<std::size_t>(j)];
-      }
+  for (int l = 0; l < count_; ++l) {
+    State with_l;  // covariance of all with the acceleration of l
+    with_l.segment(kContact, own) = contact_[l] * covariance_.col(kContact).segment(kContact, own);
+    for (int part : {kX, kV, kFrequency, kDamping}) {
+      const double by = row[static_cast<std::size_t>(l)][part];
+      with_l.segment(kContact, own) += by * covariance_.col(at(l, kX) + part).segment(kContact, own);
     }
+    for (int k = l; k < count_; ++k)
+      covariance(k, l) =
+          contact_[k] * with_l[kContact] + row[static_cast<std::size_t>(k)].dot(with_l.segment<kParts>(at(k, kX)));
   }
   for (int k = 0; k < count_; ++k) covariance(k, k) *= 1.0 + 1e-9;  // positive for all that is rounded
   const JointMatrix modal = covariance.llt().matrixL();
@@ -176,18 +173,16 @@ void ModeIdentifier::followContact(const JointVector& torque) noexcept {
   contact_ = modalForce(modes_, torque);
 }
 
-void ModeIdentifier::advance(double step, const TorqueStep& torque) noexcept {
+void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
-  const JointVector from = modalForce(modes_, torque.from), to = modalForce(modes_, torque.to);
-  const JointVector mean = modalForce(modes_, torque.mean);
   const double share = std::min(1.0, step / kForceMemory);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];
-    power += share * (square(mean[k]) - power);
-    advanceMode(k, step, {from[k], to[k], mean[k]});
+    power += share * (square(modal.mean[k]) - power);
+    advanceMode(k, step, {modal.from[k], modal.to[k], modal.mean[k]});
     walk(k, step);
   }
-  force_ = to;
+  force_ = modal.to;
   for (double& age : age_) age += step;
   if (follows_contact_) covariance_(kContact, kContact) += square(kContactWalk) * step;
   for (int i = begin(); i < begin() + states(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
@@ -220,9 +215,9 @@ void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) 
   // P F^T, its columns of displacement and velocity; P is symmetric.
   Eigen::Matrix<double, kMaxStates, 2> changed;
   for (int part : {kX, kV}) {
-    changed.col(part).segment(first, n) = F(part, kParts) * covariance_.col(kContact).segment(first, n);
-    for (int by_part : {kX, kV, kFrequency, kDamping})
-      changed.col(part).segment(first, n) += F(part, by_part) * covariance_.col(x + by_part).segment(first, n);
+    changed.col(part).segment(first, n) = F(part, kParts) * column(kContact) + F(part, kX) * column(x + kX) +
+                                          F(part, kV) * column(x + kV) + F(part, kFrequency) * column(x + kFrequency) +
+                                          F(part, kDamping) * column(x + kDamping);
   }
   const Eigen::Matrix2d own =
       F.leftCols<kParts>() * changed.middleRows<kParts>(x) + F.col(kParts) * changed.row(kContact);
@@ -308,7 +303,7 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   const State row = rowOf(channel, reading, predicted);
   const int first = begin(), n = states(), own = n - channels_;  // no row has another channel's offset
   State gain_S;
-  gain_S.head(n) = covariance_.col(offsetAt(channel)).segment(first, n);
+  gain_S.head(n) = column(offsetAt(channel));
   gain_S.head(n).noalias() += covariance_.block(first, kContact, n, own) * row.segment(kContact, own);
   double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise);
   const double difference = reading.value - predicted;

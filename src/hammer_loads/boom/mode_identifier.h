@@ -33,8 +33,8 @@ class ModeIdentifier {
   /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
   /// of the joints carry over.
   void setModes(const BoomModes& given) noexcept;
-  /// Over a step [s], as Vibration::advance().
-  void advance(double step, const TorqueStep& torque) noexcept;
+  /// Over a step [s], as Vibration::advance(), by its modal forces.
+  void advance(double step, const TorqueStep& modal) noexcept;
   /// As Vibration::strike().
   void strike(const JointVector& impulse) noexcept;
   /// Vibration unknown, as after a gap; what is known of frequencies and damping stays.
@@ -80,6 +80,8 @@ class ModeIdentifier {
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
   int begin() const noexcept { return kMaxChannels - channels_; }
   int states() const noexcept { return channels_ + 1 + kParts * count_; }
+  /// Covariances of a state with all that are in use.
+  auto column(int state) const noexcept { return covariance_.col(state).segment(begin(), states()); }
 
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;

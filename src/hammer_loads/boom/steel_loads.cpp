@@ -20,14 +20,13 @@ Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& R, const Wrench& 
 }  // namespace
 
 struct SteelLoadFinder::Working {
-  BodyMotions link;                         ///< less gravity
   std::array<Wrench, kMaxLinks> beyond;     ///< hammer, weight, inertia of this link and all beyond
   std::array<Wrench, kMaxJoints> cylinder;  ///< ON the link beyond, by each cylinder
 };
 
 SteelLoadFinder::SteelLoadFinder(const Chain& chain, const std::vector<Cylinder>& cylinders,
                                  std::vector<Section> sections)
-    : chain_(chain), body_(bodiesOf(chain)), sections_(std::move(sections)) {
+    : chain_(chain), sections_(std::move(sections)) {
   for (const Cylinder& cylinder : cylinders) {
     const CylinderParameters& p = cylinder.parameters();
     anchors_.push_back(
@@ -46,23 +45,21 @@ SteelLoadFinder::SteelLoadFinder(const Chain& chain, const std::vector<Cylinder>
 
 bool SteelLoadFinder::find(const ChainState& state, SteelLoads& result) const noexcept {
   Working working;
-  const bool finite = addInertiaAndWeight(state, working);
+  const bool finite = addHammer(state, working);
   findCylinders(state, working, result);
   findJoints(state, working, result);
   findSections(state, working, result);
   return finite;
 }
 
-bool SteelLoadFinder::addInertiaAndWeight(const ChainState& state, Working& working) const noexcept {
-  findMotions(chain_, state.pose, state.motion, -state.g_B, working.link);
+bool SteelLoadFinder::addHammer(const ChainState& state, Working& working) const noexcept {
   const Pose& X_BT = state.pose.tip();
-  Wrench load{X_BT.linear() * state.w_tip.force, X_BT.linear() * state.w_tip.torque};
-  load.torque += X_BT.translation().cross(load.force);
+  Wrench hammer{X_BT.linear() * state.w_tip.force, X_BT.linear() * state.w_tip.torque};
+  hammer.torque += X_BT.translation().cross(hammer.force);
   bool finite = true;
   for (int i = chain_.links() - 1; i > 0; --i) {
     const auto here = static_cast<std::size_t>(i);
-    load = load + bodyLoad(body_[here], state.pose.X_BL[here], working.link[here]);
-    working.beyond[here] = load;
+    const Wrench& load = working.beyond[here] = hammer + state.links.beyond[here];
     finite = finite && load.force.cwiseAbs().sum() < kMostLoad && load.torque.cwiseAbs().sum() < kMostLoad;
   }
   return finite;
@@ -100,7 +97,7 @@ void SteelLoadFinder::findSections(const ChainState& state, const Working& worki
     const Section& section = sections_[k];
     const auto link = static_cast<std::size_t>(section.link());
     const Pose& X_BL = state.pose.X_BL[link];
-    Wrench load = working.beyond[link + 1] + bodyLoad(section.part(), X_BL, working.link[link]);
+    Wrench load = working.beyond[link + 1] + bodyLoad(section.part(), X_BL, state.links.motion[link]);
     for (std::size_t i : crossing_[k]) load = load + working.cylinder[i];
     const Pose& X_LC = section.poseInLink();
     result.section[k] = seenAt(X_BL * X_LC.translation(), X_BL.linear() * X_LC.linear(), load);

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "hammer_loads/boom/chain_pose.h"
+#include "hammer_loads/boom/body_motion.h"
 #include "hammer_loads/boom/cylinder.h"
 #include "hammer_loads/boom/section.h"
 
@@ -33,14 +33,13 @@ struct SteelLoads {
 /// Accelerations and loads that the chain has at one instant.
 struct ChainState {
   const ChainPose& pose;
-  const JointMotion& motion;          ///< accelerations with those of the vibration
-  const Eigen::Vector3d& g_B;         ///< gravity in the root's axes [m/s2]
+  const ChainLoads& links;            ///< of weight and motion, the vibration's included
   const Wrench& w_tip;                ///< BY the hammer ON the tip, as for Boom::loads()
   const CylinderPosition* cylinders;  ///< of each cylinder
 };
 
-/// Newton and Euler for everything beyond each cut. A cylinder's force is the one that leaves no moment about its
-/// joint's axis, so a section is the same from either side. Made once; no allocation later.
+/// The load of everything beyond each cut. A cylinder's force is the one that leaves no moment about its joint's axis,
+/// so a section is the same from either side. Made once; no allocation later.
 ///
 /// Neglects: what Cylinder and Section neglect; coupling of vibration and slow motion.
 class SteelLoadFinder {
@@ -61,13 +60,12 @@ class SteelLoadFinder {
   /// In the root's frame, moments about its origin.
   struct Working;
 
-  bool addInertiaAndWeight(const ChainState& state, Working& working) const noexcept;
+  bool addHammer(const ChainState& state, Working& working) const noexcept;
   void findCylinders(const ChainState& state, Working& working, SteelLoads& result) const noexcept;
   void findJoints(const ChainState& state, const Working& working, SteelLoads& result) const noexcept;
   void findSections(const ChainState& state, const Working& working, SteelLoads& result) const noexcept;
 
   Chain chain_;
-  std::vector<RigidBody> body_;  ///< per link, with what is fixed to it beside the chain
   std::vector<Anchors> anchors_;
   std::vector<Section> sections_;
   std::vector<std::vector<std::size_t>> crossing_;  ///< per section: cylinders with one pin on each side

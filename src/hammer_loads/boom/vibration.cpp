@@ -61,19 +61,18 @@ void Vibration::rest() noexcept {
 }
 
 void Vibration::advance(double step, const TorqueStep& torque) noexcept {
-  const JointVector from = modalForce(modes_, torque.from), to = modalForce(modes_, torque.to);
-  const JointVector mean = modalForce(modes_, torque.mean);
+  const TorqueStep modal = modalForces(modes_, torque);
   for (int k = 0; k < modes_.count; ++k) {
     const ModeResponse& r = response_[static_cast<std::size_t>(k)].at(mode(k), step);
     const double rock = contactAtLoad(k);
-    const ModeForce force{from[k] + rock, to[k] + rock, mean[k] + rock};
+    const ModeForce force{modal.from[k] + rock, modal.to[k] + rock, modal.mean[k] + rock};
     const ModeState next = advanced(mode(k), {x_[k], v_[k]}, force, step, r);
     x_[k] = next.x;
     v_[k] = next.v;
   }
   torque_ = torque.to;
-  force_ = to;
-  if (identifier_) identifier_->advance(step, torque);
+  force_ = modal.to;
+  if (identifier_) identifier_->advance(step, modal);
   if (identifier_) mean_contact_ += std::min(1.0, step / kContactMemory) * (identifier_->contact() - mean_contact_);
   restIfNotFinite();
 }
@@ -131,14 +130,14 @@ JointVector Vibration::displacement() const noexcept { return jointsOf(modes_, x
 JointVector Vibration::velocity() const noexcept { return jointsOf(modes_, v_); }
 
 JointVector Vibration::displacementAfter(double step) const noexcept {
-  JointVector q = displacement() + std::clamp(step, 0.0, kShort) * velocity();
+  JointVector q = jointsOf(modes_, x_ + std::clamp(step, 0.0, kShort) * v_);
   if (!(q.cwiseAbs().maxCoeff() < kSmall)) q.setZero();
   return q;
 }
 
 JointVector Vibration::acceleration() const noexcept { return jointsOf(modes_, modalAcceleration()); }
 
-JointVector Vibration::torque() const noexcept { return -(modes_.inertia * modalAcceleration()); }
+JointVector Vibration::torque() const noexcept { return -modes_.inertia.lazyProduct(modalAcceleration()); }
 
 double Vibration::energy() const noexcept {
   return 0.5 * (v_.squaredNorm() + x_.cwiseProduct(modes_.omega).squaredNorm());
@@ -162,7 +161,7 @@ Vibration::OilTorque Vibration::oilTorque() const noexcept {
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
     now[k] = stiff * s.x + damped * s.v, rate[k] = stiff * s.v + damped * a;
   }
-  return {modes_.inertia * now, modes_.inertia * rate};
+  return {modes_.inertia.lazyProduct(now), modes_.inertia.lazyProduct(rate)};
 }
 
 }  // namespace hammer_loads

@@ -53,6 +53,8 @@ class Vibration {
   double contact() const noexcept { return contact_; }  ///< the rock's force [N]; 0 for a hull that counts as free
 
   bool known() const noexcept { return modes_.count > 0; }
+  /// No motion and no load.
+  bool rests() const noexcept { return contact_ == 0.0 && x_.isZero(0.0) && v_.isZero(0.0) && force_.isZero(0.0); }
   JointVector displacement() const noexcept;  ///< [rad], zero for held joints
   JointVector velocity() const noexcept;      ///< [rad/s]
   /// Displacement a short step [s] on, by the velocity [rad]; zero where it is no small vibration any more.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -28,7 +30,7 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
     OilDeviation& deviation = deviation_[i];
     deviation = given_;
     if (vibration.identifies()) {
-      const auto known = [](double identified, double left) { return std::hypot(identified, left); };
+      const auto known = [](double identified, double left) { return std::sqrt(square(identified) + square(left)); };
       const ModeIdentifier& found = *vibration.identifier();
       deviation.frequency = std::min(given_.frequency, known(found.frequencyDeviation(k), kLeft.frequency));
       deviation.damping = std::min(given_.damping, known(found.dampingDeviation(k), kLeft.damping));
@@ -51,33 +53,31 @@ void VibrationSpread::rest() noexcept {
 void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept {
   if (modes_.count == 0) return;
   const bool same = load_.cols() == to.cols();
-  const JointVector from = modalForce(modes_, torque.from), end = modalForce(modes_, torque.to);
-  const JointVector mean = modalForce(modes_, torque.mean);
+  const TorqueStep modal = modalForces(modes_, torque);
   load_ = to;
-  bool finite = end.allFinite();
-  for (int run = 0; run < kLoads; ++run) finite = advanceRun(run, step, from, end, mean) && finite;
+  bool finite = modal.to.allFinite();
+  for (int run = 0; run < kLoads; ++run) finite = advanceRun(run, step, modal) && finite;
   for (int run = kLoads; run < runs(); ++run) {
     const JointVector last = modalForce(modes_, to.col(run - kLoads));
     const JointVector first = same ? force_[static_cast<std::size_t>(run)] : last;
     finite = finite && last.allFinite();
-    finite = advanceRun(run, step, first, last, 0.5 * (first + last)) && finite;
+    finite = advanceRun(run, step, {first, last, 0.5 * (first + last)}) && finite;
   }
   if (!finite) rest();
 }
 
 /// False: it is not finite any more.
-bool VibrationSpread::advanceRun(int run, double step, const JointVector& from, const JointVector& to,
-                                 const JointVector& mean) noexcept {
+bool VibrationSpread::advanceRun(int run, double step, const TorqueStep& modal) noexcept {
   const auto i = static_cast<std::size_t>(run);
   bool finite = true;
   for (int k = 0; k < modes_.count; ++k) {
     const Mode& m = mode(run, k);
     const ModeResponse& r = response_[std::min<std::size_t>(i, kLoads)][static_cast<std::size_t>(k)].at(m, step);
-    const ModeState next = advanced(m, {x_[i][k], v_[i][k]}, {from[k], to[k], mean[k]}, step, r);
+    const ModeState next = advanced(m, {x_[i][k], v_[i][k]}, {modal.from[k], modal.to[k], modal.mean[k]}, step, r);
     x_[i][k] = next.x, v_[i][k] = next.v;
     finite = finite && std::isfinite(next.x) && std::isfinite(next.v);
   }
-  force_[i] = to;
+  force_[i] = modal.to;
   return finite;
 }
 

@@ -44,8 +44,7 @@ class VibrationSpread {
     return mode_[static_cast<std::size_t>(std::min(run, kLoads))][static_cast<std::size_t>(k)];
   }
 
-  bool advanceRun(int run, double step, const JointVector& from, const JointVector& to,
-                  const JointVector& mean) noexcept;
+  bool advanceRun(int run, double step, const TorqueStep& modal) noexcept;
 
   OilDeviation given_;
   std::array<OilDeviation, kMaxJoints> deviation_;

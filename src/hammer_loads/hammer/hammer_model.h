@@ -59,7 +59,30 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
   return wrench;
 }
 
-/// The same from motion relative to the hull alone: without weight, in a hull at rest.
+/// The same at one crank angle for any speed [rad/s] and acceleration [rad/s2]: the links' motion is found once.
+class WrenchAtAngle {
+ public:
+  WrenchAtAngle(const HullModel& model, const DriveReaction& drive, const HullMotion& hull, CrankAngle angle) noexcept
+      : model_(model),
+        drive_(drive),
+        hull_(hull),
+        links_(linkMotion(model.mechanism().linkage(), angle)),
+        angle_(angle) {}
+  HullWrench operator()(double speed, double acceleration) const noexcept {
+    HullWrench wrench = hullWrench(model_, links_, {angle_, speed, acceleration}, hull_);
+    wrench.torque_y += drive_.torque(acceleration, hull_.acceleration);
+    return wrench;
+  }
+
+ private:
+  const HullModel& model_;
+  const DriveReaction& drive_;
+  const HullMotion& hull_;
+  LinkMotion links_;
+  CrankAngle angle_;
+};
+
+/// From motion relative to the hull alone: without weight, in a hull at rest.
 inline HullWrench motionWrench(const HullModel& model, const DriveReaction& drive, const CrankMotion& crank) noexcept {
   return hullWrench(model, drive, crank, Gravity{});
 }

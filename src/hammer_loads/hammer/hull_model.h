@@ -60,6 +60,15 @@ HAMMER_LOADS_INLINE HullWrench hullWrench(const HullModel& model, const CrankMot
   return hullWrenchPulse(model.mechanism(), model.nominalPulse(), crank, hull.gravity);
 }
 
+/// The same by the motion of the links at crank.angle, found before.
+inline HullWrench hullWrench(const HullModel& model, const LinkMotion& links, const CrankMotion& crank,
+                             const HullMotion& hull) noexcept {
+  if (model.level() == Level::kPulse)
+    return hullWrenchPulse(model.mechanism(), model.nominalPulse(), crank, hull.gravity);
+  if (model.level() == Level::kLinkage) return hullWrench(model.mechanism(), links, crank, hull);
+  return hullWrench(model.mechanism(), links.rocker, crank, hull);
+}
+
 /// The part of hullWrench that is not the change of linkMomentum: weight and motion of the hull.
 inline HullWrench frameWrench(const HullModel& model, CrankAngle angle, double speed, const HullMotion& hull) noexcept {
   if (model.level() != Level::kPulse) return frameWrench(model.mechanism(), model.level(), angle, speed, hull);

@@ -158,14 +158,15 @@ HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, Level leve
 /// that its impulse can be summed where linkMomentum's difference gives the rest.
 inline HullWrench frameWrench(const Mechanism& mechanism, Level level, CrankAngle angle, double speed,
                               const HullMotion& hull) noexcept {
-  HullWrench wrench = hullWrench(mechanism, level, {angle, 0.0, 0.0}, hull.gravity);
-  if (!hull.turns()) return wrench;
+  if (!hull.turns()) return hullWrench(mechanism, level, {angle, 0.0, 0.0}, hull.gravity);
   const LinkMotion l = linkMotion(mechanism.linkage(), angle);
   if (level != Level::kLinkage) {
+    HullWrench wrench = weightWrenchRocker(mechanism, l.rocker, hull.gravity);
     addTurningRocker(mechanism, l.rocker, speed, hull, wrench);
-  } else {
-    addTurningLinkage(mechanism, l, speed, hull, wrench);
+    return wrench;
   }
+  HullWrench wrench = hullWrenchLinkage(mechanism, l, {angle, 0.0, 0.0}, hull.gravity);
+  addTurningLinkage(mechanism, l, speed, hull, wrench);
   return wrench;
 }
 

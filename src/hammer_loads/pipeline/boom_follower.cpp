@@ -112,11 +112,12 @@ void BoomFollower::pose(double since, const Eigen::Vector3d& g_B) noexcept {
 void BoomFollower::findLoads(const BoomSample& sample) noexcept {
   const bool rigid = !state_.choice.compliant;
   const Wrench w_tip = onTip(rigid ? sample.motion_wrench : sample.motion_wrench + sample.displaced_links);
-  boom_.loads(w_tip, rigid, state_.loads);
+  const ChainLoads links = boom_.chainLoads(rigid);
+  boom_.loads(w_tip, rigid, links, state_.loads);
   beside_modes_.setZero();
   if (!rigid) beside_modes_ = state_.loads.vibration - boom_.vibration().torque();
   takeMeasured(sample);
-  boom_.steelLoads({w_tip.force + state_.contact.force, w_tip.torque + state_.contact.torque}, rigid, state_.steel);
+  boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
 }
@@ -234,7 +235,7 @@ LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
   if (rigid || !boom_.vibration().known()) return errors;
   const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
   for (int k = 0; k < of_vibration.cols(); ++k)
-    add(of_vibration.col(k), boom_.vibration().modes().mass * of_vibration.col(k));
+    add(of_vibration.col(k), boom_.vibration().modes().mass.lazyProduct(of_vibration.col(k)));
   return errors;
 }
 

@@ -13,15 +13,27 @@ using Gradient = Eigen::Matrix3d;  // rows: force_x, force_z, torque_y
 
 Eigen::Vector3d vectorOf(const HullWrench& w) noexcept { return {w.force_x, w.force_z, w.torque_y}; }
 
-/// f(angle, speed, acceleration moved by so much) by central differences, `columns` of them.
-template <typename Function>
-Gradient gradient(int columns, const Function& f) noexcept {
-  Gradient result = Gradient::Zero();
-  for (int i = 0; i < columns; ++i) {
-    Eigen::Vector3d move = Eigen::Vector3d::Zero();
-    move[i] = kStep[i];
-    result.col(i) = (vectorOf(f(move)) - vectorOf(f(-move))) / (2.0 * kStep[i]);
-  }
+CrankAngle moved(CrankAngle angle, double by) noexcept {
+  angle.offset += by;  // the side stays: the branch's own continuation past the blow
+  return angle;
+}
+
+/// By central differences; at_angle(angle) gives what is wanted by speed and acceleration.
+template <typename AtAngle>
+Gradient gradient(const CrankEstimate& crank, const AtAngle& at_angle) noexcept {
+  const double speed = crank.speed, acceleration = crank.acceleration;
+  const auto [angle_step, speed_step, acceleration_step] = kStep;
+  const auto slope = [](const HullWrench& from, const HullWrench& to, double step) {
+    return Eigen::Vector3d((vectorOf(to) - vectorOf(from)) / (2.0 * step));
+  };
+  const auto before = at_angle(moved(crank.position.angle, -angle_step));
+  const auto after = at_angle(moved(crank.position.angle, angle_step));
+  const auto here = at_angle(crank.position.angle);
+  Gradient result;
+  result << slope(before(speed, acceleration), after(speed, acceleration), angle_step),
+      slope(here(speed - speed_step, acceleration), here(speed + speed_step, acceleration), speed_step),
+      slope(here(speed, acceleration - acceleration_step), here(speed, acceleration + acceleration_step),
+            acceleration_step);
   return result;
 }
 
@@ -30,11 +42,6 @@ HullWrench deviationOf(const Gradient& g, const Eigen::Matrix3d& covariance) noe
     return std::sqrt(std::max(0.0, g.row(row).dot(covariance * g.row(row).transpose())));
   };
   return {deviation(0), deviation(1), deviation(2)};
-}
-
-CrankAngle moved(CrankAngle angle, double by) noexcept {
-  angle.offset += by;  // the side stays: the branch's own continuation past the blow
-  return angle;
 }
 
 /// L with L L^T = covariance, also where some variance is zero.
@@ -57,19 +64,18 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     return {{kUnknown, kUnknown, kUnknown}, kUnknown, kUnknown, kUnknown};
   }
-  const Gradient g = gradient(3, [&](const Eigen::Vector3d& by) noexcept {
-    return hullWrench(model, drive,
-                      {moved(crank.position.angle, by[0]), crank.speed + by[1], crank.acceleration + by[2]}, hull);
-  });
+  const Gradient g = gradient(crank, [&](CrankAngle angle) { return WrenchAtAngle(model, drive, hull, angle); });
   return {deviationOf(g, covariance), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
           std::sqrt(covariance(2, 2))};
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                              const Eigen::Matrix3d& covariance) noexcept {
-  const Gradient g = gradient(2, [&](const Eigen::Vector3d& by) noexcept {
-    const LinkMomentum p = linkMomentum(model, moved(crank.position.angle, by[0]), crank.speed + by[1]);
-    return HullWrench{p.x, p.z, p.about_d + drive.by_crank * by[1]};
+  const Gradient g = gradient(crank, [&](CrankAngle angle) {
+    return [&model, &drive, angle](double speed, double) {
+      const LinkMomentum p = linkMomentum(model, angle, speed);
+      return HullWrench{p.x, p.z, p.about_d + drive.by_crank * speed};
+    };
   });
   return deviationOf(g, covariance);
 }
@@ -78,10 +84,8 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
                           const Eigen::Matrix3d& covariance) noexcept {
   WrenchSpread spread;
   if (!(covariance(1, 1) > 0.0)) return spread;
-  const Gradient g = gradient(3, [&](const Eigen::Vector3d& by) noexcept {
-    return motionWrench(model, drive,
-                        {moved(crank.position.angle, by[0]), crank.speed + by[1], crank.acceleration + by[2]});
-  });
+  const HullMotion at_rest;
+  const Gradient g = gradient(crank, [&](CrankAngle angle) { return WrenchAtAngle(model, drive, at_rest, angle); });
   const Eigen::Matrix3d errors = g * root(covariance);
   spread.count = 3;
   for (int i = 0; i < 3; ++i) {
