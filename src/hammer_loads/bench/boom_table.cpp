@@ -13,17 +13,17 @@ namespace {
 constexpr unsigned kPoses = 3;
 constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
 
-struct Kind {
+struct BoomKind {
   const char* name;
   double oil;          // over the boom file's
   double press_force;  // on rock [N]; 0: the hull hangs
   double drive;        // of the operator [rad/s]
 };
-constexpr Kind kKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0},
-                           {"bulk modulus 30 % lower", 0.7, 0.0, 0.0},
-                           {"bulk modulus 40 % higher", 1.4, 0.0, 0.0},
-                           {"boom driven with 0.15 rad/s", 1.0, 0.0, 0.15},
-                           {"hull pressed on rock with 4 kN", 1.0, 4000.0, 0.0}};
+constexpr BoomKind kBoomKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0},
+                                   {"bulk modulus 30 % lower", 0.7, 0.0, 0.0},
+                                   {"bulk modulus 40 % higher", 1.4, 0.0, 0.0},
+                                   {"boom driven with 0.15 rad/s", 1.0, 0.0, 0.15},
+                                   {"hull pressed on rock with 4 kN", 1.0, 4000.0, 0.0}};
 
 struct Way {
   const char* name;
@@ -36,7 +36,7 @@ constexpr Way kWays[] = {
     {"pressures", "{boom: compliant, boom_stiffness: identified, hull_motion: model}", {false, true}},
     {"both", "{boom: compliant, boom_stiffness: identified, hull_motion: imu}", {true, true}}};
 
-simulation::MachineSettings machineOf(const Kind& kind, unsigned pose) {
+simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose) {
   simulation::MachineSettings m = machineOnBoom(kJudgedTo);
   m.seed = 40 + pose;
   m.on_boom.oil_stiffness = kind.oil;
@@ -67,7 +67,7 @@ std::string number(double value) { return std::isfinite(value) ? format("%.4g", 
 
 std::vector<BoomRow> boomTable() {
   std::vector<BoomRow> rows;
-  for (const Kind& kind : kKinds) {
+  for (const BoomKind& kind : kBoomKinds) {
     std::vector<simulation::Session> sessions;
     for (unsigned pose = 1; pose <= kPoses; ++pose)
       sessions.push_back(simulation::recordSession(machineOf(kind, pose)));

@@ -29,7 +29,7 @@ struct BoomSample {
   double gravity{};          ///< [m/s2]
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
-  HullWrench displaced_links;       ///< DisplacedLinks, at the sample; counts for a boom that vibrates
+  HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
 };
 
 /// Why the boom is taken as rigid or compliant.
