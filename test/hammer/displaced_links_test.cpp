@@ -12,7 +12,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kTurn = 5000;  // places of a turn
+constexpr int kPlaces = 5000;  // places of a turn
 
 /// The links as bodies in a hull that moves, by Newton's law; places from the simulated machine's linkage.
 class Bodies {
@@ -37,7 +37,7 @@ class Bodies {
   }
   HullWrench mean(const HullMotion& hull) const {
     HullWrench sum;
-    for (int i = 0; i < kTurn; ++i) sum = sum + (1.0 / kTurn) * load((i + 0.5) * kTwoPi / kTurn, 0.0, hull);
+    for (int i = 0; i < kPlaces; ++i) sum = sum + (1.0 / kPlaces) * load((i + 0.5) * kTwoPi / kPlaces, 0.0, hull);
     return sum;
   }
 
