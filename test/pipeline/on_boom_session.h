@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "hammer_loads/bench/boom_errors.h"
 #include "support/session_player.h"
 
@@ -11,10 +13,14 @@ namespace hammer_loads::test {
 
 constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  ///< [s]: the machine works from 2 s on
 
-inline simulation::MachineSettings machineOnBoom(double oil, double joint_rate) {
+/// Joints of boom, arm and hammer [rad].
+using Pose = std::array<double, 3>;
+constexpr Pose kUsualPose{-0.45, 1.00, -0.50};
+
+inline simulation::MachineSettings machineOnBoom(double oil, double joint_rate, const Pose& pose = kUsualPose) {
   simulation::MachineSettings m = accuracy::machineOnBoom(kJudgedTo);
   m.seed = 41;
-  m.boom[1].mean = -0.45, m.boom[2].mean = 1.00, m.boom[3].mean = -0.50;
+  for (std::size_t k = 0; k < 3; ++k) m.boom[k + 1].mean = pose[k];
   m.joint_rate = joint_rate;
   m.on_boom.oil_stiffness = oil;
   return m;

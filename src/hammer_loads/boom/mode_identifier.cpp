@@ -19,6 +19,7 @@ constexpr double kForceMemory = 2.0;             // of the mean square [s]
 constexpr double kUnknownRate = 0.05;            // joint velocity where nothing is known [rad/s]
 constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
 constexpr double kKnown = 0.03;                  // deviation of log frequency of a mode that is known
+constexpr double kOwnOil = 0.005;                // of log frequency: cylinders whose oil differs from the others'
 constexpr double kMostRatio = 1.0;               // of log frequency: e
 constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
 constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
@@ -105,7 +106,18 @@ JointMatrix ModeIdentifier::accelerationSpread() const noexcept {
   return joints;
 }
 
-void ModeIdentifier::setModes(const BoomModes& given) noexcept {
+double ModeIdentifier::oilDifference() const noexcept {
+  double sum = 0.0, weights = 0.0;
+  for (int k = 0; k < count_; ++k) {
+    const double by_oil = 0.5 * modes_.oil_share[k];
+    const double weight = by_oil / (covariance_(at(k, kFrequency), at(k, kFrequency)) + square(kOwnOil));
+    sum += weight * state_[at(k, kFrequency)];
+    weights += weight * by_oil;
+  }
+  return weights > 0.0 ? sum / weights : 0.0;
+}
+
+void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
   const bool carries = moving_known_ && count_ == given.count;
   JointMatrix T(given.count, given.count);  // new modal displacements of the old ones, through the joints
   if (carries) {
@@ -123,6 +135,9 @@ void ModeIdentifier::setModes(const BoomModes& given) noexcept {
   } else {
     transform(T);
   }
+  if (stiffer == 0.0) return;
+  for (int k = 0; k < count_; ++k) state_[at(k, kFrequency)] -= 0.5 * modes_.oil_share[k] * stiffer;
+  useOil();
 }
 
 /// Displacements and velocities of the modes by T; frequencies, dampings and offsets stay.

@@ -12,8 +12,8 @@ namespace hammer_loads {
 
 /// Extended Kalman filter: per mode displacement, velocity, logarithm of frequency over the given one and of damping
 /// over the given one; per channel an offset. Steps are the same as those of Vibration, between them come readings in
-/// any order. No allocation. Shapes are those of the given stiffness: what is found is exact where all cylinders' oil
-/// is wrong by one factor, and each mode's own best where not.
+/// any order. No allocation. Shapes are those of the given stiffness; oilDifference() is by which one factor for all
+/// cylinders it is wrong.
 ///
 /// First guesses: frequencies wrong by 15 % together (bulk modulus by 30 %) and 5 % each beside, damping by a
 /// factor 1.6. Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
@@ -31,8 +31,11 @@ class ModeIdentifier {
   explicit ModeIdentifier(double damping_ratio, bool learns = true);
 
   /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
-  /// of the joints carry over.
-  void setModes(const BoomModes& given) noexcept;
+  /// of the joints carry over. stiffer: logarithm of their oil's stiffness over that of the last ones; the frequencies
+  /// found stay.
+  void setModes(const BoomModes& given, double stiffer = 0.0) noexcept;
+  /// Logarithm of the oil's stiffness over that of the modes given, the best for all frequencies found [-].
+  double oilDifference() const noexcept;
   /// Over a step [s], as Vibration::advance(), by its modal forces.
   void advance(double step, const TorqueStep& modal) noexcept;
   /// As Vibration::strike().

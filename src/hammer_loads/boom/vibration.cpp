@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kContactMemory = 0.5;         // of the rock's mean force: some turns [s]
 constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
+constexpr double kOilStep = 0.01;              // by which the modes' oil is off before they are found anew
+constexpr double kMostOil = 2.0;               // of the logarithm
 
 }  // namespace
 
@@ -29,17 +31,19 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   last_ = position;
   const JointVector away = middle - position_;
   const double farthest = away.cwiseAbs().maxCoeff();
-  if (posed_ && farthest <= 0.5 * settings_.refresh_angle) return;
+  const double stiffer = oilToTake();
+  if (posed_ && farthest <= 0.5 * settings_.refresh_angle && stiffer == 0.0) return;
   const bool kept = posed_ && known();
   const JointVector displacement = jointsOf(modes_, x_), velocity = jointsOf(modes_, v_);
   // Ahead of a moving boom, so that the modes are as often early as late and phases do not drift.
   position_ = middle;
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
   if (!position_.allFinite()) position_ = position;
-  findModes(dynamics_, cylinders_, position_, g_B, modes_);
+  oil_ *= std::exp(stiffer);
+  findModes(dynamics_, cylinders_, position_, g_B, oil_, modes_);
   if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
   posed_ = true;
-  if (identifier_) identifier_->setModes(modes_);
+  if (identifier_) identifier_->setModes(modes_, identifier_->explains() ? stiffer : 0.0);
   useIdentified();
   force_ = modalForce(modes_, torque_);
   if (kept) {
@@ -50,19 +54,32 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   }
 }
 
+/// Logarithm. Shapes and the weight's share are right only with the right oil, and what is found then holds at any
+/// pose.
+double Vibration::oilToTake() const noexcept {
+  if (!identifies() || !known()) return 0.0;
+  const double now = std::log(oil_);
+  if (!identifier_->explains()) return -now;
+  if (!identifier_->identified()) return 0.0;
+  const double found = identifier_->oilDifference();
+  return std::abs(found) > kOilStep ? std::clamp(now + found, -kMostOil, kMostOil) - now : 0.0;
+}
+
 void Vibration::rest() noexcept {
   x_.setZero(modes_.count);
   v_.setZero(modes_.count);
   torque_.setZero();
   force_.setZero(modes_.count);
   contact_ = mean_contact_ = 0.0;
+  follows_readings_ = false;
   if (identifier_) identifier_->forgetMotion();
   posed_ = false;
 }
 
 void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   const TorqueStep modal = modalForces(modes_, torque);
-  for (int k = 0; k < modes_.count; ++k) {
+  if (identifier_) identifier_->advance(step, modal);
+  for (int k = 0; k < modes_.count && !follows_readings_; ++k) {
     const ModeResponse& r = response_[static_cast<std::size_t>(k)].at(mode(k), step);
     const double rock = contactAtLoad(k);
     const ModeForce force{modal.from[k] + rock, modal.to[k] + rock, modal.mean[k] + rock};
@@ -72,14 +89,18 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   }
   torque_ = torque.to;
   force_ = modal.to;
-  if (identifier_) identifier_->advance(step, modal);
+  if (follows_readings_) takeMotion();
   if (identifier_) mean_contact_ += std::min(1.0, step / kContactMemory) * (identifier_->contact() - mean_contact_);
   restIfNotFinite();
 }
 
 void Vibration::strike(const JointVector& impulse) noexcept {
-  v_ += modalForce(modes_, impulse);
   if (identifier_) identifier_->strike(impulse);
+  if (follows_readings_) {
+    takeMotion();
+  } else {
+    v_ += modalForce(modes_, impulse);
+  }
   restIfNotFinite();
 }
 
@@ -87,7 +108,7 @@ void Vibration::observe(int channel, const VibrationReading& reading) noexcept {
   if (!identifier_) return;
   identifier_->observe(channel, reading);
   useIdentified();
-  useContact();
+  useMotion();
 }
 
 void Vibration::followContact(const JointVector& torque, double least_force) noexcept {
@@ -101,15 +122,22 @@ void Vibration::followContact(const JointVector& torque, double least_force) noe
 }
 
 void Vibration::leaveContact() noexcept {
-  if (identifier_) identifier_->leaveContact();
   contact_ = mean_contact_ = 0.0;
+  if (!identifier_) return;
+  identifier_->leaveContact();
+  follows_readings_ = follows_readings_ && identifier_->learns();
 }
 
 /// A landing shakes the hull at once; whether it stands on rock at all shows in the mean.
-void Vibration::useContact() noexcept {
+void Vibration::useMotion() noexcept {
   const bool bears = identifier_->followsContact() && mean_contact_ > least_contact_;
   contact_ = bears ? identifier_->contact() : 0.0;
-  for (int k = 0; k < modes_.count && bears; ++k) {
+  follows_readings_ = bears || (identifier_->learns() && identifier_->explains() && identifier_->identified());
+  if (follows_readings_) takeMotion();
+}
+
+void Vibration::takeMotion() noexcept {
+  for (int k = 0; k < modes_.count; ++k) {
     const ModeState seen = identifier_->motion(k);
     x_[k] = seen.x, v_[k] = seen.v;
   }

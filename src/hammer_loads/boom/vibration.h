@@ -44,19 +44,22 @@ class Vibration {
   /// hull counts as free.
   void followContact(const JointVector& torque, double least_force) noexcept;
   void leaveContact() noexcept;  ///< no more: the hull counts as free
-  /// A sensor's reading at the end of the last step; nothing without identify() or followContact(). While the rock
-  /// bears on the hull displacement and velocity become those of the readings; else they stay those of the hammer's
-  /// load, with better modes.
+  /// A sensor's reading at the end of the last step; nothing without identify() or followContact().
   void observe(int channel, const VibrationReading& reading) noexcept;
   /// What follows the readings, if anything does.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
+  /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
+  /// Else they are those of the hammer's load alone.
+  bool followsReadings() const noexcept { return follows_readings_; }
   double contact() const noexcept { return contact_; }  ///< the rock's force [N]; 0 for a hull that counts as free
 
   bool known() const noexcept { return modes_.count > 0; }
   /// No motion and no load.
   bool rests() const noexcept { return contact_ == 0.0 && x_.isZero(0.0) && v_.isZero(0.0) && force_.isZero(0.0); }
-  JointVector displacement() const noexcept;  ///< [rad], zero for held joints
-  JointVector velocity() const noexcept;      ///< [rad/s]
+  ModeState motion(int mode) const noexcept { return {x_[mode], v_[mode]}; }  ///< of a mode
+  double loadOn(int mode) const noexcept { return force_[mode]; }             ///< modal, at the end of the last step
+  JointVector displacement() const noexcept;                                  ///< [rad], zero for held joints
+  JointVector velocity() const noexcept;                                      ///< [rad/s]
   /// Displacement a short step [s] on, by the velocity [rad]; zero where it is no small vibration any more.
   JointVector displacementAfter(double step) const noexcept;
   JointVector acceleration() const noexcept;  ///< [rad/s2]
@@ -80,7 +83,9 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
-  void useContact() noexcept;
+  double oilToTake() const noexcept;
+  void useMotion() noexcept;
+  void takeMotion() noexcept;
   double contactAtLoad(int mode) const noexcept { return contact_ * contact_by_newton_[mode]; }
 
   ChainDynamics dynamics_;
@@ -91,6 +96,8 @@ class Vibration {
   JointVector position_;  ///< where the modes belong
   JointVector last_;      ///< as last given
   bool posed_{};
+  double oil_{1.0};  ///< stiffness of the modes' oil over that given
+  bool follows_readings_{};
   std::array<KeptResponse, kMaxJoints> response_;        ///< of each mode
   JointVector x_, v_;                                    ///< modal displacements and velocities
   JointVector contact_by_newton_;                        ///< modal force of the rock

@@ -41,6 +41,19 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
     mode_[kSofter][i].omega /= stiffer;
     mode_[kDamped][i].zeta = std::min(0.9, mode_[kDamped][i].zeta * std::exp(deviation.damping));
   }
+  if (waits_ || vibration.followsReadings()) start(vibration);
+  waits_ = vibration.followsReadings();
+}
+
+/// What is known by readings goes its own way from there when they end.
+void VibrationSpread::start(const Vibration& vibration) noexcept {
+  rest();
+  for (std::size_t run = 0; run < kLoads; ++run) {
+    for (int k = 0; k < modes_.count; ++k) {
+      const ModeState now = vibration.motion(k);
+      x_[run][k] = now.x, v_[run][k] = now.v, force_[run][k] = vibration.loadOn(k);
+    }
+  }
 }
 
 void VibrationSpread::rest() noexcept {
@@ -51,7 +64,7 @@ void VibrationSpread::rest() noexcept {
 }
 
 void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept {
-  if (modes_.count == 0) return;
+  if (modes_.count == 0 || waits_) return;
   const bool same = load_.cols() == to.cols();
   const TorqueStep modal = modalForces(modes_, torque);
   load_ = to;
@@ -82,7 +95,7 @@ bool VibrationSpread::advanceRun(int run, double step, const TorqueStep& modal) 
 }
 
 void VibrationSpread::strike(const JointVector& impulse) noexcept {
-  if (modes_.count == 0) return;
+  if (modes_.count == 0 || waits_) return;
   for (std::size_t run = 0; run < kLoads; ++run) v_[run] += modalForce(modes_, impulse);
 }
 

@@ -19,7 +19,8 @@ struct OilDeviation {
 using LoadSpread = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, 4>;
 
 /// Runs beside a Vibration, with its steps: one run for each thing that may be otherwise. Not linearised in the
-/// frequency, whose error changes phases. No allocation.
+/// frequency, whose error changes phases. While the vibration follows readings its own errors are known better: the
+/// runs wait, and start from where it is. No allocation.
 class VibrationSpread {
  public:
   static constexpr int kStiffer = 0, kSofter = 1, kDamped = 2, kLoads = 3, kMaxRuns = 7;
@@ -44,11 +45,13 @@ class VibrationSpread {
     return mode_[static_cast<std::size_t>(std::min(run, kLoads))][static_cast<std::size_t>(k)];
   }
 
+  void start(const Vibration& vibration) noexcept;
   bool advanceRun(int run, double step, const TorqueStep& modal) noexcept;
 
   OilDeviation given_;
   std::array<OilDeviation, kMaxJoints> deviation_;
   BoomModes modes_;
+  bool waits_{};
   std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
   std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
   LoadSpread load_;

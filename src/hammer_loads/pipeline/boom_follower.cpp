@@ -136,7 +136,8 @@ void BoomFollower::followContact(StampNs stamp) noexcept {
 /// Motion, frequencies and damping as sensors show them.
 void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
-  if (sample.imu) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
+  // The reading may be of before the blow.
+  if (sample.imu && !state_.at_blow) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (pressures_.accepted() == 0) return;
   observer_.pressures(boom_, sample.stamp, pressures_);
@@ -208,6 +209,8 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
   BoomDeviations& deviations = state_.deviations;
   if (tip_) {
     boom_.deviations(measuredErrors(rigid), deviations);
+  } else if (spread.count > 0 && boom_.vibration().followsReadings()) {
+    boom_.deviations(followedErrors(spread, rigid), deviations);
   } else if (spread.count > 0) {
     boom_.deviations(spread_, spread, rigid, deviations);
   }
@@ -236,6 +239,20 @@ LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
   const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
   for (int k = 0; k < of_vibration.cols(); ++k)
     add(of_vibration.col(k), boom_.vibration().modes().mass.lazyProduct(of_vibration.col(k)));
+  return errors;
+}
+
+LoadErrors BoomFollower::followedErrors(const WrenchSpread& spread, bool rigid) const noexcept {
+  LoadErrors errors;
+  const auto add = [&](const JointVector& acceleration, const Wrench& tip) {
+    errors.acceleration[errors.count] = acceleration;
+    errors.tip[errors.count++] = tip;
+  };
+  for (int i = 0; i < spread.count; ++i)
+    add(JointVector::Zero(boom_.chain().joints()), spread.part[static_cast<std::size_t>(i)]);
+  if (rigid) return errors;
+  const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
+  for (int k = 0; k < of_vibration.cols(); ++k) add(of_vibration.col(k), {});
   return errors;
 }
 

@@ -124,6 +124,7 @@ class BoomFollower {
   void findContact() noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
   LoadErrors measuredErrors(bool rigid) const noexcept;
+  LoadErrors followedErrors(const WrenchSpread& spread, bool rigid) const noexcept;
   void fillVibration() noexcept;
   void fillModes() noexcept;
 
