@@ -320,12 +320,13 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   State gain_S;
   gain_S.head(n) = column(offsetAt(channel));
   gain_S.head(n).noalias() += covariance_.block(first, kContact, n, own) * row.segment(kContact, own);
-  double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise);
+  double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise) + square(reading.neglected);
   const double difference = reading.value - predicted;
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
   if (!reading.acceleration.isZero(0.0)) {
     explains_ = explains_ ? surprise_ < kSurprised || (learns_ && !identified()) : surprise_ < kCalm;
-    surprise_ += kSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - surprise_);
+    surprise_ +=
+        kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
   }
   S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
   state_.segment(first, n) += gain_S.head(n) * (difference / S);

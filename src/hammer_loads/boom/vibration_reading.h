@@ -14,6 +14,7 @@ struct VibrationReading {
   double value{};
   double ahead{};             ///< of the reading's instant over the present one [s]; negative: it is older
   double noise{};             ///< standard deviation of one reading, unit of value
+  double neglected{};         ///< of what modes cannot say of it: it weighs less, and is as surprising
   double offset_deviation{};  ///< of its offset at the start, unit of value
   double offset_walk{};       ///< how far the offset wanders in a second, unit of value
 };

@@ -14,6 +14,7 @@ constexpr Doubt kAcceleration{0.3, 0.3, 0.05};    // [m/s2]
 constexpr Doubt kRate{0.005, 0.02, 0.005};        // [rad/s]
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};        // [rad]
 constexpr Doubt kTorque{0.004, 0.02, 0.002};      // of the torque that the cylinder's relief valve allows
+constexpr double kLinksInHull = 1.0;              // [m/s2]: modes take the links at the mean of their places
 constexpr double kSlowest = 0.01, kMoved = 0.02;  // [s] between joint states; [rad] a jump
 
 void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, double size = 1.0) noexcept {
@@ -29,10 +30,14 @@ void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& readi
   if (held.isDriven()) return;
   const Jacobian& J = boom.tipJacobian();
   const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
-  see(boom, 0, tipAccelerationReading(J, imu_position_, x, g_T, reading.specific_force.x()), kAcceleration);
-  see(boom, 1, tipAccelerationReading(J, imu_position_, z, g_T, reading.specific_force.z()), kAcceleration);
-  see(boom, 2, tipRateReading(J, y, reading.rate.y() - slow_rate.y()), kRate);
+  const auto seeAcceleration = [&](int channel, const Eigen::Vector3d& n_T) {
+    VibrationReading seen = tipAccelerationReading(J, imu_position_, n_T, g_T, n_T.dot(reading.specific_force));
+    seen.neglected = kLinksInHull;
+    see(boom, channel, seen, kAcceleration);
+  };
+  seeAcceleration(0, Eigen::Vector3d::UnitX());
+  seeAcceleration(1, Eigen::Vector3d::UnitZ());
+  see(boom, 2, tipRateReading(J, Eigen::Vector3d::UnitY(), reading.rate.y() - slow_rate.y()), kRate);
 }
 
 void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, double step,
