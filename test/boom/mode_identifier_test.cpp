@@ -209,5 +209,43 @@ TEST(ModeIdentifier, AnotherPoseKeepsWhatIsKnown) {
   EXPECT_EQ(run.boom_->vibration().modes().omega, omega);
 }
 
+TEST(ModeIdentifier, ModesAreThoseOfTheOilFound) {
+  Session run(0.7, Sensor::kPressures);
+  run.run(12.0);
+  Boom right = test::shippedBoom();  // of the machine's oil
+  right.moveCompliant({test::workingPosition(), test::kZero, test::kZero}, test::kLevel);
+  const BoomModes& modes = run.boom_->vibration().modes();
+  const auto overRight = [&] { return modes.given_omega[0] / right.vibration().modes().given_omega[0]; };
+  EXPECT_NEAR(overRight(), std::sqrt(0.7), 0.02);
+  const JointVector omega = modes.omega;
+  run.boom_->moveCompliant({test::workingPosition(), test::kZero, test::kZero}, test::kLevel);
+  EXPECT_NEAR(overRight(), 1.0, 0.02);
+  EXPECT_LT((modes.omega - omega).cwiseQuotient(omega).cwiseAbs().maxCoeff(), 0.002) << "what is found stays";
+}
+
+TEST(VibrationSpread, WaitsWhereReadingsShowTheMotion) {
+  Session run(0.7, Sensor::kImu);
+  run.run(6.0);
+  const Vibration& vibration = run.boom_->vibration();
+  ASSERT_TRUE(vibration.followsReadings());
+  VibrationSpread spread;
+  spread.follow(vibration);
+  const auto damped = [&] { return spread.accelerationDifference(VibrationSpread::kDamped, vibration.acceleration()); };
+  const JointVector difference = damped(), much = JointVector::Constant(4, 1e5);
+  spread.advance(kMillisecond, {much, much, much}, LoadSpread(4, 0));
+  EXPECT_EQ(damped(), difference);
+  JointVector expected(3);  // the same motion with more damping
+  for (int k = 0; k < 3; ++k) {
+    const Mode mode = vibration.mode(k);
+    const double more = std::exp(spread.deviation(k).damping) - 1.0;
+    expected[k] = -2.0 * more * mode.zeta * mode.omega * vibration.motion(k).v;
+  }
+  EXPECT_LT((jointsOf(vibration.modes(), expected) - difference).norm(), 1e-9 * difference.norm());
+  run.boom_->vibration().rest();  // a gap: readings show nothing any more
+  spread.follow(vibration);
+  spread.advance(kMillisecond, {much, much, much}, LoadSpread(4, 0));
+  EXPECT_GT(damped().norm(), 1.0);
+}
+
 }  // namespace
 }  // namespace hammer_loads

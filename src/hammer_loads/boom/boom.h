@@ -45,9 +45,10 @@ struct WrenchSpread {
 
 /// Errors of what acts on the boom, independent of each other, one standard deviation each.
 struct LoadErrors {
+  static constexpr std::size_t kMost = 4 + kMaxJoints;  ///< those of a WrenchSpread, and one for each mode
   std::size_t count{};
-  std::array<JointVector, VibrationSpread::kMaxRuns> acceleration;  ///< of the joints' vibration [rad/s2]
-  std::array<Wrench, VibrationSpread::kMaxRuns> tip;                ///< of the load on the tip with it
+  std::array<JointVector, kMost> acceleration;  ///< of the joints' vibration [rad/s2]
+  std::array<Wrench, kMost> tip;                ///< of the load on the tip with it
 };
 
 /// Standard deviations; at a dead centre as SteelLoads.
@@ -160,12 +161,14 @@ class Boom {
   std::array<CylinderPosition, kMaxJoints> at_;
 
   JointMotion vibratingMotion() const noexcept;
-  /// A column for each error, zeros for those that are not there.
-  using Shares = Eigen::Matrix<double, Eigen::Dynamic, VibrationSpread::kMaxRuns, Eigen::RowMajor, kMaxJoints + 6>;
+  /// A column for each of so many errors, zeros for those that are not there.
+  static constexpr std::size_t kErrorsAtOnce = VibrationSpread::kMaxRuns;
+  using Shares = Eigen::Matrix<double, Eigen::Dynamic, kErrorsAtOnce, Eigen::RowMajor, kMaxJoints + 6>;
   void findResponse() noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void gatherRowsInPlane() noexcept;
-  Shares sharesOf(const LoadErrors& errors) const noexcept;
+  Shares sharesOf(const LoadErrors& errors, std::size_t first) const noexcept;
+  void addSquares(const Shares& shares, bool first_two_exclude) noexcept;
   void sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDeviations& result) noexcept;
   void takeDeviations(BoomDeviations& result) const noexcept;
   /// Columns: accelerations of the cylinders' joints, then of the load on the tip what lies in the boom's plane, then

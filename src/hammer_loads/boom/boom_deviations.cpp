@@ -79,11 +79,11 @@ void Boom::findResponse() noexcept {
   gatherRowsInPlane();
 }
 
-Boom::Shares Boom::sharesOf(const LoadErrors& errors) const noexcept {
-  Shares shares = Shares::Zero(response_.cols(), VibrationSpread::kMaxRuns);
+Boom::Shares Boom::sharesOf(const LoadErrors& errors, std::size_t first) const noexcept {
+  Shares shares = Shares::Zero(response_.cols(), kErrorsAtOnce);
   const auto held = static_cast<Eigen::Index>(cylinders_.size());
-  for (std::size_t run = 0; run < errors.count; ++run) {
-    auto share = shares.col(static_cast<Eigen::Index>(run));
+  for (std::size_t run = first; run < std::min(first + kErrorsAtOnce, errors.count); ++run) {
+    auto share = shares.col(static_cast<Eigen::Index>(run - first));
     for (Eigen::Index i = 0; i < held; ++i)
       share[i] = errors.acceleration[run][cylinders_[static_cast<std::size_t>(i)].joint()];
     share.segment<3>(held) = inPlane(errors.tip[run]);
@@ -93,14 +93,21 @@ Boom::Shares Boom::sharesOf(const LoadErrors& errors) const noexcept {
 }
 
 void Boom::sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDeviations& result) noexcept {
-  const Shares shares = sharesOf(errors);
+  deviation_.setZero();
+  for (std::size_t first = 0; first < errors.count; first += kErrorsAtOnce)
+    addSquares(sharesOf(errors, first), first_two_exclude && first == 0);
+  deviation_ = deviation_.cwiseSqrt();
+  takeDeviations(result);
+}
+
+/// To deviation_.
+void Boom::addSquares(const Shares& shares, bool first_two_exclude) noexcept {
   const bool in_plane = shares.bottomRows<3>().isZero(0.0);
   const Eigen::MatrixXd& response = in_plane ? response_in_plane_ : response_;
   const Eigen::Index rows = in_plane ? in_plane_ : response.rows();
-  if (in_plane) deviation_.setZero();
   using Rows = Eigen::Array<double, kRowsAtOnce, 1>;
   for (Eigen::Index first = 0; first < rows; first += kRowsAtOnce) {
-    std::array<Rows, VibrationSpread::kMaxRuns> difference;
+    std::array<Rows, kErrorsAtOnce> difference;
     difference.fill(Rows::Zero());
     for (Eigen::Index c = 0; c < response.cols(); ++c) {
       const Rows by = response.col(c).segment<kRowsAtOnce>(first);
@@ -110,11 +117,9 @@ void Boom::sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDevia
     Rows sum = Rows::Zero();
     for (const Rows& one : difference) sum += one.square();
     if (first_two_exclude) sum -= difference[0].square().min(difference[1].square());
-    const Rows deviation = sum.sqrt();
     for (Eigen::Index i = 0; i < kRowsAtOnce; ++i)
-      deviation_[in_plane ? rows_in_plane_[first + i] : first + i] = deviation[i];
+      deviation_[in_plane ? rows_in_plane_[first + i] : first + i] += sum[i];
   }
-  takeDeviations(result);
 }
 
 void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,

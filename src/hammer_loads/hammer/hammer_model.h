@@ -59,7 +59,8 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
   return wrench;
 }
 
-/// The same at one crank angle for any speed [rad/s] and acceleration [rad/s2]: the links' motion is found once.
+/// The same at one crank angle for any speed [rad/s] and acceleration [rad/s2]: the links' motion is found once. Refers
+/// to its arguments.
 class WrenchAtAngle {
  public:
   WrenchAtAngle(const HullModel& model, const DriveReaction& drive, const HullMotion& hull, CrankAngle angle) noexcept

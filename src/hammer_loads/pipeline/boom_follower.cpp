@@ -9,8 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLeastContact = 0.05;      // of the boom's weight, which is no better known
-constexpr double kUnexplainedMemory = 1.0;  // [s]
+constexpr double kLeastContact = 0.05;  // of the boom's weight, which is no better known
 constexpr std::size_t kEdges = 4;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -143,26 +142,6 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   observer_.pressures(boom_, sample.stamp, pressures_);
 }
 
-/// What hammer and oil as given do not make of the hull's acceleration is a force on its mass.
-void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noexcept {
-  const ModeIdentifier& identifier = *boom_.vibration().identifier();
-  state_.contact_unknown = !identifier.explains() && identifier.learns() && !identifier.followsContact();
-  if (identifier.followsContact() || !std::isfinite(state_.reduced.mass)) return;
-  const double felt = reading.specific_force.z() + boom_.gravityAtTip().z();
-  const double explained = boom_.tipJacobian().row(2).dot(boom_.vibration().acceleration());
-  const double force = state_.reduced.mass * (felt - explained);
-  unexplained_ += std::clamp(step / kUnexplainedMemory, 0.0, 1.0) * (force * force - unexplained_);
-}
-
-/// A rock that is not measured is an error of the load, as large as what shows of it.
-WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const noexcept {
-  WrenchSpread spread = of_crank;
-  if (!state_.contact_unknown || of_crank.count == 0) return spread;
-  const double force = std::sqrt(unexplained_);
-  spread.part[static_cast<std::size_t>(spread.count++)] = onTip({0.0, force, striking_distance_ * force});
-  return spread;
-}
-
 /// A measured force holds what acts on its joint, whatever the model says; the difference is the rock's.
 void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
   state_.contact_torque.setZero();
@@ -202,58 +181,6 @@ void BoomFollower::findContact() noexcept {
   const auto& observer = boom_.vibration().identifier();
   const double error = observer && observer->followsContact() ? observer->contactDeviation() : 0.0;
   state_.press_force_lost = state_.contact.force.z() < std::max(least_contact_, error);
-}
-
-/// Of what is measured the error is the measurement's: whatever the vibration's is, the contact makes up for it.
-void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
-  BoomDeviations& deviations = state_.deviations;
-  if (tip_) {
-    boom_.deviations(measuredErrors(rigid), deviations);
-  } else if (spread.count > 0 && boom_.vibration().followsReadings()) {
-    boom_.deviations(followedErrors(spread, rigid), deviations);
-  } else if (spread.count > 0) {
-    boom_.deviations(spread_, spread, rigid, deviations);
-  }
-  if (pressures_.accepted() == 0) return;
-  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
-    const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
-    if (!torque) continue;
-    deviations.torque[boom_.cylinders()[i].joint()] = torque->deviation;
-    deviations.cylinder[i] = torque->deviation / std::abs(boom_.cylinderPosition(i).arm);
-  }
-}
-
-LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
-  LoadErrors errors;
-  const JointVector zero = JointVector::Zero(boom_.chain().joints());
-  const auto add = [&](const JointVector& acceleration, const JointVector& torque) {
-    errors.acceleration[errors.count] = acceleration;
-    errors.tip[errors.count++] = tip_->load(torque);
-  };
-  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
-    JointVector torque = zero;
-    torque[boom_.cylinders()[i].joint()] = measured_.of(i)->deviation;
-    add(zero, torque);
-  }
-  if (rigid || !boom_.vibration().known()) return errors;
-  const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
-  for (int k = 0; k < of_vibration.cols(); ++k)
-    add(of_vibration.col(k), boom_.vibration().modes().mass.lazyProduct(of_vibration.col(k)));
-  return errors;
-}
-
-LoadErrors BoomFollower::followedErrors(const WrenchSpread& spread, bool rigid) const noexcept {
-  LoadErrors errors;
-  const auto add = [&](const JointVector& acceleration, const Wrench& tip) {
-    errors.acceleration[errors.count] = acceleration;
-    errors.tip[errors.count++] = tip;
-  };
-  for (int i = 0; i < spread.count; ++i)
-    add(JointVector::Zero(boom_.chain().joints()), spread.part[static_cast<std::size_t>(i)]);
-  if (rigid) return errors;
-  const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
-  for (int k = 0; k < of_vibration.cols(); ++k) add(of_vibration.col(k), {});
-  return errors;
 }
 
 /// displaced_links: at the step's end; on a line from the last ones.

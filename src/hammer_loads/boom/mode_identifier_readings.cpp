@@ -1,0 +1,118 @@
+// Readings: what a sensor shows of the modes, and what that says of their oil.
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
+constexpr double kMostRatio = 1.0;               // of log frequency: e
+constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
+constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
+constexpr double kWorstSurprise = 25.0;          // what one can add at most
+
+}  // namespace
+
+void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) noexcept {
+  const auto i = static_cast<std::size_t>(channel);
+  const double first = square(reading.offset_deviation), walk = square(reading.offset_walk);
+  if (slot_[i] < 0) {
+    ++channels_;
+    slot_[i] = begin();
+    covariance_(slot_[i], slot_[i]) = first;
+  } else {
+    double& variance = covariance_(slot_[i], slot_[i]);
+    variance = std::min(variance + walk * age_[i], std::max(variance, first + walk));
+  }
+  age_[i] = 0.0;
+}
+
+ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading& reading,
+                                            double& predicted) const noexcept {
+  State row = State::Zero();
+  row[offsetAt(channel)] = 1.0;
+  predicted = state_[offsetAt(channel)];
+  for (int k = 0; k < count_; ++k) {
+    double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
+    for (int i = 0; i < count_; ++i) {
+      const int joint = modes_.joint[static_cast<std::size_t>(i)];
+      by_x += reading.displacement[joint] * modes_.shape(i, k);
+      by_v += reading.velocity[joint] * modes_.shape(i, k);
+      by_a += reading.acceleration[joint] * modes_.shape(i, k);
+      by_oil += reading.oil[joint] * modes_.inertia(joint, k);
+    }
+    const Mode m = modeAt(k);
+    const ModeState s{state_[at(k, kX)], state_[at(k, kV)]};
+    const double rock = follows_contact_ ? contact_[k] : 0.0;
+    const double a = acceleration(m, s, force_[k] + rock * state_[kContact]);
+    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega, held = by_oil - by_a;
+    const double of_x = by_x + held * stiff, of_v = by_v + held * damped;
+    predicted += by_x * s.x + by_v * s.v + by_a * a + by_oil * (stiff * s.x + damped * s.v) +
+                 reading.ahead * (of_x * s.v + of_v * a);
+    row[kContact] += by_a * rock;
+    row[at(k, kX)] = of_x;
+    row[at(k, kV)] = of_v + reading.ahead * of_x;
+    row[at(k, kFrequency)] = held * (2.0 * stiff * s.x + damped * s.v);
+    row[at(k, kDamping)] = held * damped * s.v;
+  }
+  return row;
+}
+
+void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexcept {
+  if (!moving_known_ || channel < 0 || channel >= kMaxChannels || !std::isfinite(reading.value)) return;
+  useChannel(channel, reading);
+  double predicted = 0.0;
+  const State row = rowOf(channel, reading, predicted);
+  const int first = begin(), n = states(), own = n - channels_;  // no row has another channel's offset
+  State gain_S;
+  gain_S.head(n) = column(offsetAt(channel));
+  gain_S.head(n).noalias() += covariance_.block(first, kContact, n, own) * row.segment(kContact, own);
+  double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise) + square(reading.neglected);
+  const double difference = reading.value - predicted;
+  if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
+  if (!reading.acceleration.isZero(0.0)) {
+    explains_ = explains_ ? surprise_ < kSurprised || (learns_ && !identified()) : surprise_ < kCalm;
+    surprise_ +=
+        kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
+  }
+  S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
+  state_.segment(first, n) += gain_S.head(n) * (difference / S);
+  for (int i = 0; i < n; ++i) {
+    double* column = &covariance_(first, first + i);
+    const double part = gain_S[i] / S;
+    for (int j = 0; j < n; ++j) column[j] -= part * gain_S[j];
+  }
+  if (learns_ && !explains_) forgetOil();
+  if (!state_.segment(first, n).allFinite()) return startAnew();
+  if (learns_) useOil();
+}
+
+void ModeIdentifier::forgetOil() noexcept {
+  for (int k = 0; k < kMaxJoints; ++k) {
+    forget(at(k, kFrequency), 0.0);
+    forget(at(k, kDamping), 0.0);
+  }
+  ratio_.fill(1.0), used_frequency_.fill(0.0);
+  damping_.fill(damping_ratio_), used_damping_.fill(0.0);
+  setFirstGuesses();
+}
+
+/// Frequencies and damping of the state, within bounds.
+void ModeIdentifier::useOil() noexcept {
+  constexpr double kNear = 1e-4;
+  // exp() of a small number: exact to rounding, at a tenth of the time.
+  const auto grow = [](double x) { return std::abs(x) < kNear ? 1.0 + x * (1.0 + x * (0.5 + x / 6.0)) : std::exp(x); };
+  for (int k = 0; k < count_; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    double &frequency = state_[at(k, kFrequency)], &damping = state_[at(k, kDamping)];
+    frequency = std::clamp(frequency, -kMostRatio, kMostRatio);
+    damping = std::clamp(damping, least_damping_, most_damping_);
+    ratio_[i] *= grow(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
+    damping_[i] *= grow(damping - used_damping_[i]), used_damping_[i] = damping;
+  }
+}
+
+}  // namespace hammer_loads
