@@ -10,7 +10,7 @@
 namespace hammer_loads::accuracy {
 namespace {
 
-constexpr unsigned kPoses = 3;
+constexpr unsigned kPoses = 8;
 constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
 
 struct BoomKind {
@@ -43,8 +43,8 @@ simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose) {
   if (kind.press_force > 0.0) m.on_boom.rock = {3e7, 3.0, kind.press_force};
   std::mt19937 random(pose);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-  m.boom[1].mean = between(-0.75, -0.15), m.boom[2].mean = between(0.7, 1.5);
-  m.boom[3].mean = between(-0.35, 0.35) - m.boom[1].mean - m.boom[2].mean;
+  m.boom[1].mean = between(-0.9, 0.1), m.boom[2].mean = between(0.5, 1.9);
+  m.boom[3].mean = between(-0.4, 0.4) - m.boom[1].mean - m.boom[2].mean;
   if (kind.drive > 0.0) m.boom[1].period = 6.0, m.boom[1].amplitude = kind.drive * m.boom[1].period / kTwoPi;
   return m;
 }

@@ -76,11 +76,13 @@ JointVector ModeIdentifier::velocity() const noexcept {
 JointMatrix ModeIdentifier::accelerationSpread() const noexcept {
   const int own = 1 + kParts * count_;
   std::array<Eigen::Matrix<double, kParts, 1>, kMaxJoints> row;  // of a mode's acceleration
+  JointVector left(count_);                                      // its variance by what the mode's shape lacks
   for (int k = 0; k < count_; ++k) {
     const Mode m = modeAt(k);
     const ModeState s = motion(k);
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
     row[static_cast<std::size_t>(k)] << -stiff, -damped, -2.0 * stiff * s.x - damped * s.v, -damped * s.v;
+    left[k] = square(2.0 * kLeftFrequency * stiff * s.x) + square(kLeftDamping * damped * s.v);
   }
   JointMatrix covariance(count_, count_);
   for (int l = 0; l < count_; ++l) {
@@ -94,7 +96,7 @@ JointMatrix ModeIdentifier::accelerationSpread() const noexcept {
       covariance(k, l) =
           contact_[k] * with_l[kContact] + row[static_cast<std::size_t>(k)].dot(with_l.segment<kParts>(at(k, kX)));
   }
-  for (int k = 0; k < count_; ++k) covariance(k, k) *= 1.0 + 1e-9;  // positive for all that is rounded
+  for (int k = 0; k < count_; ++k) covariance(k, k) += left[k] + 1e-9 * covariance(k, k);  // positive, though rounded
   const JointMatrix modal = covariance.llt().matrixL();
   JointMatrix joints(modes_.mass.rows(), count_);
   for (int k = 0; k < count_; ++k) joints.col(k) = jointsOf(modes_, modal.col(k));

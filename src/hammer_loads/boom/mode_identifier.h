@@ -26,6 +26,9 @@ namespace hammer_loads {
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
+  /// What an identified mode still lacks of log frequency and log damping: its shape is that of one oil for all
+  /// cylinders, the links move in the hull.
+  static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
 
   /// learns: frequencies and damping; else they are exact as given, and only the motion is followed.
   explicit ModeIdentifier(double damping_ratio, bool learns = true);

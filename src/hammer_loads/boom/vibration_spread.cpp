@@ -5,13 +5,6 @@
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
-namespace {
-
-/// What an identified mode still lacks: its shape is that of the given stiffness, the links move in the hull.
-constexpr OilDeviation kLeft{0.005, 0.1};
-
-}  // namespace
-
 void VibrationSpread::follow(const Vibration& vibration) noexcept {
   const BoomModes& now = vibration.modes();
   const bool same = now.count == modes_.count && now.count > 0 && now.shape == modes_.shape;
@@ -32,8 +25,9 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
     if (vibration.identifies()) {
       const auto known = [](double identified, double left) { return std::sqrt(square(identified) + square(left)); };
       const ModeIdentifier& found = *vibration.identifier();
-      deviation.frequency = std::min(given_.frequency, known(found.frequencyDeviation(k), kLeft.frequency));
-      deviation.damping = std::min(given_.damping, known(found.dampingDeviation(k), kLeft.damping));
+      deviation.frequency =
+          std::min(given_.frequency, known(found.frequencyDeviation(k), ModeIdentifier::kLeftFrequency));
+      deviation.damping = std::min(given_.damping, known(found.dampingDeviation(k), ModeIdentifier::kLeftDamping));
     }
     for (auto& modes : mode_) modes[i] = vibration.mode(k);
     const double stiffer = std::exp(deviation.frequency);
