@@ -1,5 +1,6 @@
 #include "hammer_loads/bench/boom_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -11,6 +12,7 @@ namespace hammer_loads::accuracy {
 namespace {
 
 constexpr unsigned kPoses = 8;
+constexpr double kAway = 0.06;                         // [rad]
 constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
 
 struct BoomKind {
@@ -36,7 +38,8 @@ constexpr Way kWays[] = {
     {"pressures", "{boom: compliant, boom_stiffness: identified, hull_motion: model}", {false, true}},
     {"both", "{boom: compliant, boom_stiffness: identified, hull_motion: imu}", {true, true}}};
 
-simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose) {
+/// Within the limits of the joints, as far from them as it moves.
+simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose, const Chain& chain) {
   simulation::MachineSettings m = machineOnBoom(kJudgedTo);
   m.seed = 40 + pose;
   m.on_boom.oil_stiffness = kind.oil;
@@ -45,6 +48,10 @@ simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose) {
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
   m.boom[1].mean = between(-0.9, 0.1), m.boom[2].mean = between(0.5, 1.9);
   m.boom[3].mean = between(-0.4, 0.4) - m.boom[1].mean - m.boom[2].mean;
+  for (int joint = 1; joint <= 3; ++joint) {
+    simulation::JointMotion& motion = m.boom[static_cast<std::size_t>(joint)];
+    motion.mean = std::clamp(motion.mean, chain.lower()[joint] + kAway, chain.upper()[joint] - kAway);
+  }
   if (kind.drive > 0.0) m.boom[1].period = 6.0, m.boom[1].amplitude = kind.drive * m.boom[1].period / kTwoPi;
   return m;
 }
@@ -67,10 +74,11 @@ std::string number(double value) { return std::isfinite(value) ? format("%.4g", 
 
 std::vector<BoomRow> boomTable() {
   std::vector<BoomRow> rows;
+  const Settings shipped = shippedBoom("{}");
   for (const BoomKind& kind : kBoomKinds) {
     std::vector<simulation::Session> sessions;
     for (unsigned pose = 1; pose <= kPoses; ++pose)
-      sessions.push_back(simulation::recordSession(machineOf(kind, pose)));
+      sessions.push_back(simulation::recordSession(machineOf(kind, pose, shipped.boom->chain())));
     for (const Way& way : kWays) {
       const Settings settings = shippedBoom(way.keys);
       BoomRow row{kind.name, way.name};
