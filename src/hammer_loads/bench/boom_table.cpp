@@ -38,7 +38,7 @@ constexpr Way kWays[] = {
     {"pressures", "{boom: compliant, boom_stiffness: identified, hull_motion: model}", {false, true}},
     {"both", "{boom: compliant, boom_stiffness: identified, hull_motion: imu}", {true, true}}};
 
-/// Within the limits of the joints, as far from them as it moves.
+/// Within the limits of the joints, wherever they move.
 simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose, const Chain& chain) {
   simulation::MachineSettings m = machineOnBoom(kJudgedTo);
   m.seed = 40 + pose;
@@ -48,11 +48,12 @@ simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose, const
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
   m.boom[1].mean = between(-0.9, 0.1), m.boom[2].mean = between(0.5, 1.9);
   m.boom[3].mean = between(-0.4, 0.4) - m.boom[1].mean - m.boom[2].mean;
+  if (kind.drive > 0.0) m.boom[1].period = 6.0, m.boom[1].amplitude = kind.drive * m.boom[1].period / kTwoPi;
   for (int joint = 1; joint <= 3; ++joint) {
     simulation::JointMotion& motion = m.boom[static_cast<std::size_t>(joint)];
-    motion.mean = std::clamp(motion.mean, chain.lower()[joint] + kAway, chain.upper()[joint] - kAway);
+    const double away = std::max(kAway, motion.amplitude);
+    motion.mean = std::clamp(motion.mean, chain.lower()[joint] + away, chain.upper()[joint] - away);
   }
-  if (kind.drive > 0.0) m.boom[1].period = 6.0, m.boom[1].amplitude = kind.drive * m.boom[1].period / kTwoPi;
   return m;
 }
 
