@@ -76,14 +76,14 @@ checkLocalhost() {
 }
 
 # cmake_options: more of them. A build directory keeps its generator. Headers that many files include are compiled once,
-# and twenty files of a target as one: most of what compiling costs is what headers make, once for each such twenty.
+# and thirty files of a target as one: most of what compiling costs is what headers make, once for each such thirty.
 cmake_options=()
 configure() {
   local log generator=()
   [ -e "$build_dir/CMakeCache.txt" ] || generator=(-G Ninja)
   log=$(mktemp)
   cmake -S "$root_dir" -B "$build_dir" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release \
-    -DHAMMER_LOADS_PRECOMPILE=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=20 \
+    -DHAMMER_LOADS_PRECOMPILE=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=30 \
     "${cmake_options[@]}" > "$log" 2>&1 || {
     cat "$log" >&2
     rm -f "$log"

@@ -102,13 +102,13 @@ TEST(Deviations, AsManyErrorsAsThereCanBeAddUpByTheirSquares) {
   BoomDeviations deviations;
   for (std::size_t i = 0; i < LoadErrors::kMost; ++i) {
     LoadErrors one;
-    one.count = 1;
-    one.acceleration[0] = JointVector::NullaryExpr(4, [&] { return draw(random); });
+    const JointVector acceleration = JointVector::NullaryExpr(4, [&] { return draw(random); });
     const double across = i % 2 == 0 ? 0.0 : draw(random);  // of the boom's plane
-    one.tip[0] = {{1e3 * draw(random), 1e3 * across, 1e3 * draw(random)}, {0.0, 1e2 * draw(random), 0.0}};
+    const Wrench tip{{1e3 * draw(random), 1e3 * across, 1e3 * draw(random)}, {0.0, 1e2 * draw(random), 0.0}};
+    one.add(acceleration, tip);
     boom.deviations(one, deviations);
     sum += deviations.torque.cwiseAbs2(), section += deviations.section[0].torque.cwiseAbs2();
-    all.acceleration[all.count] = one.acceleration[0], all.tip[all.count++] = one.tip[0];
+    all.add(acceleration, tip);
   }
   boom.deviations(all, deviations);
   EXPECT_LT((deviations.torque - sum.cwiseSqrt()).norm(), 1e-12 * sum.cwiseSqrt().norm());

@@ -23,6 +23,23 @@ inline PlanarChain<3> planarEo2621() {
   return planar;
 }
 
+struct PlanarModes {
+  Eigen::Vector3d omega;  ///< ascending [rad/s]
+  Eigen::Matrix3d shape;  ///< shape^T M shape = 1
+};
+
+/// Of springs K on the joints and mass matrix M: the eigenvectors y of K^-1/2 M K^-1/2 are K^1/2 x.
+inline PlanarModes planarModes(const Eigen::Vector3d& K, const Eigen::Matrix3d& M) {
+  const Eigen::Vector3d soft = K.cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(soft.asDiagonal() * M * soft.asDiagonal());
+  PlanarModes modes;
+  for (int k = 0; k < 3; ++k) {
+    modes.omega[k] = 1.0 / std::sqrt(solver.eigenvalues()[2 - k]);
+    modes.shape.col(k) = modes.omega[k] * soft.cwiseProduct(solver.eigenvectors().col(2 - k));
+  }
+  return modes;
+}
+
 /// The machine as it is, with its own bulk modulus and damping.
 class VibratingMachine {
  public:
@@ -31,8 +48,8 @@ class VibratingMachine {
     planar_.gravity = 0.0;
     M_ = planar_.massMatrix(pose_);
     for (std::size_t i = 0; i < 3; ++i) K_[static_cast<int>(i)] = stiffness(parameters.cylinders[i], i, bulk_modulus);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(K_.asDiagonal().toDenseMatrix(), M_);
-    omega = solver.eigenvalues().cwiseSqrt();
+    inverse_ = M_.inverse();
+    omega = planarModes(K_, M_).omega;
     // Rayleigh: 7 % at the first mode, growing with frequency at the others.
     const double beta = 2.0 * 0.045 / omega[0], alpha = 2.0 * 0.025 * omega[0];
     C_ = alpha * M_ + beta * K_.asDiagonal().toDenseMatrix();
@@ -90,7 +107,7 @@ class VibratingMachine {
  private:
   Eigen::Vector3d accelerationOf(const Eigen::Vector3d& x, const Eigen::Vector3d& v,
                                  const Eigen::Vector3d& load) const {
-    return M_.ldlt().solve(load - C_ * v - K_.cwiseProduct(x));
+    return inverse_ * (load - C_ * v - K_.cwiseProduct(x));
   }
   /// Oil of both chambers on the arm of the triangle.
   static double stiffness(const CylinderParameters& p, std::size_t joint, double bulk_modulus) {
@@ -110,7 +127,7 @@ class VibratingMachine {
 
   PlanarChain<3> planar_;
   std::mt19937 random_;
-  Eigen::Matrix3d M_, C_;
+  Eigen::Matrix3d M_, C_, inverse_;  // inverse_: of M_
   Eigen::Vector3d K_, x_ = Eigen::Vector3d::Zero(), v_ = Eigen::Vector3d::Zero(), load_ = Eigen::Vector3d::Zero();
 };
 

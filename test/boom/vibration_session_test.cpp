@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
 #include "boom/booms.h"
+#include "boom/vibrating_machine.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "support/mo100.h"
@@ -128,16 +128,14 @@ class Reference {
       const Cylinder& cylinder = boom_.cylinders()[static_cast<std::size_t>(i)];
       K[i] = cylinder.jointStiffness(cylinder.at(q[cylinder.joint()]));
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(K.asDiagonal().toDenseMatrix(), M);
-    const Eigen::Matrix3d shape = solver.eigenvectors();  // shape^T M shape = 1
+    const test::PlanarModes modes = test::planarModes(K, M);
     const double zeta = boom_.parameters().vibration.damping_ratio;
-    const Eigen::Matrix3d C =
-        M * shape * (2.0 * zeta * solver.eigenvalues().cwiseSqrt()).asDiagonal() * shape.transpose() * M;
+    const Eigen::Matrix3d C = M * modes.shape * (2.0 * zeta * modes.omega).asDiagonal() * modes.shape.transpose() * M;
     const Wrench w = wrench(y);
     // Load torques by the hand-made chain: at rest, weightless, so J^T w alone.
     const auto Q = planar_.loads({q[1], q[2], q[3]}, {}, {}, {w.force.x(), w.force.z()}, w.torque.y());
     const Eigen::Vector3d x(&y[kDisplacement]), v(&y[kVelocity]);
-    const Eigen::Vector3d acceleration = M.ldlt().solve(Eigen::Vector3d(Q.data()) - C * v - K.cwiseProduct(x));
+    const Eigen::Vector3d acceleration = M.inverse() * (Eigen::Vector3d(Q.data()) - C * v - K.cwiseProduct(x));
     dy[kOffset] = y[kSpeed];
     dy[kSpeed] = crankAcceleration(y);
     for (std::size_t i = 0; i < 3; ++i) {

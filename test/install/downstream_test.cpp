@@ -63,9 +63,9 @@ class DownstreamTest : public ::testing::Test {
         build_ / "log.txt");
   }
   void build(const std::string& package, const std::string& after = "true") {
-    const Answer built =
-        inInstallSpace("cmake -G \"" HAMMER_LOADS_GENERATOR "\" -S " + (kPackages / package).string() + " -B " +
-                       build_.string() + " && cmake --build " + build_.string() + " && " + after);
+    const Answer built = inInstallSpace("cmake -DCMAKE_UNITY_BUILD=ON -G \"" HAMMER_LOADS_GENERATOR "\" -S " +
+                                        (kPackages / package).string() + " -B " + build_.string() +
+                                        " && cmake --build " + build_.string() + " && " + after);
     ASSERT_EQ(built.status, 0) << built.text;
   }
 
@@ -93,8 +93,8 @@ TEST_F(DownstreamTest, RunsWhatIsPython) {
   const Answer report = inInstallSpace("rosrun hammer_loads report --version");
   EXPECT_EQ(report.status, 0) << report.text;
   EXPECT_EQ(report.text.find("hammer_loads "), 0u) << report.text;
-  const Answer merge = inInstallSpace("$(rospack find hammer_loads)/fleet/merge.py " + (build_ / "m.sqlite").string() +
-                                      " < /dev/null");
+  const Answer merge =
+      inInstallSpace("$(rospack find hammer_loads)/fleet/merge.py " + (build_ / "m.sqlite").string() + " < /dev/null");
   EXPECT_EQ(merge.status, 0) << merge.text;
   EXPECT_NE(merge.text.find("0 bags"), std::string::npos) << merge.text;
 }

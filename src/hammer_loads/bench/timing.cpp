@@ -3,7 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 namespace hammer_loads::accuracy {
 namespace {
@@ -21,23 +21,34 @@ double timeOf(std::size_t passes, const std::function<void()>& pass) {
   return threadTime() - start;
 }
 
-/// Also warms up.
-std::size_t passesPerRepeat(const std::function<void()>& pass) {
-  std::size_t passes = 1;
-  while (timeOf(passes, pass) < kLeastRepeat) passes *= 2;
-  return passes;
+struct Repeat {
+  std::size_t passes;
+  double time;  // of all its passes [ns]
+};
+
+/// Long enough to be timed. Also warms up.
+Repeat repeatOf(const std::function<void()>& pass) {
+  Repeat repeat{1, timeOf(1, pass)};
+  while (repeat.time < kLeastRepeat) {
+    repeat.passes *= 2;
+    repeat.time = timeOf(repeat.passes, pass);
+  }
+  return repeat;
 }
 
 }  // namespace
 
 Cost costOf(std::size_t evaluations, const std::function<void()>& pass) {
-  const std::size_t passes = passesPerRepeat(pass);
-  for (int i = 0; i < kWarmUps; ++i) timeOf(passes, pass);
-  std::array<double, kRepeats> times{};
-  for (double& time : times) time = timeOf(passes, pass) / static_cast<double>(passes * evaluations);
+  const Repeat repeat = repeatOf(pass);
+  const int repeats = std::clamp(static_cast<int>(kTogether / repeat.time), kLeastRepeats, kMostRepeats);
+  for (int i = 0; i < std::min(kWarmUps, repeats / 3); ++i) timeOf(repeat.passes, pass);
+  std::vector<double> times(static_cast<std::size_t>(repeats));
+  for (double& time : times) {
+    time = timeOf(repeat.passes, pass) / (static_cast<double>(repeat.passes) * static_cast<double>(evaluations));
+  }
   std::sort(times.begin(), times.end());
-  const double median = times[kRepeats / 2];
-  return {median, (times[3 * kRepeats / 4] - times[kRepeats / 4]) / median};
+  const auto quarter = [&](std::size_t i) { return times[i * times.size() / 4]; };
+  return {quarter(2), (quarter(3) - quarter(1)) / quarter(2)};
 }
 
 }  // namespace hammer_loads::accuracy

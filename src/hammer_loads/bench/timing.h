@@ -12,7 +12,8 @@ struct Cost {
 };
 
 constexpr double kLeastRepeat = 2e6;  ///< a repeat lasts at least so long [ns of processor time]
-constexpr int kRepeats = 25;
+constexpr double kTogether = 1.5e8;   ///< all repeats of a long pass, unless their least number takes longer [ns]
+constexpr int kMostRepeats = 25, kLeastRepeats = 7;
 constexpr int kWarmUps = 3;  ///< repeats before the first that counts
 
 /// A pass makes `evaluations` of them; a repeat makes as many passes as its length needs.

@@ -1,5 +1,7 @@
 #include "hammer_loads/boom/body_motion.h"
 
+#include <kdl/chain.hpp>
+
 namespace hammer_loads {
 namespace {
 

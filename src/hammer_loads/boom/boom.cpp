@@ -150,6 +150,8 @@ void Boom::moveVibrating(const JointMotion& motion, double step, const Eigen::Ve
   steady_position_ = motion.position;
 }
 
+Eigen::Vector3d Boom::gravityAtTip() const noexcept { return pose_.tip().linear().transpose() * g_B_; }
+
 Boom::TipVibration Boom::tipVibration() const noexcept {
   const Jacobian& J = jacobian_;
   return {J.lazyProduct(vibration_.displacement()), J.lazyProduct(vibration_.velocity()),

@@ -49,6 +49,11 @@ struct LoadErrors {
   std::size_t count{};
   std::array<JointVector, kMost> acceleration;  ///< of the joints' vibration [rad/s2]
   std::array<Wrench, kMost> tip;                ///< of the load on the tip with it
+
+  void add(const JointVector& of_vibration, const Wrench& on_tip) noexcept {
+    acceleration[count] = of_vibration;
+    tip[count++] = on_tip;
+  }
 };
 
 /// Standard deviations; at a dead centre as SteelLoads.
@@ -84,7 +89,7 @@ class Boom {
 
   const ChainPose& pose() const noexcept { return pose_; }
   /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
-  Eigen::Vector3d gravityAtTip() const noexcept { return pose_.tip().linear().transpose() * g_B_; }
+  Eigen::Vector3d gravityAtTip() const noexcept;
   /// tipJacobian() of the pose.
   const Jacobian& tipJacobian() const noexcept { return jacobian_; }
   JointVector hammerTorque(const Wrench& w_tip) const noexcept { return jointTorqueOfTipLoad(jacobian_, w_tip); }

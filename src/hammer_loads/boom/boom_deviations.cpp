@@ -126,13 +126,11 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
                       BoomDeviations& result) noexcept {
   findResponse();
   const bool vibrates = !rigid && vibration_.known();
-  const JointVector of_vibration = vibration_.acceleration();
+  const JointVector of_vibration = vibration_.acceleration(), none = JointVector::Zero(of_vibration.size());
   LoadErrors errors;
   const auto add = [&](int run, const Wrench& tip) {
     const bool runs = vibrates && run < spread.runs();
-    errors.acceleration[errors.count] =
-        runs ? spread.accelerationDifference(run, of_vibration) : JointVector(JointVector::Zero(of_vibration.size()));
-    errors.tip[errors.count++] = tip;
+    errors.add(runs ? spread.accelerationDifference(run, of_vibration) : none, tip);
   };
   for (int run = 0; run < VibrationSpread::kLoads && vibrates; ++run) add(run, {});
   for (int i = 0; i < w_tip.count; ++i) add(VibrationSpread::kLoads + i, w_tip.part[static_cast<std::size_t>(i)]);

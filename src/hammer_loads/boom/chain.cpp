@@ -61,7 +61,9 @@ ChainLink toLink(const KDL::Segment& segment) {
 class ChainBuilder {
  public:
   ChainBuilder(const urdf::ModelInterface& model, const ChainRequest& request, Checked<Chain>& result)
-      : model_(model), request_(request), result_(result) {}
+      : model_(model), request_(request), result_(result) {
+    data_.kdl = std::make_shared<KDL::Chain>();
+  }
 
   void build() {
     if (findPath()) checkJoints();
@@ -143,9 +145,9 @@ class ChainBuilder {
   void addLink(const urdf::Joint& joint) {
     const auto element = tree_.getSegment(joint.child_link_name);
     const KDL::Segment& bare = GetTreeElementSegment(element->second);
-    data_.kdl.addSegment(KDL::Segment(bare.getName(), bare.getJoint(), bare.getFrameToTip(),
-                                      bare.getInertia() + fixedNeighbours(element)));
-    ChainLink link = toLink(data_.kdl.segments.back());
+    data_.kdl->addSegment(KDL::Segment(bare.getName(), bare.getJoint(), bare.getFrameToTip(),
+                                       bare.getInertia() + fixedNeighbours(element)));
+    ChainLink link = toLink(data_.kdl->segments.back());
     if (moves(joint)) {
       link.joint = static_cast<int>(data_.joint_names.size());
       data_.joint_names.push_back(joint.name);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <kdl/chain.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +9,10 @@
 
 #include "hammer_loads/boom/joint_space.h"
 #include "hammer_loads/util/checked.h"
+
+namespace KDL {
+class Chain;
+}
 
 namespace hammer_loads {
 
@@ -67,7 +70,7 @@ class Chain {
   const JointVector& lower() const noexcept { return data_->lower; }  ///< [rad], -infinity for a continuous joint
   const JointVector& upper() const noexcept { return data_->upper; }  ///< [rad]
   /// The same chain for KDL, fixed neighbours included in its inertias.
-  const KDL::Chain& kdl() const noexcept { return data_->kdl; }
+  const KDL::Chain& kdl() const noexcept { return *data_->kdl; }
 
  private:
   friend class ChainBuilder;
@@ -76,7 +79,7 @@ class Chain {
     std::vector<std::string> joint_names;
     std::vector<int> link_beyond;
     JointVector lower, upper;
-    KDL::Chain kdl;
+    std::shared_ptr<KDL::Chain> kdl;
   };
   explicit Chain(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   std::shared_ptr<const Data> data_;

@@ -1,11 +1,11 @@
 /// Gravity as the base and the hull see it, with every tilt that the description or the ground has.
 #pragma once
 
-#include <cmath>
-
-#include "hammer_loads/boom/chain_pose.h"
+#include "hammer_loads/boom/joint_space.h"
 
 namespace hammer_loads {
+
+class Chain;
 
 /// How the chain's root leans against the horizon (REP-103): first rolled about x, then pitched about the level y.
 struct BaseTilt {
@@ -14,19 +14,11 @@ struct BaseTilt {
 };
 
 /// Gravity in the root's axes [m/s2]: (0, 0, -g) for a level base.
-inline Eigen::Vector3d gravityInRoot(double gravity, const BaseTilt& base) noexcept {
-  return gravity * Eigen::Vector3d(std::sin(base.pitch), -std::cos(base.pitch) * std::sin(base.roll),
-                                   -std::cos(base.pitch) * std::cos(base.roll));
-}
+Eigen::Vector3d gravityInRoot(double gravity, const BaseTilt& base) noexcept;
 
 /// Gravity in the tip's axes [m/s2], tilts fixed in the description included; (g sin pitch, 0, -g cos pitch) for a
 /// level base and joints about +y that add up to the pitch. The y component acts across the mechanism's plane, where no
 /// link moves. No allocation.
-inline Eigen::Vector3d gravityInTip(const Chain& chain, const JointVector& position,
-                                    const Eigen::Vector3d& g_B) noexcept {
-  ChainPose pose;
-  forwardKinematics(chain, position, pose);
-  return pose.tip().linear().transpose() * g_B;
-}
+Eigen::Vector3d gravityInTip(const Chain& chain, const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
 
 }  // namespace hammer_loads

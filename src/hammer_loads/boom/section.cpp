@@ -96,4 +96,8 @@ Checked<Section> Section::make(const SectionParameters& p, const Chain& chain) {
   return result;
 }
 
+bool Section::beyond(const Eigen::Vector3d& p_L) const noexcept {
+  return X_LC_.linear().col(0).dot(p_L - X_LC_.translation()) > 0.0;
+}
+
 }  // namespace hammer_loads

@@ -49,7 +49,7 @@ class Section {
   const Pose& poseInLink() const noexcept { return X_LC_; }  ///< of the cut in its link
   const RigidBody& part() const noexcept { return part_; }   ///< of the link beyond the cut, in the link's frame
   /// Whether a point of the link, in its frame, lies beyond.
-  bool beyond(const Eigen::Vector3d& p_L) const noexcept { return (X_LC_.inverse() * p_L).x() > 0.0; }
+  bool beyond(const Eigen::Vector3d& p_L) const noexcept;
 
  private:
   Section() = default;

@@ -16,12 +16,6 @@ struct Wrench {
 
 /// The same load at the origin of Q: f_Q = R f_P, t_Q = R t_P + p x f_Q with X_QP = (R, p).
 /// Error below 1e-15 of |t| + |p||f|. tf2 0.7.6's doTransform leaves out p x f.
-inline Wrench shifted(const Pose& X_QP, const Wrench& w_P) noexcept {
-  Wrench w_Q;
-  w_Q.force.noalias() = X_QP.linear() * w_P.force;
-  w_Q.torque.noalias() = X_QP.linear() * w_P.torque;
-  w_Q.torque += X_QP.translation().cross(w_Q.force);
-  return w_Q;
-}
+Wrench shifted(const Pose& X_QP, const Wrench& w_P) noexcept;
 
 }  // namespace hammer_loads

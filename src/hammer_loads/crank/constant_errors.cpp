@@ -10,7 +10,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kPrior = 0.05;                          // [rad]: 3 deg, far beyond what is found well
-constexpr double kPriorSupply = 0.2;                    // of SupplyLaw::unit
+constexpr double kPriorSupply = 0.2;                     // of SupplyLaw::unit
 constexpr int kFirstTurns = 4;                           // the drive inertia is learned first
 constexpr int kTurnsToKnow = 6;                          // nothing is concluded before
 constexpr double kMemoryTurns = 300.0;                   // turns: a minute at work
@@ -23,7 +23,22 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
 
+constexpr double kMostRatio = 9.0;  // innovation^2 over its variance; more counts as that
+
 }  // namespace
+
+void ConstantErrors::learn(double innovation, double variance, const Row& by_error) noexcept {
+  ++samples_;
+  const double ratio = innovation * innovation / variance;
+  const double weight = (ratio > kMostRatio ? kMostRatio / ratio : 1.0) / variance;
+  information_.noalias() += (weight * by_error.transpose()) * by_error;
+  score_ += (weight * innovation) * by_error.transpose();
+}
+
+void ConstantErrors::takeSupply(double change) noexcept {
+  score_ += information_.col(kSupply) * change;
+  estimate_[kSupply] += change;
+}
 
 void ConstantErrors::forget() noexcept {
   information_ = Matrix::Identity() / square(kPrior);
@@ -41,7 +56,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   estimate_ = covariance * score_;
   const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
   Vector doubt = Vector::Zero(), certain = Vector::Zero();  // variance of what is seen; what remains after it
-  double share = 0.0;     // of b that is certain
+  double share = 0.0;                                       // of b that is certain
   for (int i = 0; i < kPlace; ++i) {
     doubt[i] = square(unmodelled * kUnmodelled[i]) + square(kUnmodelledDeviations) * growth * covariance(i, i);
     deviation_[i] = std::sqrt(doubt[i] + square(kUnmodelledCounts * count));

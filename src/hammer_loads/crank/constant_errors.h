@@ -8,8 +8,8 @@
 
 namespace hammer_loads {
 
-/// Errors b that stay. Of the crank sensor's place: reading = angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1) [rad], so
-/// that b0 alone says where the blow is; b1 and b2 are an eccentricity. b3 is that of the supply's stiffness, as the
+/// Errors b that stay. Of the crank sensor's place: reading = angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1) [rad],
+/// so that b0 alone says where the blow is; b1 and b2 are an eccentricity. b3 is that of the supply's stiffness, as the
 /// filter has it, over SupplyLaw::unit. The filter knows beside its state what each of them does to it (Friedland's
 /// separate-bias filter). An innovation is then its derivative by b times b, and noise: weighted least squares over
 /// some minutes. b0 to b2 are seen, not corrected; b3 is taken up by the supply's law.
@@ -19,8 +19,8 @@ namespace hammer_loads {
 /// as if the sensor's place were right: together they can hardly be separated.
 class ConstantErrors {
  public:
-  static constexpr int kPlace = 3, kSize = 4;  ///< the first kPlace are of the sensor's place
-  static constexpr int kSupply = 3;            ///< index of the supply's
+  static constexpr int kPlace = 3, kSize = 4;      ///< the first kPlace are of the sensor's place
+  static constexpr int kSupply = 3;                ///< index of the supply's
   using Row = Eigen::Matrix<double, 1, kSize>;     ///< derivative of a number by b
   using Effect = Eigen::Matrix<double, 5, kSize>;  ///< of the filter's variables, in ShaftMatrix' order
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -36,21 +36,12 @@ class ConstantErrors {
   }
 
   /// innovation of an angle, its variance and its derivative by b.
-  void learn(double innovation, double variance, const Row& by_error) noexcept {
-    ++samples_;
-    const double ratio = innovation * innovation / variance;
-    const double weight = (ratio > kMostRatio ? kMostRatio / ratio : 1.0) / variance;
-    information_.noalias() += (weight * by_error.transpose()) * by_error;
-    score_ += (weight * innovation) * by_error.transpose();
-  }
+  void learn(double innovation, double variance, const Row& by_error) noexcept;
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 
   /// The supply's stiffness has been changed by so much [SupplyLaw::unit].
-  void takeSupply(double change) noexcept {
-    score_ += information_.col(kSupply) * change;
-    estimate_[kSupply] += change;
-  }
+  void takeSupply(double change) noexcept;
   /// 0 before some turns. deviation: of the sensor's place alone.
   const Vector& estimate() const noexcept { return estimate_; }
   const Vector& deviation() const noexcept { return deviation_; }
@@ -58,7 +49,6 @@ class ConstantErrors {
   const Matrix& moment() const noexcept { return moment_; }
 
  private:
-  static constexpr double kMostRatio = 9.0;  // innovation^2 over its variance; more counts as that
   void forget() noexcept;
 
   /// Within 0.1 %, |x| <= 3/4 of a turn: two parabolas.

@@ -170,6 +170,10 @@ void CrankBelief::meetTool(double deviation, double dt) noexcept {
   covariance(kFactor, kSpeed) = covariance(kSpeed, kFactor);
 }
 
+ShaftMatrix CrankBelief::grown(double growth, const ConstantErrors::Matrix& moment) const noexcept {
+  return growth * covariance + (by_error * moment) * by_error.transpose();
+}
+
 bool CrankBelief::isSound(double most_speed) const noexcept {
   return std::abs(state.position.angle.offset) <= 0.5 * kTwoPi && std::abs(state.speed) < most_speed &&
          std::isfinite(state.torque) && std::isfinite(state.drive_inertia) && std::isfinite(factor) &&

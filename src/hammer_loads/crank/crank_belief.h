@@ -22,9 +22,10 @@ struct CrankWalks {
 
 /// What is known of a blow before it comes: the factor on the crank's speed is drawn anew each time.
 struct BlowPrior {
-  double mean{1.0};                                       ///< [-], > 0
-  double deviation{};                                     ///< [-]
-  ConstantErrors::Row by_error{ConstantErrors::Row::Zero()};  ///< d(mean)/d(sensor's errors), as it was learned with them
+  double mean{1.0};    ///< [-], > 0
+  double deviation{};  ///< [-]
+  ConstantErrors::Row by_error{
+      ConstantErrors::Row::Zero()};  ///< d(mean)/d(sensor's errors), as it was learned with them
 };
 
 /// Gaussian belief: angle, speed, torque, logarithm of drive inertia, factor of the last blow.
@@ -35,9 +36,9 @@ struct CrankBelief {
   ShaftState state;
   ShaftMatrix covariance{ShaftMatrix::Zero()};
   ConstantErrors::Effect by_error{ConstantErrors::Effect::Zero()};  ///< d(this, rows as above)/d(sensor's errors)
-  double factor{1.0};                                           ///< of the last blow
-  double least_inertia{};                                       ///< bounds of the drive inertia [kg m2]
-  double most_inertia{};                                        ///< likewise
+  double factor{1.0};                                               ///< of the last blow
+  double least_inertia{};                                           ///< bounds of the drive inertia [kg m2]
+  double most_inertia{};                                            ///< likewise
   bool tool_met{};                 ///< before the dead centre: nothing strikes there any more
   bool struck_early{};             ///< the last blow's factor acted before the dead centre
   std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
@@ -93,9 +94,7 @@ struct CrankBelief {
   }
   /// The covariance grown by what the innovations show beyond the model, and by a moment of the sensor's errors, which
   /// are not corrected.
-  ShaftMatrix grown(double growth, const ConstantErrors::Matrix& moment) const noexcept {
-    return growth * covariance + (by_error * moment) * by_error.transpose();
-  }
+  ShaftMatrix grown(double growth, const ConstantErrors::Matrix& moment) const noexcept;
   /// Factor of the last blow and drive inertia, with deviations by `grown`.
   BlowFactor blowFactor(const ShaftMatrix& grown) const noexcept {
     return {factor, std::sqrt(grown(kFactor, kFactor)), state.drive_inertia, std::sqrt(grown(kInertia, kInertia)),

@@ -10,9 +10,9 @@ namespace {
 
 using Belief = CrankBelief;
 using Effect = Eigen::Matrix<double, 9, ConstantErrors::kSize>;
-using Vector = Eigen::Matrix<double, 9, 1>;
+using FlexibleVector = Eigen::Matrix<double, 9, 1>;
 
-constexpr double kNoiseStep = 2e-3;           // [s] step over which the process noise is spread
+constexpr double kFlexibleNoiseStep = 2e-3;   // [s] step over which the process noise is spread
 constexpr double kMostInertiaChange = 0.3;    // of a logarithm by one sample
 constexpr double kMostStiffnessChange = 0.1;  // likewise
 constexpr double kMostLogStiffness = 1.4;     // a factor of two of the frequency either way
@@ -105,6 +105,11 @@ AccelerationSlopes accelerationSlopes(const ShaftModel& model, const ShaftState&
 
 }  // namespace
 
+ShaftMatrix effectOfShare(const MotorSide& motor) noexcept {
+  const Eigen::Matrix<double, 5, 1> by_odds = motor.by_odds.head<5>();
+  return motor.odds_variance * by_odds * by_odds.transpose();
+}
+
 void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) noexcept {
   const double share = coupling.motor_share,
                stiffness_variance = b.motor ? b.motor->covariance(kStiffness, MotorSide::kStiffness)
@@ -128,7 +133,7 @@ void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) no
 
 int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
                     double most_speed, double dt, Belief& b) noexcept {
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kFlexibleNoiseStep)));
   const double h = dt / steps;
   int blows = 0;
   for (int i = 0; i < steps && std::abs(b.state.speed) < most_speed; ++i) {
@@ -155,8 +160,8 @@ void passLateFlexible(const ShaftModel& model, double factor, Belief& b) noexcep
 void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& measured_by_error,
                      Belief& b) noexcept {
   const FlexibleMatrix p = joint(b);
-  const Vector gain = p.col(row) / (p(row, row) + variance);
-  const Vector change = gain * innovation;
+  const FlexibleVector gain = p.col(row) / (p(row, row) + variance);
+  const FlexibleVector change = gain * innovation;
   Belief::Vector crank = change.head<5>();
   crank[Belief::kInertia] = std::clamp(crank[Belief::kInertia], -kMostInertiaChange, kMostInertiaChange);
   b.move(crank);
@@ -172,7 +177,7 @@ void correctFlexible(FlexibleRow row, double innovation, double variance, const 
 }
 
 void widenFlexible(double factor, Belief& b) noexcept {
-  Vector by = Vector::Constant(std::sqrt(factor));
+  FlexibleVector by = FlexibleVector::Constant(std::sqrt(factor));
   by[Belief::kInertia] = by[Belief::kFactor] = by[kStiffness] = by[kOdds] = 1.0;
   setJoint(by.asDiagonal() * joint(b) * by.asDiagonal(), b);
 }

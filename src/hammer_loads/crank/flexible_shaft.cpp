@@ -12,48 +12,48 @@ constexpr double kMaxStepPhase = 0.4;  // [rad] of the coupling's oscillation
 
 /// Crank angle from the blow, h = sqrt(Jk + J) w, twist and motor speed within one half turn: rates of these have no
 /// derivative of the links' inertia, so that their linearisation needs none of second order.
-using Path = Eigen::Vector4d;
+using FlexiblePath = Eigen::Vector4d;
 enum : Eigen::Index { kOffset, kH, kTwist, kMotor };
-using PathMatrix = Eigen::Matrix4d;
+using FlexiblePathMatrix = Eigen::Matrix4d;
 /// Columns: torque, logarithm of drive inertia, the coupling's two logarithms.
 using InputMatrix = Eigen::Matrix4d;
 
-struct Shaft {
+struct FlexibleShaft {
   const ShaftModel& model;
   CouplingLaw law;
   Side side;
   double torque;
 
-  Path rate(const Path& at, const ShaftLoad& load) const noexcept {
+  FlexiblePath rate(const FlexiblePath& at, const ShaftLoad& load) const noexcept {
     const double inv_root = 1.0 / std::sqrt(law.crank_inertia + load.inertia), speed = at[kH] * inv_root;
     const double moment = law.moment(at[kTwist], at[kMotor], speed);
     return {speed, (moment + load.weight_torque - law.crank_inertia * load.hull_acceleration) * inv_root,
             at[kMotor] - speed, (torque - moment) / law.motor_inertia - load.hull_acceleration};
   }
   /// first: the rate at the start.
-  Path after(const Path& start, const Path& first, double dt) const noexcept {
-    const auto rate_at = [&](const Path& at) { return rate(at, model.withoutSlopes({at[kOffset], side})); };
-    const Path k2 = rate_at(start + 0.5 * dt * first);
-    const Path k3 = rate_at(start + 0.5 * dt * k2);
-    const Path k4 = rate_at(start + dt * k3);
+  FlexiblePath after(const FlexiblePath& start, const FlexiblePath& first, double dt) const noexcept {
+    const auto rate_at = [&](const FlexiblePath& at) { return rate(at, model.withoutSlopes({at[kOffset], side})); };
+    const FlexiblePath k2 = rate_at(start + 0.5 * dt * first);
+    const FlexiblePath k3 = rate_at(start + 0.5 * dt * k2);
+    const FlexiblePath k4 = rate_at(start + dt * k3);
     return start + dt / 6.0 * (first + 2.0 * (k2 + k3) + k4);
   }
 };
 
 /// Derivatives of the rates of (angle, h, motor's angle, motor's speed) by these and by the inputs.
-struct Linearised {
-  PathMatrix by_path;
+struct LinearisedFlexible {
+  FlexiblePathMatrix by_path;
   InputMatrix by_input;
 };
 
-Linearised linearised(const Shaft& s, const Path& at, const ShaftLoad& load) noexcept {
+LinearisedFlexible linearised(const FlexibleShaft& s, const FlexiblePath& at, const ShaftLoad& load) noexcept {
   const CouplingLaw& c = s.law;
   const double inv = 1.0 / (c.crank_inertia + load.inertia), inv_root = std::sqrt(inv), speed = at[kH] * inv_root;
   const double slip = c.damping * (at[kMotor] - speed), spring = c.stiffness * at[kTwist];
   const double torque = spring + slip + load.weight_torque - c.crank_inertia * load.hull_acceleration;
   const double speed_by_angle = -speed * load.half_inertia_slope * inv;
   const double per_motor = 1.0 / c.motor_inertia, moment_by_angle = -c.stiffness - c.damping * speed_by_angle;
-  Linearised d;
+  LinearisedFlexible d;
   d.by_path << speed_by_angle, inv_root, 0.0, 0.0,  //
       (moment_by_angle + load.weight_torque_slope - torque * load.half_inertia_slope * inv) * inv_root,
       -c.damping * inv, c.stiffness * inv_root, c.damping * inv_root,  //
@@ -62,8 +62,8 @@ Linearised linearised(const Shaft& s, const Path& at, const ShaftLoad& load) noe
   // By something that changes both inertias and the moment at given twist and speeds.
   const auto by = [&](double crank, double motor, double moment) {
     const double speed_by = -0.5 * speed * crank * inv, moment_by = moment - c.damping * speed_by;
-    return Path(speed_by, (moment_by - crank * load.hull_acceleration - 0.5 * torque * crank * inv) * inv_root, 0.0,
-                -(moment_by + (s.torque - spring - slip) * motor * per_motor) * per_motor);
+    return FlexiblePath(speed_by, (moment_by - crank * load.hull_acceleration - 0.5 * torque * crank * inv) * inv_root,
+                        0.0, -(moment_by + (s.torque - spring - slip) * motor * per_motor) * per_motor);
   };
   const double on_crank = c.crank_inertia / (c.crank_inertia + c.motor_inertia), odds = on_crank * c.motor_inertia;
   d.by_input.col(0) << 0.0, 0.0, 0.0, per_motor;
@@ -74,12 +74,12 @@ Linearised linearised(const Shaft& s, const Path& at, const ShaftLoad& load) noe
 }
 
 /// Of one smooth piece: exponential of the mean of both ends' linearisations, to fourth order.
-FlexibleMatrix transition(const Shaft& s, double dt, const Path& start, const ShaftLoad& load, const Path& end,
-                          const ShaftLoad& load_end) noexcept {
-  const Linearised p = linearised(s, start, load), q = linearised(s, end, load_end);
-  const PathMatrix a = 0.5 * dt * (p.by_path + q.by_path), square = a * a;
-  const PathMatrix mean = PathMatrix::Identity() + 0.5 * a + square / 6.0 + square * a / 24.0;
-  PathMatrix by_path = PathMatrix::Identity() + a * mean;
+FlexibleMatrix transition(const FlexibleShaft& s, double dt, const FlexiblePath& start, const ShaftLoad& load,
+                          const FlexiblePath& end, const ShaftLoad& load_end) noexcept {
+  const LinearisedFlexible p = linearised(s, start, load), q = linearised(s, end, load_end);
+  const FlexiblePathMatrix a = 0.5 * dt * (p.by_path + q.by_path), square = a * a;
+  const FlexiblePathMatrix mean = FlexiblePathMatrix::Identity() + 0.5 * a + square / 6.0 + square * a / 24.0;
+  FlexiblePathMatrix by_path = FlexiblePathMatrix::Identity() + a * mean;
   InputMatrix by_input = mean * (0.5 * dt * (p.by_input + q.by_input));
   // from h to the speed, at both ends
   const double inertia = s.law.crank_inertia,
@@ -107,13 +107,13 @@ FlexibleMatrix transition(const Shaft& s, double dt, const Path& start, const Sh
 /// One smooth piece of the way, ending at dt or at the blow.
 WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state,
                       FlexibleMatrix* total) noexcept {
-  const Shaft shaft{model, lawOf(*model.coupling(), state), state.position.angle.side, state.torque};
+  const FlexibleShaft shaft{model, lawOf(*model.coupling(), state), state.position.angle.side, state.torque};
   const auto load_at = [&](const CrankAngle& angle) { return total ? model(angle) : model.withoutSlopes(angle); };
   const ShaftLoad load = load_at(state.position.angle);
-  const Path start{state.position.angle.offset, std::sqrt(shaft.law.crank_inertia + load.inertia) * state.speed,
-                   state.twist, state.motor_speed};
-  const Path first = shaft.rate(start, load);
-  Path end = shaft.after(start, first, dt);
+  const FlexiblePath start{state.position.angle.offset, std::sqrt(shaft.law.crank_inertia + load.inertia) * state.speed,
+                           state.twist, state.motor_speed};
+  const FlexiblePath first = shaft.rate(start, load);
+  FlexiblePath end = shaft.after(start, first, dt);
   const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
   WayPiece piece{dt,
                  (contact || !forward) && isBeyond(shaft.side, end[kOffset]) && !isBeyond(shaft.side, start[kOffset])};

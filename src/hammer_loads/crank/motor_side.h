@@ -1,8 +1,8 @@
 /// What is known of the motor beyond a flexible coupling, beside a CrankBelief.
 #pragma once
 
-#include "hammer_loads/crank/flexible_shaft.h"
 #include "hammer_loads/crank/constant_errors.h"
+#include "hammer_loads/crank/flexible_shaft.h"
 
 namespace hammer_loads {
 
@@ -24,9 +24,6 @@ struct MotorSide {
 };
 
 /// What the doubt in the motor's share adds to the covariance of a CrankBelief's variables.
-inline ShaftMatrix effectOfShare(const MotorSide& motor) noexcept {
-  const Eigen::Matrix<double, 5, 1> by_odds = motor.by_odds.head<5>();
-  return motor.odds_variance * by_odds * by_odds.transpose();
-}
+ShaftMatrix effectOfShare(const MotorSide& motor) noexcept;
 
 }  // namespace hammer_loads

@@ -53,33 +53,25 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
 LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
   LoadErrors errors;
   const JointVector zero = JointVector::Zero(boom_.chain().joints());
-  const auto add = [&](const JointVector& acceleration, const JointVector& torque) {
-    errors.acceleration[errors.count] = acceleration;
-    errors.tip[errors.count++] = tip_->load(torque);
-  };
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     JointVector torque = zero;
     torque[boom_.cylinders()[i].joint()] = measured_.of(i)->deviation;
-    add(zero, torque);
+    errors.add(zero, tip_->load(torque));
   }
   if (rigid || !boom_.vibration().known()) return errors;
   const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
-  for (int k = 0; k < of_vibration.cols(); ++k)
-    add(of_vibration.col(k), boom_.vibration().modes().mass.lazyProduct(of_vibration.col(k)));
+  for (const auto& mode : of_vibration.colwise())
+    errors.add(mode, tip_->load(boom_.vibration().modes().mass.lazyProduct(mode)));
   return errors;
 }
 
 LoadErrors BoomFollower::followedErrors(const WrenchSpread& spread, bool rigid) const noexcept {
   LoadErrors errors;
-  const auto add = [&](const JointVector& acceleration, const Wrench& tip) {
-    errors.acceleration[errors.count] = acceleration;
-    errors.tip[errors.count++] = tip;
-  };
-  for (int i = 0; i < spread.count; ++i)
-    add(JointVector::Zero(boom_.chain().joints()), spread.part[static_cast<std::size_t>(i)]);
+  const JointVector zero = JointVector::Zero(boom_.chain().joints());
+  for (int i = 0; i < spread.count; ++i) errors.add(zero, spread.part[static_cast<std::size_t>(i)]);
   if (rigid) return errors;
   const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
-  for (int k = 0; k < of_vibration.cols(); ++k) add(of_vibration.col(k), {});
+  for (const auto& mode : of_vibration.colwise()) errors.add(mode, {});
   return errors;
 }
 

@@ -1,7 +1,7 @@
 /// Where an inertial measurement unit sits on the hull.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
 namespace hammer_loads {
 
@@ -12,11 +12,6 @@ struct HullImuSettings {
 };
 
 /// Rotation by roll, pitch, yaw about fixed x, y, z [rad], as in a URDF origin.
-inline Eigen::Matrix3d rotationOf(double roll, double pitch, double yaw) {
-  using Eigen::AngleAxisd, Eigen::Vector3d;
-  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
-          AngleAxisd(roll, Vector3d::UnitX()))
-      .toRotationMatrix();
-}
+Eigen::Matrix3d rotationOf(double roll, double pitch, double yaw);
 
 }  // namespace hammer_loads
