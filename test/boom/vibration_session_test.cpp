@@ -3,6 +3,7 @@
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <kdl/chain.hpp>
 
 #include "boom/booms.h"
 #include "boom/vibrating_machine.h"
