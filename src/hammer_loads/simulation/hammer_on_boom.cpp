@@ -33,8 +33,7 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
       draws_(machine.seed ^ kBlowSeed) {
   boom_.bulk_modulus *= machine.on_boom.oil_stiffness;
   takeMovingPartsOffTheHull();
-  const State held = heldAt(0.0);
-  now_ = held;
+  now_ = heldAt(0.0);
   now_.v[3] = 0.0;
   now_.before_blow = machine.start_angle > kPi;
   now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
@@ -48,14 +47,14 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
 void HammerOnBoom::takeMovingPartsOffTheHull() {
   constexpr int kPlaces = 360;
   State held = heldAt(0.0);
-  const PlanePoint joint = jointPlace(held, 2), to_hull = std::exp(kI * hullAngle(held));
+  const PlanePoint joint = jointPlace(held, 2), to_hull = std::conj(turnedBy(hullAngle(held)));
   double mass = 0.0, square = 0.0;  // of the distance from the joint
   PlanePoint at = 0.0;
   double inertia = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
     held.x[3] = (i + 0.5) * kTwoPi / kPlaces - kPi;
     held.before_blow = held.x[3] < 0.0;
-    const Body rocker = bodies(held)[3];
+    const Body rocker = bodies(held).body[3];
     const PlanePoint place = (rocker.place - joint) * to_hull;
     mass = rocker.mass, inertia = rocker.inertia;
     at += place / static_cast<double>(kPlaces), square += std::norm(place) / kPlaces;
@@ -70,18 +69,18 @@ void HammerOnBoom::takeMovingPartsOffTheHull() {
 
 /// Every mode keeps its damping ratio wherever the boom goes.
 void HammerOnBoom::followOperator() {
-  const State held = heldAt(now_.time);
-  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>();
-  const Modes modes = modesOf(stiffness(held), M);
+  hold_ = holdAt(now_.time);
+  const Eigen::Matrix3d M = massMatrix(bodies(hold_.state)).topLeftCorner<3, 3>();
+  const Modes modes = modesOf(hold_.stiffness, M);
   const Eigen::Vector3d rates = 2.0 * machine_.on_boom.damping * modes.eigenvalues().cwiseSqrt();
   const Eigen::Matrix3d inertia = M * modes.eigenvectors();
   damping_ = inertia * rates.asDiagonal() * inertia.transpose();
-  rock_height_ = rockHeight();
+  rock_height_ = rockHeight(hold_);
 }
 
 Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
   const State held = heldAt(time);
-  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>();
+  const Eigen::Matrix3d M = massMatrix(bodies(held)).topLeftCorner<3, 3>();
   return modesOf(stiffness(held), M).eigenvalues().cwiseSqrt() / kTwoPi;
 }
 
@@ -97,6 +96,11 @@ HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
   return s;
 }
 
+HammerOnBoom::Hold HammerOnBoom::holdAt(double time) const {
+  const State held = heldAt(time);
+  return {held, weight(bodies(held)).head<3>(), stiffness(held)};
+}
+
 /// Of the link that ends in a joint.
 double HammerOnBoom::angleBefore(const State& s, std::size_t joint) {
   double angle = 0.0;
@@ -106,60 +110,60 @@ double HammerOnBoom::angleBefore(const State& s, std::size_t joint) {
 
 PlanePoint HammerOnBoom::jointPlace(const State& s, std::size_t joint) const {
   PlanePoint place = 0.0;
-  for (std::size_t k = 0; k < joint; ++k) place += std::exp(-kI * angleBefore(s, k + 1)) * boom_.links[k].to_next;
+  for (std::size_t k = 0; k < joint; ++k) place += turnedBy(angleBefore(s, k + 1)) * boom_.links[k].to_next;
   return place;
 }
 
-HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links) const {
+HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, const Rocker& rocker) const {
   Bodies all;
-  std::array<PlanePoint, 4> joint;
-  double angle = 0.0;
-  joint[0] = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const OilBoomLink& link = links[k];
-    angle += s.x[static_cast<int>(k)];
-    const PlanePoint turned = std::exp(-kI * angle);
-    joint[k + 1] = joint[k] + turned * link.to_next;
-    all[k].mass = link.mass, all[k].inertia = link.inertia;
-    all[k].place = joint[k] + turned * link.com;
-  }
-  const LinkBodies::Body rocker = links_.at({s.x[3], s.before_blow, false}).body[0];
-  const HammerParameters& p = machine_.hammer;
-  const PlanePoint turned = std::exp(-kI * angle);
-  Body& r = all[3];
-  r.mass = rocker.mass, r.inertia = rocker.inertia_about_com;
-  r.place =
-      joint[3] + turned * inHull(rocker.xi.value - p.lengths.pivot_distance, rocker.eta.value, p.rocker_com_angle);
-  r.by[3] = turned * inHull(rocker.xi.first, rocker.eta.first, p.rocker_com_angle);
-  for (std::size_t k = 0; k < 4; ++k) {
-    all[k].turn.setZero();
-    for (std::size_t j = 0; j < 3; ++j) {
-      const bool moves = j <= k;
-      all[k].by[j] = moves ? -kI * (all[k].place - joint[j]) : 0.0;
-      all[k].turn[static_cast<int>(j)] = moves ? 1.0 : 0.0;
-    }
-  }
-  r.turn[3] = rocker.angle.first;
+  all.joint[0] = 0.0;
+  place(all, s, links, rocker, 0);
   return all;
 }
 
-HammerOnBoom::Matrix4 HammerOnBoom::massMatrix(const State& s) const {
+void HammerOnBoom::place(Bodies& all, const State& s, const Links& links, const Rocker& rocker,
+                         std::size_t first) const {
+  for (std::size_t k = first; k < 3; ++k) {
+    const OilBoomLink& link = links[k];
+    all.angle[k] = (k == 0 ? 0.0 : all.angle[k - 1]) + s.x[static_cast<int>(k)];
+    const PlanePoint turned = all.hull_turned = turnedBy(all.angle[k]);
+    all.joint[k + 1] = all.joint[k] + turned * link.to_next;
+    Body& body = all.body[k];
+    body.mass = link.mass, body.inertia = link.inertia;
+    body.place = all.joint[k] + turned * link.com;
+    body.x.setZero(), body.z.setZero(), body.turn.setZero();
+    turnAbout(all, body, k + 1);
+  }
+  const HammerParameters& p = machine_.hammer;
+  Body& r = all.body[3];
+  r.mass = rocker.mass, r.inertia = rocker.inertia_about_com;
+  r.place = all.joint[3] +
+            all.hull_turned * inHull(rocker.xi.value - p.lengths.pivot_distance, rocker.eta.value, p.rocker_com_angle);
+  turnAbout(all, r, 3);
+  const PlanePoint by_crank = all.hull_turned * inHull(rocker.xi.first, rocker.eta.first, p.rocker_com_angle);
+  r.x[3] = by_crank.real(), r.z[3] = by_crank.imag(), r.turn[3] = rocker.angle.first;
+}
+
+/// What the first joints do to a body.
+void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) {
+  for (std::size_t j = 0; j < joints; ++j) {
+    const PlanePoint arm = body.place - all.joint[j];
+    const int i = static_cast<int>(j);
+    body.x[i] = arm.imag(), body.z[i] = -arm.real(), body.turn[i] = 1.0;
+  }
+}
+
+HammerOnBoom::Matrix4 HammerOnBoom::massMatrix(const Bodies& all) const {
   const Vector4 rotor(ratio_, ratio_, ratio_, 1.0);
   Matrix4 M = rotor_ * rotor * rotor.transpose();
-  for (const Body& b : bodies(s)) {
-    Vector4 x, z;
-    for (int k = 0; k < 4; ++k)
-      x[k] = b.by[static_cast<std::size_t>(k)].real(), z[k] = b.by[static_cast<std::size_t>(k)].imag();
-    M += b.mass * (x * x.transpose() + z * z.transpose()) + b.inertia * b.turn * b.turn.transpose();
-  }
+  for (const Body& b : all.body)
+    M += b.mass * (b.x * b.x.transpose() + b.z * b.z.transpose()) + b.inertia * b.turn * b.turn.transpose();
   return M;
 }
 
-HammerOnBoom::Vector4 HammerOnBoom::weight(const State& s) const {
+HammerOnBoom::Vector4 HammerOnBoom::weight(const Bodies& all) const {
   Vector4 Q = Vector4::Zero();
-  for (const Body& b : bodies(s)) {
-    for (int k = 0; k < 4; ++k) Q[k] -= b.mass * machine_.gravity * b.by[static_cast<std::size_t>(k)].imag();
-  }
+  for (const Body& b : all.body) Q -= b.mass * machine_.gravity * b.z;
   return Q;
 }
 
@@ -174,18 +178,18 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held) const {
   return K;
 }
 
-Eigen::Vector3d HammerOnBoom::holding(const State& s) const {
-  const State held = heldAt(s.time);
-  const Vector4 off = s.x - held.x, rate = s.v - held.v;
-  return -weight(held).head<3>() - stiffness(held).cwiseProduct(off.head<3>()) - damping_ * rate.head<3>();
+Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
+  const Vector4 off = s.x - hold.state.x, rate = s.v - hold.state.v;
+  return -hold.weight - hold.stiffness.cwiseProduct(off.head<3>()) - damping_ * rate.head<3>();
 }
 
 /// All that is not inertia: weight, oil, motor.
-HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Vector4& inertia) const {
-  Vector4 Q = weight(s) - inertia;
-  Q.head<3>() += holding(s);
+HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Bodies& all, const Vector4& inertia,
+                                          const Hold& hold) const {
+  Vector4 Q = weight(all) - inertia;
+  Q.head<3>() += holding(s, hold);
   if (machine_.on_boom.rock.stiffness > 0.0) {
-    const Foot at = foot(s);
+    const Foot at = foot(s, hold.state);
     Q.head<3>() += rockForce(at) * at.lift;
   }
   Q[3] += netTorque(machine_.drive, s.pressure, s.v[3]);
@@ -193,19 +197,26 @@ HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Vector4& inertia
 }
 
 /// Lagrange: M a + (dM/dt) v - 1/2 d(v M v)/dx = Q. The first angle turns everything together: M does not see it.
-HammerOnBoom::Vector4 HammerOnBoom::acceleration(const State& s) const {
+HammerOnBoom::Vector4 HammerOnBoom::acceleration(const State& s, const Hold& hold) const {
   constexpr double h = 1e-5;
   Matrix4 rate = Matrix4::Zero();
   Vector4 energy_slope = Vector4::Zero();
+  const Rocker rocker = rockerAt(s);
+  const Bodies all = bodies(s, boom_.links, rocker);
+  const auto matrixAt = [&](int moved, double by) {
+    State at = s;
+    at.x[moved] += by;
+    Bodies there = all;
+    place(there, at, boom_.links, moved == 3 ? rockerAt(at) : rocker, static_cast<std::size_t>(moved));
+    return massMatrix(there);
+  };
   for (int k = 1; k < 4; ++k) {
-    State up = s, down = s;
-    up.x[k] += h, down.x[k] -= h;
-    const Matrix4 slope = (massMatrix(up) - massMatrix(down)) / (2.0 * h);
+    const Matrix4 slope = (matrixAt(k, h) - matrixAt(k, -h)) / (2.0 * h);
     rate += s.v[k] * slope;
     energy_slope[k] = 0.5 * s.v.dot(slope * s.v);
   }
-  const Matrix4 M = massMatrix(s);
-  const Vector4 Q = force(s, rate * s.v - energy_slope);
+  const Matrix4 M = massMatrix(all);
+  const Vector4 Q = force(s, all, rate * s.v - energy_slope, hold);
   if (!s.resting) return M.ldlt().solve(Q);
   Vector4 a = Vector4::Zero();
   a.head<3>() = M.topLeftCorner<3, 3>().ldlt().solve(Q.head<3>());
@@ -218,16 +229,18 @@ HammerOnBoom::State HammerOnBoom::stepped(const State& s, double dt) const {
     double p;
   };
   const DriveSettings& d = machine_.drive;
-  const auto rate = [&](const State& at) {
+  const Hold middle = holdAt(s.time + 0.5 * dt), end = holdAt(s.time + dt);
+  const auto rate = [&](const State& at, const Hold& hold) {
     const double flow = supplyFlow(d, at.time), valves = valveFlow(d, at.time, at.pressure);
-    return Rate{at.v, acceleration(at), (flow - d.motor_displacement * at.v[3] - valves) / d.compliance};
+    return Rate{at.v, acceleration(at, hold), (flow - d.motor_displacement * at.v[3] - valves) / d.compliance};
   };
   const auto moved = [&](const Rate& r, double by) {
     State to = s;
     to.time += by, to.x += by * r.x, to.v += by * r.v, to.pressure += by * r.p;
     return to;
   };
-  const Rate k1 = rate(s), k2 = rate(moved(k1, 0.5 * dt)), k3 = rate(moved(k2, 0.5 * dt)), k4 = rate(moved(k3, dt));
+  const Rate k1 = rate(s, hold_), k2 = rate(moved(k1, 0.5 * dt), middle), k3 = rate(moved(k2, 0.5 * dt), middle),
+             k4 = rate(moved(k3, dt), end);
   return moved({(k1.x + 2.0 * (k2.x + k3.x) + k4.x) / 6.0, (k1.v + 2.0 * (k2.v + k3.v) + k4.v) / 6.0,
                 (k1.p + 2.0 * (k2.p + k3.p) + k4.p) / 6.0},
                dt);
@@ -275,7 +288,7 @@ void HammerOnBoom::letGo() {
   if (!now_.resting || released_ >= now_.time) return;
   State free = now_;
   free.resting = false;
-  if (!(acceleration(free)[3] > 0.0)) return;
+  if (!(acceleration(free, holdAt(now_.time))[3] > 0.0)) return;
   now_ = free;
   released_ = now_.time;
 }
@@ -286,7 +299,7 @@ void HammerOnBoom::passDeadCentre() {
     blow();
     return;
   }
-  const Vector4 by_brake = massMatrix(now_).ldlt().solve(Vector4::Unit(3));
+  const Vector4 by_brake = massMatrix(bodies(now_)).ldlt().solve(Vector4::Unit(3));
   now_.v -= by_brake * (now_.v[3] / by_brake[3]);
   now_.v[3] = 0.0;
   now_.resting = true;

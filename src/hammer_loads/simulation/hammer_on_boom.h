@@ -63,35 +63,53 @@ class HammerOnBoom {
   struct Body {
     double mass{}, inertia{};
     PlanePoint place;
-    std::array<PlanePoint, 4> by;
-    Vector4 turn;
+    Vector4 x, z, turn;
   };
-  using Bodies = std::array<Body, 4>;  ///< links, then the rocker
+  /// Links, then the rocker, which the crank moves within the hull.
+  struct Bodies {
+    std::array<Body, 4> body;
+    std::array<PlanePoint, 4> joint;  ///< of the links, then the rocker's pivot D
+    std::array<double, 3> angle;      ///< of the links
+    PlanePoint hull_turned;
+  };
+
+  /// Where the operator holds the joints, and what holds them there.
+  struct Hold {
+    State state;
+    Eigen::Vector3d weight;     ///< of everything, on the joints [N m]
+    Eigen::Vector3d stiffness;  ///< of the oil about the joints [N m/rad]
+  };
+  using Links = std::array<OilBoomLink, 3>;
+  using Rocker = LinkBodies::Body;  ///< in the mechanism frame
 
   void takeMovingPartsOffTheHull();
   State heldAt(double time) const;
-  using Links = std::array<OilBoomLink, 3>;
+  Hold holdAt(double time) const;
 
-  Bodies bodies(const State& s, const Links& links) const;
-  Bodies bodies(const State& s) const { return bodies(s, boom_.links); }
-  Matrix4 massMatrix(const State& s) const;
-  Vector4 weight(const State& s) const;
+  Rocker rockerAt(const State& s) const { return links_.at({s.x[3], s.before_blow, false}).body[0]; }
+  Bodies bodies(const State& s, const Links& links, const Rocker& rocker) const;
+  /// Anew from a link on; 3: the rocker alone.
+  void place(Bodies& all, const State& s, const Links& links, const Rocker& rocker, std::size_t first) const;
+  static void turnAbout(const Bodies& all, Body& body, std::size_t joints);
+  Bodies bodies(const State& s) const { return bodies(s, boom_.links, rockerAt(s)); }
+  Matrix4 massMatrix(const Bodies& all) const;
+  Vector4 weight(const Bodies& all) const;
   Eigen::Vector3d stiffness(const State& held) const;
   void followOperator();
-  Eigen::Vector3d holding(const State& s) const;
+  Eigen::Vector3d holding(const State& s, const Hold& hold) const;
   PlanePoint footPlace(const State& s) const;
   /// The hull's foot along the tool, from where it stands as the operator holds it.
   struct Foot {
     double height{}, speed{};  ///< [m], [m/s]
     Eigen::Vector3d lift;      ///< by the joints' angles [m]
   };
-  Foot foot(const State& s) const;
+  Foot foot(const State& s, const State& held) const;
   void standOnRock();
-  double rockHeight() const;
+  double rockHeight(const Hold& hold) const;
   double rockForce(const Foot& foot) const;
-  Load rockLoad() const;
-  Vector4 force(const State& s, const Vector4& inertia) const;
-  Vector4 acceleration(const State& s) const;
+  Load rockLoad(const State& held) const;
+  Vector4 force(const State& s, const Bodies& all, const Vector4& inertia, const Hold& hold) const;
+  Vector4 acceleration(const State& s, const Hold& hold) const;
   State stepped(const State& s, double dt) const;
   double timeToDeadCentre(double dt) const;
   void letGo();
@@ -103,15 +121,23 @@ class HammerOnBoom {
   PlanePoint jointPlace(const State& s, std::size_t joint) const;
   PlanePoint imuPlace(const State& s) const;
   State along(const State& s, const Vector4& a, double dt) const;
+  /// Now, a moment later and a moment sooner: what accelerations are found from.
+  struct Moments {
+    State state[3];
+    Rocker rocker[3];
+  };
+  Moments momentsAbout(const Vector4& a) const;
   /// Of the bodies from `first` on, without what holds them, about a place in axes turned by an angle.
-  Load loadOf(const Vector4& a, const Links& links, std::size_t first, PlanePoint about, double axes) const;
-  Load cutLoad(const OnBoomTruth& t, const Vector4& a, const OilBoomCut& cut) const;
-  void readCylinders(OnBoomTruth& t) const;
+  Load loadOf(const Vector4& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
+              double axes) const;
+  Load cutLoad(const OnBoomTruth& t, const Vector4& a, const Moments& m, const OilBoomCut& cut) const;
+  void readCylinders(OnBoomTruth& t, const Hold& hold) const;
 
   MachineSettings machine_;
   OilBoom boom_;
   MovingLinks links_;
   double rotor_{}, ratio_{};  ///< Jc [kg m2], drive_reaction_ratio
+  Hold hold_;                 ///< at the beginning of the step in hand
   Eigen::Matrix3d damping_;
   double rock_height_{};  ///< over the foot of a hull that is held without rock [m]
   double step_{};         ///< longest [s]

@@ -9,7 +9,7 @@ double areaOf(double diameter) { return 0.25 * kPi * diameter * diameter; }
 
 }  // namespace
 
-double OilCylinder::length(double angle) const { return std::abs(std::polar(1.0, -angle) * rod - base); }
+double OilCylinder::length(double angle) const { return std::abs(turnedBy(angle) * rod - base); }
 
 double OilCylinder::arm(double angle) const { return (length(angle + 1e-5) - length(angle - 1e-5)) / 2e-5; }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <complex>
 
 namespace hammer_loads::simulation {
@@ -9,6 +10,8 @@ namespace hammer_loads::simulation {
 /// A place in a vertical plane, x + i z [m]; a turn by q about +y is e^(-iq).
 using PlanePoint = std::complex<double>;
 constexpr PlanePoint kI{0.0, 1.0};
+
+inline PlanePoint turnedBy(double angle) { return {std::cos(angle), -std::sin(angle)}; }  ///< e^(-iq)
 
 /// A link from its joint on, in its own axes.
 struct OilBoomLink {

@@ -12,20 +12,18 @@ void HammerOnBoom::blow() {
   using Matrix5 = Eigen::Matrix<double, 5, 5>;
   const double u_before = links_.rockerAngle({0.0, true, false}).first;
   const double u_after = links_.rockerAngle({0.0, false, false}).first;
-  const Bodies all = bodies(now_);
+  const std::array<Body, 4> all = bodies(now_).body;
   Vector5 rotor;
   rotor << ratio_, ratio_, ratio_, 1.0, 0.0;
   Matrix5 M = rotor_ * rotor * rotor.transpose();
   for (std::size_t k = 0; k < 4; ++k) {
     Vector5 x = Vector5::Zero(), z = x, turn = x;
-    for (int j = 0; j < 3; ++j) {
-      const auto i = static_cast<std::size_t>(j);
-      x[j] = all[k].by[i].real(), z[j] = all[k].by[i].imag(), turn[j] = all[k].turn[j];
-    }
-    if (k == 3) x[4] = all[k].by[3].real() / u_before, z[4] = all[k].by[3].imag() / u_before, turn[4] = 1.0;
-    M += all[k].mass * (x * x.transpose() + z * z.transpose()) + all[k].inertia * turn * turn.transpose();
+    const Body& b = all[k];
+    x.head<3>() = b.x.head<3>(), z.head<3>() = b.z.head<3>(), turn.head<3>() = b.turn.head<3>();
+    if (k == 3) x[4] = b.x[3] / u_before, z[4] = b.z[3] / u_before, turn[4] = 1.0;
+    M += b.mass * (x * x.transpose() + z * z.transpose()) + b.inertia * turn * turn.transpose();
   }
-  const PlanePoint to_hull = std::exp(kI * hullAngle(now_));
+  const PlanePoint to_hull = std::conj(turnedBy(hullAngle(now_)));
   const PlanePoint striker = jointPlace(now_, 3) - machine_.hammer.striking_distance / to_hull;
   Vector5 J, v, loop;  // of the striking point along the tool; the linkage allows no speed along the loop
   for (std::size_t j = 0; j < 3; ++j) J[static_cast<int>(j)] = (to_hull * -kI * (striker - jointPlace(now_, j))).imag();

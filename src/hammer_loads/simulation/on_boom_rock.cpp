@@ -13,13 +13,12 @@ constexpr double kStepsPerSwing = 60.0;  // of the hull on the rock's spring
 }  // namespace
 
 PlanePoint HammerOnBoom::footPlace(const State& s) const {
-  return jointPlace(s, 3) + std::exp(-kI * hullAngle(s)) * boom_.foot;
+  return jointPlace(s, 3) + turnedBy(hullAngle(s)) * boom_.foot;
 }
 
 /// The rock's face stands across the tool of a hull that is held, and goes with it.
-HammerOnBoom::Foot HammerOnBoom::foot(const State& s) const {
-  const State held = heldAt(s.time);
-  const PlanePoint up = kI * std::exp(-kI * hullAngle(held));
+HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
+  const PlanePoint up = kI * turnedBy(hullAngle(held));
   const auto along = [&](PlanePoint p) { return (p * std::conj(up)).real(); };
   const PlanePoint place = footPlace(s), held_place = footPlace(held);
   Foot foot;
@@ -33,22 +32,20 @@ HammerOnBoom::Foot HammerOnBoom::foot(const State& s) const {
 }
 
 /// The oil of all cylinders gives way to the press force, and so does the rock.
-double HammerOnBoom::rockHeight() const {
+double HammerOnBoom::rockHeight(const Hold& hold) const {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return 0.0;
-  const State held = heldAt(now_.time);
-  const Eigen::Vector3d lift = foot(held).lift;
-  return rock.press_force * (1.0 / rock.stiffness + lift.cwiseAbs2().cwiseQuotient(stiffness(held)).sum());
+  const Eigen::Vector3d lift = foot(hold.state, hold.state).lift;
+  return rock.press_force * (1.0 / rock.stiffness + lift.cwiseAbs2().cwiseQuotient(hold.stiffness).sum());
 }
 
 /// At the start, at rest, with steps that are short enough for the rock.
 void HammerOnBoom::standOnRock() {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return;
-  const State held = heldAt(now_.time);
-  const Eigen::Vector3d lift = foot(held).lift;
-  now_.x.head<3>() += rock.press_force * lift.cwiseQuotient(stiffness(held));
-  const Eigen::Matrix3d M = massMatrix(held).topLeftCorner<3, 3>();
+  const Eigen::Vector3d lift = foot(hold_.state, hold_.state).lift;
+  now_.x.head<3>() += rock.press_force * lift.cwiseQuotient(hold_.stiffness);
+  const Eigen::Matrix3d M = massMatrix(bodies(hold_.state)).topLeftCorner<3, 3>();
   const double mass = 1.0 / lift.dot(M.ldlt().solve(lift));
   step_ = std::min(step_, kTwoPi * std::sqrt(mass / rock.stiffness) / kStepsPerSwing);
 }
@@ -60,10 +57,10 @@ double HammerOnBoom::rockForce(const Foot& foot) const {
   return rock.stiffness * std::max(0.0, depth) * std::max(0.0, 1.0 - rock.damping * foot.speed);
 }
 
-Load HammerOnBoom::rockLoad() const {
+Load HammerOnBoom::rockLoad(const State& held) const {
   if (machine_.on_boom.rock.stiffness == 0.0) return {};
-  const double turned = hullAngle(now_) - hullAngle(heldAt(now_.time));  // of the hull against the rock's face
-  const PlanePoint force = rockForce(foot(now_)) * kI * std::exp(kI * turned);
+  const double turned = hullAngle(now_) - hullAngle(held);  // of the hull against the rock's face
+  const PlanePoint force = rockForce(foot(now_, held)) * kI * std::conj(turnedBy(turned));
   const PlanePoint r = boom_.foot;
   return {force.real(), force.imag(), r.imag() * force.real() - r.real() * force.imag()};
 }

@@ -22,39 +22,45 @@ HammerOnBoom::State HammerOnBoom::along(const State& s, const Vector4& a, double
 
 PlanePoint HammerOnBoom::imuPlace(const State& s) const {
   const HullImuSensor& imu = machine_.on_boom.imu;
-  return jointPlace(s, 3) + std::exp(-kI * hullAngle(s)) * PlanePoint(imu.x, imu.z);
+  return jointPlace(s, 3) + turnedBy(hullAngle(s)) * PlanePoint(imu.x, imu.z);
+}
+
+HammerOnBoom::Moments HammerOnBoom::momentsAbout(const Vector4& a) const {
+  Moments m{{now_, along(now_, a, kInstant), along(now_, a, -kInstant)}, {}};
+  for (int i = 0; i < 3; ++i) m.rocker[i] = rockerAt(m.state[i]);
+  return m;
 }
 
 /// Accelerations by differences in time.
-Load HammerOnBoom::loadOf(const Vector4& a, const Links& links, std::size_t first, PlanePoint about,
+Load HammerOnBoom::loadOf(const Vector4& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
                           double axes) const {
   constexpr double h = kInstant;
-  const Bodies now = bodies(now_, links), later = bodies(along(now_, a, h), links),
-               sooner = bodies(along(now_, a, -h), links);
+  const Bodies now = bodies(m.state[0], links, m.rocker[0]), later = bodies(m.state[1], links, m.rocker[1]),
+               sooner = bodies(m.state[2], links, m.rocker[2]);
   PlanePoint force = 0.0;
   double torque = 0.0;
   for (std::size_t k = first; k < 4; ++k) {
-    const PlanePoint acceleration = (later[k].place - 2.0 * now[k].place + sooner[k].place) / (h * h);
-    const PlanePoint f = -now[k].mass * (acceleration + kI * machine_.gravity);
-    const double spin = now[k].turn.dot(a) + (later[k].turn - sooner[k].turn).dot(now_.v) / (2.0 * h);
+    const PlanePoint acceleration = (later.body[k].place - 2.0 * now.body[k].place + sooner.body[k].place) / (h * h);
+    const PlanePoint f = -now.body[k].mass * (acceleration + kI * machine_.gravity);
+    const double spin = now.body[k].turn.dot(a) + (later.body[k].turn - sooner.body[k].turn).dot(now_.v) / (2.0 * h);
     force += f;
-    torque += moment(now[k].place - about, f) - now[k].inertia * spin;
+    torque += moment(now.body[k].place - about, f) - now.body[k].inertia * spin;
   }
   torque -= rotor_ * ratio_ * (a[3] + ratio_ * a.head<3>().sum());
-  const PlanePoint turned = force * std::exp(kI * axes);
+  const PlanePoint turned = force * std::conj(turnedBy(axes));
   return {turned.real(), turned.imag(), torque};
 }
 
 /// With the forces of the cylinders that have their base before the cut and their rod's pin beyond it.
-Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const OilBoomCut& cut) const {
+Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const Moments& m, const OilBoomCut& cut) const {
   const double axes = angleBefore(now_, cut.link + 1);
-  const PlanePoint about = jointPlace(now_, cut.link) + std::exp(-kI * axes) * cut.place;
+  const PlanePoint turn = turnedBy(axes), about = jointPlace(now_, cut.link) + turn * cut.place;
   Links links = boom_.links;
   links[cut.link] = {links[cut.link].to_next, cut.beyond.com, cut.beyond.mass, cut.beyond.inertia};
-  Load load = loadOf(a, links, cut.link, about, axes);
+  Load load = loadOf(a, m, links, cut.link, about, axes);
   const PlanePoint foot = footPlace(now_) - about,
-                   by_rock = PlanePoint(t.rock.force_x, t.rock.force_z) * std::exp(-kI * hullAngle(now_));
-  const PlanePoint rock_here = by_rock * std::exp(kI * axes);
+                   by_rock = PlanePoint(t.rock.force_x, t.rock.force_z) * turnedBy(hullAngle(now_));
+  const PlanePoint rock_here = by_rock * std::conj(turn);
   load.force_x += rock_here.real(), load.force_z += rock_here.imag(), load.torque_y += moment(foot, by_rock);
   for (std::size_t k = cut.link; k < 3; ++k) {
     const OilCylinder& c = boom_.cylinders[k];
@@ -64,10 +70,10 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const OilBoom
         (k == cut.link + 1 && c.base.real() + boom_.links[cut.link].to_next.real() > cut.place.real());
     if (!rod_beyond || base_beyond) continue;
     const double before = angleBefore(now_, k), angle = now_.x[static_cast<int>(k)];
-    const PlanePoint joint = jointPlace(now_, k), rod = joint + std::exp(-kI * (before + angle)) * c.rod;
-    const PlanePoint along_rod = rod - joint - std::exp(-kI * before) * c.base;
+    const PlanePoint joint = jointPlace(now_, k), rod = joint + turnedBy(before + angle) * c.rod;
+    const PlanePoint along_rod = rod - joint - turnedBy(before) * c.base;
     const PlanePoint push = t.hold[static_cast<int>(k)] / c.arm(angle) * along_rod / std::abs(along_rod);
-    const PlanePoint turned = push * std::exp(kI * axes);
+    const PlanePoint turned = push * std::conj(turn);
     load.force_x += turned.real(), load.force_z += turned.imag();
     load.torque_y += moment(rod - about, push);
   }
@@ -75,14 +81,13 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const OilBoom
 }
 
 /// One chamber carries what is steady, both what is not.
-void HammerOnBoom::readCylinders(OnBoomTruth& t) const {
-  const State held = heldAt(now_.time);
-  const Vector4 weights = weight(held);
+void HammerOnBoom::readCylinders(OnBoomTruth& t, const Hold& hold) const {
+  const State& held = hold.state;
   const double preload = machine_.on_boom.pressures.preload;
   for (std::size_t k = 0; k < 3; ++k) {
     const int j = static_cast<int>(k);
     const OilCylinder& c = boom_.cylinders[k];
-    const double steady = -weights[j] / c.arm(held.x[j]), change = t.hold[j] / c.arm(now_.x[j]) - steady;
+    const double steady = -hold.weight[j] / c.arm(held.x[j]), change = t.hold[j] / c.arm(now_.x[j]) - steady;
     const double bore_share = c.boreShare(held.x[j]), rod_share = c.rodShare(held.x[j]);
     const double way = change / (c.bore_area * bore_share + c.rod_area * rod_share);
     const double bore_push = std::max(steady, 0.0) + preload * (steady > 0.0 ? c.rod_area : c.bore_area);
@@ -93,7 +98,8 @@ void HammerOnBoom::readCylinders(OnBoomTruth& t) const {
 
 OnBoomTruth HammerOnBoom::truth() const {
   OnBoomTruth t;
-  const Vector4 a = acceleration(now_);
+  const Hold hold = holdAt(now_.time);
+  const Vector4 a = acceleration(now_, hold);
   t.time = now_.time;
   t.turn = turn_;
   t.angle = now_.before_blow ? now_.x[3] + 2.0 * kPi : now_.x[3];
@@ -102,21 +108,21 @@ OnBoomTruth HammerOnBoom::truth() const {
   t.pressure = now_.pressure;
   t.net_torque = netTorque(machine_.drive, now_.pressure, now_.v[3]);
   t.hull_pitch = hullAngle(now_);
-  t.load = loadOf(a, boom_.links, 3, jointPlace(now_, 3), t.hull_pitch);
+  const Moments moments = momentsAbout(a);
+  t.load = loadOf(a, moments, boom_.links, 3, jointPlace(now_, 3), t.hull_pitch);
   t.drive_reaction_y = -rotor_ * ratio_ * (a[3] + ratio_ * a.head<3>().sum());
   t.load.torque_y -= t.drive_reaction_y;
   t.angles = now_.x.head<3>(), t.rates = now_.v.head<3>();
-  t.displacement = t.angles - heldAt(now_.time).x.head<3>();
-  t.hold = holding(now_);
-  t.rock = rockLoad();
-  for (std::size_t i = 0; i < t.cut.size(); ++i) t.cut[i] = cutLoad(t, a, boom_.cuts[i]);
+  t.displacement = t.angles - hold.state.x.head<3>();
+  t.hold = holding(now_, hold);
+  t.rock = rockLoad(hold.state);
+  for (std::size_t i = 0; i < t.cut.size(); ++i) t.cut[i] = cutLoad(t, a, moments, boom_.cuts[i]);
   const PlanePoint acceleration =
-      (imuPlace(along(now_, a, kInstant)) - 2.0 * imuPlace(now_) + imuPlace(along(now_, a, -kInstant))) /
-      (kInstant * kInstant);
+      (imuPlace(moments.state[1]) - 2.0 * imuPlace(now_) + imuPlace(moments.state[2])) / (kInstant * kInstant);
   const PlanePoint felt =
-      (acceleration + kI * machine_.gravity) * std::exp(kI * (t.hull_pitch + machine_.on_boom.imu.pitch));
+      (acceleration + kI * machine_.gravity) * std::conj(turnedBy(t.hull_pitch + machine_.on_boom.imu.pitch));
   t.imu_x = felt.real(), t.imu_z = felt.imag(), t.imu_rate = t.rates.sum();
-  readCylinders(t);
+  readCylinders(t, hold);
   return t;
 }
 

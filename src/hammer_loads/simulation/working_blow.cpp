@@ -12,7 +12,7 @@ void WorkingMachine::drawBlow() noexcept {
 void WorkingMachine::meetEarlyTool() {
   early_crank_speed_ = now_.y[kSpeed];
   early_ = links_.strikeTool(now_.angle(), early_crank_speed_, settings_.blow.early_tool_mass, crank_side_inertia_);
-  early_time_ = now_.time;
+  early_time_ = now_.outside.time;
   blow_energy_ += early_->energy;
   now_.met = true;
   now_.y[kSpeed] = early_->crank_speed_after;
@@ -64,7 +64,7 @@ void WorkingMachine::blow() {
   blow_energy_ += strike.energy;
   loss_energy_ += strike.linkage_loss;
   BlowTruth truth;
-  truth.time = early_ ? early_time_ : now_.time;
+  truth.time = early_ ? early_time_ : now_.outside.time;
   truth.crank_speed = early_ ? early_crank_speed_ : speed;
   truth.strike = early_.value_or(strike);
   if (early_) {
@@ -72,7 +72,7 @@ void WorkingMachine::blow() {
     truth.strike.crank_speed_after = now_.y[kSpeed];
     early_.reset();
   }
-  truth.turn_period = now_.time - current_.start_time;
+  truth.turn_period = now_.outside.time - current_.start_time;
   truth.turn_peak_force_z = current_.peak;
   truth.turn_impulse_x = now_.y[kImpulseX] - current_.impulse_x;
   truth.turn_impulse_z = now_.y[kImpulseZ] - current_.impulse_z;

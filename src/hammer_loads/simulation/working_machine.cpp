@@ -39,6 +39,7 @@ WorkingMachine::WorkingMachine(const MachineSettings& settings)
   drawBlow();
   now_.before_blow = settings_.start_angle > kPi;
   now_.y[kOffset] = now_.before_blow ? settings_.start_angle - 2.0 * kPi : settings_.start_angle;
+  now_.outside = outsideAt(0.0);
   rate_ = rate(now_);
   beginTurn(false);
 }
@@ -49,9 +50,11 @@ double WorkingMachine::hullPitch(double time) const noexcept {
   return pitch;
 }
 
-Gravity WorkingMachine::gravityAt(double time) const noexcept {
+WorkingMachine::Outside WorkingMachine::outsideAt(double time) const noexcept {
   const double pitch = hullPitch(time);
-  return {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)};
+  return {time,
+          {settings_.gravity * std::sin(pitch), -settings_.gravity * std::cos(pitch)},
+          supplyFlow(settings_.drive, time)};
 }
 
 /// Motor less friction.
@@ -70,25 +73,25 @@ WorkingMachine::Vector WorkingMachine::rate(const State& state) const noexcept {
   const DriveSettings& d = settings_.drive;
   const double w = state.y[kSpeed], p = state.y[kPressure];
   const LinkBodies links = links_.at(state.angle());
-  const Gravity gravity = gravityAt(state.time);
-  const ShaftView shaft = links_.shaft(links, gravity);
+  const Outside& o = state.outside;
+  const ShaftView shaft = links_.shaft(links, o.gravity);
   const double motor_torque = netTorque(state), torque = shaftTorque(state);
   const double motor_speed = flexible() ? state.y[kMotorSpeed] : w;
   double acceleration =
       (torque + shaft.weight_torque - 0.5 * shaft.inertia_slope * w * w) / (crank_side_inertia_ + shaft.inertia);
   if (state.resting) acceleration = 0.0;
-  const Load load = links_.load(links, w, acceleration, gravity);
-  const double flow = supplyFlow(d, state.time), valves = valveFlow(d, state.time, p);
+  const Load load = links_.load(links, w, acceleration, o.gravity);
+  const double valves = valveFlow(d, o.time, p);
   Vector r{};
   r[kOffset] = w;
   r[kSpeed] = acceleration;
-  r[kPressure] = (flow - d.motor_displacement * motor_speed - valves) / d.compliance;
+  r[kPressure] = (o.flow - d.motor_displacement * motor_speed - valves) / d.compliance;
   r[kImpulseX] = load.force_x;
   r[kImpulseZ] = load.force_z;
   r[kMotor] = d.motor_displacement * p * motor_speed;
   r[kFriction] = r[kMotor] - motor_torque * motor_speed;
   r[kWeight] = shaft.weight_torque * w;
-  r[kSupply] = flow * p;
+  r[kSupply] = o.flow * p;
   r[kValves] = valves * p;
   if (flexible()) {
     const double twisting = motor_speed - w;
@@ -101,18 +104,20 @@ WorkingMachine::Vector WorkingMachine::rate(const State& state) const noexcept {
 
 /// One Runge-Kutta step from now_, on the present side of the blow.
 WorkingMachine::State WorkingMachine::step(double dt) const noexcept {
-  const auto moved = [this](double by, const Vector& slope) {
+  const double start = now_.outside.time;
+  const Outside middle = outsideAt(start + 0.5 * dt), end = outsideAt(start + dt);
+  const auto moved = [this](double by, const Vector& slope, const Outside& outside) {
     State state = now_;
-    state.time += by;
+    state.outside = outside;
     for (std::size_t i = 0; i < kSize; ++i) state.y[i] += by * slope[i];
     return state;
   };
-  const Vector k2 = rate(moved(0.5 * dt, rate_));
-  const Vector k3 = rate(moved(0.5 * dt, k2));
-  const Vector k4 = rate(moved(dt, k3));
+  const Vector k2 = rate(moved(0.5 * dt, rate_, middle));
+  const Vector k3 = rate(moved(0.5 * dt, k2, middle));
+  const Vector k4 = rate(moved(dt, k3, end));
   Vector mean;
   for (std::size_t i = 0; i < kSize; ++i) mean[i] = (rate_[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0;
-  return moved(dt, mean);
+  return moved(dt, mean, end);
 }
 
 /// Where the step in hand must end: at the dead centre, or at a tool before it.
@@ -145,15 +150,15 @@ double WorkingMachine::timeTo(double offset, double dt) const noexcept {
 }
 
 void WorkingMachine::advanceTo(double time) noexcept {
-  while (now_.time < time) {
+  while (now_.outside.time < time) {
     // Once per instant: a torque that falls through zero lets go of the crank and stops it at once.
-    if (now_.resting && released_ < now_.time &&
-        shaftTorque(now_) + links_.shaft(links_.at({0.0, false}), gravityAt(now_.time)).weight_torque > 0.0) {
+    if (now_.resting && released_ < now_.outside.time &&
+        shaftTorque(now_) + links_.shaft(links_.at({0.0, false}), now_.outside.gravity).weight_torque > 0.0) {
       now_.resting = false;
-      released_ = now_.time;
+      released_ = now_.outside.time;
       rate_ = rate(now_);
     }
-    const double left = time - now_.time;
+    const double left = time - now_.outside.time;
     double dt = std::min(settings_.step, left);
     State next = step(dt);
     const double event = eventOffset();
@@ -163,7 +168,7 @@ void WorkingMachine::advanceTo(double time) noexcept {
       next = step(dt);
       next.y[kOffset] = event;
     }
-    if (dt == left) next.time = time;
+    if (dt == left && next.outside.time != time) next.outside = outsideAt(time);
     accept(next);
     if (meets && event < 0.0) meetEarlyTool();
     if (meets && event == 0.0) passDeadCentre();
@@ -176,7 +181,7 @@ void WorkingMachine::accept(const State& next) {
   Vector rate_next = rate(next);
   followForce(next, rate_next[kImpulseZ]);
   if (before <= 0.0 && rate_next[kImpulseZ] > 0.0) {
-    const double part = (next.time - now_.time) * before / (before - rate_next[kImpulseZ]);
+    const double part = (next.outside.time - now_.outside.time) * before / (before - rate_next[kImpulseZ]);
     current_.lobe_impulse_z = now_.y[kImpulseZ] + 0.5 * before * part;
   }
   now_ = next;
@@ -196,30 +201,30 @@ void WorkingMachine::followForce(const State& next, double force_z) noexcept {
   Turn& c = current_;
   c.peak = std::max(c.peak, force_z);
   if (c.points == 2 && c.force[1] >= c.force[0] && c.force[1] > force_z)
-    c.peak = std::max(c.peak, parabolaPeak(c.time, c.force, next.time, force_z));
-  if (c.points == 2 && next.time == c.time[1]) return;
+    c.peak = std::max(c.peak, parabolaPeak(c.time, c.force, next.outside.time, force_z));
+  if (c.points == 2 && next.outside.time == c.time[1]) return;
   c.time[0] = c.time[1];
   c.force[0] = c.force[1];
-  c.time[1] = next.time;
+  c.time[1] = next.outside.time;
   c.force[1] = force_z;
   c.points = std::min(c.points + 1, 2);
 }
 
 void WorkingMachine::beginTurn(bool whole) noexcept {
   current_ = Turn{};
-  current_.start_time = now_.time;
+  current_.start_time = now_.outside.time;
   current_.impulse_x = now_.y[kImpulseX];
   current_.impulse_z = current_.lobe_impulse_z = now_.y[kImpulseZ];
   current_.whole = whole;
   current_.peak = rate_[kImpulseZ];
-  current_.time[1] = now_.time;
+  current_.time[1] = now_.outside.time;
   current_.force[1] = rate_[kImpulseZ];
   current_.points = 1;
 }
 
 CrankTruth WorkingMachine::truth() const noexcept {
   CrankTruth truth;
-  truth.time = now_.time;
+  truth.time = now_.outside.time;
   truth.turn = turn_;
   truth.angle = now_.before_blow ? 2.0 * kPi + now_.y[kOffset] : now_.y[kOffset];
   truth.speed = now_.y[kSpeed];
@@ -229,8 +234,8 @@ CrankTruth WorkingMachine::truth() const noexcept {
   truth.acceleration = rate_[kSpeed];
   truth.net_torque = netTorque(now_);
   truth.pressure = now_.y[kPressure];
-  truth.hull_pitch = hullPitch(now_.time);
-  truth.load = links_.load(links_.at(now_.angle()), truth.speed, truth.acceleration, gravityAt(now_.time));
+  truth.hull_pitch = hullPitch(now_.outside.time);
+  truth.load = links_.load(links_.at(now_.angle()), truth.speed, truth.acceleration, now_.outside.gravity);
   const double rotor = crank_side_inertia_ * truth.acceleration + motor_inertia_ * rate_[kMotorSpeed];
   truth.drive_reaction_y = -settings_.hammer.drive_reaction_ratio * rotor;
   return truth;

@@ -70,7 +70,7 @@ class WorkingMachine {
 
   /// time >= now [s].
   void advanceTo(double time) noexcept;
-  double time() const noexcept { return now_.time; }
+  double time() const noexcept { return now_.outside.time; }
   CrankTruth truth() const noexcept;
   EnergyAccount energy() const noexcept;
   /// Hands over the blows since the last call.
@@ -95,8 +95,14 @@ class WorkingMachine {
     kSize
   };
   using Vector = std::array<double, kSize>;
+  /// What comes from outside at a time.
+  struct Outside {
+    double time{};  ///< [s]
+    Gravity gravity;
+    double flow{};  ///< of the pump [m3/s]
+  };
   struct State {
-    double time{};
+    Outside outside;
     bool before_blow{};
     bool resting{};   ///< on the tool, turned back
     bool mirrored{};  ///< rocker beyond the tool's place
@@ -114,7 +120,7 @@ class WorkingMachine {
   double netTorque(const State& state) const noexcept;
   double shaftTorque(const State& state) const noexcept;
   double eventOffset() const noexcept;
-  Gravity gravityAt(double time) const noexcept;
+  Outside outsideAt(double time) const noexcept;
   Vector rate(const State& state) const noexcept;
   State step(double dt) const noexcept;
   double timeTo(double offset, double dt) const noexcept;
