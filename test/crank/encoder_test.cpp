@@ -45,6 +45,53 @@ TEST(EncoderCount, IsTheUsualOneWhileNothingIsKnown) {
   EXPECT_DOUBLE_EQ(encoder.resolution(), kTwoPi / 4096);
 }
 
+/// A damaged message, at every part of a count, is no finer sensor.
+TEST(EncoderCount, OutlivesAReadingThatFitsNothing) {
+  for (int part = 1; part < 40; ++part) {
+    for (const int damaged : {1, 2, 3}) {
+      Encoder encoder(0.0);
+      const auto plain = [](double r) { return r; };
+      turn(encoder, 1000, 0.04, plain, 100);
+      for (int i = 0; i < damaged; ++i) encoder.angle(1.0 + 0.7 * i * i + kTwoPi / 1000 * part / 40.0);
+      EXPECT_TRUE(encoder.isKnown()) << part;
+      turn(encoder, 1000, 0.04, plain, 100);
+      EXPECT_TRUE(encoder.isKnown() && !encoder.isFiner()) << part;
+      EXPECT_NEAR(kTwoPi / encoder.resolution(), 1000, 1e-3) << part;
+    }
+  }
+}
+
+TEST(EncoderCount, OutlivesASensorThatIsMoved) {
+  Encoder encoder(0.0);
+  for (const double moved : {0.0, 0.1234, 2.2, 0.00071}) {
+    turn(
+        encoder, 2048, 0.04, [&](double r) { return r + moved; }, 100);
+    EXPECT_TRUE(encoder.isKnown() && !encoder.isFiner()) << moved;
+    EXPECT_NEAR(kTwoPi / encoder.resolution(), 2048, 1e-3) << moved;
+  }
+}
+
+/// All differences so far were multiples of five counts.
+TEST(EncoderCount, IsFoundFinerThanItSeemed) {
+  Encoder encoder(0.0);
+  for (int i = 0; i < 60; ++i) encoder.angle(kTwoPi / 1000 * 5 * i);
+  EXPECT_NEAR(kTwoPi / encoder.resolution(), 200, 1e-6);
+  turn(
+      encoder, 1000, 0.04, [](double r) { return r; }, 100);
+  EXPECT_TRUE(encoder.isKnown());
+  EXPECT_NEAR(kTwoPi / encoder.resolution(), 1000, 1e-3);
+}
+
+/// Nonsense for a while, then readings as before.
+TEST(EncoderCount, ComesBackAfterNonsense) {
+  Encoder encoder(0.0);
+  const auto plain = [](double r) { return r; };
+  turn(encoder, 4096, 0.04, plain, 100);
+  for (int i = 0; i < 50; ++i) encoder.angle(std::fmod(std::sqrt(2.0 + i), kTwoPi));
+  turn(encoder, 4096, 0.04, plain, 100);
+  EXPECT_TRUE(encoder.isKnown() && !encoder.isFiner());
+}
+
 TEST(EncoderCount, ThatIsGivenWrongIsContradicted) {
   for (const int counts : {360, 1024, 4096}) {
     Encoder given(kTwoPi / 1024);

@@ -16,8 +16,8 @@ namespace {
 
 using simulation::Session;
 
-constexpr double kFrom = 4.0,
-                 kCountedTo = 4.6;   // [s] faults begin within the turn after kFrom; errors count until kCountedTo
+constexpr double kFrom = 2.4,
+                 kCountedTo = 3.0;   // [s] faults begin within the turn after kFrom; errors count until kCountedTo
 constexpr double kTurn = 0.22;       // [s]
 constexpr double kGoodError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
 
@@ -26,6 +26,7 @@ using Fault = std::function<void(double, CrankSample&)>;
 
 Session record(double rate) {
   simulation::MachineSettings machine = simulation::workingMo100();
+  machine.drive.start_time = 0.1;
   machine.duration = kCountedTo + 0.4;
   machine.crank.rate = rate;
   for (simulation::JointMotion& joint : machine.boom) joint.amplitude = 0.0;
@@ -39,7 +40,7 @@ struct Result {
 };
 
 Result play(const Session& session, const Fault& fault) {
-  const Settings settings = *loadFiles(configDirectory(), {}).value;
+  static const Settings settings = *loadFiles(configDirectory(), {}).value;
   Pipeline pipeline(settings.mechanism, settings.pipeline);
   pipeline.boomJoints(0, {"boom_joint", "arm_joint", "hammer_joint"}, {-0.35, 1.20, -0.85}, {});
   Result result;

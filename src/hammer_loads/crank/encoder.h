@@ -58,6 +58,8 @@ class Encoder {
   static constexpr double kFinest = kTwoPi / 65536.0;
   static constexpr double kMultipleTolerance = 1e-3;  // of a count; single-precision sensors round by 4e-4 of 2 pi/4096
   static constexpr int kEnough = 2;
+  static constexpr double kSame = kMultipleTolerance * kFinest;
+  static constexpr int kEnoughStrays = 4;
   static constexpr int kEnoughToKnow = 24;  // differences: all even or all multiples of three by chance: 1e-7
 
   static bool isMultiple(double difference, double count) noexcept {
@@ -65,18 +67,38 @@ class Encoder {
     return whole >= 1.0 && std::abs(counts - whole) <= kMultipleTolerance;
   }
 
+  static double between(double one, double other) noexcept { return std::abs(CrankAngle::wrapToPi(one - other)); }
+
   void learn(double reading) noexcept {
-    if (isFiner()) return;
-    const double difference = last_ ? std::abs(CrankAngle::wrapToPi(reading - *last_)) : 0.0;
-    if (last_ && difference < kMultipleTolerance * kFinest) return;  // the same reading
+    if (!last_) last_ = reading;
+    const double difference = between(reading, *last_);
+    if (difference < kSame) return;
+    const bool fits = isMultiple(difference, count_);
+    if (!fits && isKnown() && isStray(reading)) return;
     last_ = reading;
-    if (difference == 0.0) return;
-    if (isMultiple(difference, count_)) {
+    strays_ = 0;
+    if (fits) {
       if (agreeing_ < kEnoughToKnow) ++agreeing_;
-      return;
+      if (isKnown()) finer_readings_ = 0;  // a damaged one made it seem so
+    } else {
+      agreeing_ = 0;
+      if (!isFiner() && !reduceTo(difference)) ++finer_readings_;
     }
-    agreeing_ = 0;
-    if (!reduceTo(difference)) ++finer_readings_;
+  }
+
+  /// A count that is known is not given up for a damaged reading. Two that fit each other are of a sensor that was
+  /// moved or of a finer count: it must be read off again. Several that fit nothing are of another sensor than was
+  /// thought.
+  bool isStray(double reading) noexcept {
+    const double difference = strays_ > 0 ? between(reading, stray_) : 0.0;
+    if (strays_ > 0 && difference < kSame) return true;
+    stray_ = reading;
+    if (strays_ > 0 && isMultiple(difference, count_)) {
+      last_ = reading;
+      strays_ = agreeing_ = 0;
+      return true;
+    }
+    return ++strays_ < kEnoughStrays;
   }
 
   /// The largest whole part of a turn that divides both the count so far and the difference (Euclid). False: none.
@@ -98,6 +120,8 @@ class Encoder {
   double assumed_;
   double count_{kTwoPi};  ///< largest that all differences so far allow [rad]
   std::optional<double> last_;
+  double stray_{};  ///< the last reading that did not fit
+  int strays_{};    ///< such readings, one after the other
   int agreeing_{};  ///< differences in a row that fit the count
   int finer_readings_{};
 };
