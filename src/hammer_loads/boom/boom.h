@@ -45,7 +45,7 @@ struct WrenchSpread {
 
 /// Errors of what acts on the boom, independent of each other, one standard deviation each.
 struct LoadErrors {
-  static constexpr std::size_t kMost = 4 + kMaxJoints;  ///< those of a WrenchSpread, and one for each mode
+  static constexpr std::size_t kMost = 7 + kMaxJoints;  ///< of a VibrationSpread's runs, and one for each mode
   std::size_t count{};
   std::array<JointVector, kMost> acceleration;  ///< of the joints' vibration [rad/s2]
   std::array<Wrench, kMost> tip;                ///< of the load on the tip with it

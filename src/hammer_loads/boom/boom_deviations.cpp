@@ -134,6 +134,7 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
   };
   for (int run = 0; run < VibrationSpread::kLoads && vibrates; ++run) add(run, {});
   for (int i = 0; i < w_tip.count; ++i) add(VibrationSpread::kLoads + i, w_tip.part[static_cast<std::size_t>(i)]);
+  for (int k = 0; vibrates && spread.swings() && k < spread.modes(); ++k) errors.add(spread.accelerationOfSwing(k), {});
   // Stiffer and softer exclude each other.
   static_assert(VibrationSpread::kStiffer == 0 && VibrationSpread::kSofter == 1);
   sumErrors(errors, vibrates, result);

@@ -165,7 +165,7 @@ void ModeIdentifier::leaveContact() noexcept {
   forget(kContact, kUnknownContact);
 }
 
-void ModeIdentifier::forgetMotion() noexcept {
+void ModeIdentifier::forgetMotion(const JointVector& swing) noexcept {
   moving_known_ = count_ > 0;
   force_.setZero(count_);
   forget(kContact, kUnknownContact);
@@ -174,8 +174,9 @@ void ModeIdentifier::forgetMotion() noexcept {
       const int i = at(k, part);
       forget(i, 0.0);
       if (k >= count_) continue;
-      const double rate = kUnknownRate / modes_.shape.col(k).cwiseAbs().maxCoeff();
-      covariance_(i, i) = square(part == kV ? rate : rate / modeAt(k).omega);
+      const double omega = modeAt(k).omega, least = kUnknownRate / modes_.shape.col(k).cwiseAbs().maxCoeff();
+      const double rate = k < swing.size() ? std::max(least, omega * swing[k]) : least;
+      covariance_(i, i) = square(part == kV ? rate : rate / omega);
     }
   }
 }

@@ -43,8 +43,9 @@ class ModeIdentifier {
   void advance(double step, const TorqueStep& modal) noexcept;
   /// As Vibration::strike().
   void strike(const JointVector& impulse) noexcept;
-  /// Vibration unknown, as after a gap; what is known of frequencies and damping stays.
-  void forgetMotion() noexcept;
+  /// Vibration unknown, as after a gap; what is known of frequencies and damping stays. swing: how far each mode goes
+  /// as a rule, standard [m sqrt(kg)]; empty: not known.
+  void forgetMotion(const JointVector& swing = {}) noexcept;
   /// From now on a force of the rock is followed; torque: on the joints per newton of it [N m/N]. Call at each pose.
   void followContact(const JointVector& torque) noexcept;
   /// No more: the hull counts as free.

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
+constexpr double kSwingMemory = 1.0;           // [s]
 constexpr double kContactMemory = 0.5;         // of the rock's mean force: some turns [s]
 constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
 constexpr double kOilStep = 0.01;              // by which the modes' oil is off before they are found anew
@@ -42,6 +45,7 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   oil_ *= std::exp(stiffer);
   findModes(dynamics_, cylinders_, position_, g_B, oil_, modes_);
   if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
+  if (swing_.size() != modes_.count) swing_.setZero(modes_.count);
   posed_ = true;
   if (identifier_) identifier_->setModes(modes_, identifier_->explains() ? stiffer : 0.0);
   useIdentified();
@@ -72,7 +76,7 @@ void Vibration::rest() noexcept {
   force_.setZero(modes_.count);
   contact_ = mean_contact_ = 0.0;
   follows_readings_ = false;
-  if (identifier_) identifier_->forgetMotion();
+  if (identifier_) identifier_->forgetMotion(usualSwing());
   posed_ = false;
 }
 
@@ -92,6 +96,14 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   if (follows_readings_) takeMotion();
   if (identifier_) mean_contact_ += std::min(1.0, step / kContactMemory) * (identifier_->contact() - mean_contact_);
   restIfNotFinite();
+  followSwing(step);
+}
+
+/// Mean of displacement and velocity, which take turns.
+void Vibration::followSwing(double step) noexcept {
+  const double share = std::min(1.0, step / kSwingMemory);
+  for (int k = 0; k < modes_.count; ++k)
+    swing_[k] += share * (0.5 * (square(x_[k]) + square(v_[k] / modes_.omega[k])) - swing_[k]);
 }
 
 void Vibration::strike(const JointVector& impulse) noexcept {

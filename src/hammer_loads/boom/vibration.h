@@ -30,6 +30,8 @@ class Vibration {
   void setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
   /// At rest without load, as after a gap in the samples; the next setPose() finds new modes.
   void rest() noexcept;
+  /// How far each mode has swung of late, root mean square of displacements [m sqrt(kg)]; rest() leaves it as it is.
+  JointVector usualSwing() const noexcept { return swing_.cwiseSqrt(); }
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.
   /// Where torques are so large that the state would not be finite, the boom comes to rest.
   void advance(double step, const TorqueStep& torque) noexcept;
@@ -86,6 +88,7 @@ class Vibration {
   double oilToTake() const noexcept;
   void useMotion() noexcept;
   void takeMotion() noexcept;
+  void followSwing(double step) noexcept;
   double contactAtLoad(int mode) const noexcept { return contact_ * contact_by_newton_[mode]; }
 
   ChainDynamics dynamics_;
@@ -100,6 +103,7 @@ class Vibration {
   bool follows_readings_{};
   std::array<KeptResponse, kMaxJoints> response_;        ///< of each mode
   JointVector x_, v_;                                    ///< modal displacements and velocities
+  JointVector swing_;                                    ///< mean squares of the displacements
   JointVector contact_by_newton_;                        ///< modal force of the rock
   double contact_{}, mean_contact_{}, least_contact_{};  ///< [N]
   JointVector torque_, force_;                           ///< of the load at the end of the last step; modal

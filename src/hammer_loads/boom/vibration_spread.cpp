@@ -5,6 +5,12 @@
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
+namespace {
+
+constexpr double kFaded = 1e-4;  // of the displacement by the hammer's load [m sqrt(kg)]: 10 kg by 30 um
+
+}  // namespace
+
 void VibrationSpread::follow(const Vibration& vibration) noexcept {
   const BoomModes& now = vibration.modes();
   const bool same = now.count == modes_.count && now.count > 0 && now.shape == modes_.shape;
@@ -55,10 +61,24 @@ void VibrationSpread::rest() noexcept {
     for (JointVector& value : *values) value.setZero(modes_.count);
   }
   load_.resize(modes_.mass.rows(), 0);
+  swing_.resize(0);
+}
+
+void VibrationSpread::fade(double step) noexcept {
+  if (!swings()) return;
+  for (int k = 0; k < modes_.count; ++k) swing_[k] *= std::exp(-mode(kLoads, k).zeta * mode(kLoads, k).omega * step);
+  if (swing_.maxCoeff() < kFaded) swing_.resize(0);
+}
+
+JointVector VibrationSpread::accelerationOfSwing(int mode) const noexcept {
+  JointVector modal = JointVector::Zero(modes_.count);
+  modal[mode] = square(this->mode(kLoads, mode).omega) * swing_[mode];
+  return jointsOf(modes_, modal);
 }
 
 void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept {
   if (modes_.count == 0 || waits_) return;
+  fade(step);
   const bool same = load_.cols() == to.cols();
   const TorqueStep modal = modalForces(modes_, torque);
   load_ = to;

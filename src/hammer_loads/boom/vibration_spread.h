@@ -33,12 +33,20 @@ class VibrationSpread {
   void advance(double step, const TorqueStep& torque, const LoadSpread& to) noexcept;
   void strike(const JointVector& impulse) noexcept;
   void rest() noexcept;
+  /// At rest as far as is known; in truth each mode may swing so far, whatever its phase, and does so less and less.
+  /// swing: standard deviations [m sqrt(kg)].
+  void begin(const JointVector& swing) noexcept { swing_ = swing; }
 
   /// Of a mode: as given or, where that is less, as identified.
   const OilDeviation& deviation(int mode) const noexcept { return deviation_[static_cast<std::size_t>(mode)]; }
   int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }
   /// By what the joints' accelerations of a run differ from those of the vibration, at the same instant [rad/s2].
   JointVector accelerationDifference(int run, const JointVector& vibration) const noexcept;
+  /// Whether the vibration was going on, in a way not known, when it began to be followed.
+  bool swings() const noexcept { return swing_.size() > 0; }
+  /// What that makes of the joints' accelerations, standard, by one mode [rad/s2].
+  JointVector accelerationOfSwing(int mode) const noexcept;
+  int modes() const noexcept { return modes_.count; }
 
  private:
   const Mode& mode(int run, int k) const noexcept {
@@ -46,6 +54,7 @@ class VibrationSpread {
   }
 
   void start(const Vibration& vibration) noexcept;
+  void fade(double step) noexcept;
   bool advanceRun(int run, double step, const TorqueStep& modal) noexcept;
 
   OilDeviation given_;
@@ -55,6 +64,7 @@ class VibrationSpread {
   std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
   std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
   LoadSpread load_;
+  JointVector swing_;                                                      ///< empty: none
   std::array<std::array<KeptResponse, kMaxJoints>, kLoads + 1> response_;  ///< as mode_
 };
 

@@ -82,6 +82,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     if (!continued) boom_.vibration().rest(), spread_.rest(), beside_modes_.setZero();
     pose(since, g_B);
     spread_.follow(boom_.vibration());
+    if (!continued) beginUnseen(sample.unseen_peak);
     followContact(sample.stamp);
     if (continued && !swung) vibrate(step, sample.displaced_links, spreadWithRock(sample.spread));
     observe(sample, since);
@@ -207,6 +208,19 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
     if (piece.ends_in_blow) strike(piece.blow);
   }
   displaced_links_ = displaced_links;
+}
+
+/// The boom may have been shaken all the while: as far as it was when it was last followed, else as far as the hammer's
+/// peak alone would move it.
+void BoomFollower::beginUnseen(double peak) noexcept {
+  const Vibration& vibration = boom_.vibration();
+  JointVector swing = vibration.usualSwing();
+  if (!vibration.known() || (swing.isZero(0.0) && peak == 0.0)) return;
+  if (swing.isZero(0.0))
+    swing = modalForce(vibration.modes(), boom_.hammerTorque(onTip({0.0, peak, 0.0})))
+                .cwiseQuotient(vibration.modes().omega.cwiseAbs2())
+                .cwiseAbs();
+  spread_.begin(swing);
 }
 
 void BoomFollower::strike(const HullWrench& impulse) noexcept {

@@ -30,6 +30,7 @@ struct BoomSample {
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
   HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
+  double unseen_peak{};             ///< of Fz of a hammer that is at work, should it not have been followed before [N]
 };
 
 /// Why the boom is taken as rigid or compliant.
@@ -113,6 +114,7 @@ class BoomFollower {
   bool takesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const HullWrench& displaced_links, const WrenchSpread& spread) noexcept;
   void strike(const HullWrench& impulse) noexcept;
+  void beginUnseen(double peak) noexcept;
   void pose(double since, const Eigen::Vector3d& g_B) noexcept;
   void findLoads(const BoomSample& sample) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;

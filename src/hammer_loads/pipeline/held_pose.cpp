@@ -7,6 +7,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMemory = 0.5, kLost = 0.5;  // of each filter [s]; of an angle that winds or came back [rad]
+constexpr double kStill = 0.03;               // [rad]: after a gap, of a boom that vibrates where it was to be
 constexpr double kFast = 0.05, kRest = 2.0;   // [rad/s]: its acceleration hides the vibration; [s] to wait then
 constexpr double kTurnAtMost = 1.0;           // from blow to blow [s]
 constexpr double kStart = 1.0;                // [s] until a boom that is driven at the start is seen to be
@@ -17,15 +18,16 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   motion_ = measured;
   angle_ = measured.position;
   since_blow_ += step;
-  const bool lost = first_.size() != measured.position.size() || !(step < kMemory) ||
-                    (measured.position - first_).cwiseAbs().maxCoeff() > kLost;
+  const bool is_first = first_.size() != measured.position.size(), gap = !(step < kMemory);
+  if (gap && !is_first && !isDriven()) goOn(step);
+  const bool lost = is_first || !((measured.position - first_).cwiseAbs().maxCoeff() < (gap ? kStill : kLost));
   if (lost) {
     first_ = slow_ = slowest_ = measured.position;
     unrest_ = kStart;
     at_blow_.resize(0), of_turn_.resize(0), of_turn_before_.resize(0);
     return;
   }
-  const double part = step / kMemory;
+  const double part = gap ? 0.0 : step / kMemory;
   first_ += part * (measured.position - first_);
   slow_ += part * (first_ - slow_);
   slowest_ += part * (slow_ - slowest_);
@@ -33,6 +35,12 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   if (isDriven()) return;
   motion_.position = 3.0 * (first_ - slow_) + slowest_;
   motion_.velocity = slowRate();
+}
+
+/// Over a gap, at the operator's last rate.
+void HeldPose::goOn(double step) noexcept {
+  const JointVector way = step * slowRate();
+  for (JointVector* angle : {&first_, &slow_, &slowest_}) *angle += way;
 }
 
 void HeldPose::struck() noexcept {

@@ -29,6 +29,8 @@ class HeldPose {
   JointVector rateAtBlow() const noexcept { return isDriven() && of_turn_.size() > 0 ? of_turn_ : slowRate(); }
 
  private:
+  void goOn(double step) noexcept;
+
   JointVector angle_;                               ///< as measured
   JointVector at_blow_, of_turn_, of_turn_before_;  ///< angles; rates of the last turn drawn on, and of it [rad/s]
   double since_blow_{};                             ///< [s]

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kShare = 0.005;       // of one reading in the mean of squares: some 200 count
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
+constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
 }  // namespace
 
@@ -30,6 +31,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   Vibration::OilTorque model = boom.vibration().oilTorque();
   model.now += steady;
   if (model_.now.size() != model.now.size()) model_ = model, sample_ = sample;
+  const bool gap = seconds(sample - sample_) > kGap;
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
@@ -45,7 +47,9 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     if (pressures.count(i) != track.readings) {
       const double before = model_.now[j] + seconds(stamp - sample_) * model_.rate[j];
       const double now = model.now[j] + seconds(stamp - sample) * model.rate[j];
-      take(track, stamp, -forceOf(cylinder, *read) * at.arm, now, before);
+      const double torque = -forceOf(cylinder, *read) * at.arm;
+      if (gap) track.stamp = stamp, track.torque = torque, track.model = now, track.slope = 0.0;
+      take(track, stamp, torque, now, before);
       track.readings = pressures.count(i);
     }
     const double age = std::min(seconds(sample - stamp), kLongestLine);

@@ -13,6 +13,7 @@ namespace {
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
+constexpr double kAtWork = 0.3;                               // of the nominal speed: blows are struck
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
 }  // namespace
@@ -161,8 +162,10 @@ void Pipeline::followBoom() noexcept {
   const HullWrench displaced = displaced_links_.wrench(crank, hull_.motion().motion);
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, result_.crank_covariance);
-  result_.boom = &boom_->sample(
-      {result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp), displaced}, step);
+  const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
+  result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp),
+                                 displaced, at_work ? nominal_force_ : 0.0},
+                                step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i)
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
