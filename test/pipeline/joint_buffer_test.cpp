@@ -133,12 +133,25 @@ TEST_F(Joints, BadValuesAreRefusedAndCounted) {
   EXPECT_EQ(buffer_.refusals().short_array, 1U);
   EXPECT_EQ(at(10 * kMs).position[2], 1.0);
   // A bad or absent velocity leaves the position.
-  EXPECT_TRUE(buffer_.update(20 * kMs, {"arm_joint"}, {1.2}, {kNaN}));
+  EXPECT_TRUE(buffer_.update(20 * kMs, {"arm_joint"}, {1.02}, {kNaN}));
   EXPECT_EQ(buffer_.refusals().not_finite, 3U);
-  EXPECT_NEAR(at(20 * kMs).velocity[2], 10.0, 1e-12);
-  EXPECT_TRUE(buffer_.update(30 * kMs, {"boom_joint", "arm_joint"}, {0.0, 1.3}, {0.0}));
+  EXPECT_NEAR(at(20 * kMs).velocity[2], 1.0, 1e-12);
+  EXPECT_TRUE(buffer_.update(30 * kMs, {"boom_joint", "arm_joint"}, {0.0, 1.03}, {0.0}));
   EXPECT_EQ(buffer_.refusals().short_array, 2U);
-  EXPECT_NEAR(at(30 * kMs).velocity[2], 10.0, 1e-12);
+  EXPECT_NEAR(at(30 * kMs).velocity[2], 1.0, 1e-12);
+}
+
+/// One is a damaged message, two are a joint that was elsewhere all the while.
+TEST_F(Joints, AJumpIsBelievedFromTheSecondOn) {
+  ASSERT_TRUE(buffer_.update(0, kFour, {0.0, 0.0, 1.0, 0.0}, {}));
+  EXPECT_FALSE(buffer_.update(20 * kMs, {"arm_joint"}, {1.3}, {}));
+  EXPECT_TRUE(buffer_.update(40 * kMs, {"arm_joint"}, {1.01}, {}));
+  EXPECT_EQ(at(40 * kMs).position[2], 1.01);
+  EXPECT_FALSE(buffer_.update(60 * kMs, {"arm_joint"}, {0.0}, {}));
+  EXPECT_TRUE(buffer_.update(80 * kMs, {"arm_joint"}, {0.01}, {}));
+  EXPECT_EQ(at(80 * kMs).position[2], 0.01);
+  EXPECT_EQ(buffer_.refusals().jumps, 2U);
+  EXPECT_TRUE(buffer_.update(1080 * kMs, {"arm_joint"}, {2.0}, {})) << "2 rad in a second";
 }
 
 TEST_F(Joints, TheFirstOfADuplicateCounts) {

@@ -20,10 +20,14 @@ bool CylinderPressures::update(StampNs stamp, std::size_t cylinder, Chamber cham
     return false;
   }
   track.rewound.reset();
-  const bool in_row = !late && track.readings > 0 && seconds(stamp - track.now.stamp) <= max_age_;
+  const bool goes_on = !late && track.readings > 0 && seconds(stamp - track.now.stamp) <= max_age_;
+  if (goes_on && !track.guard.believes(std::abs(pressure - track.now.pressure))) {
+    ++refused_;
+    return false;
+  }
   track.before = track.now;
   track.now = {stamp, pressure};
-  track.readings = in_row ? 2 : 1;
+  track.readings = goes_on ? 2 : 1;
   ++accepted_;
   ++counts_[cylinder];
   return true;

@@ -9,6 +9,7 @@
 
 #include "hammer_loads/boom/cylinder_flags.h"
 #include "hammer_loads/boom/joint_space.h"
+#include "hammer_loads/pipeline/jump_guard.h"
 #include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
@@ -22,8 +23,9 @@ class CylinderPressures {
   /// max_age: from an instant to the nearest reading [s].
   explicit CylinderPressures(double max_age) : max_age_(max_age) {}
 
-  /// Gauge pressure [Pa] of a cylinder of the boom. One that is not finite, beyond what steel holds or not newer than
-  /// the last is refused and counted; time running back is believed from the second reading on.
+  /// Gauge pressure [Pa] of a cylinder of the boom. One that is not finite, beyond what steel holds, not newer than the
+  /// last or far off the others (JumpGuard) is refused and counted; time running back is believed from the second
+  /// reading on.
   bool update(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept;
   /// Both chambers are.
   bool known(std::size_t cylinder, StampNs stamp) const noexcept {
@@ -42,6 +44,8 @@ class CylinderPressures {
   std::uint64_t count(std::size_t cylinder) const noexcept { return counts_[cylinder]; }
 
  private:
+  static constexpr double kLeastJump = 5e6;  // [Pa]: a fifth of the working pressure
+
   struct Reading {
     StampNs stamp{};
     double pressure{};
@@ -50,6 +54,7 @@ class CylinderPressures {
     Reading before, now;
     int readings{};  ///< in a row, counted up to 2
     std::optional<StampNs> rewound;
+    JumpGuard guard{kLeastJump};
   };
   bool known(const Track& track, StampNs stamp) const noexcept {
     return track.readings > 0 && std::abs(seconds(stamp - track.now.stamp)) <= max_age_;

@@ -25,8 +25,14 @@ std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& readi
   }
   rewound_.reset();
   if (readings_ > 0 && seconds(stamp - now_.stamp) > settings_.max_age) readings_ = 0;
+  const Sample next{stamp, settings_.rotation * reading.specific_force, settings_.rotation * reading.rate};
+  if (readings_ > 0) {
+    const bool force = force_guard_.believes((next.force - now_.force).norm());
+    const bool rate = rate_guard_.believes((next.rate - now_.rate).norm());
+    if (!force || !rate) return ImuRefusal::kJump;
+  }
   before_ = now_;
-  now_ = {stamp, settings_.rotation * reading.specific_force, settings_.rotation * reading.rate};
+  now_ = next;
   if (readings_ == 0) speed_.forget();
   speed_.add(stamp, now_.force.z(), now_.rate.y() * settings_.position.x() - now_.rate.x() * settings_.position.y(),
              now_.rate.y());

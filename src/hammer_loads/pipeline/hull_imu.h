@@ -8,6 +8,7 @@
 
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/hull_speed.h"
+#include "hammer_loads/pipeline/jump_guard.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
 #include "hammer_loads/util/stamp.h"
 
@@ -20,10 +21,10 @@ struct ImuReading {
 };
 
 /// Why a reading was not taken.
-enum class ImuRefusal : std::size_t { kNotFinite, kImplausible, kOutOfOrder, kCount };
+enum class ImuRefusal : std::size_t { kNotFinite, kImplausible, kOutOfOrder, kJump, kCount };
 
 constexpr std::array<const char*, static_cast<std::size_t>(ImuRefusal::kCount)> kImuRefusalNames{
-    "not finite", "implausible", "out of order"};
+    "not finite", "implausible", "out of order", "jumps"};
 
 /// From readings to the hull's motion at D: replaces weight and tilt together. The turning's acceleration is the
 /// difference of the last two rates: half an interval late, noise sqrt(2)/interval times the rate's. It also moves the
@@ -33,7 +34,7 @@ class HullImu {
   explicit HullImu(const HullImuSettings& settings) : settings_(settings) {}
 
   /// Takes a reading or says why not. A reading older than the last restarts if a second such one follows it, as
-  /// when a log is played again. No allocation.
+  /// when a log is played again. One that is far off the others is refused (JumpGuard). No allocation.
   std::optional<ImuRefusal> update(StampNs stamp, const ImuReading& reading) noexcept;
 
   /// A blow was struck at that instant: accelerations jump there, so no line and no difference goes across it.
@@ -53,6 +54,10 @@ class HullImu {
  private:
   bool blowBetween(StampNs from, StampNs to) const noexcept { return blow_ && from < *blow_ && *blow_ <= to; }
 
+  // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for steel that rings too.
+  static constexpr double kLeastForceJump = 200.0;  // [m/s2]
+  static constexpr double kLeastRateJump = 3.0;     // [rad/s]
+
   /// In axes of hammer_hull.
   struct Sample {
     StampNs stamp{};
@@ -62,6 +67,7 @@ class HullImu {
   HullImuSettings settings_;
   Sample now_, before_;
   HullSpeed speed_;
+  JumpGuard force_guard_{kLeastForceJump}, rate_guard_{kLeastRateJump};
   int readings_{};  ///< in a row, counted up to 2
   std::optional<StampNs> rewound_, blow_;
 };

@@ -8,6 +8,11 @@
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
+namespace {
+
+constexpr double kLeastJump = 0.1, kFastest = 3.0;  // [rad, m], [rad/s, m/s]: of a boom's joints, three times as fast
+
+}  // namespace
 
 double JointBuffer::Track::difference(double from, double to) const noexcept {
   return turns_freely ? std::remainder(to - from, kTwoPi) : to - from;
@@ -41,7 +46,7 @@ bool JointBuffer::update(StampNs stamp, const std::vector<std::string>& names, c
     if (!std::isfinite(positions[i])) continue;
     if (velocity && !std::isfinite(*velocity)) velocity.reset();
     Track& track = tracks_[static_cast<std::size_t>(found - names_.begin())];
-    if (!isInOrder(track, stamp)) continue;
+    if (!isInOrder(track, stamp) || jumps(track, stamp, positions[i])) continue;
     add(track, stamp, positions[i], velocity);
     taken = true;
   }
@@ -62,6 +67,18 @@ bool JointBuffer::isInOrder(Track& track, StampNs stamp) noexcept {
   track.rewound.reset();
   track.count = 0;
   return true;
+}
+
+/// A damaged state costs itself.
+bool JointBuffer::jumps(Track& track, StampNs stamp, double position) noexcept {
+  const bool second = track.jumped;
+  track.jumped = false;
+  if (track.count == 0 || second) return false;
+  const State& last = track.back(0);
+  const double way = std::abs(track.difference(last.position, position));
+  track.jumped = way > kLeastJump + kFastest * seconds(stamp - last.stamp);
+  refusals_.jumps += track.jumped;
+  return track.jumped;
 }
 
 void JointBuffer::add(Track& track, StampNs stamp, double position, std::optional<double> velocity) noexcept {

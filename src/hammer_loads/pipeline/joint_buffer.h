@@ -25,6 +25,7 @@ struct JointFault {
 struct JointRefusals {
   std::uint64_t not_finite{};    ///< position or velocity; a position with a bad velocity counts as one without
   std::uint64_t short_array{};   ///< fewer positions, or fewer velocities than positions, than names
+  std::uint64_t jumps{};         ///< no joint moves so fast; a second one in a row is believed
   std::uint64_t out_of_order{};  ///< not newer than the state before it; a joint named twice in a message
 };
 
@@ -71,6 +72,7 @@ class JointBuffer {
     std::array<State, kKept> states;
     std::uint64_t count{};           ///< of states since the beginning; the newest is count - 1
     std::optional<StampNs> rewound;  ///< of the last state, if it was refused as out of order
+    bool jumped{};                   ///< the last state was refused for that
     bool turns_freely{};             ///< no limits: positions may wind, the shorter way counts
 
     const State& back(std::uint64_t steps) const noexcept { return states[(count - 1 - steps) % kKept]; }
@@ -84,6 +86,7 @@ class JointBuffer {
   };
 
   bool isInOrder(Track& track, StampNs stamp) noexcept;
+  bool jumps(Track& track, StampNs stamp, double position) noexcept;
   void add(Track& track, StampNs stamp, double position, std::optional<double> velocity) noexcept;
   static Bracket around(const Track& track, StampNs stamp) noexcept;
   std::optional<JointFault> fault(int joint, const Bracket& bracket) const noexcept;

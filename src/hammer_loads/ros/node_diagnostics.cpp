@@ -191,6 +191,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
   status.add("joint states refused: not finite", refusals.not_finite);
   status.add("joint states refused: short array", refusals.short_array);
   status.add("joint states refused: out of order", refusals.out_of_order);
+  status.add("joint states refused: jumps", refusals.jumps);
 }
 
 void NodeDiagnostics::describeFrames(Status& status) {

@@ -1,0 +1,36 @@
+/// A damaged reading among good ones.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+
+/// Refuses a reading that jumps twelve times as far as its fellows do, root mean square over some hundred of them; a
+/// second one in a row is believed, so that what truly jumps comes one reading late. On a hammer at work, on rock too,
+/// readings jump up to nine times as far (IMU of 1 kHz to 100 Hz, pressures of 500 to 200 Hz).
+class JumpGuard {
+ public:
+  /// least: a jump that is never too far.
+  explicit JumpGuard(double least) noexcept : least_(least) {}
+
+  /// jump: from the last reading that was believed, >= 0.
+  bool believes(double jump) noexcept {
+    const double limit = std::max(least_, kFactor * std::sqrt(square_));
+    const bool far = jump > limit;
+    square_ += kShare * (square(std::min(jump, limit)) - square_);
+    refused_ = far && !refused_;
+    return !refused_;
+  }
+
+ private:
+  static constexpr double kFactor = 12.0, kShare = 0.01;
+
+  double least_;
+  double square_{};  ///< mean of the jumps' squares
+  bool refused_{};   ///< the last reading was
+};
+
+}  // namespace hammer_loads
