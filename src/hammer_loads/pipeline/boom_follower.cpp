@@ -92,7 +92,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   known_ = true;
   last_stamp_ = sample.stamp;
   state_.choice.compliant = takesCompliant();
-  findLoads(sample);
+  findLoads(sample, since);
   if (follow_vibration_) fillVibration();
   return state_;
 }
@@ -109,14 +109,14 @@ void BoomFollower::pose(double since, const Eigen::Vector3d& g_B) noexcept {
   }
 }
 
-void BoomFollower::findLoads(const BoomSample& sample) noexcept {
+void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   const bool rigid = !state_.choice.compliant;
   const Wrench w_tip = onTip(rigid ? sample.motion_wrench : sample.motion_wrench + sample.displaced_links);
   const ChainLoads links = boom_.chainLoads(rigid);
   boom_.loads(w_tip, rigid, links, state_.loads);
   beside_modes_.setZero();
   if (!rigid) beside_modes_ = state_.loads.vibration - boom_.vibration().torque();
-  takeMeasured(sample);
+  takeMeasured(sample, step);
   boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
@@ -124,7 +124,7 @@ void BoomFollower::findLoads(const BoomSample& sample) noexcept {
 
 /// Where all pressures are known: without them the force would stay as it was.
 void BoomFollower::followContact(StampNs stamp) noexcept {
-  bool measured = pressures_.accepted() > 0;
+  bool measured = pressuresCount();
   for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.known(i, stamp);
   if (measured) {
     boom_.vibration().followContact(boom_.hammerTorque(onTip({0.0, 1.0, striking_distance_})), least_contact_);
@@ -139,18 +139,18 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   // The reading may be of before the blow.
   if (sample.imu && !state_.at_blow) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
-  if (pressures_.accepted() == 0) return;
+  if (!pressuresCount()) return;
   observer_.pressures(boom_, sample.stamp, pressures_);
 }
 
 /// A measured force holds what acts on its joint, whatever the model says; the difference is the rock's.
-void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
+void BoomFollower::takeMeasured(const BoomSample& sample, double step) noexcept {
   state_.contact_torque.setZero();
   state_.contact = {};
   state_.measured = state_.press_force_lost = false;
   tip_.reset();
   if (pressures_.accepted() == 0) return;
-  BoomLoads& loads = state_.loads;
+  const BoomLoads& loads = state_.loads;
   measured_.follow(boom_, motion_.position, loads.weight + loads.motion, sample.stamp, pressures_);
   std::size_t measured = 0;
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
@@ -158,12 +158,25 @@ void BoomFollower::takeMeasured(const BoomSample& sample) noexcept {
     if (!torque) continue;
     const int joint = boom_.cylinders()[i].joint();
     state_.contact_torque[joint] = torque->value - loads.total[joint];
-    loads.total[joint] = torque->value;
-    loads.cylinder[i] = boom_.cylinders()[i].load(torque->at, torque->value);
     ++measured;
   }
   state_.measured = measured > 0 && measured == boom_.cylinders().size();
-  findContact();
+  findContact(step);
+  if (!trust_.isLost()) return useMeasured();
+  state_.contact_torque.setZero();
+  state_.contact = {};
+  state_.measured = state_.press_force_lost = false;
+  tip_.reset();
+}
+
+void BoomFollower::useMeasured() noexcept {
+  BoomLoads& loads = state_.loads;
+  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
+    const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
+    if (!torque) continue;
+    loads.total[boom_.cylinders()[i].joint()] = torque->value;
+    loads.cylinder[i] = boom_.cylinders()[i].load(torque->at, torque->value);
+  }
 }
 
 /// Three cylinders in a plane give a load on the tip; of others the torques alone are known.
@@ -174,11 +187,12 @@ std::optional<InPlaneTip> BoomFollower::inPlaneTip() const noexcept {
 }
 
 /// No force is one that is not seen beside its error.
-void BoomFollower::findContact() noexcept {
+void BoomFollower::findContact(double step) noexcept {
   if (!state_.measured) return;
   tip_ = inPlaneTip();
   if (!tip_) return;
   state_.contact = tip_->load(state_.contact_torque);
+  trust_.follow(state_.contact, tip_->load(state_.loads.weight), striking_distance_, step);
   const auto& observer = boom_.vibration().identifier();
   const double error = observer && observer->followsContact() ? observer->contactDeviation() : 0.0;
   state_.press_force_lost = state_.contact.force.z() < std::max(least_contact_, error);

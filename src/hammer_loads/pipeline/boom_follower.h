@@ -16,6 +16,7 @@
 #include "hammer_loads/pipeline/joint_buffer.h"
 #include "hammer_loads/pipeline/measured_torques.h"
 #include "hammer_loads/pipeline/mode_observer.h"
+#include "hammer_loads/pipeline/pressure_trust.h"
 #include "hammer_loads/pipeline/tip_velocity.h"
 #include "hammer_loads/pipeline/wrench_history.h"
 
@@ -105,6 +106,7 @@ class BoomFollower {
   const Boom& boom() const noexcept { return boom_; }
   const JointBuffer& joints() const noexcept { return joints_; }
   const CylinderPressures& pressures() const noexcept { return pressures_; }
+  const PressureTrust& pressureTrust() const noexcept { return trust_; }
   std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
   /// What state().hold_down.least belongs to, such as "front edge" or a cylinder's name; empty when it is not known.
   const std::string& firstToGive() const noexcept;
@@ -116,14 +118,16 @@ class BoomFollower {
   void strike(const HullWrench& impulse) noexcept;
   void beginUnseen(double peak) noexcept;
   void pose(double since, const Eigen::Vector3d& g_B) noexcept;
-  void findLoads(const BoomSample& sample) noexcept;
+  void findLoads(const BoomSample& sample, double step) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
   void weighUnexplained(const ImuReading& reading, double step) noexcept;
   WrenchSpread spreadWithRock(const WrenchSpread& of_crank) const noexcept;
-  void takeMeasured(const BoomSample& sample) noexcept;
+  bool pressuresCount() const noexcept { return pressures_.accepted() > 0 && !trust_.isLost(); }
+  void takeMeasured(const BoomSample& sample, double step) noexcept;
+  void useMeasured() noexcept;
   std::optional<InPlaneTip> inPlaneTip() const noexcept;
   void followContact(StampNs stamp) noexcept;
-  void findContact() noexcept;
+  void findContact(double step) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
   LoadErrors measuredErrors(bool rigid) const noexcept;
   LoadErrors followedErrors(const WrenchSpread& spread, bool rigid) const noexcept;
@@ -135,6 +139,7 @@ class BoomFollower {
   JointBuffer joints_;
   CylinderPressures pressures_;
   MeasuredTorques measured_;
+  PressureTrust trust_;
   HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;

@@ -41,7 +41,7 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
   } else if (spread.count > 0) {
     boom_.deviations(spread_, spread, rigid, deviations);
   }
-  if (pressures_.accepted() == 0) return;
+  if (!pressuresCount()) return;
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
     if (!torque) continue;

@@ -135,6 +135,15 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                           "cylinder_pressures came: as the boom file gives it",
                           true});
   }
+  if (pipeline.boom() && pipeline.boom()->pressureTrust().isLost()) {
+    const PressureTrust& trust = pipeline.boom()->pressureTrust();
+    warnings.push_back({"pressures",
+                        format("cylinder_pressures: not used, they show a mean load of %.0f N across the tool and %.0f "
+                               "N along it: units (must be Pa), chambers or cylinders that are exchanged, masses of "
+                               "the description, or the tool is used as a lever",
+                               trust.across(), trust.along()),
+                        true});
+  }
   if (result.boom != nullptr && result.boom->contact_unknown)
     warnings.push_back({"rock",
                         "hull_imu shows that the rock bears on the hull: without cylinder_pressures its force is in no "
