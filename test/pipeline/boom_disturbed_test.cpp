@@ -1,9 +1,12 @@
 // What the boom carries while a sensor gives one damaged reading, and after a gap in which nobody followed it: close to
 // the truth or with a deviation that says how far it may be.
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <string>
 #include <vector>
 
+#include "hammer_loads/pipeline/warnings.h"
 #include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {
@@ -13,7 +16,7 @@ using accuracy::BoomErrors;
 using accuracy::SensorsOnBoom;
 using simulation::Session;
 
-constexpr double kDisturbed = 5.0, kBack = 6.2;  // [s]
+constexpr double kDisturbed = 5.0, kGoesOn = 6.2;  // [s]
 constexpr char kBoomGiven[] = "{boom: compliant, hull_motion: model}";
 constexpr char kBoomIdentified[] = "{boom: compliant, hull_motion: model, boom_stiffness: identified}";
 constexpr char kHullByImu[] = "{boom: compliant, hull_motion: imu, boom_stiffness: identified}";
@@ -80,13 +83,121 @@ TEST_P(DamagedReading, CostsItselfAlone) {
 INSTANTIATE_TEST_SUITE_P(
     Sensors, DamagedReading,
     testing::Values(
-        Damage{"joint off", false, [](Session& s, double t, int i) { after(s.joints, t)[i].position[1] += 0.5; }},
-        Damage{"joints zero", false, [](Session& s, double t, int i) { after(s.joints, t)[i].position = {}; }},
+        Damage{"joint off", false, [](Session& s, double at, int i) { after(s.joints, at)[i].position[1] += 0.5; }},
+        Damage{"joints zero", false, [](Session& s, double at, int i) { after(s.joints, at)[i].position = {}; }},
         Damage{"acceleration", false,
-               [](Session& s, double t, int i) { after(s.imu, t)[i].specific_force[2] = 1000.0; }},
-        Damage{"turning rate", false, [](Session& s, double t, int i) { after(s.imu, t)[i].rate[1] = 30.0; }},
-        Damage{"bore pressure", true, [](Session& s, double t, int i) { after(s.pressures, t)[i].bore[0] = 5e7; }},
-        Damage{"rod pressure", true, [](Session& s, double t, int i) { after(s.pressures, t)[i].rod[2] = 4e7; }}));
+               [](Session& s, double at, int i) { after(s.imu, at)[i].specific_force[2] = 1000.0; }},
+        Damage{"turning rate", false, [](Session& s, double at, int i) { after(s.imu, at)[i].rate[1] = 30.0; }},
+        Damage{"bore pressure", true, [](Session& s, double at, int i) { after(s.pressures, at)[i].bore[0] = 5e7; }},
+        Damage{"rod pressure", true, [](Session& s, double at, int i) { after(s.pressures, at)[i].rod[2] = 4e7; }}));
+
+struct Mistake {
+  const char* name;
+  const char* warning;
+  std::function<void(Session&)> make;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
+/// A sensor that is connected, mounted or scaled otherwise than said: named, and not used. On a hull that hangs free
+/// and on rock.
+class Mistaken : public testing::TestWithParam<Mistake> {};
+
+const Session& sessionOn(bool rock) {
+  static const auto recorded = [](bool on_rock) {
+    simulation::MachineSettings m = machine();
+    m.duration = 5.0;
+    if (on_rock) m.on_boom.rock = {3e7, 3.0, 4000.0};
+    return simulation::recordSession(m);
+  };
+  static const Session free = recorded(false), bears = recorded(true);
+  return rock ? bears : free;
+}
+
+bool warnsOf(const Pipeline& pipeline, const std::string& key) {
+  const std::vector<Warning> warnings = warningsOf(pipeline);
+  return std::any_of(warnings.begin(), warnings.end(), [&](const Warning& w) { return w.key == key; });
+}
+
+/// To the end; a warning, and whether the sensor is used.
+struct Played {
+  bool warned, used;
+};
+
+Played played(const Session& session, const std::string& sensor) {
+  const bool by_pressures = sensor == "pressures";
+  test::Player player(accuracy::shippedBoom(by_pressures ? kBoomGiven : kHullByImu), true, session);
+  player.imu_speaks = !by_pressures, player.pressures_speak = by_pressures;
+  player.playTo(5.0, [](double, const SampleResult&) {});
+  const SampleResult& last = player.pipeline.result();
+  return {warnsOf(player.pipeline, sensor),
+          by_pressures ? last.boom != nullptr && last.boom->measured : player.pipeline.hull().motionKnown()};
+}
+
+TEST(MistakenSensors, RightOnesAreUsed) {
+  for (const bool rock : {false, true}) {
+    for (const char* sensor : {"pressures", "imu"}) {
+      const Played as_said = played(sessionOn(rock), sensor);
+      EXPECT_FALSE(as_said.warned) << sensor << rock;
+      EXPECT_TRUE(as_said.used) << sensor << rock;
+    }
+  }
+}
+
+TEST_P(Mistaken, SensorsAreNamedAndNotUsed) {
+  for (const bool rock : {false, true}) {
+    Session session = sessionOn(rock);
+    GetParam().make(session);
+    const Played mistaken = played(session, GetParam().warning);
+    EXPECT_TRUE(mistaken.warned) << rock;
+    EXPECT_FALSE(mistaken.used) << rock;
+  }
+}
+
+template <typename Change>
+std::function<void(Session&)> ofPressures(const Change& change) {
+  return [change](Session& s) {
+    for (simulation::PressureReading& r : s.pressures) change(r.bore, r.rod);
+  };
+}
+
+template <typename Change>
+std::function<void(Session&)> ofImu(const Change& change) {
+  return [change](Session& s) {
+    for (simulation::HullImuReading& r : s.imu) change(r.specific_force, r.rate);
+  };
+}
+
+using Chambers = std::array<double, 3>;
+
+INSTANTIATE_TEST_SUITE_P(
+    Sensors, Mistaken,
+    testing::Values(Mistake{"bar", "pressures", ofPressures([](Chambers& bore, Chambers& rod) {
+                              for (Chambers* p : {&bore, &rod})
+                                for (double& one : *p) one *= 1e-5;
+                            })},
+                    Mistake{"chambers of all exchanged", "pressures",
+                            ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore, rod); })},
+                    Mistake{"chambers of the boom's exchanged", "pressures",
+                            ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore[0], rod[0]); })},
+                    Mistake{"chambers of the hammer's exchanged", "pressures",
+                            ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore[2], rod[2]); })},
+                    Mistake{"boom and arm exchanged", "pressures", ofPressures([](Chambers& bore, Chambers& rod) {
+                              std::swap(bore[0], bore[1]), std::swap(rod[0], rod[1]);
+                            })},
+                    Mistake{"in g", "imu", ofImu([](Chambers& force, Chambers&) {
+                              for (double& one : force) one /= 9.80665;
+                            })},
+                    Mistake{"upside down", "imu",
+                            ofImu([](Chambers& force, Chambers&) { force[0] = -force[0], force[2] = -force[2]; })},
+                    Mistake{"degrees per second", "imu", ofImu([](Chambers&, Chambers& rate) {
+                              for (double& one : rate) one *= 57.3;
+                            })},
+                    Mistake{"frozen", "imu", [](Session& s) {
+                              const simulation::HullImuReading held = *after(s.imu, 4.5);
+                              for (simulation::HullImuReading& r : s.imu)
+                                if (r.stamp > held.stamp) r.specific_force = held.specific_force, r.rate = held.rate;
+                            }}));
 
 /// The hammer went on all the while.
 Session withGap(double from, double to) {
@@ -96,23 +207,23 @@ Session withGap(double from, double to) {
 }
 
 TEST(GapOfTheCrank, TheBoomMaySwingInAWayNotKnown) {
-  const BoomErrors e = errors(withGap(kDisturbed, kBack), kBoomGiven, {}, kBack, 7.2);
+  const BoomErrors e = errors(withGap(kDisturbed, kGoesOn), kBoomGiven, {}, kGoesOn, 7.2);
   EXPECT_GT(e.worstTorque(), 0.4) << "what the deviations must say";
   EXPECT_GT(e.covered(), 0.85);
   EXPECT_GT(e.sectionsCovered(), 0.85);
 }
 
 TEST(GapOfTheCrank, ANodeThatIsStartedInMidWorkKnowsThatItDoesNotKnow) {
-  const BoomErrors e = errors(withGap(0.0, kBack), kBoomGiven, {}, kBack, 7.2);
+  const BoomErrors e = errors(withGap(0.0, kGoesOn), kBoomGiven, {}, kGoesOn, 7.2);
   EXPECT_GT(e.worstTorque(), 0.4) << "what the deviations must say";
   EXPECT_GT(e.covered(), 0.85);
 }
 
 TEST(GapOfTheCrank, SensorsFindTheVibrationAtOnce) {
-  const Session session = withGap(kDisturbed, kBack);
+  const Session session = withGap(kDisturbed, kGoesOn);
   for (const bool by_pressures : {false, true}) {
     const BoomErrors e =
-        errors(session, by_pressures ? kBoomIdentified : kHullByImu, {!by_pressures, by_pressures}, kBack, 7.2);
+        errors(session, by_pressures ? kBoomIdentified : kHullByImu, {!by_pressures, by_pressures}, kGoesOn, 7.2);
     EXPECT_LT(e.worstTorque(), 0.05) << by_pressures;
     EXPECT_LT(e.worstSection(), 0.04) << by_pressures;
     EXPECT_GT(e.covered(), 0.85) << by_pressures;
@@ -121,7 +232,7 @@ TEST(GapOfTheCrank, SensorsFindTheVibrationAtOnce) {
 
 /// What was not followed says nothing of how good a measured torque is.
 TEST(GapOfTheCrank, LeavesTheDeviationOfMeasuredTorquesAsItWas) {
-  const Session session = withGap(kDisturbed, kBack);
+  const Session session = withGap(kDisturbed, kGoesOn);
   const Settings settings = accuracy::shippedBoom(kBoomIdentified);
   test::Player player(settings, true, session);
   player.imu_speaks = false;

@@ -50,6 +50,8 @@ class HullImu {
   std::optional<HullMotion> at(StampNs stamp) const noexcept;
 
   StampNs last() const noexcept { return now_.stamp; }  ///< stamp of the last reading taken [ns]
+  /// The last reading taken, in axes of hammer_hull.
+  ImuReading newest() const noexcept { return {now_.force, now_.rate}; }
 
  private:
   bool blowBetween(StampNs from, StampNs to) const noexcept { return blow_ && from < *blow_ && *blow_ <= to; }

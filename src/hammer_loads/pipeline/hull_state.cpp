@@ -29,7 +29,13 @@ bool HullState::joints(const std::vector<std::string>& names, const std::vector<
 }
 
 std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& reading) noexcept {
+  const StampNs last = imu_.last();
   const std::optional<ImuRefusal> refusal = imu_.update(stamp, reading);
+  if (!refusal) {
+    const ImuReading taken = imu_.newest();
+    imu_trust_.follow(taken.specific_force, taken.rate, seconds(stamp - last));
+    if (weight_.pitch().known()) imu_trust_.judge(weight_.gravity());
+  }
   ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
   return refusal;
 }
@@ -44,7 +50,7 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
 
 void HullState::find(StampNs stamp) noexcept {
   if (source_ == HullMotionSource::kImu) {
-    const std::optional<HullMotion> measured = imu_.at(stamp);
+    const std::optional<HullMotion> measured = imu_trust_.isLost() ? std::nullopt : imu_.at(stamp);
     known_ = measured.has_value();
     set(measured.value_or(HullMotion(weight_.gravity())));
   } else if (source_ == HullMotionSource::kModel) {
@@ -59,7 +65,7 @@ void HullState::struck(StampNs blow, StampNs sample) noexcept {
 }
 
 std::optional<ImuReading> HullState::newImuReading(StampNs stamp) noexcept {
-  if (imu_counts_.accepted == imu_taken_) return std::nullopt;
+  if (imu_counts_.accepted == imu_taken_ || imu_trust_.isLost()) return std::nullopt;
   imu_taken_ = imu_counts_.accepted;
   return imu_.reading(stamp);
 }

@@ -10,6 +10,7 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/hull_gravity.h"
 #include "hammer_loads/pipeline/hull_imu.h"
+#include "hammer_loads/pipeline/imu_trust.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
 namespace hammer_loads {
@@ -41,7 +42,9 @@ class HullState {
   /// A blow was struck within the step to the sample: its motion again, with that known.
   void struck(StampNs blow, StampNs sample) noexcept;
   /// Of D at the last blow by the IMU, where that is known.
-  std::optional<TipVelocity> speedAtBlow() const noexcept { return imu_.speedAtBlow(); }
+  std::optional<TipVelocity> speedAtBlow() const noexcept {
+    return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
+  }
   /// What the IMU reads at the sample in the hull's axes, if a reading has come since the last call.
   std::optional<ImuReading> newImuReading(StampNs stamp) noexcept;
   /// After it: the vibration of the boom at the sample; null: not known.
@@ -50,10 +53,13 @@ class HullState {
   void rest() noexcept { vibration_ = {}; }
 
   const Motion& motion() const noexcept { return now_; }
-  /// False where IMU or boom should give the hull's motion and do not: weight by joint angles then.
+  /// False where IMU or boom should give the hull's motion and do not, or the IMU cannot be trusted: weight by joint
+  /// angles then.
   bool motionKnown() const noexcept { return known_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
+  const Gravity& gravity() const noexcept { return weight_.gravity(); }  ///< by the joint angles
   const ImuCounts& imuCounts() const noexcept { return imu_counts_; }
+  const ImuTrust& imuTrust() const noexcept { return imu_trust_; }
 
  private:
   void weigh() noexcept;
@@ -63,6 +69,7 @@ class HullState {
   HullMotionSource source_;
   HullGravity weight_;
   HullImu imu_;
+  ImuTrust imu_trust_;
   ImuCounts imu_counts_;
   HullMotion vibration_;  ///< of the boom's tip at the last sample, without weight
   Motion now_;

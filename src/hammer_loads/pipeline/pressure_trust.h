@@ -17,9 +17,10 @@ class PressureTrust {
   /// Loads on the tip, axes of the tip: measured beyond the model's, and of the weight; arm: from D to the tool [m];
   /// step since the last call [s].
   void follow(const Wrench& beyond, const Wrench& weight, double arm, double step) noexcept {
-    if (!(step > 0.0 && step < kMemory)) return;
-    time_ = std::min(time_ + step, kMemory);
-    const double share = std::min(1.0, step / time_);
+    if (!(step > 0.0)) return;
+    const double lasts = std::min(step, kLongest);
+    time_ = std::min(time_ + lasts, kMemory);
+    const double share = lasts / time_;
     across_ += share * (beyond.force.x() - across_);
     along_ += share * (beyond.force.z() - along_);
     turning_ += share * (beyond.torque.y() - arm * beyond.force.z() - turning_);
@@ -34,6 +35,7 @@ class PressureTrust {
 
  private:
   static constexpr double kMemory = 2.0, kLeastTime = 0.5;  // [s]
+  static constexpr double kLongest = 0.05;                  // that one sample counts for, over a gap as well [s]
   static constexpr double kAcross = 0.1, kTurning = 0.3;    // of the load along the tool and the weight; with its arm
   static constexpr double kBack = 0.5;                      // of that: trusted again
 

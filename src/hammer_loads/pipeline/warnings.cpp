@@ -123,13 +123,25 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   const bool imu = pipeline.settings().hull_motion == HullMotionSource::kImu;
   if (imu && hull.imuCounts().accepted == 0)
     warnings.push_back({"imu", "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead", true});
+  const ImuTrust& trust = hull.imuTrust();
+  const auto& weight = hull.gravity();
+  if (trust.isFrozen()) {
+    warnings.push_back({"imu", "hull_imu: not used, its readings stand still", true});
+  } else if (trust.isLost()) {
+    warnings.push_back({"imu",
+                        format("hull_imu: not used, on the mean it shows (%.1f, %.1f) m/s2 along x and z of the hull "
+                               "and %.2g rad/s, by the joint angles it must be (%.1f, %.1f) and next to none: units "
+                               "(m/s2, rad/s), imu_roll_rad, imu_pitch_rad, imu_yaw_rad or the joints' zeros",
+                               trust.mean().x(), trust.mean().z(), trust.rate(), -weight.x, -weight.z),
+                        true});
+  }
 }
 
 void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   const SampleResult& result = pipeline.result();
   if (pipeline.boom() && pipeline.counts().accepted > 0) {
     const Vibration& vibration = pipeline.boom()->boom().vibration();
-    if (vibration.identifies() && vibration.identifier()->channels() == 0)
+    if (vibration.identifies() && vibration.identifier()->channels() == 0 && !pipeline.hull().imuTrust().isLost())
       warnings.push_back({"boom stiffness",
                           "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
                           "cylinder_pressures came: as the boom file gives it",

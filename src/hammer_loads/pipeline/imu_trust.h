@@ -1,0 +1,61 @@
+/// Whether an inertial unit can sit on this hull as it is said to.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/hammer/hammer_model.h"
+
+namespace hammer_loads {
+
+/// In the mean of 2 s the hull goes nowhere: a unit shows its weight there, as the joint angles have it, but for what
+/// it misses of the blows, up to 2 m/s2. And no boom turns by 3 rad/s, root mean square, while it holds a hammer: near
+/// a resonance by 0.5. So readings in g, degrees per second or with an axis the wrong way are recognised; 20 deg of
+/// mounting are not.
+class ImuTrust {
+ public:
+  /// A reading in axes of hammer_hull: specific force [m/s2], turning rate [rad/s], step since the last one [s].
+  void follow(const Eigen::Vector3d& force, const Eigen::Vector3d& rate, double step) noexcept {
+    const bool same = force == force_ && rate == rate_;
+    varies_ = varies_ || (!same && time_ > 0.0);
+    same_ = same ? std::min(same_ + 1, kFrozen) : 0;
+    force_ = force, rate_ = rate;
+    if (!(step > 0.0)) return;
+    const double lasts = std::min(step, kLongest);
+    time_ = std::min(time_ + lasts, kMemory);
+    const double share = lasts / time_;
+    mean_ += share * (force - mean_);
+    rate_square_ += share * (rate.squaredNorm() - rate_square_);
+    off_for_ = is_off_ ? std::min(off_for_ + lasts, kOffFor) : 0.0;
+  }
+  /// weight: by the joint angles, in the plane of the hull.
+  void judge(const Gravity& weight) noexcept {
+    if (time_ < kLeastTime) return;
+    const double off = std::hypot(mean_.x() + weight.x, mean_.z() + weight.z);
+    const double limit = (is_lost_ ? kBack : 1.0) * kMostPart * std::hypot(weight.x, weight.z);
+    is_off_ = off > limit || rate_square_ > kMostRate * kMostRate;
+    is_lost_ = isFrozen() || (is_off_ && off_for_ == kOffFor);
+  }
+  bool isLost() const noexcept { return is_lost_; }
+  bool isFrozen() const noexcept { return varies_ && same_ == kFrozen; }  ///< the same again and again, once it varied
+  const Eigen::Vector3d& mean() const noexcept { return mean_; }          ///< specific force [m/s2]
+  double rate() const noexcept { return std::sqrt(rate_square_); }        ///< root mean square [rad/s]
+
+ private:
+  static constexpr double kMemory = 2.0, kLeastTime = 0.5;  // [s]
+  static constexpr double kLongest = 0.05;                  // that one reading counts for, over a gap as well [s]
+  static constexpr double kMostPart = 0.5, kBack = 0.8;     // of the weight; of that: trusted again
+  static constexpr double kMostRate = 3.0;                  // [rad/s]
+
+  static constexpr double kOffFor = 0.3;  // [s]: not because of one damaged joint angle
+  static constexpr int kFrozen = 10;      // readings
+
+  double time_{}, rate_square_{}, off_for_{};
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force_ = mean_, rate_ = mean_;  ///< of the last reading
+  int same_{};                                    ///< as the one before, in a row
+  bool varies_{}, is_off_{}, is_lost_{};
+};
+
+}  // namespace hammer_loads
