@@ -98,8 +98,10 @@ BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mecha
     if (known) errors.addSample(truth, result);
     errors.refused += !known;
   });
-  for (const Warning& warning : warningsOf(player.pipeline))
+  for (const Warning& warning : warningsOf(player.pipeline)) {
     errors.warned_of_rock |= std::string(warning.key) == "rock";
+    errors.warned_of_pressures |= std::string(warning.key) == "pressures";
+  }
   return errors;
 }
 

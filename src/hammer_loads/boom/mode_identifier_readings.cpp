@@ -12,6 +12,7 @@ constexpr double kFarOff = 3.0;                  // standard deviations beyond w
 constexpr double kMostRatio = 1.0;               // of log frequency: e
 constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
 constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
+constexpr double kOilSurpriseShare = 5e-4;       // of one oil torque: 1.3 s of three at 500 Hz
 constexpr double kWorstSurprise = 25.0;          // what one can add at most
 
 }  // namespace
@@ -78,6 +79,8 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
     surprise_ +=
         kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
   }
+  if (!reading.oil.isZero(0.0))
+    oil_surprise_ += kOilSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - oil_surprise_);
   S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
   state_.segment(first, n) += gain_S.head(n) * (difference / S);
   for (int i = 0; i < n; ++i) {

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kShare = 0.005;       // of one reading in the mean of squares: some 200 count
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
+constexpr double kSwingTime = 1.0;     // of the torque's swing [s]
+constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
 }  // namespace
@@ -22,7 +24,11 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
     track.oil_square += kShare * (square(change - (model_before - track.model)) - track.oil_square);
     track.line_square += kShare * (square(change - step * track.slope) - track.line_square);
     track.slope = change / step;
+    const double share = std::min(1.0, step / kSwingTime);
+    track.mean += share * (torque - track.mean);
+    track.swing += share * (square(torque - track.mean) - track.swing);
   }
+  if (track.readings == 0) track.mean = torque;
   track.stamp = stamp, track.torque = torque, track.model = model;
 }
 
@@ -31,6 +37,9 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   Vibration::OilTorque model = boom.vibration().oilTorque();
   model.now += steady;
   if (model_.now.size() != model.now.size()) model_ = model, sample_ = sample;
+  const auto& identifier = boom.vibration().identifier();
+  const double surprise = identifier ? identifier->oilSurprise() : 0.0;
+  const double lag = surprise > kSurprised ? square(kLag) * surprise : 0.0;
   const bool gap = seconds(sample - sample_) > kGap;
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const Cylinder& cylinder = boom.cylinders()[i];
@@ -55,7 +64,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const double age = std::min(seconds(sample - stamp), kLongestLine);
     const bool by_oil = track.oil_square <= track.line_square;
     const double change = by_oil ? model.now[j] - track.model : age * track.slope;
-    const double off = std::sqrt(by_oil ? track.oil_square : track.line_square);
+    const double off = std::sqrt((by_oil ? track.oil_square : track.line_square) + lag * track.swing);
     torque_[i] = Torque{track.torque + change, off, at};
   }
   model_ = model, sample_ = sample;

@@ -14,9 +14,13 @@ namespace hammer_loads {
 /// where the oil is not as given, the oil where readings are rare or the hull lands on rock. No allocation.
 class MeasuredTorques {
  public:
+  /// ModeIdentifier::oilSurprise() from which on the readings do not follow the boom's motion, as when stamps lag.
+  static constexpr double kSurprised = 1.0;
+
   struct Torque {
     double value{};       ///< of the load on the cylinder's joint [N m]
-    double deviation{};   ///< standard: how far the last readings were from what was said before them [N m]
+    double deviation{};   ///< standard: how far the last readings were from what was said before them; more where the
+                          ///< readings do not fit the vibration (kSurprised) [N m]
     CylinderPosition at;  ///< as the joint's sensor shows it
   };
 
@@ -33,6 +37,7 @@ class MeasuredTorques {
     double torque{};                     ///< by it [N m]
     double model{};                      ///< of weight, motion and oil then, by the vibration that has taken it [N m]
     double slope{};                      ///< of the line through the last two [N m/s]
+    double mean{}, swing{};              ///< of the torque over some 1 s, and mean square about it [N m, N2 m2]
     double oil_square{}, line_square{};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;

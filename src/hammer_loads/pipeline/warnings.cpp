@@ -156,6 +156,16 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                                trust.across(), trust.along()),
                         true});
   }
+  if (result.boom != nullptr && result.boom->measured) {
+    const double surprise = pipeline.boom()->boom().vibration().identifier()->oilSurprise();
+    if (surprise > MeasuredTorques::kSurprised)
+      warnings.push_back({"pressures",
+                          format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the "
+                                 "expected variance: stamps that lag (5 ms are a third of the vibration's torque) or "
+                                 "readings too rare for a hull that bounces on rock; deviations are widened",
+                                 surprise),
+                          true});
+  }
   if (result.boom != nullptr && result.boom->contact_unknown)
     warnings.push_back({"rock",
                         "hull_imu shows that the rock bears on the hull: without cylinder_pressures its force is in no "
