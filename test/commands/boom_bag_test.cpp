@@ -229,29 +229,35 @@ TEST_F(BoomBag, ReadsTheHullsImu) {
 
 TEST_F(BoomBag, ReadsTheCylindersPressures) {
   const simulation::Session session = simulation::recordSession(machine(false));
-  constexpr double kBore = 6e6, kRod = 2e6;
+  { InputBag(path("in.bag"), session); }
+  ASSERT_EQ(process("without.bag", "boom: compliant\n").exit_code, 0);
+  const auto without = test::messagesIn<JointLoads>(path("without.bag"), "/hammer_loads/joint_loads");
+  // What holds the boom as its model has it, a tenth more in one cylinder: other pressures would not be believed.
+  constexpr double kRod = 2e6, kMore = 1.1;
+  const struct {
+    const char* name;
+    double bore, rod;  // diameters
+  } cylinders[]{{"boom_cylinder", 0.110, 0.063}, {"arm_cylinder", 0.100, 0.056}, {"hammer_cylinder", 0.080, 0.050}};
   {
     InputBag in(path("in.bag"), session);
-    for (int i = -2; i < 510; ++i) {
-      for (const char* cylinder : {"boom_cylinder", "arm_cylinder", "hammer_cylinder"})
-        in.writePressures(timeOf(machine(false).start_stamp) + ros::Duration(0.005 * i), cylinder, kBore, kRod);
+    for (std::size_t i = 0; i < without.size(); i += 2) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double area = 0.25 * kPi * cylinders[k].bore * cylinders[k].bore;
+        const double rod_area = area - 0.25 * kPi * cylinders[k].rod * cylinders[k].rod;
+        const double force = (k == 2 ? kMore : 1.0) * without[i].cylinder_force_N[k];
+        in.writePressures(without[i].header.stamp, cylinders[k].name, (force + kRod * rod_area) / area, kRod);
+      }
     }
   }
-  ASSERT_EQ(process("without.bag", "boom: compliant\n").exit_code, 0);
   const test::Outcome outcome = process("with.bag", "boom: compliant\n", "--pressures-topic /machine/oil");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const double area = 0.25 * 3.14159265358979323846 * 0.080 * 0.080;
-  const double rod_area = area - 0.25 * 3.14159265358979323846 * 0.050 * 0.050;
   const auto with = test::messagesIn<JointLoads>(path("with.bag"), "/hammer_loads/joint_loads");
-  const auto without = test::messagesIn<JointLoads>(path("without.bag"), "/hammer_loads/joint_loads");
   ASSERT_EQ(with.size(), without.size());
-  for (std::size_t i = 0; i < with.size(); ++i) {
-    ASSERT_TRUE(with[i].flags & JointLoads::FLAG_MEASURED);
+  accuracy::SignalError hammer_cylinder;
+  for (std::size_t i = 5; i < with.size(); ++i) {
+    ASSERT_TRUE(with[i].flags & JointLoads::FLAG_MEASURED) << i;
     ASSERT_FALSE(without[i].flags & JointLoads::FLAG_MEASURED);
-    // After some readings it is known that they stand still, whatever the oil of the model does between them.
-    if (with[i].header.stamp - timeOf(machine(false).start_stamp) > ros::Duration(0.2)) {
-      ASSERT_NEAR(with[i].cylinder_force_N[2], kBore * area - kRod * rod_area, 1e-6);
-    }
+    hammer_cylinder.add(with[i].cylinder_force_N[2], kMore * without[i].cylinder_force_N[2]);
     for (std::size_t j = 0; j < 4; ++j) {
       const double model = with[i].hammer_torque_Nm[j] + with[i].weight_torque_Nm[j] + with[i].motion_torque_Nm[j] +
                            with[i].vibration_torque_Nm[j];
@@ -259,6 +265,7 @@ TEST_F(BoomBag, ReadsTheCylindersPressures) {
       ASSERT_EQ(without[i].contact_torque_Nm[j], 0.0);
     }
   }
+  EXPECT_LT(hammer_cylinder.rms(), 0.2 * (kMore - 1.0));
 }
 
 /// Oil 30 % softer than the boom file says, known by every sensor; against the machine's own equations.

@@ -161,12 +161,12 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndTheirDeviationsWidened) {
       const char* keys = imu ? kHullByImu : kBoomIdentified;
       const BoomErrors right = errors(sessionOn(rock), keys, {imu, true}, 3.5, 5.0);
       EXPECT_LT(right.worstTorque(), 0.03) << rock << imu;
-      EXPECT_FALSE(right.warned_of_pressures) << rock << imu;
+      EXPECT_FALSE(right.warned_of_pressure_stamps) << rock << imu;
       Session session = sessionOn(rock);
       for (simulation::PressureReading& r : session.pressures) r.stamp += 10'000'000;
       const BoomErrors late = errors(session, keys, {imu, true}, 3.5, 5.0);
       EXPECT_GT(late.worstTorque(), 0.3) << rock << imu << ": what there is to say";
-      EXPECT_TRUE(late.warned_of_pressures) << rock << imu;
+      EXPECT_TRUE(late.warned_of_pressure_stamps) << rock << imu;
       EXPECT_GT(late.covered(), 0.85) << rock << imu;
       EXPECT_GT(late.sectionsCovered(), 0.85) << rock << imu;
     }

@@ -100,7 +100,7 @@ BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mecha
   });
   for (const Warning& warning : warningsOf(player.pipeline)) {
     errors.warned_of_rock |= std::string(warning.key) == "rock";
-    errors.warned_of_pressures |= std::string(warning.key) == "pressures";
+    errors.warned_of_pressure_stamps |= std::string(warning.key) == "pressure stamps";
   }
   return errors;
 }

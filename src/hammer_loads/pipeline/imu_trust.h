@@ -19,10 +19,10 @@ class ImuTrust {
   void follow(const Eigen::Vector3d& force, const Eigen::Vector3d& rate, double step) noexcept {
     const bool same = force == force_ && rate == rate_;
     varies_ = varies_ || (!same && time_ > 0.0);
-    same_ = same ? std::min(same_ + 1, kFrozen) : 0;
     force_ = force, rate_ = rate;
     if (!(step > 0.0)) return;
     const double lasts = std::min(step, kLongest);
+    same_for_ = same ? std::min(same_for_ + lasts, kFrozen) : 0.0;
     time_ = std::min(time_ + lasts, kMemory);
     const double share = lasts / time_;
     mean_ += share * (force - mean_);
@@ -38,23 +38,21 @@ class ImuTrust {
     is_lost_ = isFrozen() || (is_off_ && off_for_ == kOffFor);
   }
   bool isLost() const noexcept { return is_lost_; }
-  bool isFrozen() const noexcept { return varies_ && same_ == kFrozen; }  ///< the same again and again, once it varied
-  const Eigen::Vector3d& mean() const noexcept { return mean_; }          ///< specific force [m/s2]
-  double rate() const noexcept { return std::sqrt(rate_square_); }        ///< root mean square [rad/s]
+  bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
+  const Eigen::Vector3d& mean() const noexcept { return mean_; }              ///< specific force [m/s2]
+  double rate() const noexcept { return std::sqrt(rate_square_); }            ///< root mean square [rad/s]
 
  private:
   static constexpr double kMemory = 2.0, kLeastTime = 0.5;  // [s]
   static constexpr double kLongest = 0.05;                  // that one reading counts for, over a gap as well [s]
   static constexpr double kMostPart = 0.5, kBack = 0.8;     // of the weight; of that: trusted again
   static constexpr double kMostRate = 3.0;                  // [rad/s]
+  static constexpr double kOffFor = 0.3;                    // [s]: not because of one damaged joint angle
+  static constexpr double kFrozen = 0.2;                    // of one reading again and again [s]
 
-  static constexpr double kOffFor = 0.3;  // [s]: not because of one damaged joint angle
-  static constexpr int kFrozen = 10;      // readings
-
-  double time_{}, rate_square_{}, off_for_{};
+  double time_{}, rate_square_{}, off_for_{}, same_for_{};
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d force_ = mean_, rate_ = mean_;  ///< of the last reading
-  int same_{};                                    ///< as the one before, in a row
   bool varies_{}, is_off_{}, is_lost_{};
 };
 

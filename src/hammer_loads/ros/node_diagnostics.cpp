@@ -144,7 +144,9 @@ void NodeDiagnostics::describePitch(Status& status) {
 
 void NodeDiagnostics::describeImu(Status& status) {
   const ImuCounts& counts = bridge_.pipeline().hull().imuCounts();
-  if (counts.missed > last_imu_counts_.missed) {
+  if (bridge_.pipeline().hull().imuTrust().isLost()) {
+    status.summary(DiagnosticStatus::WARN, "not used: no readings of a unit on this hull as the parameters have it");
+  } else if (counts.missed > last_imu_counts_.missed) {
     status.summary(DiagnosticStatus::WARN, "hull's motion not known at every crank sample: weight by pitch there");
   } else {
     status.summary(DiagnosticStatus::OK, counts.accepted > 0 ? "working" : "no reading yet");
