@@ -1,6 +1,7 @@
 #include "hammer_loads/boom/vibration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hammer_loads/util/square.h"
@@ -102,8 +103,10 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
 /// Mean of displacement and velocity, which take turns.
 void Vibration::followSwing(double step) noexcept {
   const double share = std::min(1.0, step / kSwingMemory);
-  for (int k = 0; k < modes_.count; ++k)
-    swing_[k] += share * (0.5 * (square(x_[k]) + square(v_[k] / modes_.omega[k])) - swing_[k]);
+  for (int k = 0; k < modes_.count; ++k) {
+    const double next = swing_[k] + share * (0.5 * (square(x_[k]) + square(v_[k] / modes_.omega[k])) - swing_[k]);
+    swing_[k] = std::isfinite(next) ? next : 0.0;
+  }
 }
 
 void Vibration::strike(const JointVector& impulse) noexcept {

@@ -234,7 +234,7 @@ void BoomFollower::beginUnseen(double peak) noexcept {
     swing = modalForce(vibration.modes(), boom_.hammerTorque(onTip({0.0, peak, 0.0})))
                 .cwiseQuotient(vibration.modes().omega.cwiseAbs2())
                 .cwiseAbs();
-  spread_.begin(swing);
+  if (swing.allFinite()) spread_.begin(swing);
 }
 
 void BoomFollower::strike(const HullWrench& impulse) noexcept {

@@ -10,14 +10,14 @@ namespace hammer_loads {
 
 /// Rock bears on the hull along the tool. What three cylinders show beyond weight, motion and blows is a load on the
 /// tip in its plane: across the tool, and about the tool's axis, there must be next to none in the mean of 2 s.
-/// Pressures in bar, chambers or cylinders that are exchanged show 13 to 220 % of the weight there, right ones 1.5 %;
+/// Pressures in bar, chambers or cylinders that are exchanged show 13 to 220 % of the weight there, right ones 4 %;
 /// what a lag of their stamps makes has no mean and is not seen.
 class PressureTrust {
  public:
   /// Loads on the tip, axes of the tip: measured beyond the model's, and of the weight; arm: from D to the tool [m];
   /// step since the last call [s].
   void follow(const Wrench& beyond, const Wrench& weight, double arm, double step) noexcept {
-    if (!(step > 0.0)) return;
+    if (!(step > 0.0) || !std::isfinite(beyond.force.x() + beyond.force.z() + beyond.torque.y())) return;
     const double lasts = std::min(step, kLongest);
     time_ = std::min(time_ + lasts, kMemory);
     const double share = lasts / time_;
