@@ -154,6 +154,22 @@ TEST_P(Mistaken, SensorsAreNamedAndNotUsed) {
   }
 }
 
+/// Until they were recognised they had a say in frequencies, damping and motion: none of that stays. A hull on rock is
+/// far off without pressures, and says so.
+TEST_P(Mistaken, SensorsLeaveNothingBehind) {
+  for (const bool rock : {false, true}) {
+    Session session = sessionOn(rock);
+    GetParam().make(session);
+    const bool by_pressures = std::string(GetParam().warning) == "pressures";
+    const double from = std::string(GetParam().name) == "frozen" ? 4.8 : 3.5;
+    const BoomErrors alone = errors(session, kBoomIdentified, {}, from, 5.0);
+    const BoomErrors with = errors(session, kBoomIdentified, {!by_pressures, by_pressures}, from, 5.0);
+    if (from < 4.0) EXPECT_LT(with.worstTorque(), alone.worstTorque() + 0.15) << rock;
+    EXPECT_GT(with.covered(), 0.85) << rock;
+    EXPECT_GT(with.sectionsCovered(), 0.85) << rock;
+  }
+}
+
 /// A bus that takes 10 ms: torques are as late as the readings, and their deviations say so.
 TEST(MistakenSensors, PressuresThatLagAreNamedAndTheirDeviationsWidened) {
   for (const bool rock : {false, true}) {

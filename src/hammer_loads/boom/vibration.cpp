@@ -81,6 +81,13 @@ void Vibration::rest() noexcept {
   posed_ = false;
 }
 
+void Vibration::startAnew() noexcept {
+  if (identifier_) identifier_.emplace(settings_.damping_ratio, identifier_->learns());
+  oil_ = 1.0;
+  swing_.setZero();
+  rest();
+}
+
 void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   const TorqueStep modal = modalForces(modes_, torque);
   if (identifier_) identifier_->advance(step, modal);

@@ -30,6 +30,8 @@ class Vibration {
   void setPose(const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
   /// At rest without load, as after a gap in the samples; the next setPose() finds new modes.
   void rest() noexcept;
+  /// As at the start: at rest, frequencies and damping as given. What was found came from readings that were wrong.
+  void startAnew() noexcept;
   /// How far each mode has swung of late, root mean square of displacements [m sqrt(kg)]; rest() leaves it as it is.
   JointVector usualSwing() const noexcept { return swing_.cwiseSqrt(); }
   /// Over a step [s] >= 0 of any size. Exact for torques linear between the ends plus a parabola that makes the mean.

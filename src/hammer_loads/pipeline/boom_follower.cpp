@@ -74,6 +74,7 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     ++faults_;
     return state_;
   }
+  forgetWrongReadings(sample.imu_lost);
   const double since = seconds(sample.stamp - last_stamp_);
   const Eigen::Vector3d g_B = gravityInRoot(sample.gravity, base_);
   if (follow_vibration_) {
@@ -95,6 +96,16 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   findLoads(sample, since);
   if (follow_vibration_) fillVibration();
   return state_;
+}
+
+/// They have made frequencies, damping and motion what these never were.
+void BoomFollower::forgetWrongReadings(bool imu_lost) noexcept {
+  const int lost = static_cast<int>(trust_.isLost()) + static_cast<int>(imu_lost);
+  if (lost > lost_sensors_ && boom_.vibration().identifier()) {
+    boom_.vibration().startAnew();
+    known_ = false;
+  }
+  lost_sensors_ = lost;
 }
 
 /// Joint sensors see the vibration too; what is left without it is the operator's.

@@ -30,6 +30,7 @@ struct BoomSample {
   double gravity{};          ///< [m/s2]
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
+  bool imu_lost{};                  ///< earlier readings cannot be trusted
   HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
   double unseen_peak{};             ///< of Fz of a hammer that is at work, should it not have been followed before [N]
 };
@@ -119,6 +120,7 @@ class BoomFollower {
   void beginUnseen(double peak) noexcept;
   void pose(double since, const Eigen::Vector3d& g_B) noexcept;
   void findLoads(const BoomSample& sample, double step) noexcept;
+  void forgetWrongReadings(bool imu_lost) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
   void weighUnexplained(const ImuReading& reading, double step) noexcept;
   WrenchSpread spreadWithRock(const WrenchSpread& of_crank) const noexcept;
@@ -140,6 +142,7 @@ class BoomFollower {
   CylinderPressures pressures_;
   MeasuredTorques measured_;
   PressureTrust trust_;
+  int lost_sensors_{};  ///< that cannot be trusted
   HeldPose held_;
   ModeObserver observer_;
   BoomModel model_;

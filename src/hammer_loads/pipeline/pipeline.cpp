@@ -163,8 +163,9 @@ void Pipeline::followBoom() noexcept {
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, result_.crank_covariance);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
+  const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
   result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp),
-                                 displaced, at_work ? nominal_force_ : 0.0},
+                                 imu_lost, displaced, at_work ? nominal_force_ : 0.0},
                                 step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i)
