@@ -19,7 +19,7 @@ struct CostRow {
   std::string group;  ///< printed, scalar, batch, crank, pipeline, life or grapple
   std::string name;
   Cost cost;
-  std::vector<CaseError> errors;   ///< against the reference of the row's own level; none where sessions tell
+  std::vector<CaseError> errors;   ///< against the reference of the row's own level; none where sessions show it
   std::optional<double> left_out;  ///< regular turn, Fz against the reference of level linkage, of the peak
 };
 

@@ -1,4 +1,4 @@
-/// A session of the simulated machine, played into a pipeline as its sensors tell it.
+/// A session of the simulated machine, played into a pipeline as its sensors give it.
 #pragma once
 
 #include <algorithm>
@@ -23,12 +23,12 @@ class SessionPlayer {
   void playTo(double time, const Each& each) {
     for (; crank_ < session_.crank.size() && session_.truth[crank_].time < time; ++crank_) {
       const simulation::CrankReading& reading = session_.crank[crank_];
-      const auto upToHere = [&](const auto& readings, std::size_t& next, const auto& tell) {
-        for (; next < readings.size() && readings[next].stamp <= reading.stamp; ++next) tell(readings[next]);
+      const auto upToHere = [&](const auto& readings, std::size_t& next, const auto& give) {
+        for (; next < readings.size() && readings[next].stamp <= reading.stamp; ++next) give(readings[next]);
       };
-      upToHere(session_.joints, joint_, [this](const auto& r) { tellJoints(r); });
-      upToHere(session_.imu, imu_, [this](const auto& r) { tellImu(r); });
-      upToHere(session_.pressures, pressure_, [this](const auto& r) { tellPressures(r); });
+      upToHere(session_.joints, joint_, [this](const auto& r) { giveJoints(r); });
+      upToHere(session_.imu, imu_, [this](const auto& r) { giveImu(r); });
+      upToHere(session_.pressures, pressure_, [this](const auto& r) { givePressures(r); });
       if (imu) pipeline.hullImu(reading.stamp, *imu);
       angle_[0] = reading.angle;
       speed_.resize(reading.speed ? 1 : 0);
@@ -42,18 +42,18 @@ class SessionPlayer {
   std::optional<ImuReading> imu;  ///< given with each crank sample
 
  private:
-  void tellJoints(const simulation::JointReading& reading) {
+  void giveJoints(const simulation::JointReading& reading) {
     if (!joints_speak) return;
     std::copy(reading.position.begin(), reading.position.end(), position_.begin());
     std::copy(reading.velocity.begin(), reading.velocity.end(), velocity_.begin());
     pipeline.boomJoints(reading.stamp, joint_names_, position_, velocity_);
   }
-  void tellImu(const simulation::HullImuReading& r) {
+  void giveImu(const simulation::HullImuReading& r) {
     if (!imu_speaks) return;
     pipeline.hullImu(
         r.stamp, {{r.specific_force[0], r.specific_force[1], r.specific_force[2]}, {r.rate[0], r.rate[1], r.rate[2]}});
   }
-  void tellPressures(const simulation::PressureReading& r) {
+  void givePressures(const simulation::PressureReading& r) {
     for (std::size_t i = 0; i < r.bore.size() && pressures_speak; ++i) {
       pipeline.cylinderPressure(r.stamp, i, Chamber::kBore, r.bore[i]);
       pipeline.cylinderPressure(r.stamp, i, Chamber::kRod, r.rod[i]);

@@ -147,8 +147,8 @@ void addRemarks(Calibration& result, double curve_square) {
       "heavy; "
       "friction in the pins passes for inertia; masses and centres of mass do not show at all");
   say.push_back(
-      "a tool that the rocker meets before the dead centre looks like a zero that is off: the two cannot be told "
-      "apart where every blow comes equally early; the zero written is then that of the blow");
+      "a tool that the rocker meets before the dead centre looks like a zero that is off: which of the two "
+      "does not show where every blow comes equally early; the zero written is then that of the blow");
   say.push_back("a constant latency of the stamps does not show: crank_latency_s stays as it is");
   if (result.facts.retimed) {
     say.push_back(

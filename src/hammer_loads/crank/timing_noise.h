@@ -30,7 +30,7 @@ class TimingNoise {
     const double clipped = std::min(0.5 * change * change / total, samples_ < kLearning ? kMostAtFirst : kMost);
     const double before = variance_;
     variance_ = std::clamp(variance_ + gain * (clipped - 1.0) * lever / information_, 0.0, kLargest * kLargest);
-    // Samples tell the less of a stamp the more it jitters.
+    // Samples show the less of a stamp the more it jitters.
     information_ /= square(1.0 + std::sqrt(information_) * (variance_ - before));
   }
 

@@ -14,8 +14,8 @@ constexpr double kLargestCorrection = 0.1;  ///< by Newton after the prediction 
 constexpr double kSlopeMismatch = 0.1;      ///< of a step against the mean of the slopes at its ends, relative
 constexpr double kSlopeNoise = 1e-6;        ///< [rad]
 constexpr int kMostSteps = 400;
-/// Closer to a limit than this [m] two branches lie within the square root of rounding of each other and cannot be told
-/// apart (4096 eps at one metre).
+/// Closer to a limit than this [m] two branches lie within the square root of rounding of each other: which is which
+/// does not show (4096 eps at one metre).
 constexpr double kLimitGuard = 1e-12;
 
 double longer(double x, double y) noexcept { return std::max(std::abs(x), std::abs(y)); }

@@ -1,6 +1,5 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -54,7 +53,7 @@ Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
 }
 
 Wrench BoomFollower::wrenchAtLink(int link, const HullWrench& load) const noexcept {
-  ChainPose pose;  // as whoever follows the joints' sensors has it
+  ChainPose pose;  // by the joints' sensors, as other nodes have it
   forwardKinematics(boom_.chain(), motion_.position, pose);
   return hammer_loads::wrenchAtLink(pose, link, onTip(load));
 }
@@ -98,16 +97,6 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   return state_;
 }
 
-/// They have made frequencies, damping and motion what these never were.
-void BoomFollower::forgetWrongReadings(bool imu_lost) noexcept {
-  const int lost = static_cast<int>(trust_.isLost()) + static_cast<int>(imu_lost);
-  if (lost > lost_sensors_ && boom_.vibration().identifier()) {
-    boom_.vibration().startAnew();
-    known_ = false;
-  }
-  lost_sensors_ = lost;
-}
-
 /// Joint sensors see the vibration too; what is left without it is the operator's.
 void BoomFollower::pose(double since, const Eigen::Vector3d& g_B) noexcept {
   JointMotion operated = motion_;
@@ -131,82 +120,6 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
-}
-
-/// Where all pressures are known: without them the force would stay as it was.
-void BoomFollower::followContact(StampNs stamp) noexcept {
-  bool measured = pressuresCount();
-  for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.known(i, stamp);
-  if (measured) {
-    boom_.vibration().followContact(boom_.hammerTorque(onTip({0.0, 1.0, striking_distance_})), least_contact_);
-  } else {
-    boom_.vibration().leaveContact();
-  }
-}
-
-/// Motion, frequencies and damping as sensors show them.
-void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
-  if (!boom_.vibration().identifier()) return;
-  // The reading may be of before the blow.
-  if (sample.imu && !state_.at_blow) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
-  observer_.joints(boom_, held_, sample.stamp, step, joints_);
-  if (!pressuresCount()) return;
-  observer_.pressures(boom_, sample.stamp, pressures_);
-}
-
-/// A measured force holds what acts on its joint, whatever the model says; the difference is the rock's.
-void BoomFollower::takeMeasured(const BoomSample& sample, double step) noexcept {
-  state_.contact_torque.setZero();
-  state_.contact = {};
-  state_.measured = state_.press_force_lost = false;
-  tip_.reset();
-  if (pressures_.accepted() == 0) return;
-  const BoomLoads& loads = state_.loads;
-  measured_.follow(boom_, motion_.position, loads.weight + loads.motion, sample.stamp, pressures_);
-  std::size_t measured = 0;
-  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
-    const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
-    if (!torque) continue;
-    const int joint = boom_.cylinders()[i].joint();
-    state_.contact_torque[joint] = torque->value - loads.total[joint];
-    ++measured;
-  }
-  state_.measured = measured > 0 && measured == boom_.cylinders().size();
-  findContact(step);
-  if (!trust_.isLost()) return useMeasured();
-  state_.contact_torque.setZero();
-  state_.contact = {};
-  state_.measured = state_.press_force_lost = false;
-  tip_.reset();
-}
-
-void BoomFollower::useMeasured() noexcept {
-  BoomLoads& loads = state_.loads;
-  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
-    const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
-    if (!torque) continue;
-    loads.total[boom_.cylinders()[i].joint()] = torque->value;
-    loads.cylinder[i] = boom_.cylinders()[i].load(torque->at, torque->value);
-  }
-}
-
-/// Three cylinders in a plane give a load on the tip; of others the torques alone are known.
-std::optional<InPlaneTip> BoomFollower::inPlaneTip() const noexcept {
-  const auto& c = boom_.cylinders();
-  if (c.size() != 3) return std::nullopt;
-  return InPlaneTip::make(boom_.tipJacobian(), {c[0].joint(), c[1].joint(), c[2].joint()});
-}
-
-/// No force is one that is not seen beside its error.
-void BoomFollower::findContact(double step) noexcept {
-  if (!state_.measured) return;
-  tip_ = inPlaneTip();
-  if (!tip_) return;
-  state_.contact = tip_->load(state_.contact_torque);
-  trust_.follow(state_.contact, tip_->load(state_.loads.weight), striking_distance_, step);
-  const auto& observer = boom_.vibration().identifier();
-  const double error = observer && observer->followsContact() ? observer->contactDeviation() : 0.0;
-  state_.press_force_lost = state_.contact.force.z() < std::max(least_contact_, error);
 }
 
 /// displaced_links: at the step's end; on a line from the last ones.
@@ -269,7 +182,7 @@ void BoomFollower::swing(StampNs stamp, const WrenchHistory& step) noexcept {
   freely.count = 1;
   state_.at_blow.reset();
   freely.pieces[0].duration = seconds(stamp - last_stamp_);
-  beside_modes_.setZero();  // no loads are found that would tell it
+  beside_modes_.setZero();  // no loads are found that would show it
   vibrate(step.count > 0 ? step : freely, displaced_links_, {});
   last_stamp_ = stamp;
   state_.stamp = stamp;
