@@ -267,6 +267,35 @@ TEST(GapOfTheCrank, SensorsFindTheVibrationAtOnce) {
   }
 }
 
+/// Pressures that stop, for a second: the torques go on from the last reading, which says less and less of them.
+TEST(PressuresThatStop, AreAnErrorThatGrowsUntilTheyAreBack) {
+  for (const bool rock : {false, true}) {
+    simulation::MachineSettings m = machine();
+    if (rock) m.on_boom.rock = {3e7, 3.0, 4000.0};
+    Session session = simulation::recordSession(m);
+    auto& all = session.pressures;
+    all.erase(after(all, kDisturbed) - all.data() + all.begin(), after(all, 6.0) - all.data() + all.begin());
+    const auto within = [&](double from, double to) {
+      return errors(session, kBoomIdentified, {false, true}, from, to);
+    };
+    EXPECT_GT(within(4.0, kDisturbed).covered(), 0.85) << rock;
+    const BoomErrors overdue = within(kDisturbed, 5.2), back = within(6.0, 6.2);
+    EXPECT_GT(overdue.worstTorque(), 0.1) << rock << ": what there is to say";
+    EXPECT_GT(overdue.covered(), 0.85) << rock;
+    EXPECT_GT(overdue.sectionsCovered(), 0.85) << rock;
+    EXPECT_GT(back.covered(), 0.85) << rock;
+    EXPECT_LT(back.worstTorque(), 0.1) << rock;
+  }
+}
+
+/// Few readings say how good a measured torque is as well as many.
+TEST(PressuresThatBegin, HaveATrueDeviationAtOnce) {
+  simulation::MachineSettings m = machine();
+  m.on_boom.pressures.rate = 100.0;
+  const Session session = simulation::recordSession(m);
+  EXPECT_GT(errors(session, kBoomIdentified, {false, true}, 0.1, 0.6).covered(), 0.9);
+}
+
 /// What was not followed says nothing of how good a measured torque is.
 TEST(GapOfTheCrank, LeavesTheDeviationOfMeasuredTorquesAsItWas) {
   const Session session = withGap(kDisturbed, kGoesOn);

@@ -8,9 +8,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kShare = 0.005;       // of one reading in the mean of squares: some 200 count
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
 constexpr double kSwingTime = 1.0;     // of the torque's swing [s]
+constexpr double kOverdue = 2.0;       // usual intervals without a reading
+constexpr double kForgotten = 0.01;    // in which an overdue torque loses what it has to do with the last reading [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
@@ -21,9 +22,12 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
   const double step = seconds(stamp - track.stamp);
   if (track.readings > 0 && step > 0.0) {
     const double change = torque - track.torque;
-    track.oil_square += kShare * (square(change - (model_before - track.model)) - track.oil_square);
-    track.line_square += kShare * (square(change - step * track.slope) - track.line_square);
+    track.judged = std::min(track.judged + 1, kMostJudged);
+    const double of_mean = 1.0 / track.judged;
+    track.oil_square += of_mean * (square(change - (model_before - track.model)) - track.oil_square);
+    track.line_square += of_mean * (square(change - step * track.slope) - track.line_square);
     track.slope = change / step;
+    track.interval = step;
     const double share = std::min(1.0, step / kSwingTime);
     track.mean += share * (torque - track.mean);
     track.swing += share * (square(torque - track.mean) - track.swing);
@@ -50,21 +54,24 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const StampNs stamp = pressures.newest(i);
     const std::optional<ChamberPressures> read = pressures.at(i, stamp);
     if (!read || !pressures.known(i, sample) || at.dead_centre) {
-      track = {};
+      track.goes_on = false;
       continue;
     }
     if (pressures.count(i) != track.readings) {
       const double before = model_.now[j] + seconds(stamp - sample_) * model_.rate[j];
       const double now = model.now[j] + seconds(stamp - sample) * model.rate[j];
       const double torque = -forceOf(cylinder, *read) * at.arm;
-      if (gap) track.stamp = stamp, track.torque = torque, track.model = now, track.slope = 0.0;
+      if (gap || !track.goes_on) track.stamp = stamp, track.torque = torque, track.model = now, track.slope = 0.0;
       take(track, stamp, torque, now, before);
       track.readings = pressures.count(i);
+      track.goes_on = true;
     }
     const double age = std::min(seconds(sample - stamp), kLongestLine);
     const bool by_oil = track.oil_square <= track.line_square;
     const double change = by_oil ? model.now[j] - track.model : age * track.slope;
-    const double off = std::sqrt((by_oil ? track.oil_square : track.line_square) + lag * track.swing);
+    const double late = seconds(sample - stamp) - kOverdue * track.interval;
+    const double lost = late > 0.0 ? -std::expm1(-late / kForgotten) : 0.0;
+    const double off = std::sqrt((by_oil ? track.oil_square : track.line_square) + (lag + 2.0 * lost) * track.swing);
     torque_[i] = Torque{track.torque + change, off, at};
   }
   model_ = model, sample_ = sample;

@@ -20,7 +20,7 @@ class MeasuredTorques {
   struct Torque {
     double value{};       ///< of the load on the cylinder's joint [N m]
     double deviation{};   ///< standard: how far the last readings were from what was said before them; more where the
-                          ///< readings do not fit the vibration (kSurprised) [N m]
+                          ///< readings do not fit the vibration (kSurprised) or the next one is overdue [N m]
     CylinderPosition at;  ///< as the joint's sensor shows it
   };
 
@@ -34,12 +34,16 @@ class MeasuredTorques {
   struct Track {
     std::uint64_t readings{};            ///< taken
     StampNs stamp{};                     ///< of the last one
+    double interval{};                   ///< since the one before [s]
+    int judged{};                        ///< readings in the means of squares, counted up to kMostJudged
+    bool goes_on{};                      ///< known at the last sample
     double torque{};                     ///< by it [N m]
     double model{};                      ///< of weight, motion and oil then, by the vibration that has taken it [N m]
     double slope{};                      ///< of the line through the last two [N m/s]
     double mean{}, swing{};              ///< of the torque over some 1 s, and mean square about it [N m, N2 m2]
     double oil_square{}, line_square{};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
+  static constexpr int kMostJudged = 200;
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
 
   std::array<Track, kMaxJoints> tracks_;
