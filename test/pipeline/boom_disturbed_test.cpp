@@ -2,6 +2,7 @@
 // the truth or with a deviation that says how far it may be.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -286,6 +287,21 @@ TEST(PressuresThatStop, AreAnErrorThatGrowsUntilTheyAreBack) {
     EXPECT_GT(back.covered(), 0.85) << rock;
     EXPECT_LT(back.worstTorque(), 0.1) << rock;
   }
+}
+
+/// What the IMU has shown of frequencies and damping goes on without it, and moves the hull under the hammer.
+TEST(ImuThatStops, LeavesTheHullsMotionToTheModel) {
+  Session session = simulation::recordSession(machine());
+  auto& all = session.imu;
+  all.erase(after(all, kDisturbed) - all.data() + all.begin(), after(all, 6.0) - all.data() + all.begin());
+  const BoomErrors fixed = errors(session, "{boom: compliant, hull_motion: fixed}", {}, kDisturbed, 6.0);
+  EXPECT_GT(fixed.force_z.worstOfLargest(), 0.08) << "what the hull's motion is worth";
+  const BoomErrors e = errors(session, kHullByImu, {true, false}, kDisturbed, 6.0);
+  EXPECT_EQ(e.refused, 0U);
+  EXPECT_LT(e.force_z.worstOfLargest(), 0.04);
+  EXPECT_LT(std::abs(e.energy()), 0.02);
+  EXPECT_LT(e.worstTorque(), 0.04);
+  EXPECT_GT(e.covered(), 0.85);
 }
 
 /// Few readings say how good a measured torque is as well as many.

@@ -6,6 +6,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongestTurn = 1.0;  // [s]: over a longer one the hull's velocity has a mean
+constexpr double kSilent = 0.02;      // [s] before the blow without a reading: then it is not known
 
 }  // namespace
 
@@ -49,6 +50,7 @@ HullSpeed::Point HullSpeed::at(StampNs stamp) const noexcept {
 void HullSpeed::struck(StampNs blow) noexcept {
   at_blow_.reset();
   if (count_ == 0) return;
+  if (seconds(blow - back(0).stamp) > kSilent) return forget();
   const Point now = at(blow);
   const double turn = last_blow_ ? seconds(blow - last_blow_->stamp) : 0.0;
   if (turn > 0.0 && turn < kLongestTurn) {

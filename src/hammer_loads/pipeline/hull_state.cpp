@@ -40,8 +40,6 @@ std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& readin
   return refusal;
 }
 
-void HullState::set(const HullMotion& motion) noexcept { now_ = {motion, known_}; }
-
 const HullMotion& HullState::predict(StampNs stamp) noexcept {
   find(stamp);
   imu_counts_.missed += source_ == HullMotionSource::kImu && !known_;
@@ -49,14 +47,22 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
 }
 
 void HullState::find(StampNs stamp) noexcept {
-  if (source_ == HullMotionSource::kImu) {
-    const std::optional<HullMotion> measured = imu_trust_.isLost() ? std::nullopt : imu_.at(stamp);
-    known_ = measured.has_value();
-    set(measured.value_or(HullMotion(weight_.gravity())));
-  } else if (source_ == HullMotionSource::kModel) {
-    const Gravity& weight = weight_.gravity();
-    set({{weight.x + vibration_.gravity.x, weight.z + vibration_.gravity.z}, vibration_.rate, vibration_.acceleration});
+  if (source_ == HullMotionSource::kModel) findByBoom();
+  if (source_ != HullMotionSource::kImu) return;
+  const std::optional<HullMotion> measured = imu_trust_.isLost() ? std::nullopt : imu_.at(stamp);
+  known_ = measured.has_value();
+  by_imu_ = known_ && !(vibration_ && imu_.isOverdue(stamp));
+  if (by_imu_) {
+    now_ = {*measured, true};
+  } else {
+    findByBoom();
   }
+}
+
+void HullState::findByBoom() noexcept {
+  const Gravity& weight = weight_.gravity();
+  const HullMotion v = vibration_.value_or(HullMotion{});
+  now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration}, vibration_.has_value()};
 }
 
 void HullState::struck(StampNs blow, StampNs sample) noexcept {
@@ -71,10 +77,13 @@ std::optional<ImuReading> HullState::newImuReading(StampNs stamp) noexcept {
 }
 
 void HullState::vibrates(const BoomState* boom) noexcept {
-  if (source_ != HullMotionSource::kModel) return;
-  known_ = boom != nullptr && !boom->fault;
-  vibration_ = known_ ? vibrationOf(*boom) : HullMotion{};
-  find(0);
+  if (source_ == HullMotionSource::kFixed) return;
+  vibration_.reset();
+  const bool followed = boom != nullptr && !boom->fault;
+  const bool proven = followed && boom->choice.compliant && boom->identified;
+  if (source_ == HullMotionSource::kModel ? followed : proven) vibration_ = vibrationOf(*boom);
+  if (source_ == HullMotionSource::kModel) known_ = vibration_.has_value();
+  if (!by_imu_) findByBoom();
 }
 
 }  // namespace hammer_loads

@@ -19,10 +19,11 @@ namespace hammer_loads {
 struct ImuCounts {
   std::uint64_t accepted{};
   std::array<std::uint64_t, static_cast<std::size_t>(ImuRefusal::kCount)> refused{};
-  std::uint64_t missed{};  ///< crank samples at which the hull's motion was not known: weight by pitch then
+  std::uint64_t missed{};  ///< crank samples at which it did not show the hull's motion
 };
 
-/// Owns gravity and IMU, and the boom's last vibration.
+/// Owns gravity and IMU, and the boom's last vibration. Where the IMU is silent, overdue or not to be trusted, the
+/// vibration of a boom whose oil sensors have identified gives the hull's motion.
 class HullState {
  public:
   struct Motion {
@@ -50,11 +51,11 @@ class HullState {
   /// After it: the vibration of the boom at the sample; null: not known.
   void vibrates(const BoomState* boom) noexcept;
   /// What follows is not continuous with what was: the boom is at rest.
-  void rest() noexcept { vibration_ = {}; }
+  void rest() noexcept { vibration_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }
   /// False where IMU or boom should give the hull's motion and do not, or the IMU cannot be trusted: weight by joint
-  /// angles then.
+  /// angles then, and the vibration of a boom whose oil is identified.
   bool motionKnown() const noexcept { return known_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
   const Gravity& gravity() const noexcept { return weight_.gravity(); }  ///< by the joint angles
@@ -63,18 +64,18 @@ class HullState {
 
  private:
   void weigh() noexcept;
-  void set(const HullMotion& motion) noexcept;
   void find(StampNs stamp) noexcept;
+  void findByBoom() noexcept;
 
   HullMotionSource source_;
   HullGravity weight_;
   HullImu imu_;
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
-  HullMotion vibration_;  ///< of the boom's tip at the last sample, without weight
+  std::optional<HullMotion> vibration_;  ///< of the boom's tip at the last sample, without weight; none: not known
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
-  bool known_{true};
+  bool known_{true}, by_imu_{};
 };
 
 }  // namespace hammer_loads

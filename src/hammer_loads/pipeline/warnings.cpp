@@ -159,12 +159,14 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   if (result.boom != nullptr && result.boom->measured) {
     const double surprise = pipeline.boom()->boom().vibration().identifier()->oilSurprise();
     if (surprise > MeasuredTorques::kSurprised)
-      warnings.push_back({"pressure stamps",
-                          format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the "
-                                 "expected variance: stamps that lag (5 ms are a third of the vibration's torque) or "
-                                 "readings too rare for a hull that bounces on rock; deviations are widened",
-                                 surprise),
-                          true});
+      warnings.push_back(
+          {"pressure stamps",
+           format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the "
+                  "expected variance: stamps that lag (5 ms are a third of the vibration's torque), also "
+                  "those of hull_imu, or "
+                  "readings too rare for a hull that bounces on rock; deviations are widened",
+                  surprise),
+           true});
   }
   if (result.boom != nullptr && result.boom->contact_unknown)
     warnings.push_back({"rock",

@@ -147,7 +147,9 @@ void NodeDiagnostics::describeImu(Status& status) {
   if (bridge_.pipeline().hull().imuTrust().isLost()) {
     status.summary(DiagnosticStatus::WARN, "not used: no readings of a unit on this hull as the parameters have it");
   } else if (counts.missed > last_imu_counts_.missed) {
-    status.summary(DiagnosticStatus::WARN, "hull's motion not known at every crank sample: weight by pitch there");
+    status.summary(
+        DiagnosticStatus::WARN,
+        "silent at some crank samples: weight by pitch there, vibration by the model if its oil is identified");
   } else {
     status.summary(DiagnosticStatus::OK, counts.accepted > 0 ? "working" : "no reading yet");
   }
