@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -302,6 +303,22 @@ TEST(ImuThatStops, LeavesTheHullsMotionToTheModel) {
   EXPECT_LT(std::abs(e.energy()), 0.02);
   EXPECT_LT(e.worstTorque(), 0.04);
   EXPECT_GT(e.covered(), 0.85);
+}
+
+/// Of a boom that is no model: what it showed last is soon no longer true.
+TEST(ImuThatStops, IsForgottenWithoutAJump) {
+  simulation::MachineSettings m = accuracy::machineOnBoom(7.0);
+  m.drive.start_time = 0.1;
+  Session session = simulation::recordSession(m);
+  auto& all = session.imu;
+  const std::int64_t first = all.front().stamp, period = 310'000'000, silent = 60'000'000;
+  all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& r) { return (r.stamp - first) % period < silent; }),
+            all.end());
+  const char* keys = "{boom: rigid, hull_motion: imu}";
+  const BoomErrors e = errors(session, keys, {true, false}, 3.0, 6.9);
+  EXPECT_LT(e.force_z.worstOfLargest(), 0.15);
+  EXPECT_LT(e.force_z.rms(), 0.06);
+  EXPECT_EQ(e.refused, 0U);
 }
 
 /// Few readings say how good a measured torque is as well as many.

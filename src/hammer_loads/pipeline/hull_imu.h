@@ -50,9 +50,9 @@ class HullImu {
   /// Motion at a stamp, known as reading() is. Turning acceleration zero until two readings after a blow give it.
   std::optional<HullMotion> at(StampNs stamp) const noexcept;
 
-  /// More than one reading should have come since the last one.
-  bool isOverdue(StampNs stamp) const noexcept {
-    return stamp - now_.stamp > kOverdue * std::max<StampNs>(0, now_.stamp - before_.stamp);
+  /// For how long more than one reading should have come since the last one [s]; below 0: not yet.
+  double overdue(StampNs stamp) const noexcept {
+    return seconds(stamp - now_.stamp) - kOverdue * std::max(0.0, seconds(now_.stamp - before_.stamp));
   }
   StampNs last() const noexcept { return now_.stamp; }  ///< stamp of the last reading taken [ns]
   /// The last reading taken, in axes of hammer_hull.
@@ -61,7 +61,7 @@ class HullImu {
  private:
   bool blowBetween(StampNs from, StampNs to) const noexcept { return blow_ && from < *blow_ && *blow_ <= to; }
 
-  static constexpr StampNs kOverdue = 2;  // intervals
+  static constexpr double kOverdue = 2.0;  // intervals
   // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for steel that rings too.
   static constexpr double kLeastForceJump = 200.0;  // [m/s2]
   static constexpr double kLeastRateJump = 3.0;     // [rad/s]

@@ -1,7 +1,11 @@
 #include "hammer_loads/pipeline/hull_state.h"
 
+#include <cmath>
+
 namespace hammer_loads {
 namespace {
+
+constexpr double kHeldFor = 0.01;  // [s] for which a reading goes on to say how the hull moves
 
 /// Of the tip of a boom; none if it is rigid.
 HullMotion vibrationOf(const BoomState& boom) noexcept {
@@ -51,12 +55,20 @@ void HullState::find(StampNs stamp) noexcept {
   if (source_ != HullMotionSource::kImu) return;
   const std::optional<HullMotion> measured = imu_trust_.isLost() ? std::nullopt : imu_.at(stamp);
   known_ = measured.has_value();
-  by_imu_ = known_ && !(vibration_ && imu_.isOverdue(stamp));
-  if (by_imu_) {
-    now_ = {*measured, true};
-  } else {
-    findByBoom();
-  }
+  const double overdue = imu_.overdue(stamp);
+  by_imu_ = known_ && !(vibration_ && overdue > 0.0);
+  if (!by_imu_) return findByBoom();
+  now_ = {*measured, true};
+  if (overdue > 0.0 && weight_.pitch().known()) forgetReading(std::exp(-overdue / kHeldFor));
+}
+
+/// What a reading that is held has beside the weight is no longer true: only a part of it. Held to the end it would
+/// lead the crank's filter astray, and jump there.
+void HullState::forgetReading(double part) noexcept {
+  HullMotion& m = now_.motion;
+  const Gravity& weight = weight_.gravity();
+  m.gravity = {weight.x + part * (m.gravity.x - weight.x), weight.z + part * (m.gravity.z - weight.z)};
+  m.rate *= part, m.acceleration *= part;
 }
 
 void HullState::findByBoom() noexcept {

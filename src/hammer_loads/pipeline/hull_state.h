@@ -66,6 +66,7 @@ class HullState {
   void weigh() noexcept;
   void find(StampNs stamp) noexcept;
   void findByBoom() noexcept;
+  void forgetReading(double part) noexcept;
 
   HullMotionSource source_;
   HullGravity weight_;
