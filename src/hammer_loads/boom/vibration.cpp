@@ -150,11 +150,12 @@ void Vibration::leaveContact() noexcept {
   follows_readings_ = follows_readings_ && identifier_->learns();
 }
 
-/// A landing shakes the hull at once; whether it stands on rock at all shows in the mean.
+/// A landing shakes the hull at once; whether it stands on rock at all shows in the mean. Where it does not, the mean
+/// is what the readings' motion needs beside the hammer: without it a hull that hangs in the air would carry a load.
 void Vibration::useMotion() noexcept {
   const bool bears = identifier_->followsContact() && mean_contact_ > least_contact_;
-  contact_ = bears ? identifier_->contact() : 0.0;
   follows_readings_ = bears || (identifier_->learns() && identifier_->explains() && identifier_->identified());
+  contact_ = bears ? identifier_->contact() : follows_readings_ ? mean_contact_ : 0.0;
   if (follows_readings_) takeMotion();
 }
 
