@@ -86,6 +86,30 @@ TEST_P(WrongOil, IsMeasuredByJointStatesAbove100Hz) {
   expectAsTheTruth(e, "joint states");
 }
 
+/// Noise on a boom that nothing shakes says nothing of its oil: half a minute of it made 40 % of the frequency.
+TEST(OnBoomSession, AMachineThatIdlesTeachesNothing) {
+  constexpr double kStart = 15.0, kStop = 18.0;
+  simulation::MachineSettings m = accuracy::machineOnBoom(kStop);
+  m.drive.start_time = kStart;
+  const Session session = simulation::recordSession(m);
+  const double right = simulation::HammerOnBoom(m).frequencies(kStop)[0];
+  const Settings settings = test::settingsWith(std::string("boom: compliant\n") + kIdentified);
+  for (const accuracy::SensorsOnBoom& sensors : {accuracy::SensorsOnBoom{true, false}, {false, true}, {true, true}}) {
+    const auto within = [&](double from, double to) {
+      const BoomErrors e =
+          accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom, sensors, from, to);
+      std::printf("to %.0f s: %s\n", to, e.text().c_str());
+      return e;
+    };
+    EXPECT_NEAR(within(kStart - 1.0, kStart).frequency / right, 1.0, 0.03) << "as given, which is right";
+    const BoomErrors works = within(kStart + 1.0, kStop);
+    EXPECT_NEAR(works.frequency / right, 1.0, 0.03);
+    EXPECT_LT(works.worstTorque(), 0.05);
+    EXPECT_LT(std::abs(works.energy()), 0.02);
+    EXPECT_GT(works.covered(), 0.85);
+  }
+}
+
 struct OilAtPose {
   double oil;
   test::Pose pose;

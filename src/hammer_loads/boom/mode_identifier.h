@@ -18,6 +18,9 @@ namespace hammer_loads {
 /// First guesses: frequencies wrong by 15 % together (bulk modulus by 30 %) and 5 % each beside, damping by a
 /// factor 1.6. Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
 ///
+/// At rest nothing is to be learned (keepOil()): no known force shakes the boom then, and noise and the walk of the
+/// rock's force would be taken for a soft oil, by a factor e of frequency in half a minute.
+///
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
 /// should be, frequencies and damping are those given.
 ///
@@ -50,6 +53,9 @@ class ModeIdentifier {
   void followContact(const JointVector& torque) noexcept;
   /// No more: the hull counts as free.
   void leaveContact() noexcept;
+  /// Whether frequencies and damping stay as they are, whatever the next readings show; the motion is followed all the
+  /// same. For a hammer at rest: what shakes the boom then is not known.
+  void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
   /// A reading at the present time or a little before; channel in [0, kMaxChannels) keeps its offset. A reading far off
   /// counts less.
   void observe(int channel, const VibrationReading& reading) noexcept;
@@ -99,6 +105,7 @@ class ModeIdentifier {
   void forget(int state, double deviation) noexcept;
   void advanceMode(int mode, double step, const ModeForce& force) noexcept;
   void walk(int mode, double step) noexcept;
+  void takeBackOil(const State& gain_S, double S, double difference) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void useChannel(int channel, const VibrationReading& reading) noexcept;
   State rowOf(int channel, const VibrationReading& reading, double& predicted) const noexcept;
@@ -108,7 +115,7 @@ class ModeIdentifier {
 
   double damping_ratio_;
   double least_damping_, most_damping_;  ///< logarithms over the given one
-  bool learns_;
+  bool learns_, keeps_oil_{};
   bool explains_{true};
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]

@@ -88,9 +88,26 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
     const double part = gain_S[i] / S;
     for (int j = 0; j < n; ++j) column[j] -= part * gain_S[j];
   }
+  if (learns_ && keeps_oil_) takeBackOil(gain_S, S, difference);
   if (learns_ && !explains_) forgetOil();
   if (!state_.segment(first, n).allFinite()) return startAnew();
   if (learns_) useOil();
+}
+
+/// What the last reading has shown of frequencies and damping. The rest counts it as with these not known better
+/// (Schmidt-Kalman filter).
+void ModeIdentifier::takeBackOil(const State& gain_S, double S, double difference) noexcept {
+  std::array<int, 2 * kMaxJoints> oil{};  // states
+  for (int k = 0; k < count_; ++k) {
+    oil[static_cast<std::size_t>(2 * k)] = at(k, kFrequency);
+    oil[static_cast<std::size_t>(2 * k + 1)] = at(k, kDamping);
+  }
+  const auto last = oil.begin() + 2 * count_;
+  for (auto i = oil.begin(); i != last; ++i) {
+    const double gain = gain_S[*i - begin()] / S;
+    state_[*i] -= gain * difference;
+    for (auto j = oil.begin(); j != last; ++j) covariance_(*i, *j) += gain * gain_S[*j - begin()];
+  }
 }
 
 void ModeIdentifier::forgetOil() noexcept {

@@ -43,6 +43,10 @@ class Vibration {
   /// Frequencies and damping as readings show them, from now on (`boom_stiffness: identified`).
   void identify() { identifier_.emplace(settings_.damping_ratio); }
   bool identifies() const noexcept { return identifier_ && identifier_->learns(); }
+  /// See ModeIdentifier; nothing without identify().
+  void keepOil(bool keep) noexcept {
+    if (identifier_) identifier_->keepOil(keep);
+  }
   /// From now on the rock may bear on the hull: its force is followed with the motion that readings show. torque: on
   /// the joints per newton [N m/N]; call at each pose. Where its mean over some 0.5 s is less than least_force [N] the
   /// hull counts as free.
@@ -55,7 +59,8 @@ class Vibration {
   /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
   /// Else they are those of the hammer's load alone.
   bool followsReadings() const noexcept { return follows_readings_; }
-  double contact() const noexcept { return contact_; }  ///< the rock's force [N]; 0 for a hull that counts as free
+  /// The rock's force [N]. Of a hull that counts as free: 0, or what the readings' motion lacks in the mean.
+  double contact() const noexcept { return contact_; }
 
   bool known() const noexcept { return modes_.count > 0; }
   /// No motion and no load.

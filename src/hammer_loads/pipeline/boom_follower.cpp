@@ -163,6 +163,7 @@ void BoomFollower::beginUnseen(double peak) noexcept {
 
 void BoomFollower::strike(const HullWrench& impulse) noexcept {
   held_.struck();
+  last_blow_ = last_stamp_;
   const JointVector before = boom_.vibration().velocity(), torque = boom_.hammerTorque(onTip(impulse));
   boom_.vibration().strike(torque);
   spread_.strike(torque);

@@ -157,7 +157,8 @@ class BoomFollower {
   std::optional<InPlaneTip> tip_;  ///< at the sample; none: the rock's force is not measured
   double unexplained_{};           ///< mean square of the force along z that would explain the IMU's readings [N2]
   double least_contact_{};         ///< along z: less is none [N]
-  StampNs last_stamp_{};           ///< of the last sample without a fault
+  std::optional<StampNs> last_blow_;
+  StampNs last_stamp_{};  ///< of the last sample without a fault
   bool known_{};
   std::uint64_t faults_{};
   std::vector<std::string> givers_;  ///< edges, then cylinders

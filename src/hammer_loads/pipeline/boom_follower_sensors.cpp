@@ -4,6 +4,11 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 
 namespace hammer_loads {
+namespace {
+
+constexpr double kStillBeats = 1.0;  // after a blow [s]
+
+}  // namespace
 
 /// They have made frequencies, damping and motion what these never were.
 void BoomFollower::forgetWrongReadings(bool imu_lost) noexcept {
@@ -29,6 +34,7 @@ void BoomFollower::followContact(StampNs stamp) noexcept {
 /// Motion, frequencies and damping as sensors show them.
 void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
+  boom_.vibration().keepOil(!last_blow_ || seconds(sample.stamp - *last_blow_) > kStillBeats);
   // The reading may be of before the blow.
   if (sample.imu && !state_.at_blow) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
