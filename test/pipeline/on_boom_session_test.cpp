@@ -78,6 +78,18 @@ TEST_P(WrongOil, IsMeasuredByImuAndByPressures) {
   expectAsTheTruth(errorsOf("all sensors", session, kByImu, {true, true}), "all sensors");
 }
 
+/// What the IMU knows better is not thrown away: each reading for itself had twice the error of an IMU alone, four
+/// times on the joint of the hammer.
+TEST(OnBoomSession, NoisyPressuresBesideAnImuCostNothing) {
+  simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
+  m.on_boom.pressures.noise *= 4.0;
+  const Session session = simulation::recordSession(m);
+  const BoomErrors imu = errorsOf("imu", session, kByImu, {true, false});
+  const BoomErrors all = errorsOf("all sensors", session, kByImu, {true, true});
+  EXPECT_LT(all.worstTorque(), 1.5 * imu.worstTorque());
+  EXPECT_GT(all.covered(), 0.85);
+}
+
 TEST_P(WrongOil, IsMeasuredByJointStatesAbove100Hz) {
   const simulation::MachineSettings m = test::machineOnBoom(GetParam(), 400.0);
   const Session session = simulation::recordSession(m);

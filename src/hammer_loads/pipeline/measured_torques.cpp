@@ -13,9 +13,26 @@ constexpr double kSwingTime = 1.0;     // of the torque's swing [s]
 constexpr double kOverdue = 2.0;       // usual intervals without a reading
 constexpr double kForgotten = 0.01;    // in which an overdue torque loses what it has to do with the last reading [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
+constexpr double kJump = 3.0;          // standard deviations that are no noise
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
 }  // namespace
+
+/// As a random walk that readings with noise show (Kalman filter): a change over two readings has the walk twice and
+/// the noise once. A jump is the rock's.
+void MeasuredTorques::followRest(Track& track, double rest) noexcept {
+  const double of_mean = 1.0 / track.judged;
+  track.one_square += of_mean * (square(rest - track.last) - track.one_square);
+  track.two_square += of_mean * (square(rest - track.before) - track.two_square);
+  track.before = track.last, track.last = rest;
+  const double walk = std::max(0.0, track.two_square - track.one_square);
+  const double noise = std::max(0.0, track.one_square - 0.5 * track.two_square);
+  const double known = 0.5 * walk + std::sqrt(0.25 * square(walk) + walk * noise);
+  const double error = rest - track.rest;
+  const bool jumps = square(error) > square(kJump) * (known + noise);
+  track.gain = jumps || !(known + noise > 0.0) ? 1.0 : std::max(known / (known + noise), of_mean);
+  track.rest += track.gain * error;
+}
 
 /// model: at the reading, after it was taken and as it was said before.
 void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept {
@@ -26,6 +43,7 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
     const double of_mean = 1.0 / track.judged;
     track.oil_square += of_mean * (square(change - (model_before - track.model)) - track.oil_square);
     track.line_square += of_mean * (square(change - step * track.slope) - track.line_square);
+    followRest(track, torque - model);
     track.slope = change / step;
     track.interval = step;
     const double share = std::min(1.0, step / kSwingTime);
@@ -33,6 +51,7 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
     track.swing += share * (square(torque - track.mean) - track.swing);
   }
   if (track.readings == 0) track.mean = torque;
+  if (track.readings == 0 || !(step > 0.0)) track.rest = track.last = track.before = torque - model, track.gain = 1.0;
   track.stamp = stamp, track.torque = torque, track.model = model;
 }
 
@@ -68,11 +87,14 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     }
     const double age = std::min(seconds(sample - stamp), kLongestLine);
     const bool by_oil = track.oil_square <= track.line_square;
-    const double change = by_oil ? model.now[j] - track.model : age * track.slope;
+    const double value = by_oil ? track.rest + model.now[j] : track.torque + age * track.slope;
     const double late = seconds(sample - stamp) - kOverdue * track.interval;
     const double lost = late > 0.0 ? -std::expm1(-late / kForgotten) : 0.0;
-    const double off = std::sqrt((by_oil ? track.oil_square : track.line_square) + (lag + 2.0 * lost) * track.swing);
-    torque_[i] = Torque{track.torque + change, off, at};
+    // A change has the noise of two readings, what is smoothed that of one or less.
+    const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
+    const double off =
+        std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square) + (lag + 2.0 * lost) * track.swing);
+    torque_[i] = Torque{value, off, at};
   }
   model_ = model, sample_ = sample;
 }

@@ -9,9 +9,9 @@
 
 namespace hammer_loads {
 
-/// At a reading the torque is the reading's; from there to the crank sample it changes as the oil's does in the
-/// vibration or along the line through the last two readings, whichever was nearer to the readings that came: the line
-/// where the oil is not as given, the oil where readings are rare or the hull lands on rock. No allocation.
+/// The oil's torque in the vibration and what readings show beside it, their noise smoothed as far as that stands
+/// still; or the line through the last two readings, whichever was nearer to the readings that came: the line where the
+/// oil is not as given, the oil where readings are rare or the hull lands on rock. No allocation.
 class MeasuredTorques {
  public:
   /// ModeIdentifier::oilSurprise() from which on the readings do not follow the boom's motion, as when stamps lag.
@@ -39,12 +39,17 @@ class MeasuredTorques {
     bool goes_on{};                      ///< known at the last sample
     double torque{};                     ///< by it [N m]
     double model{};                      ///< of weight, motion and oil then, by the vibration that has taken it [N m]
+    double rest{}, last{}, before{};     ///< reading less model: as followed, of the last and the one before [N m]
+    double gain{1.0};                    ///< of the last reading in it
+    double one_square{}, two_square{};   ///< mean squares of its change over one reading and over two [N2 m2]
     double slope{};                      ///< of the line through the last two [N m/s]
     double mean{}, swing{};              ///< of the torque over some 1 s, and mean square about it [N m, N2 m2]
     double oil_square{}, line_square{};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
   static constexpr int kMostJudged = 200;
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
+
+  static void followRest(Track& track, double rest) noexcept;
 
   std::array<Track, kMaxJoints> tracks_;
   std::array<std::optional<Torque>, kMaxJoints> torque_;
