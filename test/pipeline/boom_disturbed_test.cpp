@@ -321,6 +321,26 @@ TEST(ImuThatStops, IsForgottenWithoutAJump) {
   EXPECT_EQ(e.refused, 0U);
 }
 
+/// What is lasting and no rock makes is an error of the sensors, or of masses and lengths.
+TEST(PressuresThatAreOff, SaySo) {
+  const std::vector<std::function<double(double)>> wrong{[](double p) { return 1.02 * p; },
+                                                         [](double p) { return p + 1e5; }};
+  for (const bool rock : {false, true}) {
+    simulation::MachineSettings m = machine();
+    if (rock) m.on_boom.rock = {3e7, 3.0, 4000.0};
+    const Session right = simulation::recordSession(m);
+    for (const auto& read : wrong) {
+      Session session = right;
+      for (auto& r : session.pressures)
+        for (double& p : r.bore) p = read(p);
+      const BoomErrors e = errors(session, kBoomIdentified, {false, true}, 4.0, 7.0);
+      EXPECT_GT(e.worstTorque(), 0.02) << "what there is to say";
+      EXPECT_GT(e.covered(), rock ? 0.6 : 0.85) << rock << ": along the tool rock may be what makes it";
+      EXPECT_GT(e.sectionsCovered(), 0.85) << rock;
+    }
+  }
+}
+
 /// Few readings say how good a measured torque is as well as many.
 TEST(PressuresThatBegin, HaveATrueDeviationAtOnce) {
   simulation::MachineSettings m = machine();

@@ -42,11 +42,13 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
     boom_.deviations(spread_, spread, rigid, deviations);
   }
   if (!pressuresCount()) return;
+  const JointVector lasting = boom_.hammerTorque(trust_.notOfRock(striking_distance_, least_contact_));
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
     if (!torque) continue;
-    deviations.torque[boom_.cylinders()[i].joint()] = torque->deviation;
-    deviations.cylinder[i] = torque->deviation / std::abs(boom_.cylinderPosition(i).arm);
+    const int joint = boom_.cylinders()[i].joint();
+    deviations.torque[joint] = std::hypot(torque->deviation, lasting[joint]);
+    deviations.cylinder[i] = deviations.torque[joint] / std::abs(boom_.cylinderPosition(i).arm);
   }
 }
 
@@ -58,6 +60,7 @@ LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
     torque[boom_.cylinders()[i].joint()] = measured_.of(i)->deviation;
     errors.add(zero, tip_->load(torque));
   }
+  errors.add(zero, trust_.notOfRock(striking_distance_, least_contact_));
   if (rigid || !boom_.vibration().known()) return errors;
   const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
   for (const auto& mode : of_vibration.colwise())

@@ -30,6 +30,12 @@ class PressureTrust {
     lost_ = off > (lost_ ? kBack : 1.0);
   }
   bool isLost() const noexcept { return lost_; }
+  /// Mean load on the tip that no rock makes; along the tool it may, from least_force [N] on. Pressures, lengths or
+  /// masses are otherwise than said.
+  Wrench notOfRock(double arm, double least_force) const noexcept {
+    const double along = along_ < least_force ? along_ : 0.0;
+    return {{across_, 0.0, along}, {0.0, turning_ + arm * along, 0.0}};
+  }
   double across() const noexcept { return across_; }  ///< mean [N]
   double along() const noexcept { return along_; }    ///< [N]
 
