@@ -23,8 +23,9 @@ constexpr char kBoomGiven[] = "{boom: compliant, hull_motion: model}";
 constexpr char kBoomIdentified[] = "{boom: compliant, hull_motion: model, boom_stiffness: identified}";
 constexpr char kHullByImu[] = "{boom: compliant, hull_motion: imu, boom_stiffness: identified}";
 
-simulation::MachineSettings machine() {
+simulation::MachineSettings machine(bool on_rock = false) {
   simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
+  if (on_rock) m.on_boom.rock = {3e7, 3.0, 4000.0};
   m.drive.start_time = 0.1;
   m.duration = 8.0;
   return m;
@@ -45,6 +46,12 @@ Reading* after(std::vector<Reading>& readings, double time) {
   const auto at = std::find_if(readings.begin(), readings.end(),
                                [&](const Reading& r) { return 1e-9 * static_cast<double>(r.stamp - start) >= time; });
   return &*at;
+}
+
+template <typename Reading>
+void silence(std::vector<Reading>& readings, double from, double to) {
+  const auto at = [&](double time) { return readings.begin() + (after(readings, time) - readings.data()); };
+  readings.erase(at(from), at(to));
 }
 
 struct Damage {
@@ -107,9 +114,8 @@ class Mistaken : public testing::TestWithParam<Mistake> {};
 
 const Session& sessionOn(bool rock) {
   static const auto recorded = [](bool on_rock) {
-    simulation::MachineSettings m = machine();
+    simulation::MachineSettings m = machine(on_rock);
     m.duration = 5.0;
-    if (on_rock) m.on_boom.rock = {3e7, 3.0, 4000.0};
     return simulation::recordSession(m);
   };
   static const Session free = recorded(false), bears = recorded(true);
@@ -272,11 +278,8 @@ TEST(GapOfTheCrank, SensorsFindTheVibrationAtOnce) {
 /// Pressures that stop, for a second: the torques go on from the last reading, which says less and less of them.
 TEST(PressuresThatStop, AreAnErrorThatGrowsUntilTheyAreBack) {
   for (const bool rock : {false, true}) {
-    simulation::MachineSettings m = machine();
-    if (rock) m.on_boom.rock = {3e7, 3.0, 4000.0};
-    Session session = simulation::recordSession(m);
-    auto& all = session.pressures;
-    all.erase(after(all, kDisturbed) - all.data() + all.begin(), after(all, 6.0) - all.data() + all.begin());
+    Session session = simulation::recordSession(machine(rock));
+    silence(session.pressures, kDisturbed, 6.0);
     const auto within = [&](double from, double to) {
       return errors(session, kBoomIdentified, {false, true}, from, to);
     };
@@ -293,8 +296,7 @@ TEST(PressuresThatStop, AreAnErrorThatGrowsUntilTheyAreBack) {
 /// What the IMU has shown of frequencies and damping goes on without it, and moves the hull under the hammer.
 TEST(ImuThatStops, LeavesTheHullsMotionToTheModel) {
   Session session = simulation::recordSession(machine());
-  auto& all = session.imu;
-  all.erase(after(all, kDisturbed) - all.data() + all.begin(), after(all, 6.0) - all.data() + all.begin());
+  silence(session.imu, kDisturbed, 6.0);
   const BoomErrors fixed = errors(session, "{boom: compliant, hull_motion: fixed}", {}, kDisturbed, 6.0);
   EXPECT_GT(fixed.force_z.worstOfLargest(), 0.08) << "what the hull's motion is worth";
   const BoomErrors e = errors(session, kHullByImu, {true, false}, kDisturbed, 6.0);
@@ -326,9 +328,7 @@ TEST(PressuresThatAreOff, SaySo) {
   const std::vector<std::function<double(double)>> wrong{[](double p) { return 1.02 * p; },
                                                          [](double p) { return p + 1e5; }};
   for (const bool rock : {false, true}) {
-    simulation::MachineSettings m = machine();
-    if (rock) m.on_boom.rock = {3e7, 3.0, 4000.0};
-    const Session right = simulation::recordSession(m);
+    const Session right = simulation::recordSession(machine(rock));
     for (const auto& read : wrong) {
       Session session = right;
       for (auto& r : session.pressures)

@@ -10,6 +10,7 @@
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/hull_speed.h"
 #include "hammer_loads/pipeline/jump_guard.h"
+#include "hammer_loads/pipeline/overdue.h"
 #include "hammer_loads/settings/hull_imu_settings.h"
 #include "hammer_loads/util/stamp.h"
 
@@ -52,7 +53,7 @@ class HullImu {
 
   /// For how long more than one reading should have come since the last one [s]; below 0: not yet.
   double overdue(StampNs stamp) const noexcept {
-    return seconds(stamp - now_.stamp) - kOverdue * std::max(0.0, seconds(now_.stamp - before_.stamp));
+    return hammer_loads::overdue(seconds(stamp - now_.stamp), std::max(0.0, seconds(now_.stamp - before_.stamp)));
   }
   StampNs last() const noexcept { return now_.stamp; }  ///< stamp of the last reading taken [ns]
   /// The last reading taken, in axes of hammer_hull.
@@ -61,7 +62,6 @@ class HullImu {
  private:
   bool blowBetween(StampNs from, StampNs to) const noexcept { return blow_ && from < *blow_ && *blow_ <= to; }
 
-  static constexpr double kOverdue = 2.0;  // intervals
   // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for steel that rings too.
   static constexpr double kLeastForceJump = 200.0;  // [m/s2]
   static constexpr double kLeastRateJump = 3.0;     // [rad/s]

@@ -1,11 +1,9 @@
 #include "hammer_loads/pipeline/hull_state.h"
 
-#include <cmath>
+#include "hammer_loads/pipeline/overdue.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kHeldFor = 0.01;  // [s] for which a reading goes on to say how the hull moves
 
 /// Of the tip of a boom; none if it is rigid.
 HullMotion vibrationOf(const BoomState& boom) noexcept {
@@ -59,7 +57,7 @@ void HullState::find(StampNs stamp) noexcept {
   by_imu_ = known_ && !(vibration_ && overdue > 0.0);
   if (!by_imu_) return findByBoom();
   now_ = {*measured, true};
-  if (overdue > 0.0 && weight_.pitch().known()) forgetReading(std::exp(-overdue / kHeldFor));
+  if (overdue > 0.0 && weight_.pitch().known()) forgetReading(1.0 - forgottenPart(overdue));
 }
 
 /// What a reading that is held has beside the weight is no longer true: only a part of it. Held to the end it would

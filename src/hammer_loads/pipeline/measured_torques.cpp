@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/pipeline/overdue.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -10,8 +11,6 @@ namespace {
 
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
 constexpr double kSwingTime = 1.0;     // of the torque's swing [s]
-constexpr double kOverdue = 2.0;       // usual intervals without a reading
-constexpr double kForgotten = 0.01;    // in which an overdue torque loses what it has to do with the last reading [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
 constexpr double kJump = 3.0;          // standard deviations that are no noise
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
@@ -80,7 +79,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       const double before = model_.now[j] + seconds(stamp - sample_) * model_.rate[j];
       const double now = model.now[j] + seconds(stamp - sample) * model.rate[j];
       const double torque = -forceOf(cylinder, *read) * at.arm;
-      if (gap || !track.goes_on) track.stamp = stamp, track.torque = torque, track.model = now, track.slope = 0.0;
+      if (gap || !track.goes_on) track.stamp = stamp, track.slope = 0.0;
       take(track, stamp, torque, now, before);
       track.readings = pressures.count(i);
       track.goes_on = true;
@@ -88,8 +87,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const double age = std::min(seconds(sample - stamp), kLongestLine);
     const bool by_oil = track.oil_square <= track.line_square;
     const double value = by_oil ? track.rest + model.now[j] : track.torque + age * track.slope;
-    const double late = seconds(sample - stamp) - kOverdue * track.interval;
-    const double lost = late > 0.0 ? -std::expm1(-late / kForgotten) : 0.0;
+    const double lost = forgottenPart(overdue(seconds(sample - stamp), track.interval));
     // A change has the noise of two readings, what is smoothed that of one or less.
     const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
     const double off =

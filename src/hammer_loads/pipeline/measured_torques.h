@@ -48,7 +48,6 @@ class MeasuredTorques {
   };
   static constexpr int kMostJudged = 200;
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
-
   static void followRest(Track& track, double rest) noexcept;
 
   std::array<Track, kMaxJoints> tracks_;

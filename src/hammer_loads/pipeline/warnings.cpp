@@ -161,9 +161,8 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
     if (surprise > MeasuredTorques::kSurprised)
       warnings.push_back(
           {"pressure stamps",
-           format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the "
-                  "expected variance: stamps that lag (5 ms are a third of the vibration's torque), also "
-                  "those of hull_imu, or "
+           format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the expected "
+                  "variance: stamps that lag (5 ms are a third of the vibration's torque), also those of hull_imu, or "
                   "readings too rare for a hull that bounces on rock; deviations are widened",
                   surprise),
            true});
