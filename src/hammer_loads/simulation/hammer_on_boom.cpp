@@ -34,6 +34,7 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
   boom_.bulk_modulus *= machine.on_boom.oil_stiffness;
   takeMovingPartsOffTheHull();
   now_ = heldAt(0.0);
+  held_rocker_ = rockerAt(now_);
   now_.v[3] = 0.0;
   now_.before_blow = machine.start_angle > kPi;
   now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
@@ -70,7 +71,7 @@ void HammerOnBoom::takeMovingPartsOffTheHull() {
 /// Every mode keeps its damping ratio wherever the boom goes.
 void HammerOnBoom::followOperator() {
   hold_ = holdAt(now_.time);
-  const Eigen::Matrix3d M = massMatrix(bodies(hold_.state)).topLeftCorner<3, 3>();
+  const Eigen::Matrix3d M = massMatrix(heldBodies(hold_.state)).topLeftCorner<3, 3>();
   const Modes modes = modesOf(hold_.stiffness, M);
   const Eigen::Vector3d rates = 2.0 * machine_.on_boom.damping * modes.eigenvalues().cwiseSqrt();
   const Eigen::Matrix3d inertia = M * modes.eigenvectors();
@@ -80,7 +81,7 @@ void HammerOnBoom::followOperator() {
 
 Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
   const State held = heldAt(time);
-  const Eigen::Matrix3d M = massMatrix(bodies(held)).topLeftCorner<3, 3>();
+  const Eigen::Matrix3d M = massMatrix(heldBodies(held)).topLeftCorner<3, 3>();
   return modesOf(stiffness(held), M).eigenvalues().cwiseSqrt() / kTwoPi;
 }
 
@@ -98,7 +99,7 @@ HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
 
 HammerOnBoom::Hold HammerOnBoom::holdAt(double time) const {
   const State held = heldAt(time);
-  return {held, weight(bodies(held)).head<3>(), stiffness(held)};
+  return {held, weight(heldBodies(held)).head<3>(), stiffness(held)};
 }
 
 /// Of the link that ends in a joint.
@@ -117,13 +118,7 @@ PlanePoint HammerOnBoom::jointPlace(const State& s, std::size_t joint) const {
 HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, const Rocker& rocker) const {
   Bodies all;
   all.joint[0] = 0.0;
-  place(all, s, links, rocker, 0);
-  return all;
-}
-
-void HammerOnBoom::place(Bodies& all, const State& s, const Links& links, const Rocker& rocker,
-                         std::size_t first) const {
-  for (std::size_t k = first; k < 3; ++k) {
+  for (std::size_t k = 0; k < 3; ++k) {
     const OilBoomLink& link = links[k];
     all.angle[k] = (k == 0 ? 0.0 : all.angle[k - 1]) + s.x[static_cast<int>(k)];
     const PlanePoint turned = all.hull_turned = turnedBy(all.angle[k]);
@@ -142,6 +137,7 @@ void HammerOnBoom::place(Bodies& all, const State& s, const Links& links, const 
   turnAbout(all, r, 3);
   const PlanePoint by_crank = all.hull_turned * inHull(rocker.xi.first, rocker.eta.first, p.rocker_com_angle);
   r.x[3] = by_crank.real(), r.z[3] = by_crank.imag(), r.turn[3] = rocker.angle.first;
+  return all;
 }
 
 /// What the first joints do to a body.
@@ -184,9 +180,8 @@ Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
 }
 
 /// All that is not inertia: weight, oil, motor.
-HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Bodies& all, const Vector4& inertia,
-                                          const Hold& hold) const {
-  Vector4 Q = weight(all) - inertia;
+HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Bodies& all, const Hold& hold) const {
+  Vector4 Q = weight(all);
   Q.head<3>() += holding(s, hold);
   if (machine_.on_boom.rock.stiffness > 0.0) {
     const Foot at = foot(s, hold.state);
@@ -196,27 +191,32 @@ HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Bodies& all, con
   return Q;
 }
 
-/// Lagrange: M a + (dM/dt) v - 1/2 d(v M v)/dx = Q. The first angle turns everything together: M does not see it.
+/// Of the bodies by the coordinates' speeds alone: towards the joints, and of the rocker within a hull that turns.
+HammerOnBoom::Vector4 HammerOnBoom::inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const {
+  Vector4 Q = Vector4::Zero();
+  PlanePoint of_joint = 0.0;  // acceleration
+  double rate = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Body& link = all.body[k];
+    rate += s.v[static_cast<int>(k)];
+    const PlanePoint a = of_joint - rate * rate * (link.place - all.joint[k]);
+    Q += link.mass * (a.real() * link.x + a.imag() * link.z);
+    of_joint -= rate * rate * (all.joint[k + 1] - all.joint[k]);
+  }
+  const Body& r = all.body[3];
+  const double w = s.v[3];
+  const PlanePoint by_crank(r.x[3], r.z[3]),
+      bend = all.hull_turned * inHull(rocker.xi.second, rocker.eta.second, machine_.hammer.rocker_com_angle);
+  const PlanePoint a =
+      of_joint - rate * rate * (r.place - all.joint[3]) - 2.0 * rate * w * kI * by_crank + w * w * bend;
+  return Q + r.mass * (a.real() * r.x + a.imag() * r.z) + r.inertia * rocker.angle.second * w * w * r.turn;
+}
+
 HammerOnBoom::Vector4 HammerOnBoom::acceleration(const State& s, const Hold& hold) const {
-  constexpr double h = 1e-5;
-  Matrix4 rate = Matrix4::Zero();
-  Vector4 energy_slope = Vector4::Zero();
   const Rocker rocker = rockerAt(s);
   const Bodies all = bodies(s, boom_.links, rocker);
-  const auto matrixAt = [&](int moved, double by) {
-    State at = s;
-    at.x[moved] += by;
-    Bodies there = all;
-    place(there, at, boom_.links, moved == 3 ? rockerAt(at) : rocker, static_cast<std::size_t>(moved));
-    return massMatrix(there);
-  };
-  for (int k = 1; k < 4; ++k) {
-    const Matrix4 slope = (matrixAt(k, h) - matrixAt(k, -h)) / (2.0 * h);
-    rate += s.v[k] * slope;
-    energy_slope[k] = 0.5 * s.v.dot(slope * s.v);
-  }
   const Matrix4 M = massMatrix(all);
-  const Vector4 Q = force(s, all, rate * s.v - energy_slope, hold);
+  const Vector4 Q = force(s, all, hold) - inertiaOfSpeeds(s, all, rocker);
   if (!s.resting) return M.ldlt().solve(Q);
   Vector4 a = Vector4::Zero();
   a.head<3>() = M.topLeftCorner<3, 3>().ldlt().solve(Q.head<3>());

@@ -12,21 +12,25 @@
 
 namespace hammer_loads::simulation {
 
+/// What sensors of the boom read, without their errors.
+struct OnBoomSensors {
+  Eigen::Vector3d angles;                                 ///< of the joints [rad]
+  Eigen::Vector3d rates;                                  ///< [rad/s]
+  double imu_x{}, imu_z{};                                ///< specific force at the unit, in its axes [m/s2]
+  double imu_rate{};                                      ///< about +y [rad/s]
+  std::array<double, 3> bore_pressure{}, rod_pressure{};  ///< gauge [Pa]
+};
+
 /// What there is to know at one instant.
-struct OnBoomTruth : CrankTruth {
-  Eigen::Vector3d angles;        ///< of the joints [rad]
-  Eigen::Vector3d rates;         ///< [rad/s]
+struct OnBoomTruth : CrankTruth, OnBoomSensors {
   Eigen::Vector3d displacement;  ///< of the joints from where the operator holds them [rad]
   Eigen::Vector3d hold;          ///< BY the cylinders ON the joints [N m]
   Load rock;                     ///< BY the rock ON the hull's foot, blows aside, about D, axes of the hull
   std::array<Load, 3> cut;       ///< BY the steel beyond each cut ON that before it, about it, axes of the link
-  double imu_x{}, imu_z{};       ///< specific force at the unit, in its axes [m/s2]
-  double imu_rate{};             ///< about +y [rad/s]
-  std::array<double, 3> bore_pressure{}, rod_pressure{};  ///< gauge [Pa]
 };
 
-/// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, forces of
-/// inertia by differences of the mass matrix, accelerations of bodies by differences in time. Runge-Kutta of order 4.
+/// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, their
+/// accelerations for the loads by differences in time. Runge-Kutta of order 4.
 /// The operator's valves move the point at which the oil holds each joint along settings.boom; the oil about it is a
 /// linear spring, as stiff as at that place.
 ///
@@ -43,6 +47,7 @@ class HammerOnBoom {
   /// time >= now [s].
   void advanceTo(double time);
   OnBoomTruth truth() const;
+  OnBoomSensors sensors() const;  ///< the part of truth() that takes no loads
   /// Hands over the blows since the last call.
   std::vector<BlowTruth> takeBlows();
   /// Natural frequencies where the operator holds the boom at a time, by the oil alone; lowest first [Hz].
@@ -88,10 +93,9 @@ class HammerOnBoom {
 
   Rocker rockerAt(const State& s) const { return links_.at({s.x[3], s.before_blow, false}).body[0]; }
   Bodies bodies(const State& s, const Links& links, const Rocker& rocker) const;
-  /// Anew from a link on; 3: the rocker alone.
-  void place(Bodies& all, const State& s, const Links& links, const Rocker& rocker, std::size_t first) const;
   static void turnAbout(const Bodies& all, Body& body, std::size_t joints);
   Bodies bodies(const State& s) const { return bodies(s, boom_.links, rockerAt(s)); }
+  Bodies heldBodies(const State& held) const { return bodies(held, boom_.links, held_rocker_); }
   Matrix4 massMatrix(const Bodies& all) const;
   Vector4 weight(const Bodies& all) const;
   Eigen::Vector3d stiffness(const State& held) const;
@@ -108,7 +112,8 @@ class HammerOnBoom {
   double rockHeight(const Hold& hold) const;
   double rockForce(const Foot& foot) const;
   Load rockLoad(const State& held) const;
-  Vector4 force(const State& s, const Bodies& all, const Vector4& inertia, const Hold& hold) const;
+  Vector4 force(const State& s, const Bodies& all, const Hold& hold) const;
+  Vector4 inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const;
   Vector4 acceleration(const State& s, const Hold& hold) const;
   State stepped(const State& s, double dt) const;
   double timeToDeadCentre(double dt) const;
@@ -131,12 +136,14 @@ class HammerOnBoom {
   Load loadOf(const Vector4& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
               double axes) const;
   Load cutLoad(const OnBoomTruth& t, const Vector4& a, const Moments& m, const OilBoomCut& cut) const;
-  void readCylinders(OnBoomTruth& t, const Hold& hold) const;
+  OnBoomSensors sensors(const Hold& hold, const Vector4& a) const;
+  void readCylinders(const Hold& hold, OnBoomSensors& s) const;
 
   MachineSettings machine_;
   OilBoom boom_;
   MovingLinks links_;
   double rotor_{}, ratio_{};  ///< Jc [kg m2], drive_reaction_ratio
+  Rocker held_rocker_{};      ///< of every heldAt()
   Hold hold_;                 ///< at the beginning of the step in hand
   Eigen::Matrix3d damping_;
   double rock_height_{};  ///< over the foot of a hull that is held without rock [m]

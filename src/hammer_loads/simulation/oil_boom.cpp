@@ -11,7 +11,11 @@ double areaOf(double diameter) { return 0.25 * kPi * diameter * diameter; }
 
 double OilCylinder::length(double angle) const { return std::abs(turnedBy(angle) * rod - base); }
 
-double OilCylinder::arm(double angle) const { return (length(angle + 1e-5) - length(angle - 1e-5)) / 2e-5; }
+/// The pin moves across its lever.
+double OilCylinder::arm(double angle) const {
+  const PlanePoint pin = turnedBy(angle) * rod, along = pin - base;
+  return (std::conj(along) * -kI * pin).real() / std::abs(along);
+}
 
 double OilCylinder::boreShare(double angle) const {
   return bore_area / (bore_hose + bore_area * (length(angle) - closed_length));

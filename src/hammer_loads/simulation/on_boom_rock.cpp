@@ -45,7 +45,7 @@ void HammerOnBoom::standOnRock() {
   if (rock.stiffness == 0.0) return;
   const Eigen::Vector3d lift = foot(hold_.state, hold_.state).lift;
   now_.x.head<3>() += rock.press_force * lift.cwiseQuotient(hold_.stiffness);
-  const Eigen::Matrix3d M = massMatrix(bodies(hold_.state)).topLeftCorner<3, 3>();
+  const Eigen::Matrix3d M = massMatrix(heldBodies(hold_.state)).topLeftCorner<3, 3>();
   const double mass = 1.0 / lift.dot(M.ldlt().solve(lift));
   step_ = std::min(step_, kTwoPi * std::sqrt(mass / rock.stiffness) / kStepsPerSwing);
 }

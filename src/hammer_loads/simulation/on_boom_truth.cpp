@@ -81,19 +81,37 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const Moments
 }
 
 /// One chamber carries what is steady, both what is not.
-void HammerOnBoom::readCylinders(OnBoomTruth& t, const Hold& hold) const {
+void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
   const State& held = hold.state;
+  const Eigen::Vector3d torque = holding(now_, hold);
   const double preload = machine_.on_boom.pressures.preload;
   for (std::size_t k = 0; k < 3; ++k) {
     const int j = static_cast<int>(k);
     const OilCylinder& c = boom_.cylinders[k];
-    const double steady = -hold.weight[j] / c.arm(held.x[j]), change = t.hold[j] / c.arm(now_.x[j]) - steady;
+    const double steady = -hold.weight[j] / c.arm(held.x[j]), change = torque[j] / c.arm(now_.x[j]) - steady;
     const double bore_share = c.boreShare(held.x[j]), rod_share = c.rodShare(held.x[j]);
     const double way = change / (c.bore_area * bore_share + c.rod_area * rod_share);
     const double bore_push = std::max(steady, 0.0) + preload * (steady > 0.0 ? c.rod_area : c.bore_area);
-    t.bore_pressure[k] = bore_push / c.bore_area + bore_share * way;
-    t.rod_pressure[k] = (bore_push - steady) / c.rod_area - rod_share * way;
+    s.bore_pressure[k] = bore_push / c.bore_area + bore_share * way;
+    s.rod_pressure[k] = (bore_push - steady) / c.rod_area - rod_share * way;
   }
+}
+
+OnBoomSensors HammerOnBoom::sensors(const Hold& hold, const Vector4& a) const {
+  OnBoomSensors s;
+  s.angles = now_.x.head<3>(), s.rates = now_.v.head<3>();
+  const PlanePoint later = imuPlace(along(now_, a, kInstant)), sooner = imuPlace(along(now_, a, -kInstant));
+  const PlanePoint acceleration = (later - 2.0 * imuPlace(now_) + sooner) / (kInstant * kInstant);
+  const double axes = hullAngle(now_) + machine_.on_boom.imu.pitch;
+  const PlanePoint felt = (acceleration + kI * machine_.gravity) * std::conj(turnedBy(axes));
+  s.imu_x = felt.real(), s.imu_z = felt.imag(), s.imu_rate = s.rates.sum();
+  readCylinders(hold, s);
+  return s;
+}
+
+OnBoomSensors HammerOnBoom::sensors() const {
+  const Hold hold = holdAt(now_.time);
+  return sensors(hold, acceleration(now_, hold));
 }
 
 OnBoomTruth HammerOnBoom::truth() const {
@@ -112,17 +130,11 @@ OnBoomTruth HammerOnBoom::truth() const {
   t.load = loadOf(a, moments, boom_.links, 3, jointPlace(now_, 3), t.hull_pitch);
   t.drive_reaction_y = -rotor_ * ratio_ * (a[3] + ratio_ * a.head<3>().sum());
   t.load.torque_y -= t.drive_reaction_y;
-  t.angles = now_.x.head<3>(), t.rates = now_.v.head<3>();
+  static_cast<OnBoomSensors&>(t) = sensors(hold, a);
   t.displacement = t.angles - hold.state.x.head<3>();
   t.hold = holding(now_, hold);
   t.rock = rockLoad(hold.state);
   for (std::size_t i = 0; i < t.cut.size(); ++i) t.cut[i] = cutLoad(t, a, moments, boom_.cuts[i]);
-  const PlanePoint acceleration =
-      (imuPlace(moments.state[1]) - 2.0 * imuPlace(now_) + imuPlace(moments.state[2])) / (kInstant * kInstant);
-  const PlanePoint felt =
-      (acceleration + kI * machine_.gravity) * std::conj(turnedBy(t.hull_pitch + machine_.on_boom.imu.pitch));
-  t.imu_x = felt.real(), t.imu_z = felt.imag(), t.imu_rate = t.rates.sum();
-  readCylinders(t, hold);
   return t;
 }
 

@@ -173,10 +173,10 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
   return reading;
 }
 
-OnBoomTruth SessionStream::onBoomAt(double time) {
+OnBoomSensors SessionStream::onBoomAt(double time) {
   HammerOnBoom& machine = std::get<HammerOnBoom>(machine_);
   machine.advanceTo(time);
-  return machine.truth();
+  return machine.sensors();
 }
 
 /// The sensors of a boom on its oil see it vibrate.
@@ -188,7 +188,7 @@ JointReading SessionStream::readJoints(double time) {
     reading.position[i] = positionOf(joint, time), reading.velocity[i] = velocityOf(joint, time);
   }
   if (std::holds_alternative<HammerOnBoom>(machine_)) {
-    const OnBoomTruth truth = onBoomAt(time);
+    const OnBoomSensors truth = onBoomAt(time);
     for (int i = 0; i < 3; ++i) {
       const auto k = static_cast<std::size_t>(i + 1);
       reading.position[k] = truth.angles[i], reading.velocity[k] = truth.rates[i];
@@ -200,7 +200,7 @@ JointReading SessionStream::readJoints(double time) {
 }
 
 HullImuReading SessionStream::readImu(double time) {
-  const OnBoomTruth truth = onBoomAt(time);
+  const OnBoomSensors truth = onBoomAt(time);
   const HullImuSensor& imu = settings_.on_boom.imu;
   HullImuReading reading{stampAt(time), {truth.imu_x, 0.0, truth.imu_z}, {0.0, truth.imu_rate, 0.0}};
   for (double& force : reading.specific_force) force += imu.acceleration_noise * imu_noise_();
@@ -209,7 +209,7 @@ HullImuReading SessionStream::readImu(double time) {
 }
 
 PressureReading SessionStream::readPressures(double time) {
-  const OnBoomTruth truth = onBoomAt(time);
+  const OnBoomSensors truth = onBoomAt(time);
   PressureReading reading{stampAt(time), truth.bore_pressure, truth.rod_pressure};
   for (auto* chambers : {&reading.bore, &reading.rod})
     for (double& pressure : *chambers) pressure += settings_.on_boom.pressures.noise * pressure_noise_();

@@ -82,7 +82,7 @@ class SessionStream {
   void takeCrank(Session& session);
   void take(Session& session);
   CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) const noexcept;
-  OnBoomTruth onBoomAt(double time);  ///< of a hull on its boom, moved there
+  OnBoomSensors onBoomAt(double time);  ///< of a hull on its boom, moved there
   JointReading readJoints(double time);
   HullImuReading readImu(double time);
   PressureReading readPressures(double time);
