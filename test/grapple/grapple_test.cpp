@@ -1,13 +1,13 @@
 #include "hammer_loads/grapple/grapple.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <limits>
 
 #include "grapple/grapples.h"
 #include "hammer_loads/settings/read_grapple.h"
+#include "settings/temporary_file.h"
 
 namespace hammer_loads {
 namespace {
@@ -16,11 +16,10 @@ std::string configFile(const std::string& name) {
   return std::string(HAMMER_LOADS_TEST_DATA) + "/../../config/" + name;
 }
 
-/// A file with one or more lines laid over the claims set.
-std::vector<std::string> claimsWith(const std::string& lines) {
-  const std::string path = testing::TempDir() + "grapple_over_" + std::to_string(::getpid()) + ".yaml";
-  std::ofstream(path) << lines << '\n';
-  return {configFile("grapple_claims.yaml"), path};
+/// With one or more lines laid over the claims set.
+auto loadClaimsWith(const std::string& lines) {
+  const test::TemporaryFile over(lines + '\n');
+  return loadGrapple({configFile("grapple_claims.yaml"), over.path()});
 }
 
 bool mentions(const std::vector<std::string>& problems, const std::string& text) {
@@ -77,7 +76,7 @@ TEST(GrappleFile, ShippedFilesSayWhatTheyAre) {
 }
 
 TEST(GrappleFile, ReportsEveryProblemAtOnce) {
-  const auto result = loadGrapple(claimsWith("gh_length_m: -1\nab_length_m: long\ndrive_sign: 0\ngh_lenght_m: 1.25"));
+  const auto result = loadClaimsWith("gh_length_m: -1\nab_length_m: long\ndrive_sign: 0\ngh_lenght_m: 1.25");
   EXPECT_FALSE(result.value);
   EXPECT_EQ(result.problems.size(), 4u);
   EXPECT_TRUE(mentions(result.problems, "gh_length_m: -1 m, must be > 0"));
@@ -87,9 +86,8 @@ TEST(GrappleFile, ReportsEveryProblemAtOnce) {
 }
 
 TEST(GrappleFile, MissingKeysHaveNoDefault) {
-  const std::string path = testing::TempDir() + "grapple_alone_" + std::to_string(::getpid()) + ".yaml";
-  std::ofstream(path) << "gh_length_m: 1.25\n";
-  const auto result = loadGrapple({path});
+  const test::TemporaryFile alone("gh_length_m: 1.25\n");
+  const auto result = loadGrapple({alone.path()});
   EXPECT_FALSE(result.value);
   EXPECT_EQ(result.problems.size(), 23u);
   EXPECT_TRUE(mentions(result.problems, "drive_sign: missing"));
@@ -97,24 +95,24 @@ TEST(GrappleFile, MissingKeysHaveNoDefault) {
 }
 
 TEST(GrappleFile, NamesTheLimitThatAStrokePasses) {
-  const auto beyond_fold = loadGrapple(claimsWith("slider_open_m: 0.74"));
+  const auto beyond_fold = loadClaimsWith("slider_open_m: 0.74");
   EXPECT_FALSE(beyond_fold.value);
   EXPECT_TRUE(mentions(beyond_fold.problems, "slider_open_m: 0.74 m"));
   EXPECT_TRUE(mentions(beyond_fold.problems, "fold at 0.7331923934967 m"));
-  const auto beyond_dead_point = loadGrapple(claimsWith("slider_closed_m: -0.3"));
+  const auto beyond_dead_point = loadClaimsWith("slider_closed_m: -0.3");
   EXPECT_TRUE(mentions(beyond_dead_point.problems, "dead point at -0.27 m"));
-  EXPECT_TRUE(mentions(loadGrapple(claimsWith("slider_closed_m: -0.1")).problems, "jaws would overlap"));
-  EXPECT_TRUE(mentions(loadGrapple(claimsWith("slider_open_m: 0.005\nslider_closed_m: 0.3")).problems,
+  EXPECT_TRUE(mentions(loadClaimsWith("slider_closed_m: -0.1").problems, "jaws would overlap"));
+  EXPECT_TRUE(mentions(loadClaimsWith("slider_open_m: 0.005\nslider_closed_m: 0.3").problems,
                        "slider_open_m: 0.005 m, must put the jaw edge farther out"));
 }
 
 TEST(GrappleFile, NamesThePosesWhenTheReferenceIsNone) {
-  const auto none = loadGrapple(claimsWith("reference_ab_angle_rad: 1.5"));
+  const auto none = loadClaimsWith("reference_ab_angle_rad: 1.5");
   EXPECT_FALSE(none.value);
   EXPECT_TRUE(mentions(none.problems, "(0.378626, -0.648949)"));
-  EXPECT_TRUE(mentions(loadGrapple(claimsWith("reference_slider_m: 2.0")).problems, "out of reach"));
-  EXPECT_TRUE(mentions(loadGrapple(claimsWith("reference_slider_m: 0.8")).problems, "there is none"));
-  EXPECT_TRUE(mentions(loadGrapple(claimsWith("reference_slider_m: 0.8")).problems, "reference_slider_m = 0.8 m"));
+  EXPECT_TRUE(mentions(loadClaimsWith("reference_slider_m: 2.0").problems, "out of reach"));
+  EXPECT_TRUE(mentions(loadClaimsWith("reference_slider_m: 0.8").problems, "there is none"));
+  EXPECT_TRUE(mentions(loadClaimsWith("reference_slider_m: 0.8").problems, "reference_slider_m = 0.8 m"));
 }
 
 TEST(Grapple, RefusesValuesThatAreNotFinite) {
