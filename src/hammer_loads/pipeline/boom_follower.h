@@ -131,7 +131,7 @@ class BoomFollower {
   void followContact(StampNs stamp) noexcept;
   void findContact(double step) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
-  LoadErrors measuredErrors(bool rigid) const noexcept;
+  LoadErrors measuredErrors(const Wrench& lasting, bool rigid) const noexcept;
   LoadErrors followedErrors(const WrenchSpread& spread, bool rigid) const noexcept;
   void fillVibration() noexcept;
   void fillModes() noexcept;

@@ -34,25 +34,26 @@ WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const no
 /// Of what is measured the error is the measurement's: whatever the vibration's is, the contact makes up for it.
 void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
   BoomDeviations& deviations = state_.deviations;
+  const Wrench lasting = pressuresCount() ? trust_.notOfRock(striking_distance_, least_contact_) : Wrench{};
   if (tip_) {
-    boom_.deviations(measuredErrors(rigid), deviations);
+    boom_.deviations(measuredErrors(lasting, rigid), deviations);
   } else if (spread.count > 0 && boom_.vibration().followsReadings()) {
     boom_.deviations(followedErrors(spread, rigid), deviations);
   } else if (spread.count > 0) {
     boom_.deviations(spread_, spread, rigid, deviations);
   }
   if (!pressuresCount()) return;
-  const JointVector lasting = boom_.hammerTorque(trust_.notOfRock(striking_distance_, least_contact_));
+  const JointVector lasting_torque = boom_.hammerTorque(lasting);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
     if (!torque) continue;
     const int joint = boom_.cylinders()[i].joint();
-    deviations.torque[joint] = std::hypot(torque->deviation, lasting[joint]);
+    deviations.torque[joint] = std::hypot(torque->deviation, lasting_torque[joint]);
     deviations.cylinder[i] = deviations.torque[joint] / std::abs(boom_.cylinderPosition(i).arm);
   }
 }
 
-LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
+LoadErrors BoomFollower::measuredErrors(const Wrench& lasting, bool rigid) const noexcept {
   LoadErrors errors;
   const JointVector zero = JointVector::Zero(boom_.chain().joints());
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
@@ -60,7 +61,7 @@ LoadErrors BoomFollower::measuredErrors(bool rigid) const noexcept {
     torque[boom_.cylinders()[i].joint()] = measured_.of(i)->deviation;
     errors.add(zero, tip_->load(torque));
   }
-  errors.add(zero, trust_.notOfRock(striking_distance_, least_contact_));
+  errors.add(zero, lasting);
   if (rigid || !boom_.vibration().known()) return errors;
   const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
   for (const auto& mode : of_vibration.colwise())
