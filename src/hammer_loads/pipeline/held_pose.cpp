@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -11,6 +13,7 @@ constexpr double kStill = 0.03;               // [rad]: after a gap, of a boom t
 constexpr double kFast = 0.05, kRest = 2.0;   // [rad/s]: its acceleration hides the vibration; [s] to wait then
 constexpr double kTurnAtMost = 1.0;           // from blow to blow [s]
 constexpr double kStart = 1.0;                // [s] until a boom that is driven at the start is seen to be
+constexpr double kSettles = 2.5;              // [s]: so long what was no slow motion is seen as an acceleration
 
 }  // namespace
 
@@ -22,8 +25,8 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   if (gap && !is_first && !isDriven()) goOn(step);
   const bool lost = is_first || !((measured.position - first_).cwiseAbs().maxCoeff() < (gap ? kStill : kLost));
   if (lost) {
-    first_ = slow_ = slowest_ = measured.position;
-    unrest_ = kStart;
+    first_ = slow_ = slowest_ = last_ = measured.position;
+    unrest_ = kStart, settling_ = kSettles;
     at_blow_.resize(0), of_turn_.resize(0), of_turn_before_.resize(0);
     return;
   }
@@ -31,16 +34,19 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   first_ += part * (measured.position - first_);
   slow_ += part * (first_ - slow_);
   slowest_ += part * (slow_ - slowest_);
+  last_ += part * (slowest_ - last_);
   unrest_ = slowRate().cwiseAbs().maxCoeff() > kFast ? kRest : std::max(0.0, unrest_ - step);
+  settling_ = gap || isDriven() ? kSettles : std::max(0.0, settling_ - step);
   if (isDriven()) return;
   motion_.position = 3.0 * (first_ - slow_) + slowest_;
   motion_.velocity = slowRate();
+  if (settling_ == 0.0) motion_.acceleration = slowAcceleration();
 }
 
 /// Over a gap, at the operator's last rate.
 void HeldPose::goOn(double step) noexcept {
   const JointVector way = step * slowRate();
-  for (JointVector* angle : {&first_, &slow_, &slowest_}) *angle += way;
+  for (JointVector* angle : {&first_, &slow_, &slowest_, &last_}) *angle += way;
 }
 
 void HeldPose::struck() noexcept {
@@ -56,5 +62,11 @@ void HeldPose::struck() noexcept {
 }
 
 JointVector HeldPose::slowRate() const noexcept { return (first_ - slow_) / kMemory; }
+
+/// What three filters show, brought forward by their delay with what four show of its change.
+JointVector HeldPose::slowAcceleration() const noexcept {
+  const JointVector late = first_ - 2.0 * slow_ + slowest_, change = late - (slow_ - 2.0 * slowest_ + last_);
+  return (late + 3.0 * change) / square(kMemory);
+}
 
 }  // namespace hammer_loads
