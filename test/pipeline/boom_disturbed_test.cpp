@@ -11,18 +11,8 @@
 #include "hammer_loads/pipeline/warnings.h"
 #include "pipeline/disturbed_session.h"
 
-namespace hammer_loads {
+namespace hammer_loads::test {
 namespace {
-
-using test::after;
-using test::BoomErrors;
-using test::disturbedMachine;
-using test::errorsOf;
-using test::kBoomGiven;
-using test::kBoomIdentified;
-using test::kDisturbed;
-using test::kHullByImu;
-using test::Session;
 
 struct Damage {
   const char* name;
@@ -105,7 +95,7 @@ struct Played {
 
 Played played(const Session& session, const std::string& sensor) {
   const bool by_pressures = sensor == "pressures";
-  test::Player player(accuracy::shippedBoom(by_pressures ? kBoomGiven : kHullByImu), true, session);
+  Player player(accuracy::shippedBoom(by_pressures ? kBoomGiven : kHullByImu), true, session);
   player.imu_speaks = !by_pressures, player.pressures_speak = by_pressures;
   player.playTo(5.0, [](double, const SampleResult&) {});
   const SampleResult& last = player.pipeline.result();
@@ -234,4 +224,4 @@ TEST(PressuresThatAreOff, SaySo) {
 }
 
 }  // namespace
-}  // namespace hammer_loads
+}  // namespace hammer_loads::test

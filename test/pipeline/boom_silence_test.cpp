@@ -6,20 +6,8 @@
 
 #include "pipeline/disturbed_session.h"
 
-namespace hammer_loads {
+namespace hammer_loads::test {
 namespace {
-
-using test::after;
-using test::BoomErrors;
-using test::disturbedMachine;
-using test::errorsOf;
-using test::kBoomGiven;
-using test::kBoomIdentified;
-using test::kDisturbed;
-using test::kGoesOn;
-using test::kHullByImu;
-using test::Session;
-using test::silence;
 
 /// The hammer went on all the while.
 Session withGap(double from, double to) {
@@ -112,7 +100,7 @@ TEST(PressuresThatBegin, HaveATrueDeviationAtOnce) {
 TEST(GapOfTheCrank, LeavesTheDeviationOfMeasuredTorquesAsItWas) {
   const Session session = withGap(kDisturbed, kGoesOn);
   const Settings settings = accuracy::shippedBoom(kBoomIdentified);
-  test::Player player(settings, true, session);
+  Player player(settings, true, session);
   player.imu_speaks = false;
   double before = 0.0, after = 0.0;
   player.playTo(7.2, [&](double time, const SampleResult& r) {
@@ -125,4 +113,4 @@ TEST(GapOfTheCrank, LeavesTheDeviationOfMeasuredTorquesAsItWas) {
 }
 
 }  // namespace
-}  // namespace hammer_loads
+}  // namespace hammer_loads::test

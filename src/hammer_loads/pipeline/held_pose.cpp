@@ -26,7 +26,7 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   const bool lost = is_first || !((measured.position - first_).cwiseAbs().maxCoeff() < (gap ? kStill : kLost));
   if (lost) {
     first_ = slow_ = slowest_ = last_ = measured.position;
-    unrest_ = kStart, settling_ = kSettles;
+    unrest_ = kStart;
     at_blow_.resize(0), of_turn_.resize(0), of_turn_before_.resize(0);
     return;
   }

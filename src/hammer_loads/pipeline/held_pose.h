@@ -19,19 +19,19 @@ class HeldPose {
   /// A blow was struck in the last step.
   void struck() noexcept;
   bool isDriven() const noexcept { return unrest_ > 0.0; }
-  /// Of the last call; as measured while driven. The acceleration is slowAcceleration(), but as measured while driven
-  /// and for 2.5 s after that, after a gap and after the start.
+  /// Of the last call; as measured while driven. The acceleration is the operator's slow one, but as measured while
+  /// driven and for 2.5 s after that, after a gap and after the start.
   const JointMotion& motion() const noexcept { return motion_; }
 
   const JointVector& slowAngle() const noexcept { return slow_; }  ///< [rad], 1 s late
   JointVector slowRate() const noexcept;                           ///< [rad/s], 1 s late
-  JointVector slowAcceleration() const noexcept;                   ///< [rad/s2]; of a swing of 14 s 27 % are wrong
   /// Of the operator, at the last blow [rad/s]: of a joint that is driven what its angle changed by from blow to blow,
   /// over which the vibration comes back, drawn on by half a turn; else slowRate().
   JointVector rateAtBlow() const noexcept { return isDriven() && of_turn_.size() > 0 ? of_turn_ : slowRate(); }
 
  private:
   void goOn(double step) noexcept;
+  JointVector slowAcceleration() const noexcept;  ///< [rad/s2]; of a swing of 14 s 27 % are wrong
 
   JointVector angle_;                               ///< as measured
   JointVector at_blow_, of_turn_, of_turn_before_;  ///< angles; rates of the last turn drawn on, and of it [rad/s]
