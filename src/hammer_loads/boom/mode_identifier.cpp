@@ -21,6 +21,8 @@ constexpr double kKnown = 0.03;            // deviation of log frequency of a mo
 constexpr double kOwnOil = 0.005;          // of log frequency: cylinders whose oil differs from the others'
 constexpr double kContactWalk = 1.3e5;     // of the rock's force [N/sqrt(s)]
 constexpr double kUnknownContact = 1e4;    // of it at the start [N]
+constexpr double kDelayDeviation = 2e-3;   // of the delay of stamps [s]
+constexpr double kDelayWalk = 2e-5;        // of it in a second [s]: clocks drift by some 20 ppm
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 
 }  // namespace
@@ -38,6 +40,7 @@ ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns)
 }
 
 void ModeIdentifier::setFirstGuesses() noexcept {
+  covariance_(kDelay, kDelay) = square(kDelayDeviation);
   for (int k = 0; k < kMaxJoints; ++k) {
     for (int l = 0; l < kMaxJoints; ++l)
       covariance_(at(k, kFrequency), at(l, kFrequency)) =
@@ -126,7 +129,7 @@ void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
   }
   modes_ = given;
   count_ = given.count;
-  if (force_.size() != count_) force_.setZero(count_), contact_.setZero(count_);
+  if (force_.size() != count_) force_.setZero(count_), force_rate_.setZero(count_), contact_.setZero(count_);
   if (!carries) {
     forgetMotion();
   } else {
@@ -150,6 +153,7 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   for (int i = begin(); i < begin() + states(); ++i) apply(covariance_.col(i));
   for (int i = begin(); i < begin() + states(); ++i) apply(covariance_.row(i));
   force_ = (T * force_).eval();
+  force_rate_ = (T * force_rate_).eval();
 }
 
 void ModeIdentifier::forget(int state, double deviation) noexcept {
@@ -167,7 +171,7 @@ void ModeIdentifier::leaveContact() noexcept {
 
 void ModeIdentifier::forgetMotion(const JointVector& swing) noexcept {
   moving_known_ = count_ > 0;
-  force_.setZero(count_);
+  force_.setZero(count_), force_rate_.setZero(count_);
   forget(kContact, kUnknownContact);
   for (int k = 0; k < kMaxJoints; ++k) {
     for (Part part : {kX, kV}) {
@@ -196,8 +200,10 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
     walk(k, step);
   }
   force_ = modal.to;
+  force_rate_ = (modal.to - modal.from) / step;
   for (double& age : age_) age += step;
   if (follows_contact_) covariance_(kContact, kContact) += square(kContactWalk) * step;
+  if (learns_) covariance_(kDelay, kDelay) += square(kDelayWalk) * step;
   for (int i = begin(); i < begin() + states(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
   if (!finite()) startAnew();
 }

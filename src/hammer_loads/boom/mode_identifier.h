@@ -83,11 +83,14 @@ class ModeIdentifier {
   bool followsContact() const noexcept { return follows_contact_; }
   double contact() const noexcept { return state_[kContact]; }  ///< the rock's force [N]; below 0: an error
   double contactDeviation() const noexcept { return std::sqrt(covariance_(kContact, kContact)); }  ///< standard [N]
+  /// By which the stamps of delayed readings are late [s].
+  double delay() const noexcept { return state_[kDelay]; }
+  double delayDeviation() const noexcept { return std::sqrt(covariance_(kDelay, kDelay)); }  ///< standard [s]
   /// Independent errors of the joints' accelerations, one standard deviation each, a column for each mode [rad/s2].
   JointMatrix accelerationSpread() const noexcept;
 
  private:
-  static constexpr int kContact = kMaxChannels, kMaxStates = kContact + 1 + 4 * kMaxJoints;
+  static constexpr int kDelay = kMaxChannels, kContact = kDelay + 1, kMaxStates = kContact + 1 + 4 * kMaxJoints;
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
   enum Part { kX, kV, kFrequency, kDamping, kParts };
@@ -96,7 +99,7 @@ class ModeIdentifier {
   /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
   int begin() const noexcept { return kMaxChannels - channels_; }
-  int states() const noexcept { return channels_ + 1 + kParts * count_; }
+  int states() const noexcept { return channels_ + 2 + kParts * count_; }
   /// Covariances of a state with all that are in use.
   auto column(int state) const noexcept { return covariance_.col(state).segment(begin(), states()); }
 
@@ -126,7 +129,7 @@ class ModeIdentifier {
   bool moving_known_{};  ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   Covariance covariance_ = Covariance::Zero();
-  JointVector force_;                             ///< modal, at the present time
+  JointVector force_, force_rate_;                ///< modal, at the present time; and by the second
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
 constexpr double kMostRatio = 1.0;               // of log frequency: e
+constexpr double kMostDelay = 0.01;              // [s]
 constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
 constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
 constexpr double kOilSurpriseShare = 5e-4;       // of one oil torque: 1.3 s of three at 500 Hz
@@ -36,6 +37,7 @@ ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading&
   State row = State::Zero();
   row[offsetAt(channel)] = 1.0;
   predicted = state_[offsetAt(channel)];
+  const double ahead = reading.ahead - (reading.delayed ? state_[kDelay] : 0.0);
   for (int k = 0; k < count_; ++k) {
     double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
     for (int i = 0; i < count_; ++i) {
@@ -51,11 +53,12 @@ ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading&
     const double a = acceleration(m, s, force_[k] + rock * state_[kContact]);
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega, held = by_oil - by_a;
     const double of_x = by_x + held * stiff, of_v = by_v + held * damped;
-    predicted += by_x * s.x + by_v * s.v + by_a * a + by_oil * (stiff * s.x + damped * s.v) +
-                 reading.ahead * (of_x * s.v + of_v * a);
+    const double rate = of_x * s.v + of_v * a + by_a * force_rate_[k];
+    predicted += by_x * s.x + by_v * s.v + by_a * a + by_oil * (stiff * s.x + damped * s.v) + ahead * rate;
+    if (reading.delayed) row[kDelay] -= rate;
     row[kContact] += by_a * rock;
     row[at(k, kX)] = of_x;
-    row[at(k, kV)] = of_v + reading.ahead * of_x;
+    row[at(k, kV)] = of_v + ahead * of_x;
     row[at(k, kFrequency)] = held * (2.0 * stiff * s.x + damped * s.v);
     row[at(k, kDamping)] = held * damped * s.v;
   }
@@ -70,7 +73,7 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   const int first = begin(), n = states(), own = n - channels_;  // no row has another channel's offset
   State gain_S;
   gain_S.head(n) = column(offsetAt(channel));
-  gain_S.head(n).noalias() += covariance_.block(first, kContact, n, own) * row.segment(kContact, own);
+  gain_S.head(n).noalias() += covariance_.block(first, kDelay, n, own) * row.segment(kDelay, own);
   double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise) + square(reading.neglected);
   const double difference = reading.value - predicted;
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
@@ -94,15 +97,16 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   if (learns_) useOil();
 }
 
-/// What the last reading has shown of frequencies and damping. The rest counts it as with these not known better
+/// What the last reading has shown of frequencies, damping and delay. The rest counts it as with these not known better
 /// (Schmidt-Kalman filter).
 void ModeIdentifier::takeBackOil(const State& gain_S, double S, double difference) noexcept {
-  std::array<int, 2 * kMaxJoints> oil{};  // states
+  std::array<int, 2 * kMaxJoints + 1> oil{};  // states
   for (int k = 0; k < count_; ++k) {
     oil[static_cast<std::size_t>(2 * k)] = at(k, kFrequency);
     oil[static_cast<std::size_t>(2 * k + 1)] = at(k, kDamping);
   }
-  const auto last = oil.begin() + 2 * count_;
+  oil[static_cast<std::size_t>(2 * count_)] = kDelay;
+  const auto last = oil.begin() + 2 * count_ + 1;
   for (auto i = oil.begin(); i != last; ++i) {
     const double gain = gain_S[*i - begin()] / S;
     state_[*i] -= gain * difference;
@@ -111,6 +115,7 @@ void ModeIdentifier::takeBackOil(const State& gain_S, double S, double differenc
 }
 
 void ModeIdentifier::forgetOil() noexcept {
+  forget(kDelay, 0.0);
   for (int k = 0; k < kMaxJoints; ++k) {
     forget(at(k, kFrequency), 0.0);
     forget(at(k, kDamping), 0.0);
@@ -120,7 +125,7 @@ void ModeIdentifier::forgetOil() noexcept {
   setFirstGuesses();
 }
 
-/// Frequencies and damping of the state, within bounds.
+/// Frequencies, damping and delay of the state, within bounds.
 void ModeIdentifier::useOil() noexcept {
   constexpr double kNear = 1e-4;
   // exp() of a small number: exact to rounding, at a tenth of the time.
@@ -133,6 +138,7 @@ void ModeIdentifier::useOil() noexcept {
     ratio_[i] *= grow(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
     damping_[i] *= grow(damping - used_damping_[i]), used_damping_[i] = damping;
   }
+  state_[kDelay] = std::clamp(state_[kDelay], -kMostDelay, kMostDelay);
 }
 
 }  // namespace hammer_loads

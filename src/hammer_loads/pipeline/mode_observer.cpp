@@ -30,14 +30,18 @@ void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& readi
   if (held.isDriven()) return;
   const Jacobian& J = boom.tipJacobian();
   const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
+  const auto seeUnit = [&](int channel, VibrationReading seen, const Doubt& doubt) {
+    seen.delayed = true;
+    see(boom, channel, seen, doubt);
+  };
   const auto seeAcceleration = [&](int channel, const Eigen::Vector3d& n_T) {
     VibrationReading seen = tipAccelerationReading(J, imu_position_, n_T, g_T, n_T.dot(reading.specific_force));
     seen.neglected = kLinksInHull;
-    see(boom, channel, seen, kAcceleration);
+    seeUnit(channel, seen, kAcceleration);
   };
   seeAcceleration(0, Eigen::Vector3d::UnitX());
   seeAcceleration(1, Eigen::Vector3d::UnitZ());
-  see(boom, 2, tipRateReading(J, Eigen::Vector3d::UnitY(), reading.rate.y() - slow_rate.y()), kRate);
+  seeUnit(2, tipRateReading(J, Eigen::Vector3d::UnitY(), reading.rate.y() - slow_rate.y()), kRate);
 }
 
 void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, double step,
