@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "boom/vibrating_machine.h"
 #include "support/counting_new.h"
 
@@ -68,6 +71,7 @@ class Session {
   Sensor sensor_;
   std::optional<Boom> boom_;
   std::size_t allocations_{};
+  std::size_t late_{};  ///< readings by which the IMU is late
 
  private:
   void observe(int i) {
@@ -76,15 +80,19 @@ class Session {
     if (sensor_ == Sensor::kPressures && i % 2 == 0) observePressures();
   }
   void observeImu() {
-    const Eigen::Vector3d imu = machine_.imu(0.3, 0.005);
+    std::rotate(readings_.rbegin(), readings_.rbegin() + 1, readings_.rend());
+    readings_.front() = machine_.imu(0.3, 0.005);
+    const Eigen::Vector3d imu = readings_[late_];
     const Eigen::Vector3d g_T = boom_->gravityAtTip(), here = Eigen::Vector3d::Zero();
     const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
     VibrationReading along_x = tipAccelerationReading(J_, here, x, g_T, imu[0]),
                      along_z = tipAccelerationReading(J_, here, z, g_T, imu[1]);
     along_x.neglected = along_z.neglected = 1.0;  // as in the pipeline, whose links move in the hull
+    VibrationReading turning = tipRateReading(J_, y, imu[2]);
+    for (VibrationReading* one : {&along_x, &along_z, &turning}) one->delayed = true;
     see(0, along_x, 0.3, 0.3, 0.05);
     see(1, along_z, 0.3, 0.3, 0.05);
-    see(2, tipRateReading(J_, y, imu[2]), 0.005, 0.02, 0.005);
+    see(2, turning, 0.005, 0.02, 0.005);
   }
   void observeJoints() {
     for (int j = 1; j < 4; ++j) {
@@ -106,6 +114,7 @@ class Session {
   test::PulsingHammer hammer_;
   Jacobian J_;
   Eigen::Vector3d load_ = Eigen::Vector3d::Zero();
+  std::array<Eigen::Vector3d, 4> readings_{load_, load_, load_, load_};  ///< of the IMU, the newest first
   JointVector torque_ = JointVector::Zero(4);
   double time_{}, error_{}, size_{};
 };
@@ -158,6 +167,23 @@ INSTANTIATE_TEST_SUITE_P(BulkModulus, Oil,
                                          WrongOil{0.7, Sensor::kPressures, "SoftPressures"},
                                          WrongOil{1.4, Sensor::kPressures, "StiffPressures"}),
                          [](const auto& named) { return named.param.name; });
+
+/// Of oil and delay neither is taken for the other.
+TEST(ModeIdentifier, FindsByWhatStampsAreLate) {
+  for (double given_over_true : {0.7, 1.4}) {
+    for (std::size_t late : {0U, 1U, 2U, 3U}) {
+      Session run(given_over_true, Sensor::kImu);
+      run.late_ = late;
+      run.run(12.0);
+      const ModeIdentifier& found = run.identifier();
+      const double delay = kMillisecond * static_cast<double>(late);
+      EXPECT_NEAR(found.delay(), delay, 0.1 * kMillisecond + 0.1 * delay) << late;
+      EXPECT_LT(found.delayDeviation(), 0.1 * kMillisecond) << late;
+      for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(run.frequencyError(k)), 0.01) << late << k;
+      EXPECT_LT(run.torqueError(4.0), 0.05) << late;
+    }
+  }
+}
 
 TEST(ModeIdentifier, WithoutReadingsNothingIsFound) {
   Session run(0.7, Sensor::kImu);

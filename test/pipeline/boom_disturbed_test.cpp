@@ -160,6 +160,23 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndTheirDeviationsWidened) {
   }
 }
 
+/// A unit with a clock of its own. Without allowing for it 1 ms is 7 % of the torques, 2 ms are 15 %.
+TEST(MistakenSensors, ImuStampsThatAreOffAreNamedAndAllowedFor) {
+  for (const double late : {0.0, 2e-3, -2e-3}) {
+    for (const bool rock : {false, true}) {
+      Session session = sessionOn(rock);
+      for (simulation::HullImuReading& r : session.imu) r.stamp += static_cast<std::int64_t>(1e9 * late);
+      for (const bool pressures : {false, true}) {
+        if (rock && !pressures) continue;  // the rock's force is not known at all
+        const BoomErrors e = errorsOf(session, kHullByImu, {true, pressures}, 3.5, 5.0);
+        EXPECT_LT(e.worstTorque(), 0.05) << late << rock << pressures;
+        EXPECT_GT(e.covered(), 0.85) << late << rock << pressures;
+        EXPECT_EQ(e.warned_of_imu_stamps, std::abs(late) > 0.0) << late << rock << pressures;
+      }
+    }
+  }
+}
+
 template <typename Change>
 std::function<void(Session&)> ofPressures(const Change& change) {
   return [change](Session& s) {

@@ -13,7 +13,7 @@ struct VibrationReading {
   JointVector displacement, velocity, acceleration, oil;
   double value{};
   double ahead{};             ///< of the reading's instant over the present one [s]; negative: it is older
-  bool delayed{};             ///< its stamp is late by a delay that is not known: ModeIdentifier::delay()
+  bool delayed{};             ///< its stamp is late by ModeIdentifier::delay(), which is not known before
   double noise{};             ///< standard deviation of one reading, unit of value
   double neglected{};         ///< of what modes cannot say of it: it weighs less, and is as surprising
   double offset_deviation{};  ///< of its offset at the start, unit of value

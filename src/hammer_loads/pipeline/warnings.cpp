@@ -137,6 +137,18 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   }
 }
 
+/// A clock of its own, as the boom's modes show it.
+void warnOfImuStamps(const ModeIdentifier& identifier, std::vector<Warning>& warnings) {
+  constexpr double kLate = 1e-3, kKnown = 3e-4;  // [s]
+  const double delay = identifier.delay();
+  if (identifier.delayDeviation() > kKnown || std::abs(delay) < kLate) return;
+  warnings.push_back({"imu stamps",
+                      format("hull_imu: by those of the crank its stamps are some %.2g ms %s; the boom's vibration "
+                             "allows for that, up to 3 ms, the hull's motion in the wrench does not",
+                             1e3 * std::abs(delay), delay > 0.0 ? "late" : "early"),
+                      true});
+}
+
 void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   const SampleResult& result = pipeline.result();
   if (pipeline.boom() && pipeline.counts().accepted > 0) {
@@ -146,6 +158,7 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                           "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
                           "cylinder_pressures came: as the boom file gives it",
                           true});
+    if (vibration.identifier()) warnOfImuStamps(*vibration.identifier(), warnings);
   }
   if (pipeline.boom() && pipeline.boom()->pressureTrust().isLost()) {
     const PressureTrust& trust = pipeline.boom()->pressureTrust();
@@ -168,10 +181,12 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
            true});
   }
   if (result.boom != nullptr && result.boom->contact_unknown)
-    warnings.push_back({"rock",
-                        "hull_imu shows that the rock bears on the hull: without cylinder_pressures its force is in no "
-                        "joint torque and in no section, and the boom's modes are those of the boom file",
-                        true});
+    warnings.push_back(
+        {"rock",
+         "hull_imu shows that the rock bears on the hull, or its stamps are off by more than 5 ms: without "
+         "cylinder_pressures the rock's force is in no joint torque and in no section, and the boom's "
+         "modes are those of the boom file",
+         true});
   if (result.boom == nullptr || !result.boom->fault) return;
   warnings.push_back({"boom joints",
                       "boom joints: no loads for " + count(pipeline.boom()->faults()) +
