@@ -21,8 +21,6 @@ constexpr double kKnown = 0.03;            // deviation of log frequency of a mo
 constexpr double kOwnOil = 0.005;          // of log frequency: cylinders whose oil differs from the others'
 constexpr double kContactWalk = 1.3e5;     // of the rock's force [N/sqrt(s)]
 constexpr double kUnknownContact = 1e4;    // of it at the start [N]
-constexpr double kDelayDeviation = 2e-3;   // of the delay of stamps [s]
-constexpr double kDelayBegins = 0.2;       // so long after the frequencies are known [s]
 constexpr double kDelayWalk = 2e-5;        // of it in a second [s]: clocks drift by some 20 ppm
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 
@@ -203,25 +201,11 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   force_rate_ = (modal.to - modal.from) / step;
   for (double& age : age_) age += step;
   if (follows_contact_) covariance_(kContact, kContact) += square(kContactWalk) * step;
-  followDelay(step);
+  known_for_ = identified() ? known_for_ + step : 0.0;
+  double& of_delay = covariance_(kDelay, kDelay);
+  if (of_delay > 0.0) of_delay += square(kDelayWalk) * step;
   for (int i = begin(); i < begin() + states(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
   if (!finite()) startAnew();
-}
-
-/// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
-/// were taken for without it may be wrong.
-void ModeIdentifier::followDelay(double step) noexcept {
-  if (!learns_) return;
-  double& variance = covariance_(kDelay, kDelay);
-  const bool begins = variance == 0.0 && known_for_ > kDelayBegins;
-  known_for_ = identified() ? known_for_ + step : 0.0;
-  if (variance > 0.0) variance += square(kDelayWalk) * step;
-  if (!begins) return;
-  variance = square(kDelayDeviation);
-  for (int k = 0; k < count_; ++k) {
-    covariance_(at(k, kFrequency), at(k, kFrequency)) += square(kOwnDeviation);
-    covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingDeviation);
-  }
 }
 
 /// One mode's state, and P <- F P F^T for its rows and columns. Frequency and damping act as forces that are linear

@@ -113,9 +113,9 @@ class ModeIdentifier {
   void forget(int state, double deviation) noexcept;
   void advanceMode(int mode, double step, const ModeForce& force) noexcept;
   void walk(int mode, double step) noexcept;
-  void followDelay(double step) noexcept;
   void takeBackOil(const State& gain_S, double S, double difference) noexcept;
   void transform(const JointMatrix& T) noexcept;
+  void followDelay() noexcept;
   void useChannel(int channel, const VibrationReading& reading) noexcept;
   State rowOf(int channel, const VibrationReading& reading, double& predicted) const noexcept;
   bool finite() const noexcept;

@@ -10,7 +10,11 @@ namespace {
 
 constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
 constexpr double kMostRatio = 1.0;               // of log frequency: e
+constexpr double kDelayBegins = 0.2;             // so long after the frequencies are known [s]
+constexpr double kDelayDeviation = 2e-3;         // then [s]
 constexpr double kMostDelay = 0.01;              // [s]
+constexpr double kFrequencyWithDelay = 0.05;     // deviation of its logarithm, beside what was known without a delay
+constexpr double kDampingWithDelay = 0.5;        // likewise
 constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
 constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
 constexpr double kOilSurpriseShare = 5e-4;       // of one oil torque: 1.3 s of three at 500 Hz
@@ -30,6 +34,18 @@ void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) no
     variance = std::min(variance + walk * age_[i], std::max(variance, first + walk));
   }
   age_[i] = 0.0;
+}
+
+/// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
+/// were taken for without it may be wrong.
+void ModeIdentifier::followDelay() noexcept {
+  double& variance = covariance_(kDelay, kDelay);
+  if (!learns_ || variance > 0.0 || known_for_ < kDelayBegins) return;
+  variance = square(kDelayDeviation);
+  for (int k = 0; k < count_; ++k) {
+    covariance_(at(k, kFrequency), at(k, kFrequency)) += square(kFrequencyWithDelay);
+    covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingWithDelay);
+  }
 }
 
 ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading& reading,
@@ -68,6 +84,7 @@ ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading&
 void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexcept {
   if (!moving_known_ || channel < 0 || channel >= kMaxChannels || !std::isfinite(reading.value)) return;
   useChannel(channel, reading);
+  if (reading.delayed) followDelay();
   double predicted = 0.0;
   const State row = rowOf(channel, reading, predicted);
   const int first = begin(), n = states(), own = n - channels_;  // no row has another channel's offset
@@ -116,6 +133,7 @@ void ModeIdentifier::takeBackOil(const State& gain_S, double S, double differenc
 
 void ModeIdentifier::forgetOil() noexcept {
   forget(kDelay, 0.0);
+  known_for_ = 0.0;
   for (int k = 0; k < kMaxJoints; ++k) {
     forget(at(k, kFrequency), 0.0);
     forget(at(k, kDamping), 0.0);
