@@ -144,7 +144,7 @@ void warnOfImuStamps(const ModeIdentifier& identifier, std::vector<Warning>& war
   if (identifier.delayDeviation() > kKnown || std::abs(delay) < kLate) return;
   warnings.push_back({"imu stamps",
                       format("hull_imu: by those of the crank its stamps are some %.2g ms %s; the boom's vibration "
-                             "allows for that, up to 3 ms, the hull's motion in the wrench does not",
+                             "allows for that, up to 2 ms, the hull's motion in the wrench does not",
                              1e3 * std::abs(delay), delay > 0.0 ? "late" : "early"),
                       true});
 }
