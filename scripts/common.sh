@@ -92,10 +92,13 @@ configure() {
   rm -f "$log"
 }
 
+# Targets as arguments, of what is configured.
+compile() { cmake --build "$build_dir" -j "$(nproc)" --target "$@" || fail "build"; }
+
 # Targets as arguments.
 build() {
   configure
-  cmake --build "$build_dir" -j "$(nproc)" --target "$@" || fail "build"
+  compile "$@"
 }
 
 # This build's commands and messages.
