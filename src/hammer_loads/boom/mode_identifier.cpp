@@ -201,9 +201,12 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   force_rate_ = (modal.to - modal.from) / step;
   for (double& age : age_) age += step;
   if (follows_contact_) covariance_(kContact, kContact) += square(kContactWalk) * step;
-  known_for_ = identified() ? known_for_ + step : 0.0;
   double& of_delay = covariance_(kDelay, kDelay);
-  if (of_delay > 0.0) of_delay += square(kDelayWalk) * step;
+  if (of_delay > 0.0) {
+    of_delay += square(kDelayWalk) * step;
+  } else {
+    known_for_ = identified() ? known_for_ + step : 0.0;
+  }
   for (int i = begin(); i < begin() + states(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
   if (!finite()) startAnew();
 }

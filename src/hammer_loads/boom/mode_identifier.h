@@ -125,7 +125,7 @@ class ModeIdentifier {
   double damping_ratio_;
   double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_, keeps_oil_{};
-  double known_for_{};  ///< so long every frequency has been known [s]
+  double known_for_{};  ///< so long every frequency has been known, until the delay is followed [s]
   bool explains_{true};
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]
