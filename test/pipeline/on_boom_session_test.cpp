@@ -153,6 +153,10 @@ TEST(OnBoomSession, ABoomThatIsDrivenFastKeepsTheModesAsGiven) {
   const BoomErrors followed = errorsOf("driven, imu and joint states", session, kIdentified, {true, false});
   EXPECT_LT(followed.worstTorque(), 1.05 * given.worstTorque());
   EXPECT_LT(std::abs(given.energy()), 0.02) << "the tool meets the rock as fast as hull and operator let it";
+  const Settings rigid_boom = accuracy::shippedBoom("{boom: rigid, hull_motion: imu}");
+  const BoomErrors rigid = accuracy::boomErrors(session, rigid_boom.mechanism, rigid_boom.pipeline, *rigid_boom.boom,
+                                                {true, false}, kBegin, kEnd);
+  EXPECT_LT(std::abs(rigid.energy()), 0.02) << "nor need it vibrate";
   EXPECT_GT(followed.covered(), 0.85);
   EXPECT_LT(errorsOf("driven, pressures", session, kIdentified, {false, true}).worstTorque(), 0.05);
 }

@@ -88,6 +88,9 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
     observe(sample, since);
   } else {
     boom_.move(motion_, g_B);
+    held_.follow(motion_, since);
+    for (std::size_t i = 0; i < step.count; ++i)
+      if (step.pieces[i].ends_in_blow) held_.struck(), state_.at_blow = TipVelocity{};
   }
   known_ = true;
   last_stamp_ = sample.stamp;

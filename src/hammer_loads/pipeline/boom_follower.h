@@ -65,7 +65,8 @@ struct BoomState {
   bool press_force_lost{};          ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;              ///< along hull z; infinite without modes
   Boom::TipVibration tip;           ///< zero for a rigid boom
-  std::optional<TipVelocity> at_blow;  ///< by vibration, mean of before and after the step's last blow; none: no blow
+  /// By vibration (a rigid boom has none), mean of before and after the step's last blow; none: no blow.
+  std::optional<TipVelocity> at_blow;
   BoomChoice choice;
   std::optional<HoldDown> hold_down;  ///< against the mean press force of the last turn that had one
 };
