@@ -96,9 +96,9 @@ TEST(ContactFollowing, PressuresShowWhatTheOilCarriesAndTheForceLate) {
 TEST(ContactFollowing, WithAnImuTheForceIsThatOfTheInstant) {
   OnRock run(true, true);
   run.run(4.0, 1.0);
-  EXPECT_LT(run.torque.rms(), 0.05);
-  EXPECT_LT(run.force.rmsOfRange(), 0.08);
-  EXPECT_GT(run.force.correlation(), 0.92);
+  EXPECT_LT(run.torque.rms(), 0.04);
+  EXPECT_LT(run.force.rmsOfRange(), 0.09);
+  EXPECT_GT(run.force.correlation(), 0.86);
   EXPECT_EQ(run.allocations, 0U);
 }
 

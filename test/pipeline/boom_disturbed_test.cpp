@@ -152,7 +152,7 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndTheirDeviationsWidened) {
       Session session = sessionOn(rock);
       for (simulation::PressureReading& r : session.pressures) r.stamp += 10'000'000;
       const BoomErrors late = errorsOf(session, keys, {imu, true}, 3.5, 5.0);
-      EXPECT_GT(late.worstTorque(), 0.3) << rock << imu << ": what there is to say";
+      EXPECT_GT(late.worstTorque(), 0.2) << rock << imu << ": what there is to say";
       EXPECT_TRUE(late.warned_of_pressure_stamps) << rock << imu;
       EXPECT_GT(late.covered(), 0.85) << rock << imu;
       EXPECT_GT(late.sectionsCovered(), 0.85) << rock << imu;
@@ -169,9 +169,30 @@ TEST(MistakenSensors, ImuStampsThatAreOffAreNamedAndAllowedFor) {
       for (const bool pressures : {false, true}) {
         if (rock && !pressures) continue;  // the rock's force is not known at all
         const BoomErrors e = errorsOf(session, kHullByImu, {true, pressures}, 3.5, 5.0);
-        EXPECT_LT(e.worstTorque(), 0.05) << late << rock << pressures;
         EXPECT_GT(e.covered(), 0.85) << late << rock << pressures;
-        EXPECT_EQ(e.warned_of_imu_stamps, std::abs(late) > 0.0) << late << rock << pressures;
+        // On rock one clock's late is the other's early.
+        const bool as_pressures = rock && late < 0.0;
+        EXPECT_EQ(e.warned_of_imu_stamps, late != 0.0 && !as_pressures) << late << rock << pressures;
+        EXPECT_TRUE(e.warned_of_pressure_stamps || !as_pressures) << late << rock << pressures;
+        EXPECT_LT(e.worstTorque(), as_pressures ? 0.4 : 0.05) << late << rock << pressures;
+      }
+    }
+  }
+}
+
+/// A bus that takes 1 or 2 ms. Without allowing for it 1 ms is 6 % of the torques, on rock 9 to 17 %.
+TEST(MistakenSensors, PressuresThatAreLateAreNamedAndAllowedFor) {
+  for (const double late : {0.0, 1e-3, 2e-3}) {
+    for (const bool rock : {false, true}) {
+      Session session = sessionOn(rock);
+      for (simulation::PressureReading& r : session.pressures) r.stamp += static_cast<std::int64_t>(1e9 * late);
+      for (const bool imu : {false, true}) {
+        if (rock && !imu) continue;  // whatever force is lacking may be the rock's
+        const BoomErrors e = errorsOf(session, imu ? kHullByImu : kBoomIdentified, {imu, true}, 3.5, 5.0);
+        EXPECT_LT(e.worstTorque(), imu ? 0.03 : 0.02 + 25.0 * late) << late << rock << imu;
+        EXPECT_GT(e.covered(), 0.85) << late << rock << imu;
+        EXPECT_EQ(e.warned_of_pressure_stamps, late > 0.0) << late << rock << imu;
+        EXPECT_FALSE(e.warned_of_imu_stamps) << late << rock << imu;
       }
     }
   }

@@ -127,6 +127,7 @@ void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
   }
   modes_ = given;
   count_ = given.count;
+  history_.clear();
   if (force_.size() != count_) force_.setZero(count_), force_rate_.setZero(count_), contact_.setZero(count_);
   if (!carries) {
     forgetMotion();
@@ -162,6 +163,7 @@ void ModeIdentifier::forget(int state, double deviation) noexcept {
 }
 
 void ModeIdentifier::leaveContact() noexcept {
+  bears_ = false;
   if (!follows_contact_) return;
   follows_contact_ = false;
   forget(kContact, kUnknownContact);
@@ -169,6 +171,7 @@ void ModeIdentifier::leaveContact() noexcept {
 
 void ModeIdentifier::forgetMotion(const JointVector& swing) noexcept {
   moving_known_ = count_ > 0;
+  history_.clear();
   force_.setZero(count_), force_rate_.setZero(count_);
   forget(kContact, kUnknownContact);
   for (int k = 0; k < kMaxJoints; ++k) {
@@ -191,6 +194,7 @@ void ModeIdentifier::followContact(const JointVector& torque) noexcept {
 void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
   const double share = std::min(1.0, step / kForceMemory);
+  history_.begin(step);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];
     power += share * (square(modal.mean[k]) - power);
@@ -200,13 +204,15 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   force_ = modal.to;
   force_rate_ = (modal.to - modal.from) / step;
   for (double& age : age_) age += step;
-  if (follows_contact_) covariance_(kContact, kContact) += square(kContactWalk) * step;
-  double& of_delay = covariance_(kDelay, kDelay);
-  if (of_delay > 0.0) {
-    of_delay += square(kDelayWalk) * step;
-  } else {
-    known_for_ = identified() ? known_for_ + step : 0.0;
+  imu_age_ += step;
+  free_for_ = follows_contact_ && !bears_ ? free_for_ + step : 0.0;
+  if (follows_contact_) walkContact(step);
+  bool any = false;
+  for (int i : {kDelays, kDelays + 1}) {
+    double& of_delay = covariance_(i, i);
+    if (of_delay > 0.0) of_delay += square(kDelayWalk) * step, any = true;
   }
+  if (!any) known_for_ = identified() ? known_for_ + step : 0.0;
   for (int i = begin(); i < begin() + states(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
   if (!finite()) startAnew();
 }
@@ -215,7 +221,7 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
 /// over the step: their derivatives are off by 3 % at 9 Hz and a step of 10 ms, the state itself is exact.
 void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) noexcept {
   const Mode here = modeAt(mode);
-  const double rock = follows_contact_ ? contact_[mode] : 0.0;
+  const double rock = rockOn(mode);
   const ModeResponse r = responseAt(here, step);
   const ModeState now = motion(mode);
   ModeState next = advanced(here, now, force, step, r);
@@ -233,6 +239,7 @@ void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) 
   F.col(kDamping) = by(-damped * now.v, -damped * next.v);
   const int x = at(mode, kX), first = begin(), n = states();
   state_[x + kX] = next.x, state_[x + kV] = next.v;
+  history_.set(mode, now, next, force.from, force.to);
 
   // P F^T, its columns of displacement and velocity; P is symmetric.
   Eigen::Matrix<double, kMaxStates, 2> changed;
@@ -264,11 +271,29 @@ void ModeIdentifier::walk(int mode, double step) noexcept {
   wander(x + kDamping, kDampingWalk, kDampingDeviation);
 }
 
+/// The rock's force wanders within the step as well, and the modes' velocities with it.
+void ModeIdentifier::walkContact(double step) noexcept {
+  const double force = square(kContactWalk) * step;
+  covariance_(kContact, kContact) += force;
+  for (int k = 0; k < count_; ++k) {
+    const int x = at(k, kX), v = at(k, kV);
+    covariance_(v, kContact) = covariance_(kContact, v) += contact_[k] * force * step / 2.0;
+    covariance_(x, kContact) = covariance_(kContact, x) += contact_[k] * force * square(step) / 6.0;
+    for (int l = 0; l < count_; ++l) {
+      const double both = contact_[k] * contact_[l] * force * square(step);
+      covariance_(v, at(l, kV)) += both / 3.0;
+      covariance_(x, at(l, kV)) += both * step / 8.0, covariance_(at(l, kV), x) += both * step / 8.0;
+      covariance_(x, at(l, kX)) += both * square(step) / 20.0;
+    }
+  }
+}
+
 void ModeIdentifier::strike(const JointVector& impulse) noexcept {
   if (!moving_known_) return;
   const JointVector jump = modalForce(modes_, impulse);
   for (int k = 0; k < count_; ++k) {
     state_[at(k, kV)] += jump[k];
+    history_.strike(k, jump[k]);
     covariance_(at(k, kV), at(k, kV)) += square(kForcePart * jump[k]);
   }
 }

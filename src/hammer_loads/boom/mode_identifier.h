@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "hammer_loads/boom/boom_modes.h"
 #include "hammer_loads/boom/mode.h"
+#include "hammer_loads/boom/mode_history.h"
 #include "hammer_loads/boom/vibration_reading.h"
 
 namespace hammer_loads {
@@ -24,10 +26,13 @@ namespace hammer_loads {
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
 /// should be, frequencies and damping are those given.
 ///
-/// Stamps of a unit with a clock of its own may be late: by one delay for all its readings, a random walk. From 0.2 s
-/// on after the frequencies are known it is followed, and frequencies and damping count as less known again. Above the
-/// modes' frequencies accelerations are those of the hammer's force whatever the oil, so that one is not taken for the
-/// other. Linear in the delay: 4 ms are found as 3.5.
+/// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
+/// From 0.2 s on after the frequencies are known it is followed, and frequencies and damping count as less known again.
+/// Above the modes' frequencies accelerations are those of the hammer's force whatever the oil, so that one is not
+/// taken for the other. A reading is judged by what the modes did when it was taken.
+///
+/// The hammer's force and the rock's act alike: on rock only the difference of two clocks' delays shows, and of
+/// pressures alone none.
 ///
 /// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
 /// 6 ms. Pressures show the displacements; the force is what these need.
@@ -56,6 +61,8 @@ class ModeIdentifier {
   void forgetMotion(const JointVector& swing = {}) noexcept;
   /// From now on a force of the rock is followed; torque: on the joints per newton of it [N m/N]. Call at each pose.
   void followContact(const JointVector& torque) noexcept;
+  /// Whether the rock bears on the hull, by the mean of that force.
+  void bear(bool bears) noexcept { bears_ = bears; }
   /// No more: the hull counts as free.
   void leaveContact() noexcept;
   /// Whether frequencies and damping stay as they are, whatever the next readings show; the motion is followed all the
@@ -83,39 +90,55 @@ class ModeIdentifier {
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
   ModeState motion(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }  ///< as estimated
+  /// So long [s] after the present, or before it: some ms back exactly, with what readings have shown since.
+  ModeThen motionAt(int mode, double ahead) const noexcept;
   JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
   double contact() const noexcept { return state_[kContact]; }  ///< the rock's force [N]; below 0: an error
   double contactDeviation() const noexcept { return std::sqrt(covariance_(kContact, kContact)); }  ///< standard [N]
-  /// By which the stamps of delayed readings are late [s]; 0 as long as it is not followed.
-  double delay() const noexcept { return state_[kDelay]; }
-  double delayDeviation() const noexcept { return std::sqrt(covariance_(kDelay, kDelay)); }  ///< standard [s]
+  /// By which a clock's stamps are late [s]; 0 as long as it is not followed.
+  double delay(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
+  /// Standard [s]; less known where one clock's delay may be another's.
+  double delayDeviation(Clock clock) const noexcept;
   /// Independent errors of the joints' accelerations, one standard deviation each, a column for each mode [rad/s2].
   JointMatrix accelerationSpread() const noexcept;
 
  private:
-  static constexpr int kDelay = kMaxChannels, kContact = kDelay + 1, kMaxStates = kContact + 1 + 4 * kMaxJoints;
+  static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kMaxStates = kContact + 1 + 4 * kMaxJoints;
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
   enum Part { kX, kV, kFrequency, kDamping, kParts };
 
+  static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }
   static constexpr int at(int mode, Part part) noexcept { return kContact + 1 + kParts * mode + part; }
   /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
   int begin() const noexcept { return kMaxChannels - channels_; }
-  int states() const noexcept { return channels_ + 2 + kParts * count_; }
+  int states() const noexcept { return channels_ + 3 + kParts * count_; }
   /// Covariances of a state with all that are in use.
   auto column(int state) const noexcept { return covariance_.col(state).segment(begin(), states()); }
 
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
+  double rockOn(int mode) const noexcept { return follows_contact_ ? contact_[mode] : 0.0; }
   void advanceMode(int mode, double step, const ModeForce& force) noexcept;
   void walk(int mode, double step) noexcept;
-  void takeBackOil(const State& gain_S, double S, double difference) noexcept;
+  void walkContact(double step) noexcept;
+  bool delayShows(Clock clock) const noexcept;
+  struct Kept {
+    std::array<int, 2 * kMaxJoints + 2> states{};
+    int count{};
+    void add(int state) noexcept { states[static_cast<std::size_t>(count++)] = state; }
+    const int* begin() const noexcept { return states.data(); }
+    const int* end() const noexcept { return states.data() + count; }
+  };
+  Kept kept() const noexcept;
+  void takeBack(const Kept& kept, const State& gain_S, double S, double difference) noexcept;
+  void takeAsLate(Clock clock) noexcept;
   void transform(const JointMatrix& T) noexcept;
-  void followDelay() noexcept;
+  void followDelay(Clock clock) noexcept;
   void useChannel(int channel, const VibrationReading& reading) noexcept;
   State rowOf(int channel, const VibrationReading& reading, double& predicted) const noexcept;
   bool finite() const noexcept;
@@ -130,10 +153,15 @@ class ModeIdentifier {
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]
   BoomModes modes_;
+  ModeHistory history_;
   int count_{};
   bool follows_contact_{};
-  JointVector contact_;  ///< modal force of the rock per newton
-  bool moving_known_{};  ///< displacement and velocity belong to modes_
+  JointVector contact_;                               ///< modal force of the rock per newton
+  bool bears_{};                                      ///< the rock bears on the hull
+  std::array<std::optional<double>, 2> least_delay_;  ///< of each clock, as a free hull showed it [s]
+  double free_for_{};                                 ///< so long it has not, while pressures spoke [s]
+  double imu_age_{kInfinity};                         ///< since the last reading of an IMU [s]
+  bool moving_known_{};                               ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   Covariance covariance_ = Covariance::Zero();
   JointVector force_, force_rate_;                ///< modal, at the present time; and by the second

@@ -11,7 +11,13 @@ namespace {
 constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
 constexpr double kMostRatio = 1.0;               // of log frequency: e
 constexpr double kDelayBegins = 0.2;             // so long after the frequencies are known [s]
+constexpr double kFreeFor = 1.0;                 // [s]: its mean force has no longer memory
+constexpr double kImuSpeaks = 0.1;               // [s]
 constexpr double kDelayDeviation = 2e-3;         // then [s]
+constexpr double kWrongPart = 0.1;               // of a delay that is found
+constexpr double kWrongByPressures = 0.3;        // by them alone
+constexpr double kWrongOnRock = 0.6;             // where it has not been seen on a free hull: another's may be early
+constexpr double kDelayKnown = 2e-4;             // deviation [s]
 constexpr double kMostDelay = 0.01;              // [s]
 constexpr double kFrequencyWithDelay = 0.05;     // deviation of its logarithm, beside what was known without a delay
 constexpr double kDampingWithDelay = 0.5;        // likewise
@@ -38,9 +44,9 @@ void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) no
 
 /// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
 /// were taken for without it may be wrong.
-void ModeIdentifier::followDelay() noexcept {
-  double& variance = covariance_(kDelay, kDelay);
-  if (!learns_ || variance > 0.0 || known_for_ < kDelayBegins) return;
+void ModeIdentifier::followDelay(Clock clock) noexcept {
+  double& variance = covariance_(delayAt(clock), delayAt(clock));
+  if (!learns_ || variance > 0.0 || known_for_ < kDelayBegins || !delayShows(clock)) return;
   variance = square(kDelayDeviation);
   for (int k = 0; k < count_; ++k) {
     covariance_(at(k, kFrequency), at(k, kFrequency)) += square(kFrequencyWithDelay);
@@ -48,12 +54,21 @@ void ModeIdentifier::followDelay() noexcept {
   }
 }
 
+ModeThen ModeIdentifier::motionAt(int mode, double ahead) const noexcept {
+  const Mode m = modeAt(mode);
+  const ModeState now = motion(mode);
+  ModeHistory::Place then;
+  if (ahead < 0.0 && history_.find(-ahead, then)) return history_.at(mode, then, m.omega, now);
+  const double a = acceleration(m, now, force_[mode] + rockOn(mode) * state_[kContact]);
+  return {{now.x + ahead * now.v, now.v + ahead * a}, force_[mode] + ahead * force_rate_[mode], force_rate_[mode]};
+}
+
 ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading& reading,
                                             double& predicted) const noexcept {
   State row = State::Zero();
   row[offsetAt(channel)] = 1.0;
   predicted = state_[offsetAt(channel)];
-  const double ahead = reading.ahead - (reading.delayed ? state_[kDelay] : 0.0);
+  const double ahead = reading.ahead - delay(reading.clock);
   for (int k = 0; k < count_; ++k) {
     double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
     for (int i = 0; i < count_; ++i) {
@@ -64,17 +79,18 @@ ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading&
       by_oil += reading.oil[joint] * modes_.inertia(joint, k);
     }
     const Mode m = modeAt(k);
-    const ModeState s{state_[at(k, kX)], state_[at(k, kV)]};
-    const double rock = follows_contact_ ? contact_[k] : 0.0;
-    const double a = acceleration(m, s, force_[k] + rock * state_[kContact]);
+    const ModeThen then = motionAt(k, ahead);
+    const ModeState s = then.motion;
+    const double a = acceleration(m, s, then.force + rockOn(k) * state_[kContact]);
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega, held = by_oil - by_a;
     const double of_x = by_x + held * stiff, of_v = by_v + held * damped;
-    const double rate = of_x * s.v + of_v * a + by_a * force_rate_[k];
-    predicted += by_x * s.x + by_v * s.v + by_a * a + by_oil * (stiff * s.x + damped * s.v) + ahead * rate;
-    if (reading.delayed) row[kDelay] -= rate;
-    row[kContact] += by_a * rock;
-    row[at(k, kX)] = of_x;
-    row[at(k, kV)] = of_v + ahead * of_x;
+    const double rate = of_x * s.v + of_v * a + by_a * then.force_rate;
+    predicted += by_x * s.x + by_v * s.v + by_a * a + by_oil * (stiff * s.x + damped * s.v);
+    if (reading.clock != Clock::kCrank) row[delayAt(reading.clock)] -= rate;
+    row[kContact] += by_a * rockOn(k);
+    const double turned = square(m.omega * ahead), sine = ahead * (1.0 - turned / 6.0), cosine = 1.0 - turned / 2.0;
+    row[at(k, kX)] = cosine * of_x - stiff * sine * of_v;
+    row[at(k, kV)] = cosine * of_v + sine * of_x;
     row[at(k, kFrequency)] = held * (2.0 * stiff * s.x + damped * s.v);
     row[at(k, kDamping)] = held * damped * s.v;
   }
@@ -84,13 +100,14 @@ ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading&
 void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexcept {
   if (!moving_known_ || channel < 0 || channel >= kMaxChannels || !std::isfinite(reading.value)) return;
   useChannel(channel, reading);
-  if (reading.delayed) followDelay();
+  if (reading.clock == Clock::kImu) imu_age_ = 0.0;
+  if (reading.clock != Clock::kCrank) followDelay(reading.clock);
   double predicted = 0.0;
   const State row = rowOf(channel, reading, predicted);
   const int first = begin(), n = states(), own = n - channels_;  // no row has another channel's offset
   State gain_S;
   gain_S.head(n) = column(offsetAt(channel));
-  gain_S.head(n).noalias() += covariance_.block(first, kDelay, n, own) * row.segment(kDelay, own);
+  gain_S.head(n).noalias() += covariance_.block(first, kDelays, n, own) * row.segment(kDelays, own);
   double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise) + square(reading.neglected);
   const double difference = reading.value - predicted;
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
@@ -108,31 +125,62 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
     const double part = gain_S[i] / S;
     for (int j = 0; j < n; ++j) column[j] -= part * gain_S[j];
   }
-  if (learns_ && keeps_oil_) takeBackOil(gain_S, S, difference);
+  if (learns_) takeBack(kept(), gain_S, S, difference);
+  if (reading.clock != Clock::kCrank) takeAsLate(reading.clock);
   if (learns_ && !explains_) forgetOil();
   if (!state_.segment(first, n).allFinite()) return startAnew();
   if (learns_) useOil();
 }
 
-/// What the last reading has shown of frequencies, damping and delay. The rest counts it as with these not known better
-/// (Schmidt-Kalman filter).
-void ModeIdentifier::takeBackOil(const State& gain_S, double S, double difference) noexcept {
-  std::array<int, 2 * kMaxJoints + 1> oil{};  // states
-  for (int k = 0; k < count_; ++k) {
-    oil[static_cast<std::size_t>(2 * k)] = at(k, kFrequency);
-    oil[static_cast<std::size_t>(2 * k + 1)] = at(k, kDamping);
-  }
-  oil[static_cast<std::size_t>(2 * count_)] = kDelay;
-  const auto last = oil.begin() + 2 * count_ + 1;
-  for (auto i = oil.begin(); i != last; ++i) {
-    const double gain = gain_S[*i - begin()] / S;
-    state_[*i] -= gain * difference;
-    for (auto j = oil.begin(); j != last; ++j) covariance_(*i, *j) += gain * gain_S[*j - begin()];
+/// On rock, and until it is clear that there is none, pressures alone do not show their delay: whatever force they lack
+/// may be the rock's.
+bool ModeIdentifier::delayShows(Clock clock) const noexcept {
+  return clock == Clock::kImu || free_for_ > kFreeFor || imu_age_ < kImuSpeaks;
+}
+
+/// States that readings are not to change.
+ModeIdentifier::Kept ModeIdentifier::kept() const noexcept {
+  Kept kept;
+  for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kFrequency)), kept.add(at(k, kDamping));
+  if (keeps_oil_) kept.add(delayAt(Clock::kImu));
+  if (keeps_oil_ || !delayShows(Clock::kPressures)) kept.add(delayAt(Clock::kPressures));
+  return kept;
+}
+
+/// What the last reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
+void ModeIdentifier::takeBack(const Kept& kept, const State& gain_S, double S, double difference) noexcept {
+  for (int i : kept) {
+    const double gain = gain_S[i - begin()] / S;
+    state_[i] -= gain * difference;
+    for (int j : kept) covariance_(i, j) += gain * gain_S[j - begin()];
   }
 }
 
+/// On rock only the difference of two delays shows, for the rock's force is whatever both need. No stamps are early
+/// then, but those that were when the hull was free.
+void ModeIdentifier::takeAsLate(Clock clock) noexcept {
+  const int d = delayAt(clock);
+  const double variance = covariance_(d, d);
+  if (!(variance > 0.0)) return;
+  std::optional<double>& least = least_delay_[static_cast<std::size_t>(d - kDelays)];
+  if (!bears_ && variance < square(kDelayKnown)) least = std::min(0.0, state_[d] - 2.0 * delayDeviation(clock));
+  const double bound = least.value_or(0.0);
+  if (bears_ && state_[d] < bound)
+    state_.segment(begin(), states()) += (bound - state_[d]) / variance * column(d).eval();
+}
+
+double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
+  if (clock == Clock::kCrank) return 0.0;
+  const int d = delayAt(clock);
+  const bool known_free = least_delay_[static_cast<std::size_t>(d - kDelays)].has_value();
+  const double wrong = !known_free && bears_ ? kWrongOnRock : imu_age_ < kImuSpeaks ? kWrongPart : kWrongByPressures;
+  const double largest = state_.segment<2>(kDelays).cwiseAbs().maxCoeff();  // what is the one's may be the other's
+  return std::sqrt(covariance_(d, d) + square(wrong * largest));
+}
+
 void ModeIdentifier::forgetOil() noexcept {
-  forget(kDelay, 0.0);
+  forget(kDelays, 0.0), forget(kDelays + 1, 0.0);
+  least_delay_ = {};
   known_for_ = 0.0;
   for (int k = 0; k < kMaxJoints; ++k) {
     forget(at(k, kFrequency), 0.0);
@@ -156,7 +204,7 @@ void ModeIdentifier::useOil() noexcept {
     ratio_[i] *= grow(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
     damping_[i] *= grow(damping - used_damping_[i]), used_damping_[i] = damping;
   }
-  state_[kDelay] = std::clamp(state_[kDelay], -kMostDelay, kMostDelay);
+  for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostDelay, kMostDelay);
 }
 
 }  // namespace hammer_loads

@@ -154,6 +154,7 @@ void Vibration::leaveContact() noexcept {
 /// is what the readings' motion needs beside the hammer: without it a hull that hangs in the air would carry a load.
 void Vibration::useMotion() noexcept {
   const bool bears = identifier_->followsContact() && mean_contact_ > least_contact_;
+  identifier_->bear(bears);
   follows_readings_ = bears || (identifier_->learns() && identifier_->explains() && identifier_->identified());
   contact_ = bears ? identifier_->contact() : follows_readings_ ? mean_contact_ : 0.0;
   if (follows_readings_) takeMotion();
@@ -213,6 +214,20 @@ Vibration::OilTorque Vibration::oilTorque() const noexcept {
     now[k] = stiff * s.x + damped * s.v, rate[k] = stiff * s.v + damped * a;
   }
   return {modes_.inertia.lazyProduct(now), modes_.inertia.lazyProduct(rate)};
+}
+
+double Vibration::oilTorqueAt(int joint, double ahead) const noexcept {
+  if (!identifier_ || !identifier_->followsContact()) {
+    const OilTorque torque = oilTorque();
+    return torque.now[joint] + ahead * torque.rate[joint];
+  }
+  double torque = 0.0;
+  for (int k = 0; k < modes_.count; ++k) {
+    const Mode m = mode(k);
+    const ModeState s = identifier_->motionAt(k, ahead).motion;
+    torque += modes_.inertia(joint, k) * (m.omega * m.omega * s.x + 2.0 * m.zeta * m.omega * s.v);
+  }
+  return torque;
 }
 
 }  // namespace hammer_loads

@@ -81,6 +81,8 @@ class Vibration {
     JointVector now, rate;
   };
   OilTorque oilTorque() const noexcept;
+  /// Of a joint, so long [s] after the present, or before it [N m].
+  double oilTorqueAt(int joint, double ahead) const noexcept;
   /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
   double energy() const noexcept;
   const BoomModes& modes() const noexcept { return modes_; }

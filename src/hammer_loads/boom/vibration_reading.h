@@ -6,18 +6,21 @@
 
 namespace hammer_loads {
 
+/// Whose stamps a reading has. Those of a sensor with a clock of its own may all be late by one time.
+enum class Clock { kCrank, kImu, kPressures };
+
 /// What one channel of a sensor reads: offset + displacement . q + velocity . q' + acceleration . q'' + oil . (K q + C
 /// q') of the joints' vibration q. Whatever else it sees (weight, the boom's slow motion) must be taken off value
 /// first, as far as known; the offset takes up what is left of it.
 struct VibrationReading {
   JointVector displacement, velocity, acceleration, oil;
   double value{};
-  double ahead{};             ///< of the reading's instant over the present one [s]; negative: it is older
-  bool delayed{};             ///< its stamp is late by ModeIdentifier::delay(), which is not known before
-  double noise{};             ///< standard deviation of one reading, unit of value
-  double neglected{};         ///< of what modes cannot say of it: it weighs less, and is as surprising
-  double offset_deviation{};  ///< of its offset at the start, unit of value
-  double offset_walk{};       ///< how far the offset wanders in a second, unit of value
+  double ahead{};              ///< of the reading's instant over the present one [s]; negative: it is older
+  Clock clock{Clock::kCrank};  ///< its stamp is late by ModeIdentifier::delay()
+  double noise{};              ///< standard deviation of one reading, unit of value
+  double neglected{};          ///< of what modes cannot say of it: it weighs less, and is as surprising
+  double offset_deviation{};   ///< of its offset at the start, unit of value
+  double offset_walk{};        ///< how far the offset wanders in a second, unit of value
 };
 
 /// Turning rate [rad/s] about a unit vector n in the tip's axes; J of tipJacobian().

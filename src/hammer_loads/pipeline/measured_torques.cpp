@@ -61,6 +61,8 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   if (model_.now.size() != model.now.size()) model_ = model, sample_ = sample;
   const auto& identifier = boom.vibration().identifier();
   const double surprise = identifier ? identifier->oilSurprise() : 0.0;
+  const double delay = identifier ? identifier->delay(Clock::kPressures) : 0.0;
+  const double delay_deviation = identifier ? identifier->delayDeviation(Clock::kPressures) : 0.0;
   const double lag = surprise > kSurprised ? square(kLag) * surprise : 0.0;
   const bool gap = seconds(sample - sample_) > kGap;
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
@@ -76,22 +78,22 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       continue;
     }
     if (pressures.count(i) != track.readings) {
-      const double before = model_.now[j] + seconds(stamp - sample_) * model_.rate[j];
-      const double now = model.now[j] + seconds(stamp - sample) * model.rate[j];
+      const double before = model_.now[j] + (seconds(stamp - sample_) - delay) * model_.rate[j];
+      const double now = boom.vibration().oilTorqueAt(j, seconds(stamp - sample) - delay) + steady[j];
       const double torque = -forceOf(cylinder, *read) * at.arm;
       if (gap || !track.goes_on) track.stamp = stamp, track.slope = 0.0;
       take(track, stamp, torque, now, before);
       track.readings = pressures.count(i);
       track.goes_on = true;
     }
-    const double age = std::min(seconds(sample - stamp), kLongestLine);
+    const double age = std::min(seconds(sample - stamp) + delay, kLongestLine);
     const bool by_oil = track.oil_square <= track.line_square;
     const double value = by_oil ? track.rest + model.now[j] : track.torque + age * track.slope;
     const double lost = forgottenPart(overdue(seconds(sample - stamp), track.interval));
     // A change has the noise of two readings, what is smoothed that of one or less.
     const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
-    const double off =
-        std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square) + (lag + 2.0 * lost) * track.swing);
+    const double off = std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square) +
+                                 (lag + 2.0 * lost) * track.swing + square(delay_deviation * model.rate[j]));
     torque_[i] = Torque{value, off, at};
   }
   model_ = model, sample_ = sample;

@@ -31,7 +31,7 @@ void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& readi
   const Jacobian& J = boom.tipJacobian();
   const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
   const auto seeUnit = [&](int channel, VibrationReading seen, const Doubt& doubt) {
-    seen.delayed = true;
+    seen.clock = Clock::kImu;
     see(boom, channel, seen, doubt);
   };
   const auto seeAcceleration = [&](int channel, const Eigen::Vector3d& n_T) {
@@ -79,6 +79,7 @@ void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures
     const double torque = -forceOf(cylinder, *p) * at.arm - boom.steadyTorque(j);
     VibrationReading reading = oilTorqueReading(boom.chain().joints(), j, torque);
     reading.ahead = seconds(stamp - sample);
+    reading.clock = Clock::kPressures;
     see(boom, kImuChannels + static_cast<int>(cylinders + i), reading, kTorque,
         cylinder.greatestPush() * std::abs(at.arm));
   }

@@ -137,16 +137,14 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   }
 }
 
-/// A clock of its own, as the boom's modes show it.
-void warnOfImuStamps(const ModeIdentifier& identifier, std::vector<Warning>& warnings) {
-  constexpr double kLate = 1e-3, kKnown = 3e-4;  // [s]
-  const double delay = identifier.delay();
-  if (identifier.delayDeviation() > kKnown || std::abs(delay) < kLate) return;
-  warnings.push_back({"imu stamps",
-                      format("hull_imu: by those of the crank its stamps are some %.2g ms %s; the boom's vibration "
-                             "allows for that, up to 2 ms, the hull's motion in the wrench does not",
-                             1e3 * std::abs(delay), delay > 0.0 ? "late" : "early"),
-                      true});
+/// A clock of its own, as the boom's modes show it. Whether it is off.
+bool warnOfClock(const ModeIdentifier& identifier, Clock clock, const char* key, const char* text,
+                 std::vector<Warning>& warnings) {
+  constexpr double kLate = 8e-4, kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
+  const double delay = identifier.delay(clock);
+  if (std::abs(delay) < kLate || identifier.delayDeviation(clock) > kKnown + kPart * std::abs(delay)) return false;
+  warnings.push_back({key, format(text, 1e3 * std::abs(delay), delay > 0.0 ? "late" : "early"), true});
+  return true;
 }
 
 void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
@@ -158,7 +156,11 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                           "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
                           "cylinder_pressures came: as the boom file gives it",
                           true});
-    if (vibration.identifier()) warnOfImuStamps(*vibration.identifier(), warnings);
+    if (vibration.identifier())
+      warnOfClock(*vibration.identifier(), Clock::kImu, "imu stamps",
+                  "hull_imu: by those of the crank its stamps are some %.2g ms %s; the boom's vibration allows for "
+                  "that, up to 4 ms, the hull's motion in the wrench does not",
+                  warnings);
   }
   if (pipeline.boom() && pipeline.boom()->pressureTrust().isLost()) {
     const PressureTrust& trust = pipeline.boom()->pressureTrust();
@@ -170,8 +172,13 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                         true});
   }
   if (result.boom != nullptr && result.boom->measured) {
-    const double surprise = pipeline.boom()->boom().vibration().identifier()->oilSurprise();
-    if (surprise > MeasuredTorques::kSurprised)
+    const ModeIdentifier& identifier = *pipeline.boom()->boom().vibration().identifier();
+    const double surprise = identifier.oilSurprise();
+    const bool late = warnOfClock(identifier, Clock::kPressures, "pressure stamps",
+                                  "cylinder_pressures: by those of the crank their stamps are some %.2g ms %s, or "
+                                  "those of hull_imu the other way; the boom's loads allow for that, up to 2 ms",
+                                  warnings);
+    if (!late && surprise > MeasuredTorques::kSurprised)
       warnings.push_back(
           {"pressure stamps",
            format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the expected "
