@@ -67,8 +67,9 @@ void expectNear(const geometry_msgs::Wrench& told, const geometry_msgs::Wrench& 
 TEST_F(BoomTest, AJointMissingFromTheStartSilencesTheJointLoadsAlone) {
   machine_->speaking = {"boom_joint", "swing_joint", "hammer_joint"};
   ASSERT_TRUE(machine_->workFor(0.1));
-  EXPECT_TRUE(eventually([] { return machine_->says("boom", "arm_joint: never heard"); }));
-  EXPECT_FALSE(machine_->says("boom", "hammer_joint"));
+  // A report from before the others' first message may name them too.
+  EXPECT_TRUE(eventually(
+      [] { return machine_->says("boom", "arm_joint: never heard") && !machine_->says("boom", "hammer_joint"); }));
   EXPECT_EQ(machine_->hull.messages.size(), machine_->samples.size());
   EXPECT_TRUE(machine_->loads.messages.empty() && machine_->arm.messages.empty());
   machine_->speaking = {"arm_joint", "hammer_joint", "boom_joint", "swing_joint"};

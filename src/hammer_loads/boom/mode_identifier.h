@@ -126,6 +126,7 @@ class ModeIdentifier {
   void advanceMode(int mode, double step, const ModeForce& force) noexcept;
   void walk(int mode, double step) noexcept;
   void walkContact(double step) noexcept;
+  void advanceDelays(double step) noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {
     std::array<int, 2 * kMaxJoints + 2> states{};
@@ -148,7 +149,8 @@ class ModeIdentifier {
   double damping_ratio_;
   double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_, keeps_oil_{};
-  double known_for_{};  ///< so long every frequency has been known, until the delay is followed [s]
+  double known_for_{};  ///< so long every frequency has been known, until a delay is followed [s]
+  double lost_for_{};   ///< so long one has not been since then [s]
   bool explains_{true};
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]

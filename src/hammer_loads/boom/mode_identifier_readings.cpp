@@ -8,17 +8,17 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
-constexpr double kMostRatio = 1.0;               // of log frequency: e
-constexpr double kDelayBegins = 0.2;             // so long after the frequencies are known [s]
-constexpr double kFreeFor = 1.0;                 // [s]: its mean force has no longer memory
-constexpr double kImuSpeaks = 0.1;               // [s]
-constexpr double kDelayDeviation = 2e-3;         // then [s]
-constexpr double kWrongPart = 0.1;               // of a delay that is found
-constexpr double kWrongByPressures = 0.3;        // by them alone
-constexpr double kWrongOnRock = 0.6;             // where it has not been seen on a free hull: another's may be early
-constexpr double kDelayKnown = 2e-4;             // deviation [s]
-constexpr double kMostDelay = 0.01;              // [s]
+constexpr double kFarOff = 3.0;            // standard deviations beyond which a reading counts less
+constexpr double kMostRatio = 1.0;         // of log frequency: e
+constexpr double kDelayBegins = 0.2;       // so long after the frequencies are known [s]
+constexpr double kFreeFor = 1.0;           // [s]: its mean force has no longer memory
+constexpr double kImuSpeaks = 0.1;         // [s]
+constexpr double kDelayDeviation = 2e-3;   // then [s]
+constexpr double kWrongPart = 0.1;         // of a delay that is found
+constexpr double kWrongByPressures = 0.3;  // by them alone
+constexpr double kWrongOnRock = 0.6;       // where it has not been seen on a free hull: another's may be early
+constexpr double kDelayKnown = 2e-4;       // deviation [s]
+constexpr double kMostEarly = 0.004, kMostLate = 0.01;  // [s]
 constexpr double kFrequencyWithDelay = 0.05;     // deviation of its logarithm, beside what was known without a delay
 constexpr double kDampingWithDelay = 0.5;        // likewise
 constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
@@ -181,7 +181,7 @@ double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
 void ModeIdentifier::forgetOil() noexcept {
   forget(kDelays, 0.0), forget(kDelays + 1, 0.0);
   least_delay_ = {};
-  known_for_ = 0.0;
+  known_for_ = lost_for_ = 0.0;
   for (int k = 0; k < kMaxJoints; ++k) {
     forget(at(k, kFrequency), 0.0);
     forget(at(k, kDamping), 0.0);
@@ -204,7 +204,7 @@ void ModeIdentifier::useOil() noexcept {
     ratio_[i] *= grow(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
     damping_[i] *= grow(damping - used_damping_[i]), used_damping_[i] = damping;
   }
-  for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostDelay, kMostDelay);
+  for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }
 
 }  // namespace hammer_loads
