@@ -20,6 +20,7 @@ constexpr double kUnknownRate = 0.05;      // joint velocity where nothing is kn
 constexpr double kKnown = 0.03;            // deviation of log frequency of a mode that is known
 constexpr double kOwnOil = 0.005;          // of log frequency: cylinders whose oil differs from the others'
 constexpr double kContactWalk = 1.3e5;     // of the rock's force [N/sqrt(s)]
+constexpr double kContactWalkSeen = 3e5;   // where an IMU shows each landing: they are no noise then
 constexpr double kUnknownContact = 1e4;    // of it at the start [N]
 constexpr double kLost = 1.0;              // so long unknown while a delay is followed [s]
 constexpr double kDelayWalk = 2e-5;        // of it in a second [s]: clocks drift by some 20 ppm
@@ -269,7 +270,7 @@ void ModeIdentifier::walk(int mode, double step) noexcept {
 
 /// The rock's force wanders within the step as well, and the modes' velocities with it.
 void ModeIdentifier::walkContact(double step) noexcept {
-  const double force = square(kContactWalk) * step;
+  const double force = square(bears_ && imuSpeaks() ? kContactWalkSeen : kContactWalk) * step;
   covariance_(kContact, kContact) += force;
   for (int k = 0; k < count_; ++k) {
     const int x = at(k, kX), v = at(k, kV);

@@ -35,7 +35,7 @@ namespace hammer_loads {
 /// pressures alone none.
 ///
 /// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
-/// 6 ms. Pressures show the displacements; the force is what these need.
+/// 6 ms, in 1 ms where an IMU shows it. Pressures show the displacements; the force is what these need.
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
@@ -127,6 +127,7 @@ class ModeIdentifier {
   void walk(int mode, double step) noexcept;
   void walkContact(double step) noexcept;
   void advanceDelays(double step) noexcept;
+  bool imuSpeaks() const noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {
     std::array<int, 2 * kMaxJoints + 2> states{};

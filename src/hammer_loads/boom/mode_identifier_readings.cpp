@@ -132,10 +132,12 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   if (learns_) useOil();
 }
 
+bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < kImuSpeaks; }
+
 /// On rock, and until it is clear that there is none, pressures alone do not show their delay: whatever force they lack
 /// may be the rock's.
 bool ModeIdentifier::delayShows(Clock clock) const noexcept {
-  return clock == Clock::kImu || free_for_ > kFreeFor || imu_age_ < kImuSpeaks;
+  return clock == Clock::kImu || free_for_ > kFreeFor || imuSpeaks();
 }
 
 /// States that readings are not to change.
@@ -173,7 +175,7 @@ double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
   if (clock == Clock::kCrank) return 0.0;
   const int d = delayAt(clock);
   const bool known_free = least_delay_[static_cast<std::size_t>(d - kDelays)].has_value();
-  const double wrong = !known_free && bears_ ? kWrongOnRock : imu_age_ < kImuSpeaks ? kWrongPart : kWrongByPressures;
+  const double wrong = !known_free && bears_ ? kWrongOnRock : imuSpeaks() ? kWrongPart : kWrongByPressures;
   const double largest = state_.segment<2>(kDelays).cwiseAbs().maxCoeff();  // what is the one's may be the other's
   return std::sqrt(covariance_(d, d) + square(wrong * largest));
 }
