@@ -22,8 +22,6 @@ constexpr double kOwnOil = 0.005;          // of log frequency: cylinders whose 
 constexpr double kContactWalk = 1.3e5;     // of the rock's force [N/sqrt(s)]
 constexpr double kContactWalkSeen = 3e5;   // where an IMU shows each landing: they are no noise then
 constexpr double kUnknownContact = 1e4;    // of it at the start [N]
-constexpr double kLost = 1.0;              // so long unknown while a delay is followed [s]
-constexpr double kDelayWalk = 2e-5;        // of it in a second [s]: clocks drift by some 20 ppm
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 
 }  // namespace
@@ -283,21 +281,6 @@ void ModeIdentifier::walkContact(double step) noexcept {
       covariance_(x, at(l, kX)) += both * square(step) / 20.0;
     }
   }
-}
-
-void ModeIdentifier::advanceDelays(double step) noexcept {
-  bool follows = false;
-  for (int i : {kDelays, kDelays + 1}) {
-    double& variance = covariance_(i, i);
-    if (variance > 0.0) variance += square(kDelayWalk) * step, follows = true;
-  }
-  if (!follows) {
-    known_for_ = identified() ? known_for_ + step : 0.0;
-    return;
-  }
-  // Where the rock bears on a hull unseen, a delay makes up for its force.
-  lost_for_ = identified() ? 0.0 : lost_for_ + step;
-  if (lost_for_ > kLost) forgetOil();
 }
 
 void ModeIdentifier::strike(const JointVector& impulse) noexcept {

@@ -8,23 +8,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kFarOff = 3.0;            // standard deviations beyond which a reading counts less
-constexpr double kMostRatio = 1.0;         // of log frequency: e
-constexpr double kDelayBegins = 0.2;       // so long after the frequencies are known [s]
-constexpr double kFreeFor = 1.0;           // [s]: its mean force has no longer memory
-constexpr double kImuSpeaks = 0.1;         // [s]
-constexpr double kDelayDeviation = 2e-3;   // then [s]
-constexpr double kWrongPart = 0.1;         // of a delay that is found
-constexpr double kWrongByPressures = 0.3;  // by them alone
-constexpr double kWrongOnRock = 0.6;       // where it has not been seen on a free hull: another's may be early
-constexpr double kDelayKnown = 2e-4;       // deviation [s]
+constexpr double kFarOff = 3.0;                         // standard deviations beyond which a reading counts less
+constexpr double kMostRatio = 1.0;                      // of log frequency: e
 constexpr double kMostEarly = 0.004, kMostLate = 0.01;  // [s]
-constexpr double kFrequencyWithDelay = 0.05;     // deviation of its logarithm, beside what was known without a delay
-constexpr double kDampingWithDelay = 0.5;        // likewise
-constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
-constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
-constexpr double kOilSurpriseShare = 5e-4;       // of one oil torque: 1.3 s of three at 500 Hz
-constexpr double kWorstSurprise = 25.0;          // what one can add at most
+constexpr double kSurpriseShare = 3e-4;                 // of one acceleration in the mean of squares: 1.7 s at 1 kHz
+constexpr double kSurprised = 5.0, kCalm = 1.8;         // of that mean, over what it should be
+constexpr double kOilSurpriseShare = 5e-4;              // of one oil torque: 1.3 s of three at 500 Hz
+constexpr double kWorstSurprise = 25.0;                 // what one can add at most
 
 }  // namespace
 
@@ -40,18 +30,6 @@ void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) no
     variance = std::min(variance + walk * age_[i], std::max(variance, first + walk));
   }
   age_[i] = 0.0;
-}
-
-/// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
-/// were taken for without it may be wrong.
-void ModeIdentifier::followDelay(Clock clock) noexcept {
-  double& variance = covariance_(delayAt(clock), delayAt(clock));
-  if (!learns_ || variance > 0.0 || known_for_ < kDelayBegins || !delayShows(clock)) return;
-  variance = square(kDelayDeviation);
-  for (int k = 0; k < count_; ++k) {
-    covariance_(at(k, kFrequency), at(k, kFrequency)) += square(kFrequencyWithDelay);
-    covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingWithDelay);
-  }
 }
 
 ModeThen ModeIdentifier::motionAt(int mode, double ahead) const noexcept {
@@ -132,14 +110,6 @@ void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexc
   if (learns_) useOil();
 }
 
-bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < kImuSpeaks; }
-
-/// On rock, and until it is clear that there is none, pressures alone do not show their delay: whatever force they lack
-/// may be the rock's.
-bool ModeIdentifier::delayShows(Clock clock) const noexcept {
-  return clock == Clock::kImu || free_for_ > kFreeFor || imuSpeaks();
-}
-
 /// States that readings are not to change.
 ModeIdentifier::Kept ModeIdentifier::kept() const noexcept {
   Kept kept;
@@ -156,28 +126,6 @@ void ModeIdentifier::takeBack(const Kept& kept, const State& gain_S, double S, d
     state_[i] -= gain * difference;
     for (int j : kept) covariance_(i, j) += gain * gain_S[j - begin()];
   }
-}
-
-/// On rock only the difference of two delays shows, for the rock's force is whatever both need. No stamps are early
-/// then, but those that were when the hull was free.
-void ModeIdentifier::takeAsLate(Clock clock) noexcept {
-  const int d = delayAt(clock);
-  const double variance = covariance_(d, d);
-  if (!(variance > 0.0)) return;
-  std::optional<double>& least = least_delay_[static_cast<std::size_t>(d - kDelays)];
-  if (!bears_ && variance < square(kDelayKnown)) least = std::min(0.0, state_[d] - 2.0 * delayDeviation(clock));
-  const double bound = least.value_or(0.0);
-  if (bears_ && state_[d] < bound)
-    state_.segment(begin(), states()) += (bound - state_[d]) / variance * column(d).eval();
-}
-
-double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
-  if (clock == Clock::kCrank) return 0.0;
-  const int d = delayAt(clock);
-  const bool known_free = least_delay_[static_cast<std::size_t>(d - kDelays)].has_value();
-  const double wrong = !known_free && bears_ ? kWrongOnRock : imuSpeaks() ? kWrongPart : kWrongByPressures;
-  const double largest = state_.segment<2>(kDelays).cwiseAbs().maxCoeff();  // what is the one's may be the other's
-  return std::sqrt(covariance_(d, d) + square(wrong * largest));
 }
 
 void ModeIdentifier::forgetOil() noexcept {

@@ -1,0 +1,83 @@
+// Delays of stamps: when they are followed, given up, and how far they are known.
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kDelayBegins = 0.2;          // so long after the frequencies are known [s]
+constexpr double kDelayDeviation = 2e-3;      // then [s]
+constexpr double kDelayWalk = 2e-5;           // of a delay in a second [s]: clocks drift by some 20 ppm
+constexpr double kFrequencyWithDelay = 0.05;  // deviation of its logarithm, beside what was known without a delay
+constexpr double kDampingWithDelay = 0.5;     // likewise
+constexpr double kLost = 1.0;                 // so long frequencies unknown while a delay is followed [s]
+constexpr double kFreeFor = 1.0;              // [s]: its mean force has no longer memory
+constexpr double kImuSpeaks = 0.1;            // [s]
+constexpr double kWrongPart = 0.1;            // of a delay that is found
+constexpr double kWrongByPressures = 0.3;     // by them alone
+constexpr double kWrongOnRock = 0.6;          // where it has not been seen on a free hull: another's may be early
+constexpr double kDelayKnown = 2e-4;          // deviation [s]
+
+}  // namespace
+
+/// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
+/// were taken for without it may be wrong.
+void ModeIdentifier::followDelay(Clock clock) noexcept {
+  double& variance = covariance_(delayAt(clock), delayAt(clock));
+  if (!learns_ || variance > 0.0 || known_for_ < kDelayBegins || !delayShows(clock)) return;
+  variance = square(kDelayDeviation);
+  for (int k = 0; k < count_; ++k) {
+    covariance_(at(k, kFrequency), at(k, kFrequency)) += square(kFrequencyWithDelay);
+    covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingWithDelay);
+  }
+}
+
+void ModeIdentifier::advanceDelays(double step) noexcept {
+  bool follows = false;
+  for (int i : {kDelays, kDelays + 1}) {
+    double& variance = covariance_(i, i);
+    if (variance > 0.0) variance += square(kDelayWalk) * step, follows = true;
+  }
+  if (!follows) {
+    known_for_ = identified() ? known_for_ + step : 0.0;
+    return;
+  }
+  // Where the rock bears on a hull unseen, a delay makes up for its force.
+  lost_for_ = identified() ? 0.0 : lost_for_ + step;
+  if (lost_for_ > kLost) forgetOil();
+}
+
+bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < kImuSpeaks; }
+
+/// On rock, and until it is clear that there is none, pressures alone do not show their delay: whatever force they lack
+/// may be the rock's.
+bool ModeIdentifier::delayShows(Clock clock) const noexcept {
+  return clock == Clock::kImu || free_for_ > kFreeFor || imuSpeaks();
+}
+
+/// On rock only the difference of two delays shows, for the rock's force is whatever both need. No stamps are early
+/// then, but those that were when the hull was free.
+void ModeIdentifier::takeAsLate(Clock clock) noexcept {
+  const int d = delayAt(clock);
+  const double variance = covariance_(d, d);
+  if (!(variance > 0.0)) return;
+  std::optional<double>& least = least_delay_[static_cast<std::size_t>(d - kDelays)];
+  if (!bears_ && variance < square(kDelayKnown)) least = std::min(0.0, state_[d] - 2.0 * delayDeviation(clock));
+  const double bound = least.value_or(0.0);
+  if (bears_ && state_[d] < bound)
+    state_.segment(begin(), states()) += (bound - state_[d]) / variance * column(d).eval();
+}
+
+double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
+  if (clock == Clock::kCrank) return 0.0;
+  const int d = delayAt(clock);
+  const bool known_free = least_delay_[static_cast<std::size_t>(d - kDelays)].has_value();
+  const double wrong = !known_free && bears_ ? kWrongOnRock : imuSpeaks() ? kWrongPart : kWrongByPressures;
+  const double largest = state_.segment<2>(kDelays).cwiseAbs().maxCoeff();  // what is the one's may be the other's
+  return std::sqrt(covariance_(d, d) + square(wrong * largest));
+}
+
+}  // namespace hammer_loads
