@@ -51,8 +51,10 @@ class Session {
       observe(i);
       allocations_ += test::allocations - before;
       const JointVector hold = to + boom_->vibration().torque();
-      error_ += (hold.tail<3>() - machine_.hold()).squaredNorm();
-      size_ += machine_.hold().squaredNorm();
+      std::rotate(holds_.rbegin(), holds_.rbegin() + 1, holds_.rend());
+      holds_.front() = machine_.hold();
+      error_ += (hold.tail<3>() - holds_[lead_]).squaredNorm();
+      size_ += holds_[lead_].squaredNorm();
     }
   }
   double frequencyError(int mode) const { return boom_->vibration().mode(mode).omega / machine_.omega[mode] - 1.0; }
@@ -72,6 +74,7 @@ class Session {
   std::optional<Boom> boom_;
   std::size_t allocations_{};
   std::size_t late_{};  ///< readings by which the IMU is late
+  std::size_t lead_{};  ///< by so many the hammer leads the time in which torques are judged
 
  private:
   void observe(int i) {
@@ -115,6 +118,7 @@ class Session {
   Jacobian J_;
   Eigen::Vector3d load_ = Eigen::Vector3d::Zero();
   std::array<Eigen::Vector3d, 4> readings_{load_, load_, load_, load_};  ///< of the IMU, the newest first
+  std::array<Eigen::Vector3d, 4> holds_{readings_};                      ///< likewise of the cylinders
   JointVector torque_ = JointVector::Zero(4);
   double time_{}, error_{}, size_{};
 };
@@ -182,6 +186,28 @@ TEST(ModeIdentifier, FindsByWhatStampsAreLate) {
       for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(run.frequencyError(k)), 0.01) << late << k;
       EXPECT_LT(run.torqueError(4.0), 0.05) << late;
     }
+  }
+}
+
+/// Only as much of a delay as is expected of the crank, and none where the sensor is right.
+TEST(ModeIdentifier, TakesFromADelayWhatTheCrankLeads) {
+  struct Case {
+    std::size_t late;
+    CrankLead expected;  ///< [ms]
+    double lead;         ///< [ms]
+  };
+  for (const Case& c : {Case{1, {1.0, 0.3}, 1.0}, Case{1, {0.9, 0.3}, 1.0}, Case{1, {0.0, 0.3}, 0.03},
+                        Case{3, {1.0, 0.3}, 1.0}, Case{0, {1.0, 0.3}, 0.0}, Case{1, {-1.0, 0.3}, 0.0}}) {
+    Session run(1.0, Sensor::kImu);
+    run.late_ = c.late;
+    run.boom_->vibration().expectCrankLead({kMillisecond * c.expected.mean, kMillisecond * c.expected.deviation});
+    run.run(8.0);
+    const ModeIdentifier& found = run.identifier();
+    const double late = kMillisecond * static_cast<double>(c.late), lead = kMillisecond * c.lead;
+    EXPECT_NEAR(found.crankLead(), lead, 0.15 * kMillisecond) << c.late << " " << c.expected.mean;
+    EXPECT_NEAR(found.crankLead() + found.delay(Clock::kImu), late, 0.1 * kMillisecond + 0.1 * late);
+    run.lead_ = static_cast<std::size_t>(std::lround(c.lead));
+    EXPECT_LT(run.torqueError(4.0), 0.02) << c.late << " " << c.expected.mean << ": in the crank's time it is 0.033";
   }
 }
 

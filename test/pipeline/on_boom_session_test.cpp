@@ -90,6 +90,37 @@ TEST(OnBoomSession, NoisyPressuresBesideAnImuCostLittle) {
   EXPECT_GT(all.covered(), 0.85);
 }
 
+/// A crank that leads or lags makes right sensors look late or early: taken for a delay of theirs, half a degree was 3
+/// % of the torques, of which deviations covered half.
+TEST(OnBoomSession, AZeroThatIsOffIsNoDelayOfTheSensors) {
+  for (const double zero : {0.5 * kDegree, -0.5 * kDegree}) {
+    simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
+    m.crank.zero = zero;
+    const Session session = simulation::recordSession(m);
+    for (const auto& [keys, sensors] : {std::pair(kByImu, accuracy::SensorsOnBoom{true, false}),
+                                        std::pair(kIdentified, accuracy::SensorsOnBoom{false, true}),
+                                        std::pair(kByImu, accuracy::SensorsOnBoom{true, true})}) {
+      const BoomErrors e = errorsOf("zero off", session, keys, sensors);
+      EXPECT_LT(e.worstTorque(), 0.025) << zero << sensors.imu << sensors.pressures;
+      EXPECT_GT(e.covered(), 0.85) << zero << sensors.imu << sensors.pressures;
+      EXPECT_GT(e.sectionsCovered(), 0.85) << zero << sensors.imu << sensors.pressures;
+      EXPECT_FALSE(e.warned_of_imu_stamps || e.warned_of_pressure_stamps) << zero;
+    }
+  }
+}
+
+/// Torques of an instant are as wrong as the stamp that says when it was.
+TEST(OnBoomSession, DeviationsOfMeasuredTorquesCoverStampsThatJitter) {
+  simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);
+  m.crank.stamp_noise = 2e-4;
+  const Session session = simulation::recordSession(m);
+  for (const bool imu : {false, true}) {
+    const BoomErrors e = errorsOf("stamps that jitter", session, imu ? kByImu : kIdentified, {imu, true});
+    EXPECT_GT(e.covered(), 0.9) << imu;
+    EXPECT_LT(e.worstTorque(), 0.04) << imu;
+  }
+}
+
 TEST_P(WrongOil, IsMeasuredByJointStatesAbove100Hz) {
   const simulation::MachineSettings m = test::machineOnBoom(GetParam(), 400.0);
   const Session session = simulation::recordSession(m);

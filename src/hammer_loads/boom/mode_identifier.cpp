@@ -80,7 +80,7 @@ JointMatrix ModeIdentifier::accelerationSpread() const noexcept {
   JointVector left(count_);                                      // its variance by what the mode's shape lacks
   for (int k = 0; k < count_; ++k) {
     const Mode m = modeAt(k);
-    const ModeState s = motion(k);
+    const ModeState s = stateOf(k);
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
     row[static_cast<std::size_t>(k)] << -stiff, -damped, -2.0 * stiff * s.x - damped * s.v, -damped * s.v;
     left[k] = square(2.0 * kLeftFrequency * stiff * s.x) + square(kLeftDamping * damped * s.v);
@@ -218,7 +218,7 @@ void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) 
   const Mode here = modeAt(mode);
   const double rock = rockOn(mode);
   const ModeResponse r = responseAt(here, step);
-  const ModeState now = motion(mode);
+  const ModeState now = stateOf(mode);
   ModeState next = advanced(here, now, force, step, r);
   next.x += r.step * rock * state_[kContact], next.v += r.impulse * rock * state_[kContact];
 

@@ -12,6 +12,11 @@
 
 namespace hammer_loads {
 
+/// Time by which an angle is ahead of the crank [s], and its standard deviation.
+struct CrankLead {
+  double mean{}, deviation{};
+};
+
 /// Extended Kalman filter: per mode displacement, velocity, logarithm of frequency over the given one and of damping
 /// over the given one; per channel an offset. Steps are the same as those of Vibration, between them come readings in
 /// any order. No allocation. Shapes are those of the given stiffness; oilDifference() is by which one factor for all
@@ -33,6 +38,9 @@ namespace hammer_loads {
 ///
 /// The hammer's force and the rock's act alike: on rock only the difference of two clocks' delays shows, and of
 /// pressures alone none.
+///
+/// A crank whose angle leads, as by a zero that is off, makes all sensors look late alike. As much of that as its model
+/// expects (expectCrankLead()) is taken for the crank's, and the motion is then given in the sensors' time.
 ///
 /// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
 /// 6 ms, in 1 ms where an IMU shows it. Pressures show the displacements; the force is what these need.
@@ -68,6 +76,8 @@ class ModeIdentifier {
   /// Whether frequencies and damping stay as they are, whatever the next readings show; the motion is followed all the
   /// same. For a hammer at rest: what shakes the boom then is not known.
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
+  /// By how much time the crank's angle leads as far as its own model knows [s].
+  void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead; }
   /// A reading at the present time or a little before; channel in [0, kMaxChannels) keeps its offset. A reading far off
   /// counts less.
   void observe(int channel, const VibrationReading& reading) noexcept;
@@ -89,16 +99,18 @@ class ModeIdentifier {
   /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
-  ModeState motion(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }  ///< as estimated
+  ModeState motion(int mode) const noexcept;  ///< as estimated
   /// So long [s] after the present, or before it: some ms back exactly, with what readings have shown since.
-  ModeThen motionAt(int mode, double ahead) const noexcept;
+  ModeThen motionAt(int mode, double ahead) const noexcept { return motionByCrank(mode, ahead - crankLead()); }
   JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
   double contact() const noexcept { return state_[kContact]; }  ///< the rock's force [N]; below 0: an error
   double contactDeviation() const noexcept { return std::sqrt(covariance_(kContact, kContact)); }  ///< standard [N]
   /// By which a clock's stamps are late [s]; 0 as long as it is not followed.
-  double delay(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
+  double delay(Clock clock) const noexcept;
+  /// By how much time the crank's angle leads, as its model expects and the sensors show [s].
+  double crankLead() const noexcept;
   /// Standard [s]; less known where one clock's delay may be another's.
   double delayDeviation(Clock clock) const noexcept;
   /// Independent errors of the joints' accelerations, one standard deviation each, a column for each mode [rad/s2].
@@ -119,6 +131,9 @@ class ModeIdentifier {
   /// Covariances of a state with all that are in use.
   auto column(int state) const noexcept { return covariance_.col(state).segment(begin(), states()); }
 
+  ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
+  ModeThen motionByCrank(int mode, double ahead) const noexcept;
+  double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
@@ -163,8 +178,9 @@ class ModeIdentifier {
   bool bears_{};                                      ///< the rock bears on the hull
   std::array<std::optional<double>, 2> least_delay_;  ///< of each clock, as a free hull showed it [s]
   double free_for_{};                                 ///< so long it has not, while pressures spoke [s]
-  double imu_age_{kInfinity};                         ///< since the last reading of an IMU [s]
-  bool moving_known_{};                               ///< displacement and velocity belong to modes_
+  CrankLead expected_lead_;
+  double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
+  bool moving_known_{};        ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   Covariance covariance_ = Covariance::Zero();
   JointVector force_, force_rate_;                ///< modal, at the present time; and by the second

@@ -19,7 +19,14 @@ constexpr double kImuSpeaks = 0.1;            // [s]
 constexpr double kWrongPart = 0.1;            // of a delay that is found
 constexpr double kWrongByPressures = 0.3;     // by them alone
 constexpr double kWrongOnRock = 0.6;          // where it has not been seen on a free hull: another's may be early
-constexpr double kDelayKnown = 2e-4;          // deviation [s]
+constexpr double kDoubt = 0.6;        // deviations of a lead that is expected: they are large, see ConstantErrors
+constexpr double kWrongLead = 0.3;    // of what is taken for the crank's: it may be a sensor's
+constexpr double kDelayKnown = 2e-4;  // deviation [s]
+
+/// Of two of one sign the one nearer to 0; else 0.
+double lesserOf(double a, double b) noexcept {
+  return a * b > 0.0 ? std::copysign(std::min(std::abs(a), std::abs(b)), a) : 0.0;
+}
 
 }  // namespace
 
@@ -71,13 +78,32 @@ void ModeIdentifier::takeAsLate(Clock clock) noexcept {
     state_.segment(begin(), states()) += (bound - state_[d]) / variance * column(d).eval();
 }
 
+double ModeIdentifier::delay(Clock clock) const noexcept {
+  return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0 ? delayByCrank(clock) - crankLead()
+                                                                                     : 0.0;
+}
+
+/// What all clocks that are followed have in common, as far as it is what is expected; the less of the rest, the more
+/// it is. A sensor that is not late shows no lead.
+double ModeIdentifier::crankLead() const noexcept {
+  double common = 0.0;
+  bool first = true;
+  for (int i : {kDelays, kDelays + 1}) {
+    if (!(covariance_(i, i) > 0.0)) continue;
+    common = first ? state_[i] : lesserOf(common, state_[i]);
+    first = false;
+  }
+  const double doubt = kDoubt * expected_lead_.deviation, rest = common - expected_lead_.mean;
+  return lesserOf(common, expected_lead_.mean + (std::abs(rest) <= doubt ? rest : square(doubt) / rest));
+}
+
 double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
   if (clock == Clock::kCrank) return 0.0;
   const int d = delayAt(clock);
   const bool known_free = least_delay_[static_cast<std::size_t>(d - kDelays)].has_value();
   const double wrong = !known_free && bears_ ? kWrongOnRock : imuSpeaks() ? kWrongPart : kWrongByPressures;
-  const double largest = state_.segment<2>(kDelays).cwiseAbs().maxCoeff();  // what is the one's may be the other's
-  return std::sqrt(covariance_(d, d) + square(wrong * largest));
+  const double largest = std::max(std::abs(delay(Clock::kImu)), std::abs(delay(Clock::kPressures)));
+  return std::sqrt(covariance_(d, d) + square(wrong * largest) + square(kWrongLead * crankLead()));
 }
 
 }  // namespace hammer_loads

@@ -32,6 +32,7 @@ struct BoomSample {
   std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
   bool imu_lost{};                  ///< earlier readings cannot be trusted
   HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
+  double stamp_noise{};             ///< standard deviation of the stamp, from sample to sample [s]
   double unseen_peak{};             ///< of Fz of a hammer that is at work, should it not have been followed before [N]
 };
 
@@ -94,6 +95,8 @@ class BoomFollower {
   void swing(StampNs stamp, const WrenchHistory& step) noexcept;
   /// How the operator moves the tip at the last blow, vibration left out.
   TipVelocity drivenTip() const noexcept;
+  /// Once per turn, with what is known of the crank.
+  void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }
   /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
   /// 0.1 ms.
   void turnEnded(const std::optional<HalfSinePulse>& pulse, double mean_press_force) noexcept;

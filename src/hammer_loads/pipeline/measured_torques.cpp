@@ -54,8 +54,9 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
   track.stamp = stamp, track.torque = torque, track.model = model;
 }
 
-void MeasuredTorques::follow(const Boom& boom, const JointVector& position, const JointVector& steady, StampNs sample,
-                             const CylinderPressures& pressures) noexcept {
+void MeasuredTorques::follow(const Boom& boom, const JointVector& position, const JointVector& steady,
+                             const Instant& instant, const CylinderPressures& pressures) noexcept {
+  const StampNs sample = instant.stamp;
   Vibration::OilTorque model = boom.vibration().oilTorque();
   model.now += steady;
   if (model_.now.size() != model.now.size()) model_ = model, sample_ = sample;
@@ -92,8 +93,9 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const double lost = forgottenPart(overdue(seconds(sample - stamp), track.interval));
     // A change has the noise of two readings, what is smoothed that of one or less.
     const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
-    const double off = std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square) +
-                                 (lag + 2.0 * lost) * track.swing + square(delay_deviation * model.rate[j]));
+    const double off =
+        std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square) + (lag + 2.0 * lost) * track.swing +
+                  (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
     torque_[i] = Torque{value, off, at};
   }
   model_ = model, sample_ = sample;

@@ -24,8 +24,12 @@ class MeasuredTorques {
     CylinderPosition at;  ///< as the joint's sensor shows it
   };
 
+  struct Instant {
+    StampNs stamp{};
+    double noise{};  ///< standard deviation of the stamp [s]
+  };
   /// After the vibration has taken the readings. steady: weight and motion [N m]; position: as joint sensors show it.
-  void follow(const Boom& boom, const JointVector& position, const JointVector& steady, StampNs sample,
+  void follow(const Boom& boom, const JointVector& position, const JointVector& steady, const Instant& instant,
               const CylinderPressures& pressures) noexcept;
   /// Index as in Boom::cylinders(); nothing without both pressures or at a dead centre.
   const std::optional<Torque>& of(std::size_t cylinder) const noexcept { return torque_[cylinder]; }

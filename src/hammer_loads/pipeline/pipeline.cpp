@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/pipeline/beside_blow.h"
 #include "hammer_loads/pipeline/step_impulse.h"
 
@@ -14,6 +15,7 @@ namespace {
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
 constexpr double kAtWork = 0.3;                               // of the nominal speed: blows are struck
+constexpr double kLeadOfZero = 0.8;  // of the time that the crank needs at the blow: what a zero makes of the vibration
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
 }  // namespace
@@ -153,6 +155,20 @@ void Pipeline::passBlows() noexcept {
     if (passage.strikes) hull_.struck(crank_.step().stampAt(passage.time), result_.stamp);
 }
 
+double Pipeline::stampNoise() const noexcept {
+  const CrankFilter* filter = crank_.tracker().filter();
+  return filter != nullptr ? filter->timingNoise() : 0.0;
+}
+
+/// By the sensor's zero, as the filter sees it. speed: of the crank at the blow [rad/s].
+CrankLead Pipeline::crankLead(double speed) const noexcept {
+  const CrankFilter* filter = crank_.tracker().filter();
+  if (filter == nullptr || !(speed > 0.0)) return {};
+  const ConstantErrors& errors = filter->constantErrors();
+  const double by_angle = kLeadOfZero / speed;
+  return {by_angle * errors.estimate()[0], by_angle * errors.deviation()[0]};
+}
+
 void Pipeline::followBoom() noexcept {
   result_.boom = nullptr;
   if (!boom_) return;
@@ -165,11 +181,13 @@ void Pipeline::followBoom() noexcept {
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
   result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp),
-                                 imu_lost, displaced, at_work ? nominal_force_ : 0.0},
+                                 imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
                                 step);
   boom_follows_ = true;
-  for (std::size_t i = 0; i < result_.turn_ends; ++i)
+  for (std::size_t i = 0; i < result_.turn_ends; ++i) {
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
+    boom_->expectCrankLead(crankLead(result_.ends[i].blow.crank_speed_before));
+  }
 }
 
 /// revised: the blow that is being measured stays; whether it was one shows later.

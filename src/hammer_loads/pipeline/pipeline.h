@@ -58,6 +58,8 @@ class Pipeline {
   void restart(bool revised) noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
   void hullMovedAtBlow() noexcept;
+  double stampNoise() const noexcept;
+  CrankLead crankLead(double speed) const noexcept;
   void followBoom() noexcept;
   void passBlows() noexcept;
   void swingOn(const WrenchHistory& step) noexcept;
