@@ -23,18 +23,6 @@ struct Kind {
   std::optional<Coupling> coupling{};  ///< as given
 };
 
-/// What a usual machine has of everything: zero half a degree off, 1024 counts, a PC's stamps, blows that differ.
-void makeTypical(MachineSettings& s) {
-  s.crank.counts = 1024;
-  s.crank.zero = 0.5 * kDegree;
-  s.crank.eccentricity[0] = {0.2 * kDegree, 1.0};
-  s.crank.stamp_noise = 3e-4;
-  s.crank.speed = false;
-  s.blow.restitution_drawn = true;
-  s.blow.restitution_low = 0.1;
-  s.blow.restitution_high = 0.25;
-}
-
 std::vector<Kind> kinds() {
   const auto jitter = [](double deviation) {
     return [deviation](MachineSettings& s) { s.crank.stamp_noise = deviation; };
@@ -135,6 +123,17 @@ MachineRow rowOf(const Settings& settings, const Kind& kind, double rate) {
 }
 
 }  // namespace
+
+void makeTypical(MachineSettings& s) {
+  s.crank.counts = 1024;
+  s.crank.zero = 0.5 * kDegree;
+  s.crank.eccentricity[0] = {0.2 * kDegree, 1.0};
+  s.crank.stamp_noise = 3e-4;
+  s.crank.speed = false;
+  s.blow.restitution_drawn = true;
+  s.blow.restitution_low = 0.1;
+  s.blow.restitution_high = 0.25;
+}
 
 std::vector<MachineRow> machineTable(const Settings& settings) {
   std::vector<MachineRow> rows;

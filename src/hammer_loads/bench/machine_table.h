@@ -6,8 +6,13 @@
 
 #include "hammer_loads/bench/session_errors.h"
 #include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/machine_settings.h"
 
 namespace hammer_loads::accuracy {
+
+/// What a usual machine has of everything: zero half a degree off, 1024 counts, a PC's stamps, no speeds, blows that
+/// differ.
+void makeTypical(simulation::MachineSettings& machine);
 
 struct MachineRow {
   std::string machine;
