@@ -90,8 +90,8 @@ TEST(OnBoomSession, NoisyPressuresBesideAnImuCostLittle) {
   EXPECT_GT(all.covered(), 0.85);
 }
 
-/// A crank that leads or lags makes right sensors look late or early: taken for a delay of theirs, half a degree was 3
-/// % of the torques, of which deviations covered half.
+/// A crank that leads or lags makes right sensors look late or early: taken for a delay of theirs, half a degree cost
+/// 3 % of the torques, of which deviations covered half.
 TEST(OnBoomSession, AZeroThatIsOffIsNoDelayOfTheSensors) {
   for (const double zero : {0.5 * kDegree, -0.5 * kDegree}) {
     simulation::MachineSettings m = test::machineOnBoom(1.0, 50.0);

@@ -109,10 +109,10 @@ class ModeIdentifier {
   double contactDeviation() const noexcept { return std::sqrt(covariance_(kContact, kContact)); }  ///< standard [N]
   /// By which a clock's stamps are late [s]; 0 as long as it is not followed.
   double delay(Clock clock) const noexcept;
-  /// By how much time the crank's angle leads, as its model expects and the sensors show [s].
-  double crankLead() const noexcept;
   /// Standard [s]; less known where one clock's delay may be another's.
   double delayDeviation(Clock clock) const noexcept;
+  /// By how much time the crank's angle leads, as its model expects and the sensors show [s].
+  double crankLead() const noexcept;
   /// Independent errors of the joints' accelerations, one standard deviation each, a column for each mode [rad/s2].
   JointMatrix accelerationSpread() const noexcept;
 
@@ -134,6 +134,10 @@ class ModeIdentifier {
   ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
   ModeThen motionByCrank(int mode, double ahead) const noexcept;
   double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
+  bool isDelayFollowed(Clock clock) const noexcept {
+    return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
+  }
+  double accelerationNow(int mode) const noexcept;
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;

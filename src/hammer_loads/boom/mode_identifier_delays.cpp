@@ -19,9 +19,9 @@ constexpr double kImuSpeaks = 0.1;            // [s]
 constexpr double kWrongPart = 0.1;            // of a delay that is found
 constexpr double kWrongByPressures = 0.3;     // by them alone
 constexpr double kWrongOnRock = 0.6;          // where it has not been seen on a free hull: another's may be early
-constexpr double kDoubt = 0.6;        // deviations of a lead that is expected: they are large, see ConstantErrors
-constexpr double kWrongLead = 0.3;    // of what is taken for the crank's: it may be a sensor's
-constexpr double kDelayKnown = 2e-4;  // deviation [s]
+constexpr double kDelayKnown = 2e-4;          // deviation [s]
+constexpr double kDoubt = 0.6;                // deviations of an expected lead: they are large, see ConstantErrors
+constexpr double kWrongLead = 0.3;            // of what is taken for the crank's: it may be a sensor's
 
 /// Of two of one sign the one nearer to 0; else 0.
 double lesserOf(double a, double b) noexcept {
@@ -33,9 +33,8 @@ double lesserOf(double a, double b) noexcept {
 /// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
 /// were taken for without it may be wrong.
 void ModeIdentifier::followDelay(Clock clock) noexcept {
-  double& variance = covariance_(delayAt(clock), delayAt(clock));
-  if (!learns_ || variance > 0.0 || known_for_ < kDelayBegins || !delayShows(clock)) return;
-  variance = square(kDelayDeviation);
+  if (!learns_ || isDelayFollowed(clock) || known_for_ < kDelayBegins || !delayShows(clock)) return;
+  covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
   for (int k = 0; k < count_; ++k) {
     covariance_(at(k, kFrequency), at(k, kFrequency)) += square(kFrequencyWithDelay);
     covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingWithDelay);
@@ -79,8 +78,7 @@ void ModeIdentifier::takeAsLate(Clock clock) noexcept {
 }
 
 double ModeIdentifier::delay(Clock clock) const noexcept {
-  return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0 ? delayByCrank(clock) - crankLead()
-                                                                                     : 0.0;
+  return isDelayFollowed(clock) ? delayByCrank(clock) - crankLead() : 0.0;
 }
 
 /// What all clocks that are followed have in common, as far as it is what is expected; the less of the rest, the more
@@ -88,9 +86,9 @@ double ModeIdentifier::delay(Clock clock) const noexcept {
 double ModeIdentifier::crankLead() const noexcept {
   double common = 0.0;
   bool first = true;
-  for (int i : {kDelays, kDelays + 1}) {
-    if (!(covariance_(i, i) > 0.0)) continue;
-    common = first ? state_[i] : lesserOf(common, state_[i]);
+  for (Clock clock : {Clock::kImu, Clock::kPressures}) {
+    if (!isDelayFollowed(clock)) continue;
+    common = first ? delayByCrank(clock) : lesserOf(common, delayByCrank(clock));
     first = false;
   }
   const double doubt = kDoubt * expected_lead_.deviation, rest = common - expected_lead_.mean;
@@ -102,8 +100,11 @@ double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
   const int d = delayAt(clock);
   const bool known_free = least_delay_[static_cast<std::size_t>(d - kDelays)].has_value();
   const double wrong = !known_free && bears_ ? kWrongOnRock : imuSpeaks() ? kWrongPart : kWrongByPressures;
-  const double largest = std::max(std::abs(delay(Clock::kImu)), std::abs(delay(Clock::kPressures)));
-  return std::sqrt(covariance_(d, d) + square(wrong * largest) + square(kWrongLead * crankLead()));
+  const double lead = crankLead();
+  double largest = 0.0;  // what is the one's may be the other's
+  for (Clock each : {Clock::kImu, Clock::kPressures})
+    if (isDelayFollowed(each)) largest = std::max(largest, std::abs(delayByCrank(each) - lead));
+  return std::sqrt(covariance_(d, d) + square(wrong * largest) + square(kWrongLead * lead));
 }
 
 }  // namespace hammer_loads

@@ -32,23 +32,27 @@ void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) no
   age_[i] = 0.0;
 }
 
+/// By the hammer and, where it is followed, the rock.
+double ModeIdentifier::accelerationNow(int mode) const noexcept {
+  return acceleration(modeAt(mode), stateOf(mode), force_[mode] + rockOn(mode) * state_[kContact]);
+}
+
 /// By a short line back: some 1e-4 of it for 0.5 ms of the fastest mode.
 ModeState ModeIdentifier::motion(int mode) const noexcept {
   const Mode m = modeAt(mode);
   const ModeState now = stateOf(mode);
-  const double back = crankLead(), rate = force_rate_[mode];
-  const double a = acceleration(m, now, force_[mode] + rockOn(mode) * state_[kContact]);
-  const double jerk = rate - 2.0 * m.zeta * m.omega * a - square(m.omega) * now.v;
+  const double back = crankLead(), a = accelerationNow(mode);
+  const double jerk = force_rate_[mode] - 2.0 * m.zeta * m.omega * a - square(m.omega) * now.v;
   return {now.x - back * (now.v - 0.5 * back * a), now.v - back * (a - 0.5 * back * jerk)};
 }
 
 ModeThen ModeIdentifier::motionByCrank(int mode, double ahead) const noexcept {
-  const Mode m = modeAt(mode);
   const ModeState now = stateOf(mode);
   ModeHistory::Place then;
-  if (ahead < 0.0 && history_.find(-ahead, then)) return history_.at(mode, then, m.omega, now);
-  const double a = acceleration(m, now, force_[mode] + rockOn(mode) * state_[kContact]);
-  return {{now.x + ahead * now.v, now.v + ahead * a}, force_[mode] + ahead * force_rate_[mode], force_rate_[mode]};
+  if (ahead < 0.0 && history_.find(-ahead, then)) return history_.at(mode, then, modeAt(mode).omega, now);
+  return {{now.x + ahead * now.v, now.v + ahead * accelerationNow(mode)},
+          force_[mode] + ahead * force_rate_[mode],
+          force_rate_[mode]};
 }
 
 ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading& reading,

@@ -51,11 +51,11 @@ class Vibration {
   /// the joints per newton [N m/N]; call at each pose. Where its mean over some 0.5 s is less than least_force [N] the
   /// hull counts as free.
   void followContact(const JointVector& torque, double least_force) noexcept;
+  void leaveContact() noexcept;  ///< no more: the hull counts as free
   /// By how much time the crank's angle, and the load with it, lead as far as is known. See ModeIdentifier.
   void expectCrankLead(const CrankLead& lead) noexcept {
     if (identifier_) identifier_->expectCrankLead(lead);
   }
-  void leaveContact() noexcept;  ///< no more: the hull counts as free
   /// A sensor's reading at the end of the last step; nothing without identify() or followContact().
   void observe(int channel, const VibrationReading& reading) noexcept;
   /// What follows the readings, if anything does.
