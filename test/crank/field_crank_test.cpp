@@ -143,6 +143,45 @@ TEST(FieldCrank, MeasuresEachBlowsFactor) {
   }
 }
 
+/// A speed read just before the blow may bear a stamp just after it, or the reverse: it is of the other side's motion.
+TEST(FieldCrank, MeasuresEachBlowsFactorThroughJitter) {
+  for (const bool speeds : {true, false}) {
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+      Machine machine;
+      machine.jitter = 2e-4;
+      machine.speeds = speeds;
+      machine.seed = seed;
+      machine.blow = [seed](int number) {
+        std::mt19937 random(1000 * seed + static_cast<unsigned>(number));
+        return Blow{std::uniform_real_distribution<>(0.64, 1.26)(random), true, 0.0};
+      };
+      const Record run = follow(machine);
+      ASSERT_GT(run.blows.size(), 20u);
+      for (const Told& told : run.blows) {
+        EXPECT_NEAR(told.factor, told.truth, speeds ? 0.02 : 0.03) << seed << ' ' << speeds;
+        EXPECT_NEAR(told.factor, told.truth, 5.0 * told.deviation) << seed << ' ' << speeds;
+      }
+      EXPECT_EQ(run.restarts, 0) << seed << ' ' << speeds;
+      EXPECT_EQ(run.outliers, 0) << seed << ' ' << speeds;
+      EXPECT_EQ(run.mirrored, 0) << seed << ' ' << speeds;
+    }
+  }
+}
+
+/// What alike blows taught is no reason to take the change that a next one makes for two changes.
+TEST(FieldCrank, ABlowUnlikeTheFirstOnesIsOneBlow) {
+  for (const bool speeds : {true, false}) {
+    for (const double last : {0.7, 0.8, 1.25}) {
+      Machine machine;
+      machine.speeds = speeds;
+      machine.blow = [last](int number) { return Blow{number < 10 ? (last < 1.0 ? 1.2 : 0.75) : last, true, 0.0}; };
+      const Record run = follow(machine);
+      ASSERT_GT(run.blows.size(), 20u);
+      for (const Told& told : run.blows) EXPECT_NEAR(told.factor, told.truth, 0.02) << last << ' ' << speeds;
+    }
+  }
+}
+
 TEST(FieldCrank, ABlowThatTakesHalfTheSpeedIsNoRestart) {
   for (const double early : {0.0, 0.005}) {
     Machine machine;

@@ -19,6 +19,7 @@ struct BlowAt {
   double time{}, energy{}, tool_impulse{};
   double turn_peak{std::numeric_limits<double>::quiet_NaN()};
   double turn_impulse_z{std::numeric_limits<double>::quiet_NaN()};
+  double energy_deviation{};  ///< of an estimate
 };
 
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.

@@ -14,6 +14,7 @@ constexpr double kMaxInertiaChange =
     0.3;                               // of the logarithm by one sample: beyond it the linearisation is worth nothing
 constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
+constexpr double kMostDoubt = 1.0;     // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
 constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
 
 /// drawn: the factor is another one than before.
@@ -23,6 +24,20 @@ void extend(const ShaftTransition& f, bool drawn, ShaftMatrix* transition) noexc
   step.topRows<2>() = f;
   if (drawn) step.col(CrankBelief::kFactor).setZero();
   *transition = (step * *transition).eval();
+}
+
+/// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].
+void doubtSpeedChange(double variance, double w, double since, double dt, ShaftMatrix& covariance) noexcept {
+  using B = CrankBelief;
+  const double by_angle = w * since;
+  covariance(B::kAngle, B::kAngle) += (square(by_angle) + square(w * dt) / 12.0) * variance;
+  covariance(B::kAngle, B::kSpeed) += by_angle * w * variance;
+  covariance(B::kSpeed, B::kSpeed) += square(w) * variance;
+  covariance(B::kAngle, B::kFactor) += by_angle * variance;
+  covariance(B::kSpeed, B::kFactor) += w * variance;
+  covariance(B::kSpeed, B::kAngle) = covariance(B::kAngle, B::kSpeed);
+  covariance(B::kFactor, B::kAngle) = covariance(B::kAngle, B::kFactor);
+  covariance(B::kFactor, B::kSpeed) = covariance(B::kSpeed, B::kFactor);
 }
 
 }  // namespace
@@ -157,17 +172,18 @@ void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, Shaf
 
 void CrankBelief::meetTool(double deviation, double dt) noexcept {
   drawFactor({1.0, deviation});
-  // The speed changed by (factor - 1) w at an instant that may be any of dt: the angle by half of it times dt.
-  const double w = state.speed, variance = square(deviation);
-  const double by_angle = 0.5 * w * dt;
-  covariance(kAngle, kAngle) += square(w * dt) * variance / 3.0;
-  covariance(kAngle, kSpeed) += by_angle * w * variance;
-  covariance(kSpeed, kSpeed) += square(w) * variance;
-  covariance(kAngle, kFactor) = by_angle * variance;
-  covariance(kSpeed, kFactor) = w * variance;
-  covariance(kSpeed, kAngle) = covariance(kAngle, kSpeed);
-  covariance(kFactor, kAngle) = covariance(kAngle, kFactor);
-  covariance(kFactor, kSpeed) = covariance(kSpeed, kFactor);
+  doubtSpeedChange(square(deviation), state.speed, 0.5 * dt, dt, covariance);
+}
+
+bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt) noexcept {
+  const double before = state.speed / factor, since = std::max(0.5 * dt, state.position.angle.offset / state.speed);
+  const double squared = row == kSpeed ? square(before) : square(before) * (square(since) + square(dt) / 12.0);
+  const double variance = (square(innovation) - total) / squared;
+  if (motor || !(variance > 0.0 && variance < square(kMostDoubt))) return false;
+  covariance(kFactor, kFactor) += variance;
+  struck_early = struck_early && square(factor - 1.0) > variance;  // else what was taken for the tool was noise
+  doubtSpeedChange(variance, before, since, dt, covariance);
+  return true;
 }
 
 ShaftMatrix CrankBelief::grown(double growth, const ConstantErrors::Matrix& moment) const noexcept {

@@ -67,6 +67,10 @@ struct CrankBelief {
   void passLate(const ShaftModel& model, const BlowPrior& prior, ShaftMatrix* transition = nullptr) noexcept;
   /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
   void meetTool(double deviation, double dt) noexcept;
+  /// Just after a blow, struck some time within the last dt [s]: its factor is in doubt by as much as explains an
+  /// innovation of variance `total` of angle or speed. False: no factor explains it, all stays; nor is a motor of its
+  /// own reached by the blow so soon.
+  bool doubtBlow(Row row, double innovation, double total, double dt) noexcept;
   /// Variances of angle, speed and torque, and of a motor's own, times `by` where that is above 1.
   void widen(double by) noexcept;
   /// Stands exactly at the blow; a motor of its own stays where it is.

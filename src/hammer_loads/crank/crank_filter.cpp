@@ -249,9 +249,12 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     fit_ = innovation.logLikelihood();
     timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
     sample.timing_variance = timing_.variance();
+    if (isSpeedOfOtherSide(sample)) sample.speed.reset();
     const bool without_contact = ratio > kToolSeen && rivalExplains(dt, sample);
-    if (!without_contact && meetsTool(dt, innovation, sample)) innovation = sample.ofAngle(now_);  // (4)
-    if (!without_contact && isContradiction(dt, innovation) && !isLost()) {                        // (5)
+    const bool unlike =
+        !without_contact && (meetsTool(dt, innovation, sample) || meetsOtherBlow(dt, innovation, sample));
+    if (unlike) innovation = sample.ofAngle(now_);                           // (4)
+    if (!without_contact && isContradiction(dt, innovation) && !isLost()) {  // (5)
       if (const auto result = contradict(last, dt, innovation, sample)) return *result;
       innovation = sample.ofAngle(now_);
     }

@@ -115,6 +115,9 @@ class CrankFilter final : public CrankTracker {
   Eigen::Matrix3d covarianceOf(const CrankBelief& belief, double torque_part) const noexcept;
   WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
+  bool isSpeedOfOtherSide(const WeighedSample& sample) const noexcept;
+  bool isAtTool(double dt) const noexcept;
+  bool meetsOtherBlow(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool isContradiction(double dt, const Innovation& innovation) const noexcept;
   std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,

@@ -10,30 +10,61 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kNearCounts = 4.0;     // counts from the blow within which the encoder decides its side
-constexpr double kCertain = 3.0;        // deviations of the stamp within which the encoder's edge decides nothing
-constexpr double kToolDeviation = 0.5;  // of the crank's speed: what a tool met there may take
-constexpr double kFactorKnown = 0.05;   // deviation of a blow's factor from which on no other one comes
-constexpr double kExplained = 9.0;      // innovation^2 over its variance that is nothing special
+constexpr double kNearCounts = 4.0;         // counts from the blow within which the encoder decides its side
+constexpr double kCertain = 3.0;            // deviations of the stamp within which the encoder's edge decides nothing
+constexpr double kToolDeviation = 0.5;      // of the crank's speed: what a tool met there may take
+constexpr double kToolSeenByStamps = 25.0;  // innovation^2 over its variance that shows it where stamps jitter
+constexpr double kSpeedAgrees = 4.0;        // likewise of a measured speed, which a stamp does not move
+constexpr double kExplained = 9.0;          // innovation^2 over its variance that is nothing special
+constexpr double kAtBlow = 0.3;             // [rad] from the blow: no jitter takes a sample further to the other side
 
 }  // namespace
 
-/// (4) A crank that is suddenly slower near the dead centre, or just after it than any blow makes it: the tool. True
-/// where the belief has taken it up.
+/// Read after the blow and stamped before it; or the reverse, if it is the speed before the blow: the tool may be met
+/// before the count of the dead centre. A motor beyond a coupling keeps its speed at the blow.
+bool CrankFilter::isSpeedOfOtherSide(const WeighedSample& sample) const noexcept {
+  const CrankAngle& angle = now_.state.position.angle;
+  const bool stays = mirrored_ || now_.motor || now_.tool_met || std::abs(angle.offset) > kAtBlow;
+  if (stays || !sample.speed || !(sample.timing_variance > 0.0)) return false;
+  if (angle.side == Side::kBeforeBlow) return sample.angle > 0.0;
+  const double off = *sample.speed - now_.state.speed / now_.factor;
+  return sample.angle < 0.0 && square(off) < 2.0 * kExplained * sample.speed_variance;
+}
+
+bool CrankFilter::isAtTool(double dt) const noexcept {
+  return isNearTool(now_.state, dt) && now_.state.speed > 1.0 && !mirrored_;
+}
+
+/// (4) A crank that is suddenly slower near the dead centre: the tool. True where the belief has taken it up.
 bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
-  if (!isNearTool(now_.state, dt) || now_.state.speed < 1.0 || mirrored_) return false;
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
-  if (!before && now_.covariance(Belief::kFactor, Belief::kFactor) < square(kFactorKnown)) return false;
-  const bool by_angle = (angle.value < 0.0 || !before) && angle.ratio() > kToolSeen;
-  bool by_speed = false;
+  if (!before || !(angle.value < 0.0) || !isAtTool(dt)) return false;
+  const bool jitters = sample.timing_variance > 0.0;
+  bool seen = angle.ratio() > (jitters ? kToolSeenByStamps : kToolSeen);
   if (sample.speed) {
     const Innovation speed = sample.ofSpeed(now_, model_);
-    by_speed = speed.ratio() > kToolSeen && speed.value * angle.value > 0.0 && (angle.value < 0.0 || !before);
+    const double ratio = speed.value < 0.0 ? speed.ratio() : 0.0;
+    seen = ratio > kToolSeen || (seen && (!jitters || ratio > kSpeedAgrees));
   }
-  if (!by_angle && !by_speed) return false;
+  if (!seen) return false;
   now_.meetTool(kToolDeviation, dt);
-  now_.tool_met = now_.struck_early = before;
+  now_.tool_met = now_.struck_early = true;
   return true;
+}
+
+/// (4) A crank that is slower or faster just after the blow than was expected: a blow unlike those before.
+bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
+  const bool after = now_.state.position.angle.side == Side::kAfterBlow && sample.angle > 0.0;
+  if (!after || !isAtTool(dt)) return false;
+  const double least = sample.timing_variance > 0.0 ? kToolSeenByStamps : kToolSeen;
+  bool by_angle = angle.ratio() > least && !isContradiction(dt, angle);
+  if (sample.speed) {
+    const Innovation speed = sample.ofSpeed(now_, model_);
+    const double ratio = speed.value * angle.value > 0.0 ? speed.ratio() : 0.0;
+    if (ratio > kToolSeen) return now_.doubtBlow(Belief::kSpeed, speed.value, speed.total, dt);
+    by_angle = by_angle && ratio > 1.0;
+  }
+  return by_angle && now_.doubtBlow(Belief::kAngle, angle.value, angle.total, dt);
 }
 
 /// (7) There was no blow yet within this step, though one was predicted.
@@ -75,7 +106,8 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
   }
 }
 
-/// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is exact.
+/// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
+/// exact.
 std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
   if (encoder_.isFiner() || settings_.angle_noise > 0.0 || now_.motor) return std::nullopt;
   const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;

@@ -32,10 +32,13 @@ CrankEstimate CrankFilter::between(double dt) const noexcept {
   return estimateBetween({model_, step_model_, before_, now_, before_hull_, now_hull_, step_, mostSpeed()}, dt);
 }
 
+/// The way forward from the sample before may strike earlier than the way between both, with a blow not yet known.
 Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) const noexcept {
   if (dt >= step_) return motionCovariance(torque_part);
   CrankBelief belief = before_;
-  predict(dt, true, belief);
+  const bool comes_to_blow = before_.state.position.angle.side == Side::kBeforeBlow && isNearTool(before_.state, step_);
+  const bool is_before = comes_to_blow && between(dt).position.angle.side == Side::kBeforeBlow;
+  predict(dt, !is_before, belief);
   return covarianceOf(belief, torque_part);
 }
 
