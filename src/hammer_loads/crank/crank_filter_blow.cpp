@@ -62,7 +62,7 @@ bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const Weigh
     const Innovation speed = sample.ofSpeed(now_, model_);
     const double ratio = speed.value * angle.value > 0.0 ? speed.ratio() : 0.0;
     if (ratio > kToolSeen) return now_.doubtBlow(Belief::kSpeed, speed.value, speed.total, dt);
-    by_angle = by_angle && ratio > 1.0;
+    by_angle = by_angle && ratio > 1.0;  // the prior may explain the speed; where both go one way it is the blow
   }
   return by_angle && now_.doubtBlow(Belief::kAngle, angle.value, angle.total, dt);
 }
