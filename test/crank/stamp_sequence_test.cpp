@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -82,6 +83,35 @@ TEST(StampSequence, WholeMillisecondsAndBurstsGetTheirInstantsBack) {
     EXPECT_LT(scatterOf(sequence, bursts), 2.5e-4) << length;
     EXPECT_TRUE(sequence.isSteady());
   }
+}
+
+/// Of a crank at rest all readings are alike: messages of one burst look like the same one again. Two seconds at rest,
+/// three of motion, two at rest, three of motion.
+TEST(StampSequence, BurstsOfACrankThatRestedGetTheirInstantsBack) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  double worst = 0.0;
+  for (int i = 0; i < 10000; ++i) {
+    const bool rests = i % 5000 < 2000, same = i % 10 != 0;
+    const StampSequence::Place place = sequence.place(kStart + (i / 10 * 10 + 9) * kMs, rests && same && i > 0);
+    const bool is_known = i % 5000 >= 2300;
+    if (!is_known) continue;
+    ASSERT_EQ(place.kind, Kind::kPlaced);
+    worst = std::max(worst, std::abs(1e-9 * static_cast<double>(place.stamp - (kStart + i * kMs))));
+  }
+  EXPECT_LT(worst, 1e-4);
+  EXPECT_TRUE(sequence.isSteady());
+}
+
+TEST(StampSequence, MessagesThatComeTwiceAreNoBursts) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  for (int i = 0; i < 5000; ++i) {
+    const StampSequence::Place place = sequence.place(kStart + i * kMs, false);
+    ASSERT_FALSE(place.refitted);
+    if (i % 3 == 0) {
+      ASSERT_EQ(sequence.place(kStart + i * kMs, true).kind, Kind::kDuplicate);
+    }
+  }
+  EXPECT_FALSE(sequence.isSteady());
 }
 
 TEST(StampSequence, WhereManyChangePlacesTheLineCounts) {

@@ -88,6 +88,16 @@ TEST(MeasuredBlow, OfARestitutionDrawnAnew) {
   }
 }
 
+/// Before it works the crank stands still, and without speeds all samples of a burst are alike.
+TEST(MeasuredBlow, OfSamplesInBurstsWithoutSpeeds) {
+  for (const std::uint64_t seed : {301u, 302u, 303u}) {
+    const Blows blows =
+        follow([](auto& machine) { machine.crank.burst = 10, machine.crank.speed = false; }, 1000.0, seed);
+    EXPECT_GT(blows.count, 30u);
+    EXPECT_LT(blows.worst, 0.03) << seed;
+  }
+}
+
 /// A count that shows the dead centre late or early makes a blow seem to act too soon or too late.
 TEST(MeasuredBlow, OfARestitutionDrawnAnewBesideAZeroThatIsOff) {
   for (const double jitter : {0.0, 2e-4}) {

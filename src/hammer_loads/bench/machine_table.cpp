@@ -44,6 +44,7 @@ std::vector<Kind> kinds() {
       {"stamps jitter by 1 ms", {1000.0, 200.0}, jitter(1e-3)},
       {"stamps of whole ms", {1000.0}, [](MachineSettings& s) { s.crank.stamp_step = 1e-3; }, 1.0, false, -0.5e-3},
       {"bursts of ten", {1000.0}, [](MachineSettings& s) { s.crank.burst = 10; }},
+      {"bursts of ten, no speeds", {1000.0}, [](MachineSettings& s) { s.crank.burst = 10, s.crank.speed = false; }},
       {"restitution 0 to 0.3",
        {1000.0, 100.0},
        [](MachineSettings& s) { s.blow.restitution_drawn = true, s.blow.restitution_high = 0.3; }},

@@ -19,6 +19,7 @@ StampSequence::Place StampSequence::begin(std::int64_t header) noexcept {
   header_ = newest_ = placed_ = header;
   rewound_.reset();
   irregularity_ = 0.0;
+  uncounted_ = false;
   steady_ = mode_ == CrankStamps::kSteady;
   fit_.begin(header);
   return {Kind::kRestart, header, false};
@@ -26,7 +27,10 @@ StampSequence::Place StampSequence::begin(std::int64_t header) noexcept {
 
 StampSequence::Place StampSequence::place(std::int64_t header, bool repeats) noexcept {
   if (!header_) return begin(header);
-  if (header == *header_ && repeats) return {Kind::kDuplicate, header, false};
+  if (header == *header_ && repeats && irregularity_ <= kMany) {
+    uncounted_ = true;
+    return {Kind::kDuplicate, header, false};
+  }
   const std::int64_t back = newest_ - header;
   const bool too_far = mode_ == CrankStamps::kHeader ? back > 0 : back > stale_;
   if (too_far) {  // a single one may just be late
@@ -41,6 +45,10 @@ StampSequence::Place StampSequence::place(std::int64_t header, bool repeats) noe
 }
 
 StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
+  if (uncounted_ && header == *header_) {  // they were not: stamps come in bursts
+    fit_.begin(header);
+    uncounted_ = false;
+  }
   const std::int64_t fitted = fit_.add(header);
   const bool irregular = header <= newest_;
   irregular_ += irregular;
