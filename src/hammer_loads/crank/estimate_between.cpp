@@ -31,7 +31,9 @@ double speedOn(const CrankAngle& angle, double speed, Side from, double factor) 
 CrankEstimate estimateBetween(const BetweenSamples& s, double dt) noexcept {
   ShaftState state = s.before.state, back = s.now.state;
   const bool contact = !s.before.state.position.isMirrored() && !s.now.state.position.isMirrored();
-  const Passing passing{s.before.tool_met ? 1.0 : s.now.factor, contact};
+  // A tool that was met before the dead centre leaves nothing to strike there, unless it was a blow at that after all.
+  const bool tool_was_none = s.before.struck_early && !s.now.struck_early;
+  const Passing passing{s.before.tool_met && !tool_was_none ? 1.0 : s.now.factor, contact};
   advanceState(s.step_model, dt, passing, state);
   const double part = dt / s.step;
   if (hasRunAway(s, state)) {
