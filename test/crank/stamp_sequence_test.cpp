@@ -14,6 +14,7 @@ namespace hammer_loads {
 namespace {
 
 using Kind = StampSequence::Kind;
+using Repeats = StampSequence::Repeats;
 constexpr std::int64_t kStart = 1700000000000000000;
 using test::kMs;
 
@@ -40,7 +41,7 @@ double scatterOf(StampSequence& sequence, const Stream& s) {
   int count = 0;
   std::int64_t last = 0;
   for (std::size_t i = 0; i < s.stamp.size(); ++i) {
-    const StampSequence::Place place = sequence.place(s.stamp[i], false);
+    const StampSequence::Place place = sequence.place(s.stamp[i], Repeats::kNo);
     EXPECT_TRUE(place.kind == Kind::kPlaced || i == 0);
     EXPECT_GT(place.stamp, last);
     last = place.stamp;
@@ -59,7 +60,7 @@ TEST(StampSequence, ExactStampsStayAsTheyAreAtAnyInterval) {
   std::exponential_distribution<> interval(500.0);
   std::int64_t stamp = kStart;
   for (int i = 0; i < 20000; ++i) {
-    const StampSequence::Place place = sequence.place(stamp, false);
+    const StampSequence::Place place = sequence.place(stamp, Repeats::kNo);
     ASSERT_EQ(place.stamp, stamp);
     ASSERT_FALSE(place.refitted);
     stamp += 1 + static_cast<std::int64_t>(1e9 * interval(random));
@@ -92,7 +93,8 @@ TEST(StampSequence, BurstsOfACrankThatRestedGetTheirInstantsBack) {
   double worst = 0.0;
   for (int i = 0; i < 10000; ++i) {
     const bool rests = i % 5000 < 2000, same = i % 10 != 0;
-    const StampSequence::Place place = sequence.place(kStart + (i / 10 * 10 + 9) * kMs, rests && same && i > 0);
+    const Repeats repeats = rests && same && i > 0 ? Repeats::kPerhapsAtRest : Repeats::kNo;
+    const StampSequence::Place place = sequence.place(kStart + (i / 10 * 10 + 9) * kMs, repeats);
     const bool is_known = i % 5000 >= 2300;
     if (!is_known) continue;
     ASSERT_EQ(place.kind, Kind::kPlaced);
@@ -105,13 +107,23 @@ TEST(StampSequence, BurstsOfACrankThatRestedGetTheirInstantsBack) {
 TEST(StampSequence, MessagesThatComeTwiceAreNoBursts) {
   StampSequence sequence(CrankStamps::kAuto, 0.25);
   for (int i = 0; i < 5000; ++i) {
-    const StampSequence::Place place = sequence.place(kStart + i * kMs, false);
+    const StampSequence::Place place = sequence.place(kStart + i * kMs, Repeats::kNo);
     ASSERT_FALSE(place.refitted);
     if (i % 3 == 0) {
-      ASSERT_EQ(sequence.place(kStart + i * kMs, true).kind, Kind::kDuplicate);
+      ASSERT_EQ(sequence.place(kStart + i * kMs, Repeats::kPerhapsAtRest).kind, Kind::kDuplicate);
     }
   }
   EXPECT_FALSE(sequence.isSteady());
+}
+
+TEST(StampSequence, AMessageOfABurstMayComeTwice) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  for (int i = 0; i < 5000; ++i) {
+    const std::int64_t stamp = kStart + (i / 10 * 10 + 9) * kMs;
+    ASSERT_EQ(sequence.place(stamp, Repeats::kNo).kind, i == 0 ? Kind::kRestart : Kind::kPlaced);
+    ASSERT_EQ(sequence.place(stamp, Repeats::kAtWork).kind, Kind::kDuplicate);
+  }
+  EXPECT_TRUE(sequence.isSteady());
 }
 
 TEST(StampSequence, WhereManyChangePlacesTheLineCounts) {
@@ -138,7 +150,7 @@ TEST(StampSequence, EqualStampsOfIrregularSamplesOnlyStepOn) {
   std::uniform_real_distribution<> any(0.0, 1.0);
   std::int64_t stamp = kStart, last = 0;
   for (int i = 0; i < 5000; ++i) {
-    const std::int64_t instant = sequence.place(stamp, false).stamp;
+    const std::int64_t instant = sequence.place(stamp, Repeats::kNo).stamp;
     ASSERT_GT(instant, last);
     ASSERT_LT(std::abs(instant - stamp), 20 * kMs);
     last = instant;
@@ -149,29 +161,29 @@ TEST(StampSequence, EqualStampsOfIrregularSamplesOnlyStepOn) {
 
 TEST(StampSequence, KnowsDuplicatesLateOnesAndTimeThatRanBack) {
   StampSequence sequence(CrankStamps::kAuto, 0.25);
-  EXPECT_EQ(sequence.place(kStart, false).kind, Kind::kRestart);
-  for (int i = 1; i < 200; ++i) EXPECT_EQ(sequence.place(kStart + i * kMs, false).kind, Kind::kPlaced);
+  EXPECT_EQ(sequence.place(kStart, Repeats::kNo).kind, Kind::kRestart);
+  for (int i = 1; i < 200; ++i) EXPECT_EQ(sequence.place(kStart + i * kMs, Repeats::kNo).kind, Kind::kPlaced);
   const std::int64_t last = kStart + 199 * kMs;
-  EXPECT_EQ(sequence.place(last, true).kind, Kind::kDuplicate);
-  const StampSequence::Place late = sequence.place(last - 3 * kMs, false);
+  EXPECT_EQ(sequence.place(last, Repeats::kPerhapsAtRest).kind, Kind::kDuplicate);
+  const StampSequence::Place late = sequence.place(last - 3 * kMs, Repeats::kNo);
   EXPECT_EQ(late.kind, Kind::kPlaced);
   EXPECT_TRUE(late.refitted);
   EXPECT_GT(late.stamp, last);
   EXPECT_LE(late.stamp, last + kMs);
-  EXPECT_EQ(sequence.place(last + 2 * kMs, false).stamp, last + 2 * kMs);
-  EXPECT_EQ(sequence.place(last - 400 * kMs, false).kind, Kind::kOutOfOrder);
-  EXPECT_EQ(sequence.place(last + 3 * kMs, false).stamp, last + 3 * kMs) << "a single one was only late";
-  EXPECT_EQ(sequence.place(last - 900 * kMs, false).kind, Kind::kOutOfOrder);
-  EXPECT_EQ(sequence.place(last - 899 * kMs, false).kind, Kind::kRestart);
-  EXPECT_EQ(sequence.place(last, false).kind, Kind::kRestart) << "a gap";
+  EXPECT_EQ(sequence.place(last + 2 * kMs, Repeats::kNo).stamp, last + 2 * kMs);
+  EXPECT_EQ(sequence.place(last - 400 * kMs, Repeats::kNo).kind, Kind::kOutOfOrder);
+  EXPECT_EQ(sequence.place(last + 3 * kMs, Repeats::kNo).stamp, last + 3 * kMs) << "a single one was only late";
+  EXPECT_EQ(sequence.place(last - 900 * kMs, Repeats::kNo).kind, Kind::kOutOfOrder);
+  EXPECT_EQ(sequence.place(last - 899 * kMs, Repeats::kNo).kind, Kind::kRestart);
+  EXPECT_EQ(sequence.place(last, Repeats::kNo).kind, Kind::kRestart) << "a gap";
 }
 
 TEST(StampSequence, HeaderStampsAreHeldToTheirOrder) {
   StampSequence sequence(CrankStamps::kHeader, 0.25);
-  sequence.place(kStart, false);
-  EXPECT_EQ(sequence.place(kStart, false).kind, Kind::kDuplicate);
-  EXPECT_EQ(sequence.place(kStart + kMs, false).stamp, kStart + kMs);
-  EXPECT_EQ(sequence.place(kStart + kMs - 1, false).kind, Kind::kOutOfOrder);
+  sequence.place(kStart, Repeats::kNo);
+  EXPECT_EQ(sequence.place(kStart, Repeats::kNo).kind, Kind::kDuplicate);
+  EXPECT_EQ(sequence.place(kStart + kMs, Repeats::kNo).stamp, kStart + kMs);
+  EXPECT_EQ(sequence.place(kStart + kMs - 1, Repeats::kNo).kind, Kind::kOutOfOrder);
 }
 
 }  // namespace

@@ -25,10 +25,11 @@ StampSequence::Place StampSequence::begin(std::int64_t header) noexcept {
   return {Kind::kRestart, header, false};
 }
 
-StampSequence::Place StampSequence::place(std::int64_t header, bool repeats) noexcept {
+StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) noexcept {
   if (!header_) return begin(header);
-  if (header == *header_ && repeats && irregularity_ <= kMany) {
-    uncounted_ = true;
+  const bool may_be_burst = repeats == Repeats::kPerhapsAtRest;
+  if (header == *header_ && repeats != Repeats::kNo && !(may_be_burst && irregularity_ > kMany)) {
+    uncounted_ = uncounted_ || may_be_burst;
     return {Kind::kDuplicate, header, false};
   }
   const std::int64_t back = newest_ - header;

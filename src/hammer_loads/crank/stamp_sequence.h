@@ -37,8 +37,14 @@ class StampSequence {
   /// stale_after: gap or way back from which on a sample starts anew [s].
   StampSequence(CrankStamps mode, double stale_after) noexcept;
 
-  /// header: stamp of the message that arrives [ns]; repeats: all its values are those of the message before.
-  Place place(std::int64_t header, bool repeats) noexcept;
+  /// Whether all values of a message are those of the message before.
+  enum class Repeats {
+    kNo,
+    kPerhapsAtRest,  ///< they are, as of a crank that rests
+    kAtWork,         ///< they are, a measured speed among them
+  };
+  /// header: stamp of the message that arrives [ns].
+  Place place(std::int64_t header, Repeats repeats) noexcept;
   /// Stamps are being refitted by sequence.
   bool isSteady() const noexcept { return steady_; }
   /// Stamps that repeated or changed places since the start.

@@ -49,9 +49,11 @@ std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& m
     checkUnit(header, measured);
     return refusal;
   }
+  using Repeats = StampSequence::Repeats;
   const bool repeats = measured.angle == last_raw_.angle && measured.speed == last_raw_.speed;
+  const Repeats known = measured.speed.value_or(0.0) != 0.0 ? Repeats::kAtWork : Repeats::kPerhapsAtRest;
   last_raw_ = measured;
-  const StampSequence::Place place = sequence_.place(header - latency_, repeats);
+  const StampSequence::Place place = sequence_.place(header - latency_, repeats ? known : Repeats::kNo);
   stamp_ = place.stamp;
   if (place.kind == StampSequence::Kind::kDuplicate) return Refusal::kDuplicate;
   if (place.kind == StampSequence::Kind::kOutOfOrder) return Refusal::kOutOfOrder;
