@@ -17,9 +17,9 @@ namespace {
 
 /// Of all blows together.
 struct Blows {
-  double worst{};                   ///< energy off, of the true one
-  double deviation{}, most_told{};  ///< of the energy, told: mean and largest, of the true one
-  std::size_t count{}, within{};    ///< within: two deviations
+  double worst{};                           ///< energy off, of the true one
+  double deviation{}, largest_deviation{};  ///< of the energy as estimated: mean and largest, of the true one
+  std::size_t count{}, within{};            ///< within: two deviations
 };
 
 Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, double rate, std::uint64_t seed) {
@@ -32,16 +32,24 @@ Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, doub
   for (const accuracy::BlowAt& b :
        accuracy::runSession(session, machine.start_stamp, shipped.mechanism, shipped.pipeline).blows)
     for (const simulation::BlowTruth& t : session.blows) {
-      if (std::abs(t.time - b.time) > 0.01 || b.time < 3.0 || b.time > machine.drive.stop_time) continue;
-      const double error = std::abs(b.energy / t.strike.energy - 1.0), told = b.energy_deviation / t.strike.energy;
+      if (std::abs(t.time - b.time) > 0.01 || b.time < 3.0) continue;
+      const double error = std::abs(b.energy / t.strike.energy - 1.0);
+      const double deviation = b.energy_deviation / t.strike.energy;
       blows.worst = std::max(blows.worst, error);
-      blows.deviation += told;
-      blows.most_told = std::max(blows.most_told, told);
-      blows.within += error < 2.0 * told;
+      blows.deviation += deviation;
+      blows.largest_deviation = std::max(blows.largest_deviation, deviation);
+      blows.within += error < 2.0 * deviation;
       ++blows.count;
     }
   blows.deviation /= static_cast<double>(blows.count);
   return blows;
+}
+
+/// At work to the end: a crank that comes to rest is another question.
+void drawRestitution(simulation::MachineSettings& machine) {
+  machine.blow.restitution_drawn = true;
+  machine.blow.restitution_high = 0.3;
+  machine.drive.stop_time = machine.duration;
 }
 
 /// A passage that is taken back, as an encoder's edge shows, must not strike a second time.
@@ -73,7 +81,7 @@ TEST(MeasuredBlow, OfARestitutionDrawnAnew) {
       for (const std::uint64_t seed : {301u, 302u, 303u, 304u, 305u, 906u}) {
         const Blows blows = follow(
             [&](auto& machine) {
-              machine.blow.restitution_drawn = true, machine.blow.restitution_high = 0.3;
+              drawRestitution(machine);
               machine.crank.stamp_noise = jitter, machine.crank.speed = speed;
             },
             1000.0, seed);
@@ -81,7 +89,7 @@ TEST(MeasuredBlow, OfARestitutionDrawnAnew) {
         EXPECT_GT(blows.count, 30u) << name;
         EXPECT_LT(blows.worst, 0.025) << name;
         EXPECT_LT(blows.deviation, 0.02) << name;
-        EXPECT_LT(blows.most_told, 0.08) << name;
+        EXPECT_LT(blows.largest_deviation, 0.08) << name;
         EXPECT_GT(blows.within, 0.9 * static_cast<double>(blows.count)) << name;
       }
     }
@@ -105,7 +113,7 @@ TEST(MeasuredBlow, OfARestitutionDrawnAnewBesideAZeroThatIsOff) {
       for (const std::uint64_t seed : {301u, 302u, 303u, 304u}) {
         const Blows blows = follow(
             [&](auto& machine) {
-              machine.blow.restitution_drawn = true, machine.blow.restitution_high = 0.3;
+              drawRestitution(machine);
               machine.crank.stamp_noise = jitter, machine.crank.zero = zero;
             },
             1000.0, seed);

@@ -41,6 +41,12 @@ void CrankFollower::checkUnit(StampNs stamp, const CrankSample& measured) noexce
   last_raw_stamp_ = stamp;
 }
 
+StampSequence::Repeats CrankFollower::repeatsOf(const CrankSample& measured) const noexcept {
+  using Repeats = StampSequence::Repeats;
+  if (measured.angle != last_raw_.angle || measured.speed != last_raw_.speed) return Repeats::kNo;
+  return measured.speed.value_or(0.0) != 0.0 ? Repeats::kAtWork : Repeats::kPerhapsAtRest;
+}
+
 /// Its instant, by its place in the sequence of arrival.
 std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& measured) noexcept {
   stamp_ = header;
@@ -49,11 +55,8 @@ std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& m
     checkUnit(header, measured);
     return refusal;
   }
-  using Repeats = StampSequence::Repeats;
-  const bool repeats = measured.angle == last_raw_.angle && measured.speed == last_raw_.speed;
-  const Repeats known = measured.speed.value_or(0.0) != 0.0 ? Repeats::kAtWork : Repeats::kPerhapsAtRest;
+  const StampSequence::Place place = sequence_.place(header - latency_, repeatsOf(measured));
   last_raw_ = measured;
-  const StampSequence::Place place = sequence_.place(header - latency_, repeats ? known : Repeats::kNo);
   stamp_ = place.stamp;
   if (place.kind == StampSequence::Kind::kDuplicate) return Refusal::kDuplicate;
   if (place.kind == StampSequence::Kind::kOutOfOrder) return Refusal::kOutOfOrder;

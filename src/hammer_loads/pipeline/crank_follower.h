@@ -53,6 +53,7 @@ class CrankFollower {
   bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
 
  private:
+  StampSequence::Repeats repeatsOf(const CrankSample& measured) const noexcept;
   std::optional<Refusal> place(StampNs header, const CrankSample& measured) noexcept;
   void checkUnit(StampNs stamp, const CrankSample& measured) noexcept;
   void restart() noexcept;
