@@ -35,13 +35,15 @@ Stream stream(int samples, double lost, const std::function<std::int64_t(std::in
   return s;
 }
 
-/// Root mean square of instant less taken about its mean, from a second on [s]; expects that instants increase.
+/// Root mean square of instant less taken about its mean, from a second on [s]; expects that instants increase. In the
+/// first 0.1 s equal stamps may have none: whether they come in bursts is not known yet.
 double scatterOf(StampSequence& sequence, const Stream& s) {
   double sum = 0.0, squares = 0.0;
   int count = 0;
   std::int64_t last = 0;
   for (std::size_t i = 0; i < s.stamp.size(); ++i) {
     const StampSequence::Place place = sequence.place(s.stamp[i], Repeats::kNo);
+    if (i > 0 && i < 100 && place.kind == Kind::kDuplicate && s.stamp[i] == s.stamp[i - 1]) continue;
     EXPECT_TRUE(place.kind == Kind::kPlaced || i == 0);
     EXPECT_GT(place.stamp, last);
     last = place.stamp;
@@ -104,6 +106,24 @@ TEST(StampSequence, BurstsOfACrankThatRestedGetTheirInstantsBack) {
   EXPECT_TRUE(sequence.isSteady());
 }
 
+/// Their first instants would be a microsecond apart: for a crank filter a machine that breaks all bounds, for seconds.
+TEST(StampSequence, InstantsOfBurstsAreRightOrNone) {
+  for (const int interval : {1, 5}) {
+    StampSequence sequence(CrankStamps::kAuto, 0.25);
+    double worst = 0.0;
+    int placed = 0;
+    for (int i = 0; i < 200; ++i) {
+      const StampSequence::Place place = sequence.place(kStart + (i / 10 * 10 + 9) * interval * kMs, Repeats::kNo);
+      if (i % 10 == 0 || place.kind != Kind::kPlaced) continue;  // the first of each has its stamp
+      const double late = static_cast<double>(place.stamp - (kStart + i * interval * kMs));
+      worst = std::max(worst, std::abs(late / static_cast<double>(interval * kMs)));
+      ++placed;
+    }
+    EXPECT_GT(placed, 100) << interval;
+    EXPECT_LT(worst, 0.05) << interval << ": of an interval";
+  }
+}
+
 TEST(StampSequence, MessagesThatComeTwiceAreNoBursts) {
   StampSequence sequence(CrankStamps::kAuto, 0.25);
   for (int i = 0; i < 5000; ++i) {
@@ -120,7 +140,10 @@ TEST(StampSequence, AMessageOfABurstMayComeTwice) {
   StampSequence sequence(CrankStamps::kAuto, 0.25);
   for (int i = 0; i < 5000; ++i) {
     const std::int64_t stamp = kStart + (i / 10 * 10 + 9) * kMs;
-    ASSERT_EQ(sequence.place(stamp, Repeats::kNo).kind, i == 0 ? Kind::kRestart : Kind::kPlaced);
+    const Kind kind = sequence.place(stamp, Repeats::kNo).kind;
+    if (i >= 100) {
+      ASSERT_EQ(kind, Kind::kPlaced);
+    }
     ASSERT_EQ(sequence.place(stamp, Repeats::kAtWork).kind, Kind::kDuplicate);
   }
   EXPECT_TRUE(sequence.isSteady());

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kOfLate = 1000.0;         // samples over which irregular stamps are counted
 constexpr double kMany = 5.0;              // of them: not a single late message
+constexpr double kSingle = 1.5;            // likewise
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
 
 }  // namespace
@@ -50,6 +51,7 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
     fit_.begin(header);
     uncounted_ = false;
   }
+  const bool repeats = header == *header_;
   const std::int64_t fitted = fit_.add(header);
   const bool irregular = header <= newest_;
   irregular_ += irregular;
@@ -57,6 +59,9 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   header_ = header;
   newest_ = std::max(newest_, header);
   if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;
+  const bool knows = fit_.isKnown() && (steady_ || !fit_.inBursts());
+  const bool single = irregularity_ < kSingle && fit_.runs() > 0;  // one alone is no burst
+  if (repeats && !knows && !single) return {Kind::kDuplicate, header, false};
   std::int64_t instant = header;
   if (steady_) {
     instant = fitted;

@@ -18,13 +18,15 @@ enum class CrankStamps {
 /// The sequence of samples is their order of arrival. A sample without irregular ones among the last thousand keeps its
 /// header stamp, bit for bit, however irregular the intervals. Where a few stamps repeat or run back a little, the
 /// sample gets an instant between its neighbours; where many do and the sensor evidently samples at equal intervals,
-/// all get the line through the stamps so far. A burst at rest without speeds looks like duplicates: the line begins
-/// anew with the first burst that moves. Causal; instants strictly increase until a restart.
+/// all get the line through the stamps so far. Of bursts only the first of each counts until the line is known, six
+/// bursts on. A burst at rest without speeds looks like duplicates: the line begins anew with the first burst that
+/// moves. Causal; instants strictly increase until a restart.
 class StampSequence {
  public:
   enum class Kind {
     kPlaced,      ///< the instant holds
-    kDuplicate,   ///< the same message again: it changes nothing; of a crank at rest it may be one of a burst
+    kDuplicate,   ///< the same message again: it changes nothing; of a crank at rest it may be one of a burst. Or
+                  ///< another one with the same stamp: when it was taken is not known yet
     kOutOfOrder,  ///< with kHeader: not after the last; else: so far back that the next one shows whether time ran back
     kRestart,     ///< placed, but nothing before it continues: a gap, or time ran back
   };

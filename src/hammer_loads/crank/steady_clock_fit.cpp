@@ -12,9 +12,12 @@ constexpr double kMemorySamples = 4096.0;  // samples
 constexpr double kScatterSamples = 300.0;  // over which scatter is learned, but no fewer than kWarm runs
 constexpr int kWarm = 20;                  // runs from which on the line is good enough to judge by
 constexpr int kFirst = 4;                  // runs until there is a line
+constexpr int kKnown = 6;                  // runs until regular bursts show themselves
+constexpr double kBurst = 2.0;             // samples in the mean
+constexpr double kRegular = 0.1;           // scatter of bursts over the time between them
 constexpr double kClip = 4.0;              // root mean squares: a stamp further off counts as that far off
 constexpr double kGap = 6.0;               // root mean squares beyond which samples were lost for certain
-constexpr double kEvidence = 16.0;         // logarithm of likelihood ratio that a sample was lost: by chance in 14 h at 1 kHz
+constexpr double kEvidence = 16.0;         // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
 constexpr double kLeastScatter = 0.15;     // of the interval: a run's beginning is not known better
 constexpr double kGrown = 2.0;             // scatter about the line over that of white jitter with such steps
 
@@ -26,12 +29,17 @@ void SteadyClockFit::begin(std::int64_t stamp) noexcept {
   run_length_ = 1;
 }
 
+bool SteadyClockFit::isKnown() const noexcept { return runs_ >= kKnown; }
+
+bool SteadyClockFit::inBursts() const noexcept { return mean_length_ > kBurst; }
+
 bool SteadyClockFit::explains() const noexcept {
+  if (isKnown() && inBursts() && end_square_ < square(kRegular * mean_length_ * interval_)) return true;
   return runs_ >= kWarm && interval_ > 0.0 && end_square_ <= square(kGrown) * 0.5 * step_square_;
 }
 
 double SteadyClockFit::scatterGain() const noexcept {
-  return 1.0 / std::min<double>(runs_, std::max<double>(kWarm, kScatterSamples / mean_length_));
+  return 1.0 / std::min<double>(runs_ - kFirst + 1, std::max<double>(kWarm, kScatterSamples / mean_length_));
 }
 
 /// The line takes up the run that has ended, by its last sample.
@@ -48,6 +56,7 @@ void SteadyClockFit::endRun() noexcept {
   }
   instant_ += used * 2.0 * (2.0 * n - 1.0) / (n * (n + 1.0));
   interval_ = std::max(0.0, interval_ + used / run_length_ * 6.0 / (n * (n + 1.0)));
+  if (runs_ < kFirst) return;
   const double gain = scatterGain();
   end_square_ += gain * (square(used) - end_square_);
   step_square_ += gain * (square(step) - step_square_);
