@@ -47,11 +47,11 @@ StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) 
 }
 
 StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
-  if (uncounted_ && header == *header_) {  // they were not: stamps come in bursts
+  const bool repeats = header == *header_;
+  if (uncounted_ && repeats) {  // they were not: stamps come in bursts
     fit_.begin(header);
     uncounted_ = false;
   }
-  const bool repeats = header == *header_;
   const std::int64_t fitted = fit_.add(header);
   const bool irregular = header <= newest_;
   irregular_ += irregular;
