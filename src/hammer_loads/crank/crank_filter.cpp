@@ -181,8 +181,10 @@ bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const
 }
 
 /// What lies before this sample is not known any more.
+/// A speed that was kept from before and is contradicted again is wrong itself.
 Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
   restart_load_ += 1.0;
+  if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
   anchor(sample);
   return Tracking::kRestarted;
 }
