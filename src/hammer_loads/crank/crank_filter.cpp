@@ -180,8 +180,8 @@ bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const
   return std::abs(innovation.value) > kJump || (std::abs(innovation.value) > most && innovation.ratio() > kWiden);
 }
 
-/// What lies before this sample is not known any more.
-/// A speed that was kept from before and is contradicted again is wrong itself.
+/// What lies before this sample is not known any more; a speed that was kept from there and is contradicted again is
+/// wrong itself.
 Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
   restart_load_ += 1.0;
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
