@@ -26,18 +26,20 @@ inline double crankAngle(CrankAngle angle) noexcept {
   return angle.offset < 0.0 ? angle.offset + kTwoPi : angle.offset;
 }
 
-inline LinkState linkState(const HullModel& model, const CrankMotion& crank) noexcept {
-  const LinkMotion links = linkMotion(model.mechanism().linkage(), crank.angle);
+inline LinkState linkState(const LinkMotion& links, const CrankMotion& crank) noexcept {
   return {crankAngle(crank.angle),   rodAngle(links),
           rockerAngle(links.rocker), crank.speed,
           links.v * crank.speed,     links.rocker.u * crank.speed,
           transmissionAngle(links)};
 }
+inline LinkState linkState(const HullModel& model, const CrankMotion& crank) noexcept {
+  return linkState(linkMotion(model.mechanism().linkage(), crank.angle), crank);
+}
 
-/// Forces in the pins and drive torque at the model's level.
-inline PinReactions pinForces(const HullModel& model, const CrankMotion& crank, const HullMotion& hull,
-                              double near_blow) noexcept {
-  return pinForces(model.mechanism(), model.level(), crank, hull, NearBlow(near_blow));
+/// Forces in the pins and drive torque at the model's level; links: at the crank's angle.
+inline PinReactions pinForces(const HullModel& model, const LinkMotion& links, const CrankMotion& crank,
+                              const HullMotion& hull, double near_blow) noexcept {
+  return pinForces(model.mechanism(), model.level(), links, crank, hull, NearBlow(near_blow));
 }
 
 /// Blow by what the crank's speed did at it; where that is not known, of a crank that keeps its speed.
@@ -59,18 +61,32 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
   return wrench;
 }
 
+/// A crank angle and how the links move there.
+struct LinksAtAngle {
+  CrankAngle angle;
+  LinkMotion links;
+};
+inline LinksAtAngle linksAt(const HullModel& model, CrankAngle angle) noexcept {
+  return {angle, linkMotion(model.mechanism().linkage(), angle)};
+}
+
+/// The same with the motion of the links at crank.angle, found before.
+inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
+                             const CrankMotion& crank, const HullMotion& hull) noexcept {
+  HullWrench wrench = hullWrench(model, links, crank, hull);
+  wrench.torque_y += drive.torque(crank.acceleration + crank.drive_lead, hull.acceleration);
+  return wrench;
+}
+
 /// The same at one crank angle for any speed [rad/s] and acceleration [rad/s2]: the links' motion is found once. Refers
 /// to its arguments.
 class WrenchAtAngle {
  public:
-  WrenchAtAngle(const HullModel& model, const DriveReaction& drive, const HullMotion& hull, CrankAngle angle) noexcept
-      : model_(model),
-        drive_(drive),
-        hull_(hull),
-        links_(linkMotion(model.mechanism().linkage(), angle)),
-        angle_(angle) {}
+  WrenchAtAngle(const HullModel& model, const DriveReaction& drive, const HullMotion& hull,
+                const LinksAtAngle& at) noexcept
+      : model_(model), drive_(drive), hull_(hull), at_(at) {}
   HullWrench operator()(double speed, double acceleration) const noexcept {
-    HullWrench wrench = hullWrench(model_, links_, {angle_, speed, acceleration}, hull_);
+    HullWrench wrench = hullWrench(model_, at_.links, {at_.angle, speed, acceleration}, hull_);
     wrench.torque_y += drive_.torque(acceleration, hull_.acceleration);
     return wrench;
   }
@@ -79,8 +95,7 @@ class WrenchAtAngle {
   const HullModel& model_;
   const DriveReaction& drive_;
   const HullMotion& hull_;
-  LinkMotion links_;
-  CrankAngle angle_;
+  const LinksAtAngle& at_;
 };
 
 /// From motion relative to the hull alone: without weight, in a hull at rest.

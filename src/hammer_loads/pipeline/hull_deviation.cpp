@@ -18,17 +18,15 @@ CrankAngle moved(CrankAngle angle, double by) noexcept {
   return angle;
 }
 
-/// By central differences; at_angle(angle) gives what is wanted by speed and acceleration.
+/// By central differences; at_angle(links) gives what is wanted by speed and acceleration.
 template <typename AtAngle>
-Gradient gradient(const CrankEstimate& crank, const AtAngle& at_angle) noexcept {
+Gradient gradient(const CrankEstimate& crank, const LinksBeside& links, const AtAngle& at_angle) noexcept {
   const double speed = crank.speed, acceleration = crank.acceleration;
   const auto [angle_step, speed_step, acceleration_step] = kStep;
   const auto slope = [](const HullWrench& from, const HullWrench& to, double step) {
-    return Eigen::Vector3d((vectorOf(to) - vectorOf(from)) / (2.0 * step));
+    return Eigen::Vector3d((vectorOf(to) - vectorOf(from)) * (0.5 / step));
   };
-  const auto before = at_angle(moved(crank.position.angle, -angle_step));
-  const auto after = at_angle(moved(crank.position.angle, angle_step));
-  const auto here = at_angle(crank.position.angle);
+  const auto before = at_angle(links.before), after = at_angle(links.after), here = at_angle(links.here);
   Gradient result;
   result << slope(before(speed, acceleration), after(speed, acceleration), angle_step),
       slope(here(speed - speed_step, acceleration), here(speed + speed_step, acceleration), speed_step),
@@ -58,21 +56,28 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) noexcept {
 
 }  // namespace
 
+LinksBeside::LinksBeside(const HullModel& model, CrankAngle angle) noexcept
+    : before(linksAt(model, moved(angle, -kStep[0]))),
+      here(linksAt(model, angle)),
+      after(linksAt(model, moved(angle, kStep[0]))) {}
+
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                            const HullMotion& hull, const Eigen::Matrix3d& covariance) noexcept {
+                            const LinksBeside& links, const HullMotion& hull,
+                            const Eigen::Matrix3d& covariance) noexcept {
   if (!(covariance(1, 1) > 0.0)) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     return {{kUnknown, kUnknown, kUnknown}, kUnknown, kUnknown, kUnknown};
   }
-  const Gradient g = gradient(crank, [&](CrankAngle angle) { return WrenchAtAngle(model, drive, hull, angle); });
+  const Gradient g =
+      gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
   return {deviationOf(g, covariance), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
           std::sqrt(covariance(2, 2))};
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                             const Eigen::Matrix3d& covariance) noexcept {
-  const Gradient g = gradient(crank, [&](CrankAngle angle) {
-    return [&model, &drive, angle](double speed, double) {
+                             const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept {
+  const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) {
+    return [&model, &drive, angle = at.angle](double speed, double) {
       const LinkMomentum p = linkMomentum(model, angle, speed);
       return HullWrench{p.x, p.z, p.about_d + drive.by_crank * speed};
     };
@@ -81,11 +86,12 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 }
 
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                          const Eigen::Matrix3d& covariance) noexcept {
+                          const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept {
   WrenchSpread spread;
   if (!(covariance(1, 1) > 0.0)) return spread;
   const HullMotion at_rest;
-  const Gradient g = gradient(crank, [&](CrankAngle angle) { return WrenchAtAngle(model, drive, at_rest, angle); });
+  const Gradient g =
+      gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, at_rest, at); });
   const Eigen::Matrix3d errors = g * root(covariance);
   spread.count = 3;
   for (int i = 0; i < 3; ++i) {

@@ -17,18 +17,29 @@ struct HullDeviation {
   double acceleration{};  ///< [rad/s2]
 };
 
+/// How the links move at a crank angle and a little beside it: what gradients by the angle need.
+struct LinksBeside {
+  LinksBeside(const HullModel& model, CrankAngle angle) noexcept;
+  LinksAtAngle before, here, after;
+};
+
 /// covariance of (angle, speed, acceleration), linearised at the estimate (central differences; exact in speed and
 /// acceleration), the drive's reaction included. What the model leaves out is not in it. Some 0.3 us.
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                            const HullMotion& hull, const Eigen::Matrix3d& covariance) noexcept;
+                            const LinksBeside& links, const HullMotion& hull,
+                            const Eigen::Matrix3d& covariance) noexcept;
+inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
+                                   const HullMotion& hull, const Eigen::Matrix3d& covariance) noexcept {
+  return hullDeviation(model, drive, crank, LinksBeside(model, crank.position.angle), hull, covariance);
+}
 
 /// Standard deviation of the momentum, the drive's included: of an impulse's one end [N s, N s, N m s].
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                             const Eigen::Matrix3d& covariance) noexcept;
+                             const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
 
 /// The covariance as three errors of the load that are independent of each other, from motion of the links relative to
 /// the hull; none where there is no covariance.
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                          const Eigen::Matrix3d& covariance) noexcept;
+                          const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
 
 }  // namespace hammer_loads

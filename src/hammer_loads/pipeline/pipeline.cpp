@@ -100,21 +100,21 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
 
   const CrankMotion motion = motionOf(result_.crank);
-  const HullWrench wrench = hullWrench(model_, motion, hull_.motion().motion);
-  if (!isPlausible(wrench)) return withhold(Refusal::kImplausible);
+  const LinksBeside links(model_, motion.angle);
+  if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion))) return withhold(Refusal::kImplausible);
   result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
   result_.beside_blow =
       !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, std::sqrt(result_.crank_covariance(0, 0)));
-  followBoom();
+  followBoom(links);
   hullMovedAtBlow();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
-  result_.links = linkState(model_, motion);
-  result_.wrench =
-      hullWrench(model_, driveReaction(model_, crank_.tracker().driveInertia()), motion, result_.hull.motion);
-  result_.pins = pinForces(model_, motion, result_.hull.motion, settings_.near_blow);
-  sampler_.sample(result_);
+  result_.links = linkState(links.here.links, motion);
+  result_.wrench = hullWrench(model_, driveReaction(model_, crank_.tracker().driveInertia()), links.here.links, motion,
+                              result_.hull.motion);
+  result_.pins = pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow);
+  sampler_.sample(links, result_);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;
   return result_;
@@ -169,15 +169,15 @@ CrankLead Pipeline::crankLead(double speed) const noexcept {
   return {by_angle * errors.estimate()[0], by_angle * errors.deviation()[0]};
 }
 
-void Pipeline::followBoom() noexcept {
+void Pipeline::followBoom(const LinksBeside& links) noexcept {
   result_.boom = nullptr;
   if (!boom_) return;
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
   const CrankMotion crank = motionOf(result_.crank);
-  const HullWrench motion = motionWrench(model_, drive, crank);
+  const HullWrench motion = hullWrench(model_, drive, links.here.links, crank, Gravity{});
   const HullWrench displaced = displaced_links_.wrench(crank, hull_.motion().motion);
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
-  const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, result_.crank_covariance);
+  const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, links, result_.crank_covariance);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
   result_.boom = &boom_->sample({result_.stamp, motion, settings_.gravity, spread, hull_.newImuReading(result_.stamp),

@@ -60,7 +60,7 @@ class Pipeline {
   void hullMovedAtBlow() noexcept;
   double stampNoise() const noexcept;
   CrankLead crankLead(double speed) const noexcept;
-  void followBoom() noexcept;
+  void followBoom(const LinksBeside& links) noexcept;
   void passBlows() noexcept;
   void swingOn(const WrenchHistory& step) noexcept;
 

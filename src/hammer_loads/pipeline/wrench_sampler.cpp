@@ -32,14 +32,14 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
   return kind_ != OutputKind::kMean;
 }
 
-void WrenchSampler::sample(SampleResult& result) noexcept {
+void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexcept {
   added_up_to_ = 0.0;
   drive_ = driveReaction(*model_, tracker_->driveInertia());
   followHull(result.hull.motion);
   if (!begun_ && !begin(result)) return;
   StampNs stamp{};
   while (isDue(result.stamp, stamp)) {
-    const WrenchOutput made = output(stamp, result);
+    const WrenchOutput made = output(stamp, links, result);
     if (isKnown(made, result)) result.outputs.push_back(made);
     if (stamp == result.stamp) return;
   }
@@ -77,7 +77,7 @@ void WrenchSampler::followHull(const HullMotion& hull) noexcept {
     if (passage.strikes) hull_.blow = passage.time;
 }
 
-WrenchOutput WrenchSampler::output(StampNs stamp, const SampleResult& result) noexcept {
+WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept {
   ++index_;
   const bool at_sample = stamp == result.stamp;
   const double time = at_sample ? step_->length() : seconds(stamp - step_->start());
@@ -97,19 +97,22 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const SampleResult& result) no
     output.drive_reaction_y = drive_.torque(drive_acceleration, hull.acceleration);
   }
   last_output_ = stamp;
-  const LinkState links = at_sample ? result.links : linkState(*model_, motionOf(output.crank));
-  output.near_blow = links.transmission_angle < near_blow_;
+  const LinkState state = at_sample ? result.links : linkState(*model_, motionOf(output.crank));
+  output.near_blow = state.transmission_angle < near_blow_;
   const Eigen::Matrix3d covariance =
       at_sample ? result.crank_covariance : tracker_->covarianceBetween(time, torque_part_);
-  addDeviation(hull, covariance, output);
+  if (at_sample)
+    addDeviation(links, hull, covariance, output);
+  else
+    addDeviation(LinksBeside(*model_, output.crank.position.angle), hull, covariance, output);
   return output;
 }
 
-void WrenchSampler::addDeviation(const HullMotion& hull, const Eigen::Matrix3d& covariance,
+void WrenchSampler::addDeviation(const LinksBeside& links, const HullMotion& hull, const Eigen::Matrix3d& covariance,
                                  WrenchOutput& output) noexcept {
-  output.deviation = hullDeviation(*model_, drive_, output.crank, hull, covariance);
+  output.deviation = hullDeviation(*model_, drive_, output.crank, links, hull, covariance);
   if (kind_ != OutputKind::kMean) return;
-  const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, covariance);
+  const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, links, covariance);
   const HullWrench allowed = (1.0 / output.interval) * (momentum_deviation_ + momentum);
   momentum_deviation_ = momentum;
   HullWrench& wrench = output.deviation.wrench;

@@ -22,9 +22,9 @@ class WrenchSampler {
 
   /// Outputs restart with the next sample.
   void forget() noexcept { begun_ = false; }
-  /// Appends to the result's outputs those up to its sample, with which the step ended. No allocation once the
+  /// Appends to the result's outputs those up to its sample, with which the step ended; links: at the sample. No allocation once the
   /// outputs have the room of mostOutputs().
-  void sample(SampleResult& result) noexcept;
+  void sample(const LinksBeside& links, SampleResult& result) noexcept;
   /// Of one sample.
   std::size_t mostOutputs() const noexcept;
 
@@ -32,10 +32,11 @@ class WrenchSampler {
   bool begin(const SampleResult& result) noexcept;
   bool isDue(StampNs sample, StampNs& stamp) const noexcept;
   bool isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept;
-  WrenchOutput output(StampNs stamp, const SampleResult& result) noexcept;
+  WrenchOutput output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept;
   void addUpTo(double time) noexcept;
   void followHull(const HullMotion& hull) noexcept;
-  void addDeviation(const HullMotion& hull, const Eigen::Matrix3d& covariance, WrenchOutput& output) noexcept;
+  void addDeviation(const LinksBeside& links, const HullMotion& hull, const Eigen::Matrix3d& covariance,
+                    WrenchOutput& output) noexcept;
 
   const HullModel* model_;
   const CrankStep* step_;
