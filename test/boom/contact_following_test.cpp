@@ -69,7 +69,7 @@ class OnRock {
       see(2, tipRateReading(J, Eigen::Vector3d::UnitY(), imu[2]), 0.005, 0.02, 0.005);
     }
     for (int j = 1; j < 4 && pressures_ && i % 2 == 0; ++j)
-      see(j, oilTorqueReading(4, j, machine_.hold()[j - 1] + machine_.noise(100.0)), 200.0, 1000.0, 100.0);
+      see(j, oilTorqueReading(j, machine_.hold()[j - 1] + machine_.noise(100.0)), 200.0, 1000.0, 100.0);
   }
   void see(int channel, VibrationReading reading, double noise, double offset, double walk) {
     reading.noise = noise, reading.offset_deviation = offset, reading.offset_walk = walk;

@@ -100,13 +100,13 @@ class Session {
   void observeJoints() {
     for (int j = 1; j < 4; ++j) {
       const double slow = 0.002 * std::sin(0.5 * time_ + j);  // of which joint_states alone know nothing
-      see(j, jointAngleReading(4, j, machine_.displacement()[j - 1] + slow + machine_.noise(2e-4)), 2e-4, 0.01, 0.002);
+      see(j, jointAngleReading(j, machine_.displacement()[j - 1] + slow + machine_.noise(2e-4)), 2e-4, 0.01, 0.002);
     }
   }
   void observePressures() {
     for (int j = 1; j < 4; ++j) {
       const double hold = machine_.hold()[j - 1] * 1.0 + machine_.noise(200.0);
-      see(j, oilTorqueReading(4, j, hold), 200.0, 1000.0, 100.0);
+      see(j, oilTorqueReading(j, hold), 200.0, 1000.0, 100.0);
     }
   }
   void see(int channel, VibrationReading reading, double noise, double offset, double walk) {
@@ -227,7 +227,7 @@ TEST(ModeIdentifier, SurvivesNonsenseAndAForceThatIsAFewPercentWrong) {
   for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(run.frequencyError(k)), 0.025) << k;
   // A reading of a thousand times its size moves little; one that is no number nothing.
   const double ratio = run.identifier().frequencyRatio(0);
-  VibrationReading reading = jointAngleReading(4, 1, 100.0);
+  VibrationReading reading = jointAngleReading(1, 100.0);
   reading.noise = 1e-4, reading.offset_deviation = 0.01;
   run.boom_->vibration().observe(5, reading);
   EXPECT_NEAR(run.identifier().frequencyRatio(0), ratio, 0.02);

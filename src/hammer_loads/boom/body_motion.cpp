@@ -27,18 +27,19 @@ void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& m
     const auto here = static_cast<std::size_t>(i);
     const BodyMotion& before = result[here - 1];
     BodyMotion& now = result[here];
-    now = before;
     now.acceleration = before.accelerationAt(pose.X_BL[here].translation() - pose.X_BL[here - 1].translation());
+    now.rate = before.rate;
+    now.angular_acceleration = before.angular_acceleration;
     const int joint = chain.link(i).joint;
     if (joint < 0) continue;
     const Eigen::Vector3d& axis = pose.axis_B[static_cast<std::size_t>(joint)];
-    const Eigen::Vector3d velocity = axis * motion.velocity[joint];
-    const Eigen::Vector3d acceleration = axis * motion.acceleration[joint];
+    const double velocity = motion.velocity[joint], acceleration = motion.acceleration[joint];
+    const Eigen::Vector3d turned = before.rate.cross(axis);
     if (pose.prismatic[static_cast<std::size_t>(joint)]) {
-      now.acceleration += acceleration + 2.0 * before.rate.cross(velocity);
+      now.acceleration += acceleration * axis + (2.0 * velocity) * turned;
     } else {
-      now.rate += velocity;
-      now.angular_acceleration += acceleration + before.rate.cross(velocity);
+      now.rate += velocity * axis;
+      now.angular_acceleration += acceleration * axis + velocity * turned;
     }
   }
 }
@@ -55,7 +56,7 @@ void findChainLoads(const Chain& chain, const std::vector<RigidBody>& bodies, co
                     const JointMotion& motion, const Eigen::Vector3d& g_B, ChainLoads& result) noexcept {
   findMotions(chain, pose, motion, -g_B, result.motion);
   Wrench load;
-  for (int i = chain.links() - 1; i > 0; --i) {
+  for (int i = chain.links() - 1; i >= firstLoad(chain); --i) {
     const auto here = static_cast<std::size_t>(i);
     load = load + bodyLoad(bodies[here], pose.link(i), result.motion[here]);
     result.beyond[here] = load;

@@ -7,6 +7,7 @@
 
 #include "hammer_loads/boom/rigid_error.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/known_count.h"
 
 namespace hammer_loads {
 namespace {
@@ -117,10 +118,13 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   const JointVector zero = JointVector::Zero(chain.joints());
   const Eigen::Index joints = chain.joints(), held = static_cast<Eigen::Index>(cylinders_.size());
   const Eigen::Index rows = 7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * held;
-  response_.setZero(rows + kRowsAtOnce - rows % kRowsAtOnce, held + 6);
-  response_in_plane_.setZero(response_.rows(), held + 3);
-  rows_in_plane_.setZero(response_.rows());
-  deviation_.setZero(response_.rows());
+  const Eigen::Index fours = (rows + kFour - 1) / kFour;
+  response_.setZero(rows, held + 6);
+  response_fours_.setZero(kFour, fours * (held + 6));
+  response_in_plane_.setZero(kFour, fours * (held + 3));
+  rows_in_plane_.setZero(rows);
+  variance_.setZero(kFour * fours);
+  deviation_.setZero(rows);
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }
@@ -153,9 +157,14 @@ void Boom::moveVibrating(const JointMotion& motion, double step, const Eigen::Ve
 Eigen::Vector3d Boom::gravityAtTip() const noexcept { return pose_.tip().linear().transpose() * g_B_; }
 
 Boom::TipVibration Boom::tipVibration() const noexcept {
-  const Jacobian& J = jacobian_;
-  return {J.lazyProduct(vibration_.displacement()), J.lazyProduct(vibration_.velocity()),
-          J.lazyProduct(vibration_.acceleration())};
+  const auto ofTip = [&](const JointVector& of_joints) {
+    Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+    withCount<4>(chain_.joints(), [&](auto joints) {
+      for (int j = 0; j < joints; ++j) sum += of_joints[j] * jacobian_.col(j);
+    });
+    return sum;
+  };
+  return {ofTip(vibration_.displacement()), ofTip(vibration_.velocity()), ofTip(vibration_.acceleration())};
 }
 
 ReducedHull Boom::reducedHull(const Eigen::Vector3d& direction) const noexcept {

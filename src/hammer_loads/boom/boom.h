@@ -9,6 +9,7 @@
 #include "hammer_loads/boom/chain_pose.h"
 #include "hammer_loads/boom/cylinder_flags.h"
 #include "hammer_loads/boom/hold_down.h"
+#include "hammer_loads/boom/load_errors.h"
 #include "hammer_loads/boom/steel_loads.h"
 #include "hammer_loads/boom/vibration.h"
 #include "hammer_loads/boom/vibration_spread.h"
@@ -41,19 +42,6 @@ struct BoomLoads {
 struct WrenchSpread {
   int count{};                 ///< at most 4: of the crank's angle, speed and acceleration, of the rock, say
   std::array<Wrench, 4> part;  ///< on the tip, as the load
-};
-
-/// Errors of what acts on the boom, independent of each other, one standard deviation each.
-struct LoadErrors {
-  static constexpr std::size_t kMost = 7 + kMaxJoints;  ///< of a VibrationSpread's runs, and one for each mode
-  std::size_t count{};
-  std::array<JointVector, kMost> acceleration;  ///< of the joints' vibration [rad/s2]
-  std::array<Wrench, kMost> tip;                ///< of the load on the tip with it
-
-  void add(const JointVector& of_vibration, const Wrench& on_tip) noexcept {
-    acceleration[count] = of_vibration;
-    tip[count++] = on_tip;
-  }
 };
 
 /// Standard deviations; at a dead centre as SteelLoads.
@@ -126,8 +114,8 @@ class Boom {
   /// Joint torques of the errors of a load: what VibrationSpread::advance() takes.
   LoadSpread spreadTorque(const WrenchSpread& w_tip) const noexcept;
   /// How far loads() and steelLoads() may be off by the hammer's load and, unless rigid, the oil. Not by masses,
-  /// dimensions, weight and motion. For the pose within refresh_angle: what a difference does is found anew for each
-  /// such move of a joint.
+  /// dimensions, weight and motion. For the pose within four times refresh_angle: what a difference does is found anew
+  /// for each such move of a joint.
   void deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                   BoomDeviations& result) noexcept;
   /// The same by errors as they are, as where cylinders' forces are measured.
@@ -166,26 +154,22 @@ class Boom {
   std::array<CylinderPosition, kMaxJoints> at_;
 
   JointMotion vibratingMotion() const noexcept;
-  /// A column for each of so many errors, zeros for those that are not there.
-  static constexpr std::size_t kErrorsAtOnce = VibrationSpread::kMaxRuns;
-  using Shares = Eigen::Matrix<double, Eigen::Dynamic, kErrorsAtOnce, Eigen::RowMajor, kMaxJoints + 6>;
   void findResponse() noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
-  void gatherRowsInPlane() noexcept;
-  Shares sharesOf(const LoadErrors& errors, std::size_t first) const noexcept;
-  void addSquares(const Shares& shares, bool first_two_exclude) noexcept;
-  void sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDeviations& result) noexcept;
+  void arrangeResponse() noexcept;
+  static constexpr Eigen::Index kFour = 4;
+  using Fours = Eigen::Matrix<double, kFour, Eigen::Dynamic>;  ///< see LinearLoads
+  void findVariances(const LoadErrors& errors, const Fours& response, Eigen::Index rows) noexcept;
   void takeDeviations(BoomDeviations& result) const noexcept;
-  /// Columns: accelerations of the cylinders' joints, then of the load on the tip what lies in the boom's plane, then
-  /// what lies across it. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces on their
-  /// rods' pins; then zeros, one at least, up to a multiple of kRowsAtOnce.
+  /// Columns: LoadErrors::Inputs. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces on
+  /// their rods' pins.
   Eigen::MatrixXd response_;
-  static constexpr Eigen::Index kRowsAtOnce = 2;
-  /// Without the columns across the plane, and without the rows, half of all, that are zero then.
-  Eigen::MatrixXd response_in_plane_;
-  Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them; then the last, a zero
+  Fours response_fours_;           ///< the same
+  Fours response_in_plane_;        ///< without inputs across the plane, and without the rows, half of all, that are zero then
+  Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
   JointVector response_at_;    ///< steady_position_ where it belongs; NaN: nowhere yet
+  Eigen::VectorXd variance_;   ///< one entry a row of the response used, in fours
   Eigen::VectorXd deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };

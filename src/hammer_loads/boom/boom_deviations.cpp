@@ -6,11 +6,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kRounded = 1e-12;  // of a column: what rounding makes of zero
+constexpr double kRounded = 1e-12;     // of a column: what rounding makes of zero
+constexpr double kOfRefreshAngle = 4;  // moves of joints that make 0.5 % of a deviation
 
-/// Components of a wrench within the boom's plane, and across it.
-Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
-Eigen::Vector3d across(const Wrench& w) noexcept { return {w.force.y(), w.torque.x(), w.torque.z()}; }
 Wrench wrenchOf(const Eigen::Vector3d& in_plane, const Eigen::Vector3d& across) noexcept {
   return {{in_plane[0], across[0], in_plane[1]}, {across[1], in_plane[2], across[2]}};
 }
@@ -37,24 +35,25 @@ void Boom::storeResponse(Eigen::Index column, const JointVector& torque, const S
   for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].rod);
 }
 
-void Boom::gatherRowsInPlane() noexcept {
-  const Eigen::Index columns = response_in_plane_.cols();
-  Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxJoints + 3> least(columns);
-  for (Eigen::Index c = 0; c < columns; ++c) least[c] = kRounded * response_.col(c).cwiseAbs().maxCoeff();
+/// From response_: by all inputs, and by those in the plane the loads that are not zero then.
+void Boom::arrangeResponse() noexcept {
+  const Eigen::Index columns = response_.cols(), in_plane = columns - 3;
+  Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, LoadErrors::kMost> least(in_plane);
+  for (Eigen::Index c = 0; c < in_plane; ++c) least[c] = kRounded * response_.col(c).cwiseAbs().maxCoeff();
+  response_fours_.setZero(), response_in_plane_.setZero();
   in_plane_ = 0;
-  response_in_plane_.setZero();
-  rows_in_plane_.setConstant(static_cast<int>(response_.rows()) - 1);
   for (Eigen::Index row = 0; row < response_.rows(); ++row) {
-    const auto in_plane = response_.row(row).head(columns);
-    if ((in_plane.array().abs() <= least).all()) continue;
-    response_in_plane_.row(in_plane_) = in_plane;
+    const auto by = response_.row(row);
+    response_fours_.block(row % kFour, row / kFour * columns, 1, columns) = by;
+    if ((by.head(in_plane).array().abs() <= least).all()) continue;
+    response_in_plane_.block(in_plane_ % kFour, in_plane_ / kFour * in_plane, 1, in_plane) = by.head(in_plane);
     rows_in_plane_[in_plane_++] = static_cast<int>(row);
   }
 }
 
 /// Every load is linear in wrench and accelerations: the difference of two states is the load of their difference.
 void Boom::findResponse() noexcept {
-  if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= parameters_.vibration.refresh_angle) return;
+  if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= kOfRefreshAngle * parameters_.vibration.refresh_angle) return;
   response_at_ = steady_position_;
   const Eigen::Index joints = chain_.joints();
   const JointVector zero = JointVector::Zero(joints);
@@ -76,73 +75,46 @@ void Boom::findResponse() noexcept {
     steel_.find({pose_, links, unit, at_.data()}, load);
     storeResponse(column++, hammerTorque(unit), load);
   }
-  gatherRowsInPlane();
+  arrangeResponse();
 }
 
-Boom::Shares Boom::sharesOf(const LoadErrors& errors, std::size_t first) const noexcept {
-  Shares shares = Shares::Zero(response_.cols(), kErrorsAtOnce);
-  const auto held = static_cast<Eigen::Index>(cylinders_.size());
-  for (std::size_t run = first; run < std::min(first + kErrorsAtOnce, errors.count); ++run) {
-    auto share = shares.col(static_cast<Eigen::Index>(run - first));
-    for (Eigen::Index i = 0; i < held; ++i)
-      share[i] = errors.acceleration[run][cylinders_[static_cast<std::size_t>(i)].joint()];
-    share.segment<3>(held) = inPlane(errors.tip[run]);
-    share.tail<3>() = across(errors.tip[run]);
-  }
-  return shares;
-}
-
-void Boom::sumErrors(const LoadErrors& errors, bool first_two_exclude, BoomDeviations& result) noexcept {
-  deviation_.setZero();
-  for (std::size_t first = 0; first < errors.count; first += kErrorsAtOnce)
-    addSquares(sharesOf(errors, first), first_two_exclude && first == 0);
-  deviation_ = deviation_.cwiseSqrt();
-  takeDeviations(result);
-}
-
-/// To deviation_.
-void Boom::addSquares(const Shares& shares, bool first_two_exclude) noexcept {
-  const bool in_plane = shares.bottomRows<3>().isZero(0.0);
-  const Eigen::MatrixXd& response = in_plane ? response_in_plane_ : response_;
-  const Eigen::Index rows = in_plane ? in_plane_ : response.rows();
-  using Rows = Eigen::Array<double, kRowsAtOnce, 1>;
-  for (Eigen::Index first = 0; first < rows; first += kRowsAtOnce) {
-    std::array<Rows, kErrorsAtOnce> difference;
-    difference.fill(Rows::Zero());
-    for (Eigen::Index c = 0; c < response.cols(); ++c) {
-      const Rows by = response.col(c).segment<kRowsAtOnce>(first);
-      for (std::size_t run = 0; run < difference.size(); ++run)
-        difference[run] += shares(c, static_cast<Eigen::Index>(run)) * by;
-    }
-    Rows sum = Rows::Zero();
-    for (const Rows& one : difference) sum += one.square();
-    if (first_two_exclude) sum -= difference[0].square().min(difference[1].square());
-    for (Eigen::Index i = 0; i < kRowsAtOnce; ++i)
-      deviation_[in_plane ? rows_in_plane_[first + i] : first + i] += sum[i];
-  }
+/// To variance_.
+void Boom::findVariances(const LoadErrors& errors, const Fours& response, Eigen::Index rows) noexcept {
+  const LinearLoads loads{response.data(), static_cast<int>(rows), errors.size()};
+  sumOfSquares(loads, rootOf(errors).data(), LoadErrors::kMost, variance_.data());
+  if (errors.hasLarger())
+    addLargerSquare(loads, errors.larger()[0].data(), errors.larger()[1].data(), variance_.data());
 }
 
 void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                       BoomDeviations& result) noexcept {
-  findResponse();
   const bool vibrates = !rigid && vibration_.known();
   const JointVector of_vibration = vibration_.acceleration(), none = JointVector::Zero(of_vibration.size());
-  LoadErrors errors;
-  const auto add = [&](int run, const Wrench& tip) {
-    const bool runs = vibrates && run < spread.runs();
-    errors.add(runs ? spread.accelerationDifference(run, of_vibration) : none, tip);
-  };
-  for (int run = 0; run < VibrationSpread::kLoads && vibrates; ++run) add(run, {});
-  for (int i = 0; i < w_tip.count; ++i) add(VibrationSpread::kLoads + i, w_tip.part[static_cast<std::size_t>(i)]);
+  LoadErrors errors(cylinders_);
+  const auto difference = [&](int run) { return spread.accelerationDifference(run, of_vibration); };
+  if (vibrates) {
+    errors.addLarger(difference(VibrationSpread::kStiffer), difference(VibrationSpread::kSofter));
+    errors.add(difference(VibrationSpread::kDamped), {});
+  }
+  for (int i = 0; i < w_tip.count; ++i) {
+    const int run = VibrationSpread::kLoads + i;
+    errors.add(vibrates && run < spread.runs() ? difference(run) : none, w_tip.part[static_cast<std::size_t>(i)]);
+  }
   for (int k = 0; vibrates && spread.swings() && k < spread.modes(); ++k) errors.add(spread.accelerationOfSwing(k), {});
-  // Stiffer and softer exclude each other.
-  static_assert(VibrationSpread::kStiffer == 0 && VibrationSpread::kSofter == 1);
-  sumErrors(errors, vibrates, result);
+  deviations(errors, result);
 }
 
 void Boom::deviations(const LoadErrors& errors, BoomDeviations& result) noexcept {
   findResponse();
-  sumErrors(errors, false, result);
+  if (errors.isAcross()) {
+    findVariances(errors, response_fours_, response_.rows());
+    deviation_ = variance_.head(response_.rows()).cwiseSqrt();
+  } else {
+    findVariances(errors, response_in_plane_, in_plane_);
+    deviation_.setZero();
+    for (Eigen::Index i = 0; i < in_plane_; ++i) deviation_[rows_in_plane_[i]] = std::sqrt(variance_[i]);
+  }
+  takeDeviations(result);
 }
 
 /// From deviation_.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/known_count.h"
 
 namespace hammer_loads {
 namespace {
@@ -70,12 +71,14 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
 
 JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) noexcept {
   JointVector force(modes.count);
-  for (int k = 0; k < modes.count; ++k) {
-    double sum = 0.0;
-    for (int i = 0; i < modes.count; ++i)
-      sum += joint_torque[modes.joint[static_cast<std::size_t>(i)]] * modes.shape(i, k);
-    force[k] = sum;
-  }
+  withCount<3>(modes.count, [&](auto count) {
+    for (int k = 0; k < count; ++k) {
+      double sum = 0.0;
+      for (int i = 0; i < count; ++i)
+        sum += joint_torque[modes.joint[static_cast<std::size_t>(i)]] * modes.shape(i, k);
+      force[k] = sum;
+    }
+  });
   return force;
 }
 
@@ -86,11 +89,13 @@ TorqueStep modalForces(const BoomModes& modes, const TorqueStep& joint_torque) n
 
 JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept {
   JointVector joints = JointVector::Zero(modes.mass.rows());
-  for (int i = 0; i < modes.count; ++i) {
-    double sum = modes.shape(i, 0) * modal[0];
-    for (int k = 1; k < modes.count; ++k) sum += modes.shape(i, k) * modal[k];
-    joints[modes.joint[static_cast<std::size_t>(i)]] = sum;
-  }
+  withCount<3>(modes.count, [&](auto count) {
+    for (int i = 0; i < count; ++i) {
+      double sum = modes.shape(i, 0) * modal[0];
+      for (int k = 1; k < count; ++k) sum += modes.shape(i, k) * modal[k];
+      joints[modes.joint[static_cast<std::size_t>(i)]] = sum;
+    }
+  });
   return joints;
 }
 

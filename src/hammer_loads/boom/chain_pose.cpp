@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hammer_loads/util/known_count.h"
+
 namespace hammer_loads {
 
 void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept {
@@ -52,8 +54,10 @@ Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexce
 
 JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept {
   JointVector torque(tip.cols());
-  for (Eigen::Index j = 0; j < tip.cols(); ++j)
-    torque[j] = tip.col(j).head<3>().dot(w_tip.force) + tip.col(j).tail<3>().dot(w_tip.torque);
+  withCount<4>(static_cast<int>(tip.cols()), [&](auto joints) {
+    for (int j = 0; j < joints; ++j)
+      torque[j] = tip.col(j).head<3>().dot(w_tip.force) + tip.col(j).tail<3>().dot(w_tip.torque);
+  });
   return torque;
 }
 

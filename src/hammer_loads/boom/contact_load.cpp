@@ -19,9 +19,4 @@ std::optional<InPlaneTip> InPlaneTip::make(const Jacobian& J, const std::array<i
   return tip;
 }
 
-Wrench InPlaneTip::load(const JointVector& torque) const noexcept {
-  const Eigen::Vector3d load = inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
-  return {{load[0], 0.0, load[1]}, {0.0, load[2], 0.0}};
-}
-
 }  // namespace hammer_loads

@@ -25,31 +25,36 @@ struct ModeResponse {
   double impulse{}, step{}, ramp{}, parabola{};
 };
 
-/// 1/n: a division would cost as much as the rest of a term.
-constexpr auto kInverse = [] {
-  std::array<double, 24> inverse{};
-  for (std::size_t n = 1; n < inverse.size(); ++n) inverse[n] = 1.0 / static_cast<double>(n);
+/// 1/n!
+constexpr auto kInverseFactorial = [] {
+  std::array<double, 24> inverse{1.0};
+  for (std::size_t n = 1; n < inverse.size(); ++n) inverse[n] = inverse[n - 1] / static_cast<double>(n);
   return inverse;
 }();
+
+/// ramp/t^3 and parabola/t^4 by so many terms of their power series sum d_k/(k+3)! and sum d_k/(k+4)!, with x = omega t,
+/// d_0 = 1, d_1 = -2 zeta x, d_k = -2 zeta x d_(k-1) - x^2 d_(k-2); |d_k| <= (k + 1) x^k.
+template <std::size_t terms>
+inline ModeResponse seriesOf(double x, double zeta) noexcept {
+  const double p = -2.0 * zeta * x, q = x * x;
+  double d = 1.0, before = 0.0;
+  ModeResponse r;
+  for (std::size_t k = 0; k < terms; ++k) {
+    r.ramp += d * kInverseFactorial[k + 3];
+    r.parabola += d * kInverseFactorial[k + 4];
+    const double next = p * d - q * before;
+    before = d;
+    d = next;
+  }
+  return r;
+}
 
 inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
   const double w = mode.omega, ww = w * w, damping = 2.0 * mode.zeta * w;
   ModeResponse r;
   if (w * t <= 1.0) {
-    // Power series of ramp = t^3 sum c_k (wt)^k/(k+3)! and parabola = t^4 sum c_k (wt)^k/(k+4)!, with c_0 = 1,
-    // c_1 = -2 zeta, c_k = -2 zeta c_(k-1) - c_(k-2); |c_k| <= k + 1. The equation of motion gives the others.
-    const double x = w * t;
-    double term = 1.0 / 6.0, c = 1.0, c_before = 0.0;  // term = x^k/(k+3)!
-    for (std::size_t k = 0; k < 20; ++k) {
-      const double next = term * kInverse[k + 4];
-      r.ramp += c * term;
-      r.parabola += c * next;
-      term = x * next;
-      if (static_cast<double>(k + 2) * term < 1e-18) break;
-      const double c_next = -2.0 * mode.zeta * c - c_before;
-      c_before = c;
-      c = c_next;
-    }
+    // What is left out is below 1e-18; the equation of motion gives impulse and step.
+    r = w * t <= 0.25 ? seriesOf<12>(w * t, mode.zeta) : seriesOf<20>(w * t, mode.zeta);
     r.ramp *= t * t * t;
     r.parabola *= t * t * t * t;
     r.step = 0.5 * t * t - damping * r.ramp - ww * r.parabola;
@@ -65,12 +70,23 @@ inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
   return r;
 }
 
-/// State after a step h without force; r = responseAt(mode, h).
-inline ModeState advancedFreely(const Mode& mode, const ModeState& now, const ModeResponse& r) noexcept {
+/// What a step h of a mode does to its state, and its responses at h.
+struct ModeStep {
+  ModeResponse r;
+  double x_by_x{}, x_by_v{}, v_by_x{}, v_by_v{};
+};
+
+inline ModeStep stepOf(const Mode& mode, double h) noexcept {
+  ModeStep step;
+  const ModeResponse& r = step.r = responseAt(mode, h);
   const double ww = mode.omega * mode.omega;
-  const double kept = 1.0 - ww * r.step;  // displacement kept by an initial displacement 1
-  return {kept * now.x + r.impulse * now.v,
-          -ww * r.impulse * now.x + (kept - 2.0 * mode.zeta * mode.omega * r.impulse) * now.v};
+  step.x_by_x = 1.0 - ww * r.step, step.x_by_v = r.impulse;
+  step.v_by_x = -ww * r.impulse, step.v_by_v = step.x_by_x - 2.0 * mode.zeta * mode.omega * r.impulse;
+  return step;
+}
+
+inline ModeState advancedFreely(const ModeStep& step, const ModeState& now) noexcept {
+  return {step.x_by_x * now.x + step.x_by_v * now.v, step.v_by_x * now.x + step.v_by_v * now.v};
 }
 
 /// Force on a mode over one step h: from, to its ends, linear between plus a parabola that makes the mean `mean`.
@@ -78,39 +94,46 @@ struct ModeForce {
   double from{}, to{}, mean{};
 };
 
-/// State after step h [s], exact for that force; for no force its size never grows, whatever the step. r =
-/// responseAt(mode, h).
-inline ModeState advanced(const Mode& mode, const ModeState& now, const ModeForce& force, double h,
-                          const ModeResponse& r) noexcept {
+/// The same as from + slope t + bend t^2/2.
+struct ForcePath {
+  double from{}, slope{}, bend{};
+};
+
+inline ForcePath pathOf(const ModeForce& force, double h) noexcept {
   const double bump = 6.0 * (force.mean - 0.5 * (force.from + force.to));
-  const double slope = h > 0.0 ? (force.to - force.from + bump) / h : 0.0;
-  const double bend = h > 0.0 ? -2.0 * bump / (h * h) : 0.0;
-  ModeState next = advancedFreely(mode, now, r);
-  next.x += force.from * r.step + slope * r.ramp + bend * r.parabola;
-  next.v += force.from * r.impulse + slope * r.step + bend * r.ramp;
+  const double per_time = h > 0.0 ? 1.0 / h : 0.0;
+  return {force.from, (force.to - force.from + bump) * per_time, -2.0 * bump * per_time * per_time};
+}
+
+/// State after a step, exact for that force; for no force its size never grows, whatever the step.
+inline ModeState advanced(const ModeStep& step, const ModeState& now, const ForcePath& force) noexcept {
+  const ModeResponse& r = step.r;
+  ModeState next = advancedFreely(step, now);
+  next.x += force.from * r.step + force.slope * r.ramp + force.bend * r.parabola;
+  next.v += force.from * r.impulse + force.slope * r.step + force.bend * r.ramp;
   return next;
 }
 
 inline ModeState advanced(const Mode& mode, const ModeState& now, const ModeForce& force, double h) noexcept {
-  return advanced(mode, now, force, h, responseAt(mode, h));
+  return advanced(stepOf(mode, h), now, pathOf(force, h));
 }
 
-/// responseAt() of one mode, kept as long as mode and step stay the same.
-class KeptResponse {
+/// stepOf() one mode, kept as long as mode and step stay the same.
+class KeptStep {
  public:
-  const ModeResponse& at(const Mode& mode, double step) noexcept {
-    if (mode.omega != mode_.omega || mode.zeta != mode_.zeta || step != step_) {
-      response_ = responseAt(mode, step);
+  const ModeStep& at(const Mode& mode, double h) noexcept {
+    if (mode.omega != mode_.omega || mode.zeta != mode_.zeta || h != h_) {
+      step_ = stepOf(mode, h);
       mode_ = mode;
-      step_ = step;
+      h_ = h;
     }
-    return response_;
+    return step_;
   }
 
  private:
   Mode mode_;
-  double step_{};
-  ModeResponse response_;
+  double h_{};
+  ModeStep step_;
 };
 
 /// [m kg/s2] per sqrt(kg), for the force acting at that instant.

@@ -47,17 +47,17 @@ void ModeIdentifier::setFirstGuesses() noexcept {
   }
 }
 
-double ModeIdentifier::frequencyDeviation(int mode) const noexcept {
-  return std::sqrt(covariance_(at(mode, kFrequency), at(mode, kFrequency)));
+double ModeIdentifier::frequencyVariance(int mode) const noexcept {
+  return covariance_(at(mode, kFrequency), at(mode, kFrequency));
 }
 
-double ModeIdentifier::dampingDeviation(int mode) const noexcept {
-  return std::sqrt(covariance_(at(mode, kDamping), at(mode, kDamping)));
+double ModeIdentifier::dampingVariance(int mode) const noexcept {
+  return covariance_(at(mode, kDamping), at(mode, kDamping));
 }
 
 bool ModeIdentifier::identified() const noexcept {
   for (int k = 0; k < count_; ++k) {
-    if (!(frequencyDeviation(k) < kKnown)) return false;
+    if (!(frequencyVariance(k) < square(kKnown))) return false;
   }
   return count_ > 0;
 }
@@ -74,34 +74,39 @@ JointVector ModeIdentifier::velocity() const noexcept {
   return jointsOf(modes_, v);
 }
 
-JointMatrix ModeIdentifier::accelerationSpread() const noexcept {
-  const int own = 1 + kParts * count_;
+JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
   std::array<Eigen::Matrix<double, kParts, 1>, kMaxJoints> row;  // of a mode's acceleration
-  JointVector left(count_);                                      // its variance by what the mode's shape lacks
+  JointMatrix covariance(count_, count_);
   for (int k = 0; k < count_; ++k) {
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
     const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
     row[static_cast<std::size_t>(k)] << -stiff, -damped, -2.0 * stiff * s.x - damped * s.v, -damped * s.v;
-    left[k] = square(2.0 * kLeftFrequency * stiff * s.x) + square(kLeftDamping * damped * s.v);
   }
-  JointMatrix covariance(count_, count_);
   for (int l = 0; l < count_; ++l) {
-    State with_l;  // covariance of all with the acceleration of l
-    with_l.segment(kContact, own) = contact_[l] * covariance_.col(kContact).segment(kContact, own);
-    for (int part : {kX, kV, kFrequency, kDamping}) {
-      const double by = row[static_cast<std::size_t>(l)][part];
-      with_l.segment(kContact, own) += by * covariance_.col(at(l, kX) + part).segment(kContact, own);
+    const auto& by = row[static_cast<std::size_t>(l)];
+    const double rock = contact_[l];
+    const auto with = [&](int from, auto&& to) {  // covariance of some states with the acceleration of l
+      const auto of = [&](int state) { return Eigen::Map<const std::decay_t<decltype(to)>>(column(state) + from); };
+      const int l_x = at(l, kX);
+      to = rock * of(kContact) + by[kX] * of(l_x) + by[kV] * of(l_x + kV) + by[kFrequency] * of(l_x + kFrequency) +
+           by[kDamping] * of(l_x + kDamping);
+    };
+    Eigen::Matrix<double, 1, 1> with_contact;
+    with(kContact, with_contact);
+    for (int k = l; k < count_; ++k) {
+      Eigen::Matrix<double, kParts, 1> with_mode;
+      with(at(k, kX), with_mode);
+      covariance(k, l) = covariance(l, k) =
+          contact_[k] * with_contact[0] + row[static_cast<std::size_t>(k)].dot(with_mode);
     }
-    for (int k = l; k < count_; ++k)
-      covariance(k, l) =
-          contact_[k] * with_l[kContact] + row[static_cast<std::size_t>(k)].dot(with_l.segment<kParts>(at(k, kX)));
+    // What the mode's shape lacks.
+    const Mode m = modeAt(l);
+    const ModeState s = stateOf(l);
+    covariance(l, l) += square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +
+                        square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
   }
-  for (int k = 0; k < count_; ++k) covariance(k, k) += left[k] + 1e-9 * covariance(k, k);  // positive, though rounded
-  const JointMatrix modal = covariance.llt().matrixL();
-  JointMatrix joints(modes_.mass.rows(), count_);
-  for (int k = 0; k < count_; ++k) joints.col(k) = jointsOf(modes_, modal.col(k));
-  return joints;
+  return covariance;
 }
 
 double ModeIdentifier::oilDifference() const noexcept {
@@ -149,8 +154,8 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
     }
   };
   apply(state_);
-  for (int i = begin(); i < begin() + states(); ++i) apply(covariance_.col(i));
-  for (int i = begin(); i < begin() + states(); ++i) apply(covariance_.row(i));
+  for (int i = begin(); i < end(); ++i) apply(covariance_.col(i));
+  for (int i = begin(); i < end(); ++i) apply(covariance_.row(i));
   force_ = (T * force_).eval();
   force_rate_ = (T * force_rate_).eval();
 }
@@ -208,7 +213,7 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   free_for_ = follows_contact_ && !bears_ ? free_for_ + step : 0.0;
   if (follows_contact_) walkContact(step);
   advanceDelays(step);
-  for (int i = begin(); i < begin() + states(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
+  for (int i = begin(); i < end(); ++i) covariance_(i, i) = std::max(covariance_(i, i), 0.0);
   if (!finite()) startAnew();
 }
 
@@ -217,39 +222,25 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
 void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) noexcept {
   const Mode here = modeAt(mode);
   const double rock = rockOn(mode);
-  const ModeResponse r = responseAt(here, step);
+  const ModeStep its = stepOf(here, step);
+  const ModeResponse& r = its.r;
   const ModeState now = stateOf(mode);
-  ModeState next = advanced(here, now, force, step, r);
+  ModeState next = advanced(its, now, pathOf(force, step));
   next.x += r.step * rock * state_[kContact], next.v += r.impulse * rock * state_[kContact];
 
-  const double stiff = here.omega * here.omega, damped = 2.0 * here.zeta * here.omega;
+  const double stiff = here.omega * here.omega, damped = 2.0 * here.zeta * here.omega, per_time = 1.0 / step;
   const auto by = [&](double from, double to) {  // of a force
-    const double slope = (to - from) / step;
-    return Eigen::Vector2d(from * r.step + slope * r.ramp, from * r.impulse + slope * r.step);
+    const double slope = (to - from) * per_time;
+    return ModeState{from * r.step + slope * r.ramp, from * r.impulse + slope * r.step};
   };
-  const ModeState of_x = advancedFreely(here, {1.0, 0.0}, r), of_v = advancedFreely(here, {0.0, 1.0}, r);
-  Eigen::Matrix<double, 2, kParts + 1> F;
-  F << of_x.x, of_v.x, 0.0, 0.0, r.step * rock, of_x.v, of_v.v, 0.0, 0.0, r.impulse * rock;
-  F.col(kFrequency) = by(-2.0 * stiff * now.x - damped * now.v, -2.0 * stiff * next.x - damped * next.v);
-  F.col(kDamping) = by(-damped * now.v, -damped * next.v);
-  const int x = at(mode, kX), first = begin(), n = states();
+  const ModeState of_frequency = by(-2.0 * stiff * now.x - damped * now.v, -2.0 * stiff * next.x - damped * next.v),
+                  of_damping = by(-damped * now.v, -damped * next.v);
+  const int x = at(mode, kX);
   state_[x + kX] = next.x, state_[x + kV] = next.v;
   history_.set(mode, now, next, force.from, force.to);
-
-  // P F^T, its columns of displacement and velocity; P is symmetric.
-  Eigen::Matrix<double, kMaxStates, 2> changed;
-  for (int part : {kX, kV}) {
-    changed.col(part).segment(first, n) = F(part, kParts) * column(kContact) + F(part, kX) * column(x + kX) +
-                                          F(part, kV) * column(x + kV) + F(part, kFrequency) * column(x + kFrequency) +
-                                          F(part, kDamping) * column(x + kDamping);
-  }
-  const Eigen::Matrix2d own =
-      F.leftCols<kParts>() * changed.middleRows<kParts>(x) + F.col(kParts) * changed.row(kContact);
-  for (int part : {kX, kV}) {
-    covariance_.col(x + part).segment(first, n) = changed.col(part).segment(first, n);
-    covariance_.row(x + part).segment(first, n) = changed.col(part).segment(first, n).transpose();
-  }
-  covariance_.block<2, 2>(x, x) = 0.5 * (own + own.transpose());
+  replaceTwo(block(), x, {x + kX, x + kV, x + kFrequency, x + kDamping, kContact},
+             {its.x_by_x, its.x_by_v, of_frequency.x, of_damping.x, r.step * rock},
+             {its.v_by_x, its.v_by_v, of_frequency.v, of_damping.v, r.impulse * rock});
 }
 
 /// P <- P + Q: forces that are wrong, oil that warms up.
@@ -295,7 +286,9 @@ void ModeIdentifier::strike(const JointVector& impulse) noexcept {
 
 /// What is not finite anywhere reaches the diagonal with the next step.
 bool ModeIdentifier::finite() const noexcept {
-  return state_.segment(begin(), states()).allFinite() && covariance_.diagonal().segment(begin(), states()).allFinite();
+  double sum = 0.0;
+  for (int i = begin(); i < end(); ++i) sum += 0.0 * (state_[i] + covariance_(i, i));
+  return sum == 0.0;
 }
 
 void ModeIdentifier::startAnew() noexcept {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "hammer_loads/boom/boom_modes.h"
+#include "hammer_loads/boom/covariance_kernels.h"
 #include "hammer_loads/boom/mode.h"
 #include "hammer_loads/boom/mode_history.h"
 #include "hammer_loads/boom/vibration_reading.h"
@@ -77,10 +78,11 @@ class ModeIdentifier {
   /// same. For a hammer at rest: what shakes the boom then is not known.
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
   /// By how much time the crank's angle leads as far as its own model knows [s].
-  void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead; }
-  /// A reading at the present time or a little before; channel in [0, kMaxChannels) keeps its offset. A reading far off
-  /// counts less.
-  void observe(int channel, const VibrationReading& reading) noexcept;
+  void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
+  /// Readings of one instant by one clock, at the present time or a little before. A channel in [0, kMaxChannels) keeps
+  /// its offset; others, and values that are no number, do not count. A reading far off counts less. Linear about what
+  /// was known before the first of them.
+  void observe(const VibrationReading* readings, std::size_t count) noexcept;
   /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them.
   bool explains() const noexcept { return explains_; }
   /// Mean square of the errors of predicted oil torques over their variance, of some 1 s [-]: right pressures at 500 Hz
@@ -94,8 +96,10 @@ class ModeIdentifier {
   double frequencyRatio(int mode) const noexcept { return ratio_[static_cast<std::size_t>(mode)]; }
   /// Ratio of damping [-].
   double damping(int mode) const noexcept { return damping_[static_cast<std::size_t>(mode)]; }
-  double frequencyDeviation(int mode) const noexcept;  ///< standard deviation of its logarithm [-]
-  double dampingDeviation(int mode) const noexcept;    ///< standard deviation of its logarithm [-]
+  double frequencyVariance(int mode) const noexcept;  ///< of its logarithm [-]
+  double dampingVariance(int mode) const noexcept;    ///< of its logarithm [-]
+  double frequencyDeviation(int mode) const noexcept { return std::sqrt(frequencyVariance(mode)); }  ///< standard
+  double dampingDeviation(int mode) const noexcept { return std::sqrt(dampingVariance(mode)); }      ///< standard
   /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
@@ -112,24 +116,34 @@ class ModeIdentifier {
   /// Standard [s]; less known where one clock's delay may be another's.
   double delayDeviation(Clock clock) const noexcept;
   /// By how much time the crank's angle leads, as its model expects and the sensors show [s].
-  double crankLead() const noexcept;
-  /// Independent errors of the joints' accelerations, one standard deviation each, a column for each mode [rad/s2].
-  JointMatrix accelerationSpread() const noexcept;
+  double crankLead() const noexcept { return crank_lead_; }
+  /// Of the errors of the modes' accelerations [m2 kg/s4].
+  JointMatrix accelerationCovariance() const noexcept;
 
  private:
-  static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kMaxStates = kContact + 1 + 4 * kMaxJoints;
+  /// States go in fours (kLane), the fourth between the contact and the modes is always zero: loops over what is in use
+  /// have no remainder.
+  static constexpr int kLane = 4, kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;
+  static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
+  static_assert(kModes % kLane == 0);
+  using Lane = Eigen::Array<double, kLane, 1>;
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
   enum Part { kX, kV, kFrequency, kDamping, kParts };
 
   static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }
-  static constexpr int at(int mode, Part part) noexcept { return kContact + 1 + kParts * mode + part; }
+  static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
   /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
-  int begin() const noexcept { return kMaxChannels - channels_; }
-  int states() const noexcept { return channels_ + 3 + kParts * count_; }
-  /// Covariances of a state with all that are in use.
-  auto column(int state) const noexcept { return covariance_.col(state).segment(begin(), states()); }
+  int begin() const noexcept { return (kMaxChannels - channels_) / kLane * kLane; }
+  int end() const noexcept { return kModes + kParts * count_; }
+  int states() const noexcept { return end() - begin(); }
+  static auto lane(const double* values) noexcept { return Eigen::Map<const Lane, Eigen::Aligned16>(values); }
+  static auto lane(double* values) noexcept { return Eigen::Map<Lane, Eigen::Aligned16>(values); }
+  CovarianceBlock block() noexcept { return {covariance_.data(), kMaxStates, begin(), end()}; }
+  /// Covariances of a state with all.
+  const double* column(int state) const noexcept { return &covariance_(0, state); }
+  double* column(int state) noexcept { return &covariance_(0, state); }
 
   ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
   ModeThen motionByCrank(int mode, double ahead) const noexcept;
@@ -146,10 +160,11 @@ class ModeIdentifier {
   void walk(int mode, double step) noexcept;
   void walkContact(double step) noexcept;
   void advanceDelays(double step) noexcept;
+  double findCrankLead() const noexcept;
   bool imuSpeaks() const noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {
-    std::array<int, 2 * kMaxJoints + 2> states{};
+    std::array<int, 2 * kMaxJoints + 2> states;  ///< the first of them
     int count{};
     void add(int state) noexcept { states[static_cast<std::size_t>(count++)] = state; }
     const int* begin() const noexcept { return states.data(); }
@@ -160,8 +175,13 @@ class ModeIdentifier {
   void takeAsLate(Clock clock) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
-  void useChannel(int channel, const VibrationReading& reading) noexcept;
-  State rowOf(int channel, const VibrationReading& reading, double& predicted) const noexcept;
+  static bool counts(const VibrationReading& reading) noexcept;
+  void useChannel(const VibrationReading& reading) noexcept;
+  struct Seen;
+  Seen seenAt(int mode, double ahead) const noexcept;
+  State rowOf(const VibrationReading& reading, const std::array<Seen, kMaxJoints>& modes,
+              double& predicted) const noexcept;
+  void take(const VibrationReading& reading, const State& row, double difference) noexcept;
   bool finite() const noexcept;
   void startAnew() noexcept;
   void useOil() noexcept;
@@ -183,10 +203,11 @@ class ModeIdentifier {
   std::array<std::optional<double>, 2> least_delay_;  ///< of each clock, as a free hull showed it [s]
   double free_for_{};                                 ///< so long it has not, while pressures spoke [s]
   CrankLead expected_lead_;
+  double crank_lead_{};
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
   bool moving_known_{};        ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
-  Covariance covariance_ = Covariance::Zero();
+  alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
   JointVector force_, force_rate_;                ///< modal, at the present time; and by the second
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }

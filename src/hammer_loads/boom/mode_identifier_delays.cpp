@@ -74,7 +74,7 @@ void ModeIdentifier::takeAsLate(Clock clock) noexcept {
   if (!bears_ && variance < square(kDelayKnown)) least = std::min(0.0, state_[d] - 2.0 * delayDeviation(clock));
   const double bound = least.value_or(0.0);
   if (bears_ && state_[d] < bound)
-    state_.segment(begin(), states()) += (bound - state_[d]) / variance * column(d).eval();
+    state_ += (bound - state_[d]) / variance * covariance_.col(d).eval();
 }
 
 double ModeIdentifier::delay(Clock clock) const noexcept {
@@ -83,7 +83,7 @@ double ModeIdentifier::delay(Clock clock) const noexcept {
 
 /// What all clocks that are followed have in common, as far as it is what is expected; the less of the rest, the more
 /// it is. A sensor that is not late shows no lead.
-double ModeIdentifier::crankLead() const noexcept {
+double ModeIdentifier::findCrankLead() const noexcept {
   double common = 0.0;
   bool first = true;
   for (Clock clock : {Clock::kImu, Clock::kPressures}) {

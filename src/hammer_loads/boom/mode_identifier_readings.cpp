@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -18,12 +19,12 @@ constexpr double kWorstSurprise = 25.0;                 // what one can add at m
 
 }  // namespace
 
-void ModeIdentifier::useChannel(int channel, const VibrationReading& reading) noexcept {
-  const auto i = static_cast<std::size_t>(channel);
+void ModeIdentifier::useChannel(const VibrationReading& reading) noexcept {
+  const auto i = static_cast<std::size_t>(reading.channel);
   const double first = square(reading.offset_deviation), walk = square(reading.offset_walk);
   if (slot_[i] < 0) {
     ++channels_;
-    slot_[i] = begin();
+    slot_[i] = kMaxChannels - channels_;
     covariance_(slot_[i], slot_[i]) = first;
   } else {
     double& variance = covariance_(slot_[i], slot_[i]);
@@ -55,73 +56,107 @@ ModeThen ModeIdentifier::motionByCrank(int mode, double ahead) const noexcept {
           force_rate_[mode]};
 }
 
-ModeIdentifier::State ModeIdentifier::rowOf(int channel, const VibrationReading& reading,
+/// Of a mode, for readings of one instant.
+struct ModeIdentifier::Seen {
+  ModeThen then;
+  double acceleration{}, stiff{}, damped{};
+  double cosine{}, sine{};  ///< of what was then: how displacement and velocity of now show in it
+};
+
+ModeIdentifier::Seen ModeIdentifier::seenAt(int mode, double ahead) const noexcept {
+  const Mode m = modeAt(mode);
+  Seen seen;
+  seen.then = motionByCrank(mode, ahead);
+  seen.acceleration =
+      hammer_loads::acceleration(m, seen.then.motion, seen.then.force + rockOn(mode) * state_[kContact]);
+  seen.stiff = m.omega * m.omega, seen.damped = 2.0 * m.zeta * m.omega;
+  const double turned = seen.stiff * square(ahead);
+  seen.sine = ahead * (1.0 - turned / 6.0), seen.cosine = 1.0 - turned / 2.0;
+  return seen;
+}
+
+ModeIdentifier::State ModeIdentifier::rowOf(const VibrationReading& reading, const std::array<Seen, kMaxJoints>& modes,
                                             double& predicted) const noexcept {
   State row = State::Zero();
-  row[offsetAt(channel)] = 1.0;
-  predicted = state_[offsetAt(channel)];
-  const double ahead = reading.ahead - delayByCrank(reading.clock);
-  for (int k = 0; k < count_; ++k) {
-    double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
-    for (int i = 0; i < count_; ++i) {
-      const int joint = modes_.joint[static_cast<std::size_t>(i)];
-      by_x += reading.displacement[joint] * modes_.shape(i, k);
-      by_v += reading.velocity[joint] * modes_.shape(i, k);
-      by_a += reading.acceleration[joint] * modes_.shape(i, k);
-      by_oil += reading.oil[joint] * modes_.inertia(joint, k);
+  row[offsetAt(reading.channel)] = 1.0;
+  predicted = state_[offsetAt(reading.channel)];
+  double late = 0.0;
+  withCount<3>(count_, [&](auto count) {
+    for (int k = 0; k < count; ++k) {
+      double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
+      for (int i = 0; i < count; ++i) {
+        const int joint = modes_.joint[static_cast<std::size_t>(i)];
+        const double shape = modes_.shape(i, k);
+        by_x += reading.displacement[joint] * shape;
+        by_v += reading.velocity[joint] * shape;
+        by_a += reading.acceleration[joint] * shape;
+        by_oil += reading.oil[joint] * modes_.inertia(joint, k);
+      }
+      const Seen& seen = modes[static_cast<std::size_t>(k)];
+      const ModeState& s = seen.then.motion;
+      const double held = by_oil - by_a, damped = seen.damped * s.v;
+      const double of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
+      predicted += by_x * s.x + by_v * s.v + by_a * seen.acceleration + by_oil * (seen.stiff * s.x + damped);
+      late += of_x * s.v + of_v * seen.acceleration + by_a * seen.then.force_rate;
+      row[kContact] += by_a * rockOn(k);
+      row[at(k, kX)] = seen.cosine * of_x - seen.stiff * seen.sine * of_v;
+      row[at(k, kV)] = seen.cosine * of_v + seen.sine * of_x;
+      row[at(k, kFrequency)] = held * (2.0 * seen.stiff * s.x + damped);
+      row[at(k, kDamping)] = held * damped;
     }
-    const Mode m = modeAt(k);
-    const ModeThen then = motionByCrank(k, ahead);
-    const ModeState s = then.motion;
-    const double a = acceleration(m, s, then.force + rockOn(k) * state_[kContact]);
-    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega, held = by_oil - by_a;
-    const double of_x = by_x + held * stiff, of_v = by_v + held * damped;
-    const double rate = of_x * s.v + of_v * a + by_a * then.force_rate;
-    predicted += by_x * s.x + by_v * s.v + by_a * a + by_oil * (stiff * s.x + damped * s.v);
-    if (reading.clock != Clock::kCrank) row[delayAt(reading.clock)] -= rate;
-    row[kContact] += by_a * rockOn(k);
-    const double turned = square(m.omega * ahead), sine = ahead * (1.0 - turned / 6.0), cosine = 1.0 - turned / 2.0;
-    row[at(k, kX)] = cosine * of_x - stiff * sine * of_v;
-    row[at(k, kV)] = cosine * of_v + sine * of_x;
-    row[at(k, kFrequency)] = held * (2.0 * stiff * s.x + damped * s.v);
-    row[at(k, kDamping)] = held * damped * s.v;
-  }
+  });
+  if (reading.clock != Clock::kCrank) row[delayAt(reading.clock)] = -late;
   return row;
 }
 
-void ModeIdentifier::observe(int channel, const VibrationReading& reading) noexcept {
-  if (!moving_known_ || channel < 0 || channel >= kMaxChannels || !std::isfinite(reading.value)) return;
-  useChannel(channel, reading);
-  if (reading.clock == Clock::kImu) imu_age_ = 0.0;
-  if (reading.clock != Clock::kCrank) followDelay(reading.clock);
-  double predicted = 0.0;
-  const State row = rowOf(channel, reading, predicted);
-  const int first = begin(), n = states(), own = n - channels_;  // no row has another channel's offset
-  State gain_S;
-  gain_S.head(n) = column(offsetAt(channel));
-  gain_S.head(n).noalias() += covariance_.block(first, kDelays, n, own) * row.segment(kDelays, own);
-  double S = row.segment(first, n).dot(gain_S.head(n)) + square(reading.noise) + square(reading.neglected);
-  const double difference = reading.value - predicted;
+void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
+  if (!moving_known_ || count == 0) return;
+  const Clock clock = readings->clock;
+  for (std::size_t r = 0; r < count; ++r)
+    if (counts(readings[r])) useChannel(readings[r]);
+  if (clock == Clock::kImu) imu_age_ = 0.0;
+  if (clock != Clock::kCrank) followDelay(clock);
+  std::array<Seen, kMaxJoints> seen;
+  for (int k = 0; k < count_; ++k)
+    seen[static_cast<std::size_t>(k)] = seenAt(k, readings->ahead - delayByCrank(clock));
+  const State before = state_;  // where all of them are linear
+  for (std::size_t r = 0; r < count; ++r) {
+    if (!counts(readings[r])) continue;
+    double predicted = 0.0;
+    alignas(64) const State row = rowOf(readings[r], seen, predicted);
+    if (r > 0) predicted += row.segment(begin(), states()).dot((state_ - before).segment(begin(), states()));
+    take(readings[r], row, readings[r].value - predicted);
+  }
+  if (clock != Clock::kCrank) takeAsLate(clock);
+  if (learns_ && !explains_) forgetOil();
+  if (!state_.segment(begin(), states()).allFinite()) return startAnew();
+  if (learns_) useOil();
+  if (clock != Clock::kCrank) crank_lead_ = findCrankLead();
+}
+
+bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
+  return reading.channel >= 0 && reading.channel < kMaxChannels && std::isfinite(reading.value);
+}
+
+void ModeIdentifier::take(const VibrationReading& reading, const State& row, double difference) noexcept {
+  const int offset = offsetAt(reading.channel);
+  alignas(64) State gain_S;  // P row^T; no row has another channel's offset
+  timesRow(block(), row.data(), kDelays, offset, gain_S.data());
+  Lane sum = Lane::Zero();
+  for (int i = kDelays; i < end(); i += kLane) sum += lane(&row[i]) * lane(&gain_S[i]);
+  double S = square(reading.noise) + square(reading.neglected) + gain_S[offset] + sum.sum();
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
-  if (!reading.acceleration.isZero(0.0)) {
+  if (reading.acceleration.squaredNorm() > 0.0) {
     explains_ = explains_ ? surprise_ < kSurprised || (learns_ && !identified()) : surprise_ < kCalm;
     surprise_ +=
         kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
   }
-  if (!reading.oil.isZero(0.0))
+  if (reading.oil.squaredNorm() > 0.0)
     oil_surprise_ += kOilSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - oil_surprise_);
-  S *= std::max(1.0, std::abs(difference) / (kFarOff * std::sqrt(S)));
-  state_.segment(first, n) += gain_S.head(n) * (difference / S);
-  for (int i = 0; i < n; ++i) {
-    double* column = &covariance_(first, first + i);
-    const double part = gain_S[i] / S;
-    for (int j = 0; j < n; ++j) column[j] -= part * gain_S[j];
-  }
+  if (square(difference) > square(kFarOff) * S) S *= std::abs(difference) / (kFarOff * std::sqrt(S));
+  for (int i = begin(); i < end(); i += kLane) lane(&state_[i]) += lane(&gain_S[i]) * (difference / S);
+  subtractSquare(block(), gain_S.data(), S);
   if (learns_) takeBack(kept(), gain_S, S, difference);
-  if (reading.clock != Clock::kCrank) takeAsLate(reading.clock);
-  if (learns_ && !explains_) forgetOil();
-  if (!state_.segment(first, n).allFinite()) return startAnew();
-  if (learns_) useOil();
 }
 
 /// States that readings are not to change.
@@ -136,16 +171,17 @@ ModeIdentifier::Kept ModeIdentifier::kept() const noexcept {
 /// What the last reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
 void ModeIdentifier::takeBack(const Kept& kept, const State& gain_S, double S, double difference) noexcept {
   for (int i : kept) {
-    const double gain = gain_S[i - begin()] / S;
+    const double gain = gain_S[i] / S;
     state_[i] -= gain * difference;
-    for (int j : kept) covariance_(i, j) += gain * gain_S[j - begin()];
+    double* changed = column(i);
+    for (int j : kept) changed[j] += gain * gain_S[j];
   }
 }
 
 void ModeIdentifier::forgetOil() noexcept {
   forget(kDelays, 0.0), forget(kDelays + 1, 0.0);
   least_delay_ = {};
-  known_for_ = lost_for_ = 0.0;
+  known_for_ = lost_for_ = crank_lead_ = 0.0;
   for (int k = 0; k < kMaxJoints; ++k) {
     forget(at(k, kFrequency), 0.0);
     forget(at(k, kDamping), 0.0);

@@ -24,7 +24,7 @@ double rigidError(const BoomModes& modes, double damping_ratio, const JointVecto
     JointVector acceleration_now(modes.count);
     for (int k = 0; k < modes.count; ++k)
       acceleration_now[k] = acceleration(mode(k), state[static_cast<std::size_t>(k)], amplitude[k] * sine);
-    worst = std::max(worst, (modes.inertia * acceleration_now).cwiseAbs().maxCoeff());
+    worst = std::max(worst, modes.inertia.lazyProduct(acceleration_now).cwiseAbs().maxCoeff());
   };
   // During the pulse; then over one period of the slowest mode, in steps that resolve the fastest.
   constexpr int kSamples = 64;
@@ -35,12 +35,12 @@ double rigidError(const BoomModes& modes, double damping_ratio, const JointVecto
   }
   const double slowest = kTwoPi / modes.omega[0], fastest = kTwoPi / modes.omega[modes.count - 1];
   const int after = std::clamp(static_cast<int>(32.0 * slowest / fastest), kSamples, 100 * kSamples);
-  std::array<ModeResponse, kMaxJoints> step;
-  for (int k = 0; k < modes.count; ++k) step[static_cast<std::size_t>(k)] = responseAt(mode(k), slowest / after);
+  std::array<ModeStep, kMaxJoints> step;
+  for (int k = 0; k < modes.count; ++k) step[static_cast<std::size_t>(k)] = stepOf(mode(k), slowest / after);
   for (int i = 1; i <= after; ++i) {
     for (int k = 0; k < modes.count; ++k) {
       ModeState& now = state[static_cast<std::size_t>(k)];
-      now = advancedFreely(mode(k), now, step[static_cast<std::size_t>(k)]);
+      now = advancedFreely(step[static_cast<std::size_t>(k)], now);
     }
     look(0.0);
   }

@@ -43,8 +43,8 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   position_ = middle;
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
   if (!position_.allFinite()) position_ = position;
-  oil_ *= std::exp(stiffer);
-  findModes(dynamics_, cylinders_, position_, g_B, oil_, modes_);
+  log_oil_ += stiffer;
+  findModes(dynamics_, cylinders_, position_, g_B, std::exp(log_oil_), modes_);
   if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
   if (swing_.size() != modes_.count) swing_.setZero(modes_.count);
   posed_ = true;
@@ -63,11 +63,10 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
 /// pose.
 double Vibration::oilToTake() const noexcept {
   if (!identifies() || !known()) return 0.0;
-  const double now = std::log(oil_);
-  if (!identifier_->explains()) return -now;
+  if (!identifier_->explains()) return -log_oil_;
   if (!identifier_->identified()) return 0.0;
   const double found = identifier_->oilDifference();
-  return std::abs(found) > kOilStep ? std::clamp(now + found, -kMostOil, kMostOil) - now : 0.0;
+  return std::abs(found) > kOilStep ? std::clamp(log_oil_ + found, -kMostOil, kMostOil) - log_oil_ : 0.0;
 }
 
 void Vibration::rest() noexcept {
@@ -83,7 +82,7 @@ void Vibration::rest() noexcept {
 
 void Vibration::startAnew() noexcept {
   if (identifier_) identifier_.emplace(settings_.damping_ratio, identifier_->learns());
-  oil_ = 1.0;
+  log_oil_ = 0.0;
   swing_.setZero();
   rest();
 }
@@ -92,10 +91,10 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   const TorqueStep modal = modalForces(modes_, torque);
   if (identifier_) identifier_->advance(step, modal);
   for (int k = 0; k < modes_.count && !follows_readings_; ++k) {
-    const ModeResponse& r = response_[static_cast<std::size_t>(k)].at(mode(k), step);
     const double rock = contactAtLoad(k);
     const ModeForce force{modal.from[k] + rock, modal.to[k] + rock, modal.mean[k] + rock};
-    const ModeState next = advanced(mode(k), {x_[k], v_[k]}, force, step, r);
+    const ModeState next =
+        advanced(step_[static_cast<std::size_t>(k)].at(mode(k), step), {x_[k], v_[k]}, pathOf(force, step));
     x_[k] = next.x;
     v_[k] = next.v;
   }
@@ -126,9 +125,9 @@ void Vibration::strike(const JointVector& impulse) noexcept {
   restIfNotFinite();
 }
 
-void Vibration::observe(int channel, const VibrationReading& reading) noexcept {
-  if (!identifier_) return;
-  identifier_->observe(channel, reading);
+void Vibration::observe(const VibrationReading* readings, std::size_t count) noexcept {
+  if (!identifier_ || count == 0) return;
+  identifier_->observe(readings, count);
   useIdentified();
   useMotion();
 }
@@ -216,18 +215,18 @@ Vibration::OilTorque Vibration::oilTorque() const noexcept {
   return {modes_.inertia.lazyProduct(now), modes_.inertia.lazyProduct(rate)};
 }
 
-double Vibration::oilTorqueAt(int joint, double ahead) const noexcept {
+JointVector Vibration::oilTorqueAt(double ahead) const noexcept {
   if (!identifier_ || !identifier_->followsContact()) {
     const OilTorque torque = oilTorque();
-    return torque.now[joint] + ahead * torque.rate[joint];
+    return torque.now + ahead * torque.rate;
   }
-  double torque = 0.0;
+  JointVector modal(modes_.count);
   for (int k = 0; k < modes_.count; ++k) {
     const Mode m = mode(k);
     const ModeState s = identifier_->motionAt(k, ahead).motion;
-    torque += modes_.inertia(joint, k) * (m.omega * m.omega * s.x + 2.0 * m.zeta * m.omega * s.v);
+    modal[k] = m.omega * m.omega * s.x + 2.0 * m.zeta * m.omega * s.v;
   }
-  return torque;
+  return modes_.inertia.lazyProduct(modal);
 }
 
 }  // namespace hammer_loads

@@ -56,8 +56,12 @@ class Vibration {
   void expectCrankLead(const CrankLead& lead) noexcept {
     if (identifier_) identifier_->expectCrankLead(lead);
   }
-  /// A sensor's reading at the end of the last step; nothing without identify() or followContact().
-  void observe(int channel, const VibrationReading& reading) noexcept;
+  /// A sensor's readings at the end of the last step, see ModeIdentifier; nothing without identify() or followContact().
+  void observe(const VibrationReading* readings, std::size_t count) noexcept;
+  void observe(int channel, VibrationReading reading) noexcept {
+    reading.channel = channel;
+    observe(&reading, 1);
+  }
   /// What follows the readings, if anything does.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
   /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
@@ -85,8 +89,8 @@ class Vibration {
     JointVector now, rate;
   };
   OilTorque oilTorque() const noexcept;
-  /// Of a joint, so long [s] after the present, or before it [N m].
-  double oilTorqueAt(int joint, double ahead) const noexcept;
+  /// So long [s] after the present, or before it [N m].
+  JointVector oilTorqueAt(double ahead) const noexcept;
   /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
   double energy() const noexcept;
   const BoomModes& modes() const noexcept { return modes_; }
@@ -112,9 +116,9 @@ class Vibration {
   JointVector position_;  ///< where the modes belong
   JointVector last_;      ///< as last given
   bool posed_{};
-  double oil_{1.0};  ///< stiffness of the modes' oil over that given
+  double log_oil_{};  ///< logarithm of the stiffness of the modes' oil over that given
   bool follows_readings_{};
-  std::array<KeptResponse, kMaxJoints> response_;        ///< of each mode
+  std::array<KeptStep, kMaxJoints> step_;                ///< of each mode
   JointVector x_, v_;                                    ///< modal displacements and velocities
   JointVector swing_;                                    ///< mean squares of the displacements
   JointVector contact_by_newton_;                        ///< modal force of the rock

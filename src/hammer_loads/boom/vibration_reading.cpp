@@ -3,45 +3,43 @@
 namespace hammer_loads {
 namespace {
 
-VibrationReading emptyReading(Eigen::Index joints) {
+VibrationReading emptyReading(double value) {
   VibrationReading reading;
-  reading.displacement = reading.velocity = reading.acceleration = reading.oil = JointVector::Zero(joints);
+  for (auto* row : {&reading.displacement, &reading.velocity, &reading.acceleration, &reading.oil}) row->setZero();
+  reading.value = value;
   return reading;
 }
 
 }  // namespace
 
 VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, double rate) {
-  VibrationReading reading = emptyReading(J.cols());
-  reading.velocity = J.bottomRows<3>().transpose() * n_T;
-  reading.value = rate;
+  VibrationReading reading = emptyReading(rate);
+  for (Eigen::Index j = 0; j < J.cols(); ++j) reading.velocity[j] = n_T.dot(J.col(j).tail<3>());
   return reading;
 }
 
 VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
                                         const Eigen::Vector3d& g_T, double acceleration) {
-  VibrationReading reading = emptyReading(J.cols());
+  VibrationReading reading = emptyReading(acceleration + n_T.dot(g_T));
+  // n . (v + omega x p) and n . (omega x g), where the vibration tilts the sensor and gravity turns against it.
+  const Eigen::Vector3d p_n = p_T.cross(n_T), g_n = g_T.cross(n_T);
   for (Eigen::Index j = 0; j < J.cols(); ++j) {
-    const Eigen::Vector3d v = J.col(j).head<3>(), omega = J.col(j).tail<3>();
-    reading.acceleration[j] = n_T.dot(v + omega.cross(p_T));
-    // The vibration tilts the sensor: gravity turns against it.
-    reading.displacement[j] = n_T.dot(omega.cross(g_T));
+    const auto omega = J.col(j).tail<3>();
+    reading.acceleration[j] = n_T.dot(J.col(j).head<3>()) + omega.dot(p_n);
+    reading.displacement[j] = omega.dot(g_n);
   }
-  reading.value = acceleration + n_T.dot(g_T);
   return reading;
 }
 
-VibrationReading jointAngleReading(int joints, int joint, double angle) {
-  VibrationReading reading = emptyReading(joints);
+VibrationReading jointAngleReading(int joint, double angle) {
+  VibrationReading reading = emptyReading(angle);
   reading.displacement[joint] = 1.0;
-  reading.value = angle;
   return reading;
 }
 
-VibrationReading oilTorqueReading(int joints, int joint, double torque) {
-  VibrationReading reading = emptyReading(joints);
+VibrationReading oilTorqueReading(int joint, double torque) {
+  VibrationReading reading = emptyReading(torque);
   reading.oil[joint] = 1.0;
-  reading.value = torque;
   return reading;
 }
 

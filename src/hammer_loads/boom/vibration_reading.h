@@ -13,7 +13,10 @@ enum class Clock { kCrank, kImu, kPressures };
 /// q') of the joints' vibration q. Whatever else it sees (weight, the boom's slow motion) must be taken off value
 /// first, as far as known; the offset takes up what is left of it.
 struct VibrationReading {
-  JointVector displacement, velocity, acceleration, oil;
+  /// One entry per joint of the chain, then zeros.
+  using Row = Eigen::Matrix<double, kMaxJoints, 1>;
+  Row displacement, velocity, acceleration, oil;
+  int channel{-1};
   double value{};
   double ahead{};              ///< of the reading's instant over the present one [s]; negative: it is older
   Clock clock{Clock::kCrank};  ///< its stamp is late by ModeIdentifier::delay()
@@ -29,9 +32,9 @@ VibrationReading tipRateReading(const Jacobian& J, const Eigen::Vector3d& n_T, d
 VibrationReading tipAccelerationReading(const Jacobian& J, const Eigen::Vector3d& p_T, const Eigen::Vector3d& n_T,
                                         const Eigen::Vector3d& g_T, double acceleration);
 /// A joint's angle [rad]: above 100 Hz it shows the vibration.
-VibrationReading jointAngleReading(int joints, int joint, double angle);
+VibrationReading jointAngleReading(int joint, double angle);
 /// Torque of the load on a joint by its cylinder's measured force [N m] (-force times arm), less weight and motion:
 /// what the oil carries of hammer and rock.
-VibrationReading oilTorqueReading(int joints, int joint, double torque);
+VibrationReading oilTorqueReading(int joint, double torque);
 
 }  // namespace hammer_loads

@@ -7,6 +7,7 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kSameDeviation = 1e-4;  // of it
 constexpr double kFaded = 1e-4;  // of the displacement by the hammer's load [m sqrt(kg)]: 10 kg by 30 um
 
 }  // namespace
@@ -29,17 +30,20 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
     OilDeviation& deviation = deviation_[i];
     deviation = given_;
     if (vibration.identifies()) {
-      const auto known = [](double identified, double left) { return std::sqrt(square(identified) + square(left)); };
       const ModeIdentifier& found = *vibration.identifier();
+      const auto known = [](double variance, double left) { return std::sqrt(variance + square(left)); };
       deviation.frequency =
-          std::min(given_.frequency, known(found.frequencyDeviation(k), ModeIdentifier::kLeftFrequency));
-      deviation.damping = std::min(given_.damping, known(found.dampingDeviation(k), ModeIdentifier::kLeftDamping));
+          std::min(given_.frequency, known(found.frequencyVariance(k), ModeIdentifier::kLeftFrequency));
+      deviation.damping = std::min(given_.damping, known(found.dampingVariance(k), ModeIdentifier::kLeftDamping));
     }
     for (auto& modes : mode_) modes[i] = vibration.mode(k);
-    const double stiffer = std::exp(deviation.frequency);
-    mode_[kStiffer][i].omega *= stiffer;
-    mode_[kSofter][i].omega /= stiffer;
-    mode_[kDamped][i].zeta = std::min(0.9, mode_[kDamped][i].zeta * std::exp(deviation.damping));
+    Factors& factor = factor_[i];
+    if (std::abs(factor.of.frequency - deviation.frequency) > kSameDeviation * deviation.frequency ||
+        std::abs(factor.of.damping - deviation.damping) > kSameDeviation * deviation.damping)
+      factor = {deviation, std::exp(deviation.frequency), std::exp(-deviation.frequency), std::exp(deviation.damping)};
+    mode_[kStiffer][i].omega *= factor.stiffer;
+    mode_[kSofter][i].omega *= factor.softer;
+    mode_[kDamped][i].zeta = std::min(0.9, mode_[kDamped][i].zeta * factor.damped);
   }
   if (waits_ || vibration.followsReadings()) start(vibration);
   waits_ = vibration.followsReadings();
@@ -47,12 +51,11 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
 
 /// What is known by readings goes its own way from there when they end.
 void VibrationSpread::start(const Vibration& vibration) noexcept {
-  rest();
-  for (std::size_t run = 0; run < kLoads; ++run) {
-    for (int k = 0; k < modes_.count; ++k) {
-      const ModeState now = vibration.motion(k);
-      x_[run][k] = now.x, v_[run][k] = now.v, force_[run][k] = vibration.loadOn(k);
-    }
+  if (!waits_) rest();
+  for (int k = 0; k < modes_.count; ++k) {
+    const ModeState now = vibration.motion(k);
+    const double load = vibration.loadOn(k);
+    for (std::size_t run = 0; run < kLoads; ++run) x_[run][k] = now.x, v_[run][k] = now.v, force_[run][k] = load;
   }
 }
 
@@ -83,29 +86,39 @@ void VibrationSpread::advance(double step, const TorqueStep& torque, const LoadS
   const TorqueStep modal = modalForces(modes_, torque);
   load_ = to;
   bool finite = modal.to.allFinite();
-  for (int run = 0; run < kLoads; ++run) finite = advanceRun(run, step, modal) && finite;
+  Paths paths;
+  for (int k = 0; k < modes_.count; ++k)
+    paths[static_cast<std::size_t>(k)] = pathOf({modal.from[k], modal.to[k], modal.mean[k]}, step);
+  for (int run = 0; run < kLoads; ++run) {
+    force_[static_cast<std::size_t>(run)] = modal.to;
+    finite = advanceRun(run, step, paths) && finite;
+  }
+  const double per_time = step > 0.0 ? 1.0 / step : 0.0;
   for (int run = kLoads; run < runs(); ++run) {
+    JointVector& force = force_[static_cast<std::size_t>(run)];
     const JointVector last = modalForce(modes_, to.col(run - kLoads));
-    const JointVector first = same ? force_[static_cast<std::size_t>(run)] : last;
-    finite = finite && last.allFinite();
-    finite = advanceRun(run, step, {first, last, 0.5 * (first + last)}) && finite;
+    for (int k = 0; k < modes_.count; ++k) {
+      const double first = same ? force[k] : last[k];
+      paths[static_cast<std::size_t>(k)] = {first, (last[k] - first) * per_time, 0.0};
+    }
+    force = last;
+    finite = advanceRun(run, step, paths) && finite && last.allFinite();
   }
   if (!finite) rest();
 }
 
 /// False: it is not finite any more.
-bool VibrationSpread::advanceRun(int run, double step, const TorqueStep& modal) noexcept {
+bool VibrationSpread::advanceRun(int run, double step, const Paths& force) noexcept {
   const auto i = static_cast<std::size_t>(run);
-  bool finite = true;
+  double all = 0.0;
   for (int k = 0; k < modes_.count; ++k) {
-    const Mode& m = mode(run, k);
-    const ModeResponse& r = response_[std::min<std::size_t>(i, kLoads)][static_cast<std::size_t>(k)].at(m, step);
-    const ModeState next = advanced(m, {x_[i][k], v_[i][k]}, {modal.from[k], modal.to[k], modal.mean[k]}, step, r);
+    const auto of_mode = static_cast<std::size_t>(k);
+    const ModeStep& its = step_[std::min<std::size_t>(i, kLoads)][of_mode].at(mode(run, k), step);
+    const ModeState next = advanced(its, {x_[i][k], v_[i][k]}, force[of_mode]);
     x_[i][k] = next.x, v_[i][k] = next.v;
-    finite = finite && std::isfinite(next.x) && std::isfinite(next.v);
+    all += std::abs(next.x) + std::abs(next.v);
   }
-  force_[i] = modal.to;
-  return finite;
+  return std::isfinite(all);
 }
 
 void VibrationSpread::strike(const JointVector& impulse) noexcept {

@@ -55,17 +55,23 @@ class VibrationSpread {
 
   void start(const Vibration& vibration) noexcept;
   void fade(double step) noexcept;
-  bool advanceRun(int run, double step, const TorqueStep& modal) noexcept;
+  using Paths = std::array<ForcePath, kMaxJoints>;
+  bool advanceRun(int run, double step, const Paths& force) noexcept;
 
   OilDeviation given_;
   std::array<OilDeviation, kMaxJoints> deviation_;
+  struct Factors {
+    OilDeviation of{0.0, 0.0};
+    double stiffer{1.0}, softer{1.0}, damped{1.0};  ///< exponentials of it
+  };
+  std::array<Factors, kMaxJoints> factor_;
   BoomModes modes_;
   bool waits_{};
   std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
   std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
   LoadSpread load_;
   JointVector swing_;                                                      ///< empty: none
-  std::array<std::array<KeptResponse, kMaxJoints>, kLoads + 1> response_;  ///< as mode_
+  std::array<std::array<KeptStep, kMaxJoints>, kLoads + 1> step_;          ///< as mode_
 };
 
 }  // namespace hammer_loads

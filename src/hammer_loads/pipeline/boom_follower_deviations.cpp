@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/pipeline/boom_follower.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
@@ -48,34 +49,33 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
     const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
     if (!torque) continue;
     const int joint = boom_.cylinders()[i].joint();
-    deviations.torque[joint] = std::hypot(torque->deviation, lasting_torque[joint]);
+    deviations.torque[joint] = std::sqrt(square(torque->deviation) + square(lasting_torque[joint]));
     deviations.cylinder[i] = deviations.torque[joint] / std::abs(boom_.cylinderPosition(i).arm);
   }
 }
 
 LoadErrors BoomFollower::measuredErrors(const Wrench& lasting, bool rigid) const noexcept {
-  LoadErrors errors;
-  const JointVector zero = JointVector::Zero(boom_.chain().joints());
+  LoadErrors errors(boom_.cylinders());
+  std::array<double, kMaxJoints> torque{};
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
-    JointVector torque = zero;
-    torque[boom_.cylinders()[i].joint()] = measured_.of(i)->deviation;
-    errors.add(zero, tip_->load(torque));
+    double& one = torque[static_cast<std::size_t>(boom_.cylinders()[i].joint())];
+    one = measured_.of(i)->deviation;
+    errors.add(tip_->load(torque.data()));
+    one = 0.0;
   }
-  errors.add(zero, lasting);
-  if (rigid || !boom_.vibration().known()) return errors;
-  const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
-  for (const auto& mode : of_vibration.colwise())
-    errors.add(mode, tip_->load(boom_.vibration().modes().mass.lazyProduct(mode)));
+  errors.add(lasting);
+  const BoomModes& modes = boom_.vibration().modes();
+  if (rigid || modes.count == 0) return errors;
+  std::array<Wrench, kMaxJoints> tip;
+  for (int k = 0; k < modes.count; ++k) tip[static_cast<std::size_t>(k)] = tip_->load(modes.inertia.col(k));
+  errors.add(modes, boom_.vibration().identifier()->accelerationCovariance(), tip);
   return errors;
 }
 
 LoadErrors BoomFollower::followedErrors(const WrenchSpread& spread, bool rigid) const noexcept {
-  LoadErrors errors;
-  const JointVector zero = JointVector::Zero(boom_.chain().joints());
-  for (int i = 0; i < spread.count; ++i) errors.add(zero, spread.part[static_cast<std::size_t>(i)]);
-  if (rigid) return errors;
-  const JointMatrix of_vibration = boom_.vibration().identifier()->accelerationSpread();
-  for (const auto& mode : of_vibration.colwise()) errors.add(mode, {});
+  LoadErrors errors(boom_.cylinders());
+  for (int i = 0; i < spread.count; ++i) errors.add(spread.part[static_cast<std::size_t>(i)]);
+  if (!rigid) errors.add(boom_.vibration().modes(), boom_.vibration().identifier()->accelerationCovariance(), {});
   return errors;
 }
 

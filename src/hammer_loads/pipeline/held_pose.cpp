@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -31,10 +32,14 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
     return;
   }
   const double part = gap ? 0.0 : step / kMemory;
-  first_ += part * (measured.position - first_);
-  slow_ += part * (first_ - slow_);
-  slowest_ += part * (slow_ - slowest_);
-  last_ += part * (slowest_ - last_);
+  withCount<4>(static_cast<int>(first_.size()), [&](auto joints) {
+    for (int j = 0; j < joints; ++j) {
+      first_[j] += part * (angle_[j] - first_[j]);
+      slow_[j] += part * (first_[j] - slow_[j]);
+      slowest_[j] += part * (slow_[j] - slowest_[j]);
+      last_[j] += part * (slowest_[j] - last_[j]);
+    }
+  });
   unrest_ = slowRate().cwiseAbs().maxCoeff() > kFast ? kRest : std::max(0.0, unrest_ - step);
   settling_ = gap || isDriven() ? kSettles : std::max(0.0, settling_ - step);
   if (isDriven()) return;

@@ -66,11 +66,14 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   const double delay_deviation = identifier ? identifier->delayDeviation(Clock::kPressures) : 0.0;
   const double lag = surprise > kSurprised ? square(kLag) * surprise : 0.0;
   const bool gap = seconds(sample - sample_) > kGap;
+  StampNs oil_at{};
+  JointVector oil_then;  // at that stamp; of most cylinders it is the same
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const Cylinder& cylinder = boom.cylinders()[i];
     const int j = cylinder.joint();
-    const CylinderPosition at = cylinder.at(position[j]);  // of a measured force the lever as it is measured
     Track& track = tracks_[i];
+    if (position[j] != track.position) track.at = cylinder.at(position[j]), track.position = position[j];
+    const CylinderPosition& at = track.at;  // of a measured force the lever as it is measured
     torque_[i].reset();
     const StampNs stamp = pressures.newest(i);
     const std::optional<ChamberPressures> read = pressures.at(i, stamp);
@@ -80,7 +83,9 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     }
     if (pressures.count(i) != track.readings) {
       const double before = model_.now[j] + (seconds(stamp - sample_) - delay) * model_.rate[j];
-      const double now = boom.vibration().oilTorqueAt(j, seconds(stamp - sample) - delay) + steady[j];
+      if (oil_then.size() == 0 || stamp != oil_at)
+        oil_then = boom.vibration().oilTorqueAt(seconds(stamp - sample) - delay), oil_at = stamp;
+      const double now = oil_then[j] + steady[j];
       const double torque = -forceOf(cylinder, *read) * at.arm;
       if (gap || !track.goes_on) track.stamp = stamp, track.slope = 0.0;
       take(track, stamp, torque, now, before);

@@ -6,6 +6,7 @@
 
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 
@@ -37,6 +38,8 @@ class MeasuredTorques {
  private:
   struct Track {
     std::uint64_t readings{};            ///< taken
+    double position{kNaN};               ///< of the joint, as its sensor shows it
+    CylinderPosition at;                 ///< there
     StampNs stamp{};                     ///< of the last one
     double interval{};                   ///< since the one before [s]
     int judged{};                        ///< readings in the means of squares, counted up to kMostJudged

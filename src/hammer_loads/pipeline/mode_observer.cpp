@@ -17,11 +17,10 @@ constexpr Doubt kTorque{0.004, 0.02, 0.002};      // of the torque that the cyli
 constexpr double kLinksInHull = 1.0;              // [m/s2]: modes take the links at the mean of their places
 constexpr double kSlowest = 0.01, kMoved = 0.02;  // [s] between joint states; [rad] a jump
 
-void see(Boom& boom, int channel, VibrationReading reading, const Doubt& doubt, double size = 1.0) noexcept {
+void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {
   reading.noise = size * doubt.noise;
   reading.offset_deviation = size * doubt.offset;
   reading.offset_walk = size * doubt.walk;
-  boom.vibration().observe(channel, reading);
 }
 
 }  // namespace
@@ -30,23 +29,25 @@ void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& readi
   if (held.isDriven()) return;
   const Jacobian& J = boom.tipJacobian();
   const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
-  const auto seeUnit = [&](int channel, VibrationReading seen, const Doubt& doubt) {
-    seen.clock = Clock::kImu;
-    see(boom, channel, seen, doubt);
+  const auto along = [&](const Eigen::Vector3d& n_T) {
+    return tipAccelerationReading(J, imu_position_, n_T, g_T, n_T.dot(reading.specific_force));
   };
-  const auto seeAcceleration = [&](int channel, const Eigen::Vector3d& n_T) {
-    VibrationReading seen = tipAccelerationReading(J, imu_position_, n_T, g_T, n_T.dot(reading.specific_force));
-    seen.neglected = kLinksInHull;
-    seeUnit(channel, seen, kAcceleration);
-  };
-  seeAcceleration(0, Eigen::Vector3d::UnitX());
-  seeAcceleration(1, Eigen::Vector3d::UnitZ());
-  seeUnit(2, tipRateReading(J, Eigen::Vector3d::UnitY(), reading.rate.y() - slow_rate.y()), kRate);
+  std::array<VibrationReading, kImuChannels> seen{
+      along(Eigen::Vector3d::UnitX()), along(Eigen::Vector3d::UnitZ()),
+      tipRateReading(J, Eigen::Vector3d::UnitY(), reading.rate.y() - slow_rate.y())};
+  for (int i = 0; i < kImuChannels; ++i) {
+    VibrationReading& one = seen[static_cast<std::size_t>(i)];
+    const bool turns = i == 2;
+    one.channel = i;
+    one.clock = Clock::kImu;
+    one.neglected = turns ? 0.0 : kLinksInHull;
+    setDoubt(turns ? kRate : kAcceleration, 1.0, one);
+  }
+  boom.vibration().observe(seen.data(), seen.size());
 }
 
 void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, double step,
                           const JointBuffer& joints) noexcept {
-  const int count = boom.chain().joints();
   const JointVector slow_rate = held.slowRate();
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
     const int joint = boom.cylinders()[i].joint();
@@ -57,16 +58,20 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
     const bool jumped = !(interval > 0.0) || interval > kSlowest || std::abs(now->position - track.position) > kMoved;
     track.stamp = now->stamp, track.position = now->position;
     if (jumped || held.isDriven() || std::abs(ahead) > 0.75 * step) continue;
-    VibrationReading reading = jointAngleReading(count, joint, now->position - held.slowAngle()[joint]);
+    VibrationReading reading = jointAngleReading(joint, now->position - held.slowAngle()[joint]);
     reading.velocity[joint] = ahead;
     Doubt doubt = kAngle;
     doubt.walk += std::abs(slow_rate[joint]);
-    see(boom, kImuChannels + static_cast<int>(i), reading, doubt);
+    setDoubt(doubt, 1.0, reading);
+    boom.vibration().observe(kImuChannels + static_cast<int>(i), reading);
   }
 }
 
 void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures) noexcept {
   const auto cylinders = boom.cylinders().size();
+  std::array<VibrationReading, kMaxJoints> seen;  // of one instant
+  std::size_t count = 0;
+  const auto take = [&] { boom.vibration().observe(seen.data(), count), count = 0; };
   for (std::size_t i = 0; i < cylinders; ++i) {
     if (pressures.count(i) == pressures_[i]) continue;
     pressures_[i] = pressures.count(i);
@@ -76,13 +81,16 @@ void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures
     const int j = cylinder.joint();
     const CylinderPosition& at = boom.cylinderPosition(i);
     if (!p || at.dead_centre || !boom.vibration().known()) continue;
-    const double torque = -forceOf(cylinder, *p) * at.arm - boom.steadyTorque(j);
-    VibrationReading reading = oilTorqueReading(boom.chain().joints(), j, torque);
-    reading.ahead = seconds(stamp - sample);
+    const double ahead = seconds(stamp - sample);
+    if (count > 0 && ahead != seen[0].ahead) take();
+    VibrationReading& reading = seen[count++];
+    reading = oilTorqueReading(j, -forceOf(cylinder, *p) * at.arm - boom.steadyTorque(j));
+    reading.channel = kImuChannels + static_cast<int>(cylinders + i);
+    reading.ahead = ahead;
     reading.clock = Clock::kPressures;
-    see(boom, kImuChannels + static_cast<int>(cylinders + i), reading, kTorque,
-        cylinder.greatestPush() * std::abs(at.arm));
+    setDoubt(kTorque, cylinder.greatestPush() * std::abs(at.arm), reading);
   }
+  take();
 }
 
 }  // namespace hammer_loads

@@ -1,0 +1,43 @@
+/// What a Kalman filter does with its covariance at each reading, and what a covariance makes of loads, as fast as the
+/// processor can.
+#pragma once
+
+#include <array>
+
+namespace hammer_loads {
+
+/// A square block on the diagonal of a matrix stored by columns: rows and columns from `first` up to `last`; these and every
+/// other index here are multiples of four.
+struct CovarianceBlock {
+  double* values{};  ///< of the whole matrix
+  int stride{};      ///< from column to column
+  int first{}, last{};
+};
+
+/// result = P row^T; row: zero before `begin`, but for a one at `unit`, any index that is less. All of them have the size of
+/// the matrix.
+void timesRow(const CovarianceBlock& P, const double* row, int begin, int unit, double* result) noexcept;
+
+/// P <- P - column column^T/S.
+void subtractSquare(const CovarianceBlock& P, const double* column, double S) noexcept;
+
+/// P <- F P F^T, where F makes two states, `first` and the one after it, of five states that hold both of them.
+void replaceTwo(const CovarianceBlock& P, int first, const std::array<int, 5>& of, const std::array<double, 5>& by_one,
+                const std::array<double, 5>& by_other) noexcept;
+
+/// Loads that are linear in some inputs, in fours: of each four loads what the first input does to them, then what the
+/// second does, and so on. Zeros fill up the last four.
+struct LinearLoads {
+  const double* fours{};
+  int loads{}, inputs{};
+};
+constexpr int kUsualInputs = 6;  ///< compiled for: three cylinders and a load in the boom's plane
+
+/// Of each load, and what fills up the last four, the sum of squares of what the columns of a lower triangle make of it:
+/// root(input, column), stored by columns of root_stride.
+void sumOfSquares(const LinearLoads& loads, const double* root, int root_stride, double* sum) noexcept;
+
+/// Adds of each load the larger of the squares of what two vectors of inputs make of it.
+void addLargerSquare(const LinearLoads& loads, const double* one, const double* other, double* sum) noexcept;
+
+}  // namespace hammer_loads

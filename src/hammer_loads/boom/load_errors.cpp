@@ -1,0 +1,98 @@
+#include "hammer_loads/boom/load_errors.h"
+
+#include <cmath>
+
+#include "hammer_loads/util/known_count.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kOfSums = 1e-13;  // of a variance: what sums of some ten terms leave of zero
+
+}  // namespace
+
+LoadErrors::LoadErrors(const std::vector<Cylinder>& cylinders) noexcept : held_(static_cast<int>(cylinders.size())) {
+  for (std::size_t i = 0; i < cylinders.size(); ++i) joint_[i] = cylinders[i].joint();
+}
+
+LoadErrors::Inputs LoadErrors::inputsOf(const JointVector& acceleration) const noexcept {
+  Inputs inputs = Inputs::Zero();
+  for (int i = 0; i < held_; ++i) inputs[i] = acceleration[joint_[static_cast<std::size_t>(i)]];
+  return inputs;
+}
+
+void LoadErrors::setTip(const Wrench& tip, Inputs& inputs) noexcept {
+  inputs.segment<3>(held_) << tip.force.x(), tip.force.z(), tip.torque.y();
+  inputs.segment<3>(held_ + 3) << tip.force.y(), tip.torque.x(), tip.torque.z();
+  across_ = across_ || tip.force.y() != 0.0 || tip.torque.x() != 0.0 || tip.torque.z() != 0.0;
+}
+
+void LoadErrors::add(const JointVector& acceleration, const Wrench& tip) noexcept {
+  Inputs inputs = inputsOf(acceleration);
+  setTip(tip, inputs);
+  withCount<kUsualInputs>(size(), [&](auto end) {
+    for (int c = 0; c < end; ++c) {
+      for (int r = c; r < end; ++r) covariance_(r, c) += inputs[r] * inputs[c];
+    }
+  });
+}
+
+void LoadErrors::add(const Wrench& tip) noexcept {
+  const Eigen::Vector3d in_plane(tip.force.x(), tip.force.z(), tip.torque.y());
+  const Eigen::Vector3d across(tip.force.y(), tip.torque.x(), tip.torque.z());
+  covariance_.block<3, 3>(held_, held_) += in_plane * in_plane.transpose();
+  if (across.isZero(0.0)) return;
+  across_ = true;
+  covariance_.block<3, 3>(held_ + 3, held_) += across * in_plane.transpose();
+  covariance_.block<3, 3>(held_ + 3, held_ + 3) += across * across.transpose();
+}
+
+void LoadErrors::add(const BoomModes& modes, const JointMatrix& covariance,
+                     const std::array<Wrench, kMaxJoints>& tip) noexcept {
+  std::array<Inputs, kMaxJoints> by_mode;
+  for (int k = 0; k < modes.count; ++k) {
+    Inputs& inputs = by_mode[static_cast<std::size_t>(k)];
+    for (int i = 0; i < held_; ++i) inputs[i] = modes.shape(i, k);
+    setTip(tip[static_cast<std::size_t>(k)], inputs);
+  }
+  withCount<kUsualInputs>(size(), [&](auto end) {
+    for (int k = 0; k < modes.count; ++k) {
+      Inputs with = Inputs::Zero();  // covariance of the inputs with mode k
+      for (int l = 0; l < modes.count; ++l) {
+        for (int r = 0; r < end; ++r) with[r] += covariance(l, k) * by_mode[static_cast<std::size_t>(l)][r];
+      }
+      const Inputs& inputs = by_mode[static_cast<std::size_t>(k)];
+      for (int c = 0; c < end; ++c) {
+        for (int r = c; r < end; ++r) covariance_(r, c) += with[r] * inputs[c];
+      }
+    }
+  });
+}
+
+void LoadErrors::addLarger(const JointVector& acceleration, const JointVector& other) noexcept {
+  larger_ = {inputsOf(acceleration), inputsOf(other)};
+  has_larger_ = true;
+}
+
+/// By Cholesky. What is not a number stays so.
+LoadErrors::Covariance rootOf(const LoadErrors& errors) noexcept {
+  LoadErrors::Covariance root;
+  const LoadErrors::Covariance& C = errors.covariance();
+  withCount<kUsualInputs>(errors.size(), [&](auto inputs) {
+    for (int k = 0; k < inputs; ++k) {
+      double left = C(k, k);
+      for (int j = 0; j < k; ++j) left -= square(root(k, j));
+      const double scale = left <= kOfSums * C(k, k) ? 0.0 : 1.0 / std::sqrt(left);
+      root(k, k) = left * scale;
+      for (int i = k + 1; i < inputs; ++i) {
+        double shared = C(i, k);
+        for (int j = 0; j < k; ++j) shared -= root(i, j) * root(k, j);
+        root(i, k) = shared * scale;
+      }
+    }
+  });
+  return root;
+}
+
+}  // namespace hammer_loads

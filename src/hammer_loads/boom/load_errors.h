@@ -1,0 +1,55 @@
+/// Errors of what acts on the boom, as one covariance, however many they are.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hammer_loads/boom/boom_modes.h"
+#include "hammer_loads/boom/covariance_kernels.h"
+#include "hammer_loads/boom/wrench.h"
+
+namespace hammer_loads {
+
+/// Of the accelerations of the cylinders' joints [rad/s2] and of the load on the tip with them, axes of the tip [N, N
+/// m]. No allocation.
+class LoadErrors {
+ public:
+  static constexpr int kMost = kMaxJoints + 6;
+  /// What is in error: accelerations in the order of the cylinders, then of the load what lies in the boom's plane
+  /// (force x, z, moment y), then what lies across it (force y, moment x, z).
+  using Inputs = Eigen::Matrix<double, kMost, 1>;
+  /// What counts is below the diagonal, and on it.
+  using Covariance = Eigen::Matrix<double, kMost, kMost>;
+
+  explicit LoadErrors(const std::vector<Cylinder>& cylinders) noexcept;
+
+  /// One error that is independent of the others, one standard deviation of it; acceleration: of all joints.
+  void add(const JointVector& acceleration, const Wrench& tip) noexcept;
+  void add(const Wrench& tip) noexcept;
+  /// Errors of the modes' accelerations, covariance [m2 kg/s4]; tip: of the load with one unit of each mode's.
+  void add(const BoomModes& modes, const JointMatrix& covariance, const std::array<Wrench, kMaxJoints>& tip) noexcept;
+  /// Of two errors that exclude each other, one standard deviation each, the larger counts for each load.
+  void addLarger(const JointVector& acceleration, const JointVector& other) noexcept;
+
+  int size() const noexcept { return isAcross() ? held_ + 6 : held_ + 3; }  ///< of the inputs in use
+  bool isAcross() const noexcept { return across_; }                        ///< some of the load lies across the plane
+  const Covariance& covariance() const noexcept { return covariance_; }
+  bool hasLarger() const noexcept { return has_larger_; }
+  const std::array<Inputs, 2>& larger() const noexcept { return larger_; }
+
+ private:
+  Inputs inputsOf(const JointVector& acceleration) const noexcept;
+  void setTip(const Wrench& tip, Inputs& inputs) noexcept;
+
+  int held_{};  ///< by cylinders
+  std::array<int, kMaxJoints> joint_{};
+  bool across_{}, has_larger_{};
+  Covariance covariance_ = Covariance::Zero();
+  std::array<Inputs, 2> larger_;
+};
+
+/// A root of the covariance, L L^T, below the diagonal and on it: as many independent errors as there are inputs. Where
+/// nothing but rounding is left of an input beside those before it, its column is zero.
+LoadErrors::Covariance rootOf(const LoadErrors& errors) noexcept;
+
+}  // namespace hammer_loads
