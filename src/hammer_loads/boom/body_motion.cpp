@@ -21,26 +21,25 @@ RigidBody bodyOf(const KDL::Segment& segment) {
 /// root_acceleration: against gravity it stands for the weight.
 void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
                  const Eigen::Vector3d& root_acceleration, std::array<BodyMotion, kMaxLinks>& result) noexcept {
-  result[0] = {};
-  result[0].acceleration = root_acceleration;
+  BodyMotion now;  // of the link before, until it is that of the link itself
+  now.acceleration = root_acceleration;
+  result[0] = now;
   for (int i = 1; i < chain.links(); ++i) {
     const auto here = static_cast<std::size_t>(i);
-    const BodyMotion& before = result[here - 1];
-    BodyMotion& now = result[here];
-    now.acceleration = before.accelerationAt(pose.X_BL[here].translation() - pose.X_BL[here - 1].translation());
-    now.rate = before.rate;
-    now.angular_acceleration = before.angular_acceleration;
+    now.acceleration = now.accelerationAt(pose.X_BL[here].translation() - pose.X_BL[here - 1].translation());
     const int joint = chain.link(i).joint;
-    if (joint < 0) continue;
-    const Eigen::Vector3d& axis = pose.axis_B[static_cast<std::size_t>(joint)];
-    const double velocity = motion.velocity[joint], acceleration = motion.acceleration[joint];
-    const Eigen::Vector3d turned = before.rate.cross(axis);
-    if (pose.prismatic[static_cast<std::size_t>(joint)]) {
-      now.acceleration += acceleration * axis + (2.0 * velocity) * turned;
-    } else {
-      now.rate += velocity * axis;
-      now.angular_acceleration += acceleration * axis + velocity * turned;
+    if (joint >= 0) {
+      const Eigen::Vector3d& axis = pose.axis_B[static_cast<std::size_t>(joint)];
+      const double velocity = motion.velocity[joint], acceleration = motion.acceleration[joint];
+      const Eigen::Vector3d turned = now.rate.cross(axis);
+      if (pose.prismatic[static_cast<std::size_t>(joint)]) {
+        now.acceleration += acceleration * axis + (2.0 * velocity) * turned;
+      } else {
+        now.rate += velocity * axis;
+        now.angular_acceleration += acceleration * axis + velocity * turned;
+      }
     }
+    result[here] = now;
   }
 }
 

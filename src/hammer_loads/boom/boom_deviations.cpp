@@ -53,7 +53,8 @@ void Boom::arrangeResponse() noexcept {
 
 /// Every load is linear in wrench and accelerations: the difference of two states is the load of their difference.
 void Boom::findResponse() noexcept {
-  if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= kOfRefreshAngle * parameters_.vibration.refresh_angle) return;
+  if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= kOfRefreshAngle * parameters_.vibration.refresh_angle)
+    return;
   response_at_ = steady_position_;
   const Eigen::Index joints = chain_.joints();
   const JointVector zero = JointVector::Zero(joints);
@@ -81,7 +82,8 @@ void Boom::findResponse() noexcept {
 /// To variance_.
 void Boom::findVariances(const LoadErrors& errors, const Fours& response, Eigen::Index rows) noexcept {
   const LinearLoads loads{response.data(), static_cast<int>(rows), errors.size()};
-  sumOfSquares(loads, rootOf(errors).data(), LoadErrors::kMost, variance_.data());
+  const FactoredErrors covariance = factored(errors);
+  sumOfSquares(loads, covariance.factor.data(), covariance.weight.data(), LoadErrors::kMost, variance_.data());
   if (errors.hasLarger())
     addLargerSquare(loads, errors.larger()[0].data(), errors.larger()[1].data(), variance_.data());
 }

@@ -74,8 +74,7 @@ JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) 
   withCount<3>(modes.count, [&](auto count) {
     for (int k = 0; k < count; ++k) {
       double sum = 0.0;
-      for (int i = 0; i < count; ++i)
-        sum += joint_torque[modes.joint[static_cast<std::size_t>(i)]] * modes.shape(i, k);
+      for (int i = 0; i < count; ++i) sum += joint_torque[modes.joint[static_cast<std::size_t>(i)]] * modes.shape(i, k);
       force[k] = sum;
     }
   });

@@ -19,8 +19,7 @@ class InPlaneTip {
   /// Of torques on all joints of the chain [N m]; linear in them.
   template <typename Torques>
   Wrench load(const Torques& torque) const noexcept {
-    const Eigen::Vector3d load =
-        inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
+    const Eigen::Vector3d load = inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
     return {{load[0], 0.0, load[1]}, {0.0, load[2], 0.0}};
   }
 

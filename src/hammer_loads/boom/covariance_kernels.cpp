@@ -8,37 +8,57 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kLane = 4;
-/// Four numbers: two registers of any x86-64, one of most. Without fused multiply-add, so that both give the same bits.
+/// Four numbers: two registers of any x86-64, one of most.
 typedef double Lane __attribute__((vector_size(kLane * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 HAMMER_LOADS_INLINE const Lane& laneAt(const double* values) noexcept { return *reinterpret_cast<const Lane*>(values); }
 HAMMER_LOADS_INLINE Lane& laneAt(double* values) noexcept { return *reinterpret_cast<Lane*>(values); }
 
-// Arguments by value and in full lanes of columns: else each store would make the compiler read them again.
+// Blocks by value, counts as constants: else each store would make the compiler read them again.
 
-HAMMER_LOADS_INLINE void timesRowAny(CovarianceBlock P, const double* row, int begin, int unit,
-                                     double* result) noexcept {
+template <int count>
+HAMMER_LOADS_INLINE void timesRowsOf(CovarianceBlock P, const double* rows, int begin, const int* unit,
+                                     double* results) noexcept {
   for (int i = P.first; i < P.last; i += kLane) {
-    Lane sum = laneAt(P.values + unit * P.stride + i);
+    Lane sum[count];
+    for (int k = 0; k < count; ++k) sum[k] = laneAt(P.values + unit[k] * P.stride + i);
     const double* column = P.values + begin * P.stride + i;
-    for (int j = begin; j < P.last; j += kLane) {
-#pragma GCC unroll 4
-      for (int k = 0; k < kLane; ++k, column += P.stride) sum += row[j + k] * laneAt(column);
+    for (int j = begin; j < P.last; ++j, column += P.stride) {
+      const Lane value = laneAt(column);
+      for (int k = 0; k < count; ++k) sum[k] += rows[k * P.stride + j] * value;
     }
-    laneAt(result + i) = sum;
+    for (int k = 0; k < count; ++k) laneAt(results + k * P.stride + i) = sum[k];
   }
 }
 
-HAMMER_LOADS_INLINE void subtractSquareAny(CovarianceBlock P, const double* column, double S) noexcept {
-  const double minus = -1.0 / S;
+template <int count>
+HAMMER_LOADS_INLINE void subtractSquaresOf(CovarianceBlock P, const double* columns, const double* S) noexcept {
+  double minus[count];
+  for (int k = 0; k < count; ++k) minus[k] = -1.0 / S[k];
   for (int i = P.first; i < P.last; i += kLane) {
-    const Lane gain = minus * laneAt(column + i);
+    Lane gain[count];
+    for (int k = 0; k < count; ++k) gain[k] = minus[k] * laneAt(columns + k * P.stride + i);
     double* changed = P.values + P.first * P.stride + i;
-    for (int j = P.first; j < P.last; j += kLane) {
-#pragma GCC unroll 4
-      for (int k = 0; k < kLane; ++k, changed += P.stride) laneAt(changed) += gain * column[j + k];
+    for (int j = P.first; j < P.last; ++j, changed += P.stride) {
+      Lane value = laneAt(changed);
+      for (int k = 0; k < count; ++k) value += gain[k] * columns[k * P.stride + j];
+      laneAt(changed) = value;
     }
   }
+}
+
+HAMMER_LOADS_INLINE void timesRowsAny(const CovarianceBlock& P, int count, const double* rows, int begin,
+                                      const int* unit, double* results) noexcept {
+  if (count == 3) return timesRowsOf<3>(P, rows, begin, unit, results);
+  if (count == 2) return timesRowsOf<2>(P, rows, begin, unit, results);
+  timesRowsOf<1>(P, rows, begin, unit, results);
+}
+
+HAMMER_LOADS_INLINE void subtractSquaresAny(const CovarianceBlock& P, int count, const double* columns,
+                                            const double* S) noexcept {
+  if (count == 3) return subtractSquaresOf<3>(P, columns, S);
+  if (count == 2) return subtractSquaresOf<2>(P, columns, S);
+  subtractSquaresOf<1>(P, columns, S);
 }
 
 HAMMER_LOADS_INLINE void replaceTwoAny(CovarianceBlock P, int first, const int* of, const double* by_one,
@@ -71,7 +91,7 @@ HAMMER_LOADS_INLINE void replaceTwoAny(CovarianceBlock P, int first, const int* 
 
 /// most: of inputs, a constant.
 template <int most>
-HAMMER_LOADS_INLINE void sumOfSquaresUpTo(LinearLoads loads, const double* root, int root_stride,
+HAMMER_LOADS_INLINE void sumOfSquaresUpTo(LinearLoads loads, const double* factor, const double* weight, int stride,
                                           double* sum) noexcept {
   const double* by_input = loads.fours;
   for (int load = 0; load < loads.loads; load += kLane, by_input += kLane * loads.inputs) {
@@ -79,22 +99,22 @@ HAMMER_LOADS_INLINE void sumOfSquaresUpTo(LinearLoads loads, const double* root,
 #pragma GCC unroll 6
     for (int k = 0; k < most; ++k) {
       if (most != kUsualInputs && k >= loads.inputs) break;
-      Lane one{};
+      Lane one = laneAt(by_input + kLane * k);
 #pragma GCC unroll 6
       for (int i = 0; i < most; ++i) {
         if (most != kUsualInputs && i >= loads.inputs) break;
-        if (i >= k) one += root[k * root_stride + i] * laneAt(by_input + kLane * i);
+        if (i > k) one += factor[k * stride + i] * laneAt(by_input + kLane * i);
       }
-      all += one * one;
+      all += weight[k] * (one * one);
     }
     laneAt(sum + load) = all;
   }
 }
 
-HAMMER_LOADS_INLINE void sumOfSquaresAny(const LinearLoads& loads, const double* root, int root_stride,
-                                         double* sum) noexcept {
-  if (loads.inputs == kUsualInputs) return sumOfSquaresUpTo<kUsualInputs>(loads, root, root_stride, sum);
-  sumOfSquaresUpTo<std::numeric_limits<int>::max()>(loads, root, root_stride, sum);
+HAMMER_LOADS_INLINE void sumOfSquaresAny(const LinearLoads& loads, const double* factor, const double* weight,
+                                         int stride, double* sum) noexcept {
+  if (loads.inputs == kUsualInputs) return sumOfSquaresUpTo<kUsualInputs>(loads, factor, weight, stride, sum);
+  sumOfSquaresUpTo<std::numeric_limits<int>::max()>(loads, factor, weight, stride, sum);
 }
 
 HAMMER_LOADS_INLINE void addLargerSquareAny(LinearLoads loads, const double* one, const double* other,
@@ -114,28 +134,29 @@ HAMMER_LOADS_INLINE void addLargerSquareAny(LinearLoads loads, const double* one
 #if defined(__x86_64__) && defined(__GNUC__)
 const bool kHasAvx2 = [] {
   __builtin_cpu_init();
-  return __builtin_cpu_supports("avx2") != 0;
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 }();
-#define HAMMER_LOADS_AVX2 [[gnu::target("avx2")]]
+#define HAMMER_LOADS_AVX2 [[gnu::target("avx2,fma")]]
 #else
 constexpr bool kHasAvx2 = false;
 #define HAMMER_LOADS_AVX2
 #endif
 
-HAMMER_LOADS_AVX2 void timesRowAvx2(const CovarianceBlock& P, const double* row, int begin, int unit,
-                                    double* result) noexcept {
-  timesRowAny(P, row, begin, unit, result);
+HAMMER_LOADS_AVX2 void timesRowsAvx2(const CovarianceBlock& P, int count, const double* rows, int begin,
+                                     const int* unit, double* results) noexcept {
+  timesRowsAny(P, count, rows, begin, unit, results);
 }
-HAMMER_LOADS_AVX2 void subtractSquareAvx2(const CovarianceBlock& P, const double* column, double S) noexcept {
-  subtractSquareAny(P, column, S);
+HAMMER_LOADS_AVX2 void subtractSquaresAvx2(const CovarianceBlock& P, int count, const double* columns,
+                                           const double* S) noexcept {
+  subtractSquaresAny(P, count, columns, S);
 }
 HAMMER_LOADS_AVX2 void replaceTwoAvx2(const CovarianceBlock& P, int first, const int* of, const double* by_one,
                                       const double* by_other) noexcept {
   replaceTwoAny(P, first, of, by_one, by_other);
 }
-HAMMER_LOADS_AVX2 void sumOfSquaresAvx2(const LinearLoads& loads, const double* root, int root_stride,
-                                        double* sum) noexcept {
-  sumOfSquaresAny(loads, root, root_stride, sum);
+HAMMER_LOADS_AVX2 void sumOfSquaresAvx2(const LinearLoads& loads, const double* factor, const double* weight,
+                                        int stride, double* sum) noexcept {
+  sumOfSquaresAny(loads, factor, weight, stride, sum);
 }
 HAMMER_LOADS_AVX2 void addLargerSquareAvx2(const LinearLoads& loads, const double* one, const double* other,
                                            double* sum) noexcept {
@@ -144,14 +165,15 @@ HAMMER_LOADS_AVX2 void addLargerSquareAvx2(const LinearLoads& loads, const doubl
 
 }  // namespace
 
-void timesRow(const CovarianceBlock& P, const double* row, int begin, int unit, double* result) noexcept {
-  if (kHasAvx2) return timesRowAvx2(P, row, begin, unit, result);
-  timesRowAny(P, row, begin, unit, result);
+void timesRows(const CovarianceBlock& P, int count, const double* rows, int begin, const int* unit,
+               double* results) noexcept {
+  if (kHasAvx2) return timesRowsAvx2(P, count, rows, begin, unit, results);
+  timesRowsAny(P, count, rows, begin, unit, results);
 }
 
-void subtractSquare(const CovarianceBlock& P, const double* column, double S) noexcept {
-  if (kHasAvx2) return subtractSquareAvx2(P, column, S);
-  subtractSquareAny(P, column, S);
+void subtractSquares(const CovarianceBlock& P, int count, const double* columns, const double* S) noexcept {
+  if (kHasAvx2) return subtractSquaresAvx2(P, count, columns, S);
+  subtractSquaresAny(P, count, columns, S);
 }
 
 void replaceTwo(const CovarianceBlock& P, int first, const std::array<int, 5>& of, const std::array<double, 5>& by_one,
@@ -160,9 +182,10 @@ void replaceTwo(const CovarianceBlock& P, int first, const std::array<int, 5>& o
   replaceTwoAny(P, first, of.data(), by_one.data(), by_other.data());
 }
 
-void sumOfSquares(const LinearLoads& loads, const double* root, int root_stride, double* sum) noexcept {
-  if (kHasAvx2) return sumOfSquaresAvx2(loads, root, root_stride, sum);
-  sumOfSquaresAny(loads, root, root_stride, sum);
+void sumOfSquares(const LinearLoads& loads, const double* factor, const double* weight, int stride,
+                  double* sum) noexcept {
+  if (kHasAvx2) return sumOfSquaresAvx2(loads, factor, weight, stride, sum);
+  sumOfSquaresAny(loads, factor, weight, stride, sum);
 }
 
 void addLargerSquare(const LinearLoads& loads, const double* one, const double* other, double* sum) noexcept {

@@ -6,20 +6,23 @@
 
 namespace hammer_loads {
 
-/// A square block on the diagonal of a matrix stored by columns: rows and columns from `first` up to `last`; these and every
-/// other index here are multiples of four.
+/// A square block on the diagonal of a matrix stored by columns: rows and columns from `first` up to `last`; these and
+/// every other index here are multiples of four.
 struct CovarianceBlock {
   double* values{};  ///< of the whole matrix
   int stride{};      ///< from column to column
   int first{}, last{};
 };
 
-/// result = P row^T; row: zero before `begin`, but for a one at `unit`, any index that is less. All of them have the size of
-/// the matrix.
-void timesRow(const CovarianceBlock& P, const double* row, int begin, int unit, double* result) noexcept;
+constexpr int kMostAtOnce = 3;  ///< rows or columns that are worked on in one pass over a matrix
 
-/// P <- P - column column^T/S.
-void subtractSquare(const CovarianceBlock& P, const double* column, double S) noexcept;
+/// P row^T of each of up to kMostAtOnce rows, stored one after the other, each of P's stride, as the results are. A row
+/// is zero before `begin`, but for a one at unit, any index that is less.
+void timesRows(const CovarianceBlock& P, int count, const double* rows, int begin, const int* unit,
+               double* results) noexcept;
+
+/// P <- P - sum column column^T/S, of up to kMostAtOnce columns, stored likewise.
+void subtractSquares(const CovarianceBlock& P, int count, const double* columns, const double* S) noexcept;
 
 /// P <- F P F^T, where F makes two states, `first` and the one after it, of five states that hold both of them.
 void replaceTwo(const CovarianceBlock& P, int first, const std::array<int, 5>& of, const std::array<double, 5>& by_one,
@@ -33,9 +36,10 @@ struct LinearLoads {
 };
 constexpr int kUsualInputs = 6;  ///< compiled for: three cylinders and a load in the boom's plane
 
-/// Of each load, and what fills up the last four, the sum of squares of what the columns of a lower triangle make of it:
-/// root(input, column), stored by columns of root_stride.
-void sumOfSquares(const LinearLoads& loads, const double* root, int root_stride, double* sum) noexcept;
+/// Of each load, and what fills up the last four, the variance by a covariance L D L^T of the inputs: L one on its
+/// diagonal, below it factor(input, column), stored by columns of a stride; D diagonal, weight.
+void sumOfSquares(const LinearLoads& loads, const double* factor, const double* weight, int stride,
+                  double* sum) noexcept;
 
 /// Adds of each load the larger of the squares of what two vectors of inputs make of it.
 void addLargerSquare(const LinearLoads& loads, const double* one, const double* other, double* sum) noexcept;

@@ -8,8 +8,37 @@ namespace hammer_loads {
 constexpr int kMaxJoints = 8;  ///< moving joints of a chain
 constexpr int kMaxLinks = 16;  ///< links of a chain, its root included
 
-/// One entry per moving joint, from the root to the tip.
-using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
+/// One entry per moving joint, from the root to the tip. Of the usual sizes a copy is a few instructions: Eigen's own
+/// calls memmove, some forty times a sample.
+class JointVector : public Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1> {
+ public:
+  using Base = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
+  using Base::Base;
+  JointVector() = default;
+  JointVector(const JointVector& other) noexcept : Base() { take(other); }
+  JointVector& operator=(const JointVector& other) noexcept {
+    take(other);
+    return *this;
+  }
+  template <typename Other>
+  JointVector(const Eigen::MatrixBase<Other>& other) : Base(other) {}
+  template <typename Other>
+  JointVector& operator=(const Eigen::MatrixBase<Other>& other) {
+    Base::operator=(other);
+    return *this;
+  }
+
+ private:
+  void take(const JointVector& other) noexcept {
+    resize(other.size());
+    if (other.size() == 4)
+      head<4>() = other.head<4>();
+    else if (other.size() == 3)
+      head<3>() = other.head<3>();
+    else
+      Base::operator=(other);
+  }
+};
 using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
 /// Rows: linear velocity, angular velocity; one column per joint.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxJoints>;

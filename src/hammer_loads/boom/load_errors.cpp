@@ -75,24 +75,27 @@ void LoadErrors::addLarger(const JointVector& acceleration, const JointVector& o
   has_larger_ = true;
 }
 
-/// By Cholesky. What is not a number stays so.
-LoadErrors::Covariance rootOf(const LoadErrors& errors) noexcept {
-  LoadErrors::Covariance root;
+/// What is not a number stays so.
+FactoredErrors factored(const LoadErrors& errors) noexcept {
+  FactoredErrors result;
   const LoadErrors::Covariance& C = errors.covariance();
   withCount<kUsualInputs>(errors.size(), [&](auto inputs) {
+    LoadErrors::Covariance weighted;  // L D
     for (int k = 0; k < inputs; ++k) {
       double left = C(k, k);
-      for (int j = 0; j < k; ++j) left -= square(root(k, j));
-      const double scale = left <= kOfSums * C(k, k) ? 0.0 : 1.0 / std::sqrt(left);
-      root(k, k) = left * scale;
+      for (int j = 0; j < k; ++j) left -= weighted(k, j) * result.factor(k, j);
+      const bool rounded = left <= kOfSums * C(k, k);
+      const double per_left = rounded ? 0.0 : 1.0 / left;
+      result.weight[k] = rounded ? 0.0 : left;
       for (int i = k + 1; i < inputs; ++i) {
         double shared = C(i, k);
-        for (int j = 0; j < k; ++j) shared -= root(i, j) * root(k, j);
-        root(i, k) = shared * scale;
+        for (int j = 0; j < k; ++j) shared -= weighted(i, j) * result.factor(k, j);
+        weighted(i, k) = rounded ? 0.0 : shared;
+        result.factor(i, k) = shared * per_left;
       }
     }
   });
-  return root;
+  return result;
 }
 
 }  // namespace hammer_loads

@@ -48,8 +48,12 @@ class LoadErrors {
   std::array<Inputs, 2> larger_;
 };
 
-/// A root of the covariance, L L^T, below the diagonal and on it: as many independent errors as there are inputs. Where
-/// nothing but rounding is left of an input beside those before it, its column is zero.
-LoadErrors::Covariance rootOf(const LoadErrors& errors) noexcept;
+/// The covariance as L D L^T: as many independent errors as there are inputs. Where nothing but rounding is left of an
+/// input beside those before it, its weight and its column are zero.
+struct FactoredErrors {
+  LoadErrors::Covariance factor;  ///< below the diagonal: L, whose diagonal is one
+  LoadErrors::Inputs weight;      ///< D
+};
+FactoredErrors factored(const LoadErrors& errors) noexcept;
 
 }  // namespace hammer_loads

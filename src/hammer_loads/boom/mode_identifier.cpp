@@ -103,8 +103,8 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     // What the mode's shape lacks.
     const Mode m = modeAt(l);
     const ModeState s = stateOf(l);
-    covariance(l, l) += square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +
-                        square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
+    covariance(l, l) +=
+        square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) + square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
   }
   return covariance;
 }

@@ -80,8 +80,8 @@ class ModeIdentifier {
   /// By how much time the crank's angle leads as far as its own model knows [s].
   void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
   /// Readings of one instant by one clock, at the present time or a little before. A channel in [0, kMaxChannels) keeps
-  /// its offset; others, and values that are no number, do not count. A reading far off counts less. Linear about what
-  /// was known before the first of them.
+  /// its offset; others, and values that are no number, do not count. A reading far off counts less. Three at a time,
+  /// but each pressure by itself, are linear about what was known before them.
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
   /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them.
   bool explains() const noexcept { return explains_; }
@@ -170,18 +170,23 @@ class ModeIdentifier {
     const int* begin() const noexcept { return states.data(); }
     const int* end() const noexcept { return states.data() + count; }
   };
-  Kept kept() const noexcept;
-  void takeBack(const Kept& kept, const State& gain_S, double S, double difference) noexcept;
+  Kept keptStates() const noexcept;
+  struct Seen;
+  using SeenModes = std::array<Seen, kMaxJoints>;
+  struct Rows;
+  struct Shown;
+  void take(const VibrationReading* readings, std::size_t count) noexcept;
+  void findRows(const VibrationReading* readings, std::size_t count, Rows& rows) noexcept;
+  double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
+  void takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept;
+  double dot(const State& a, const State& b) const noexcept;
+  void add(double factor, const State& what, State& to) const noexcept;
   void takeAsLate(Clock clock) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
-  static bool counts(const VibrationReading& reading) noexcept;
   void useChannel(const VibrationReading& reading) noexcept;
-  struct Seen;
   Seen seenAt(int mode, double ahead) const noexcept;
-  State rowOf(const VibrationReading& reading, const std::array<Seen, kMaxJoints>& modes,
-              double& predicted) const noexcept;
-  void take(const VibrationReading& reading, const State& row, double difference) noexcept;
+  State rowOf(const VibrationReading& reading, const SeenModes& modes, double& predicted) const noexcept;
   bool finite() const noexcept;
   void startAnew() noexcept;
   void useOil() noexcept;
@@ -208,8 +213,8 @@ class ModeIdentifier {
   bool moving_known_{};        ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
-  JointVector force_, force_rate_;                ///< modal, at the present time; and by the second
-  std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
+  JointVector force_, force_rate_;                          ///< modal, at the present time; and by the second
+  std::array<double, kMaxJoints> force_power_{};            ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
   std::array<double, kMaxJoints> ratio_{}, damping_{};                ///< of state_

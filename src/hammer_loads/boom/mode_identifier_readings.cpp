@@ -75,7 +75,7 @@ ModeIdentifier::Seen ModeIdentifier::seenAt(int mode, double ahead) const noexce
   return seen;
 }
 
-ModeIdentifier::State ModeIdentifier::rowOf(const VibrationReading& reading, const std::array<Seen, kMaxJoints>& modes,
+ModeIdentifier::State ModeIdentifier::rowOf(const VibrationReading& reading, const SeenModes& modes,
                                             double& predicted) const noexcept {
   State row = State::Zero();
   row[offsetAt(reading.channel)] = 1.0;
@@ -112,21 +112,12 @@ ModeIdentifier::State ModeIdentifier::rowOf(const VibrationReading& reading, con
 void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
   if (!moving_known_ || count == 0) return;
   const Clock clock = readings->clock;
-  for (std::size_t r = 0; r < count; ++r)
-    if (counts(readings[r])) useChannel(readings[r]);
   if (clock == Clock::kImu) imu_age_ = 0.0;
   if (clock != Clock::kCrank) followDelay(clock);
-  std::array<Seen, kMaxJoints> seen;
-  for (int k = 0; k < count_; ++k)
-    seen[static_cast<std::size_t>(k)] = seenAt(k, readings->ahead - delayByCrank(clock));
-  const State before = state_;  // where all of them are linear
-  for (std::size_t r = 0; r < count; ++r) {
-    if (!counts(readings[r])) continue;
-    double predicted = 0.0;
-    alignas(64) const State row = rowOf(readings[r], seen, predicted);
-    if (r > 0) predicted += row.segment(begin(), states()).dot((state_ - before).segment(begin(), states()));
-    take(readings[r], row, readings[r].value - predicted);
-  }
+  // An oil torque is a product of stiffness and displacement: three of them about one state cost a tenth of accuracy.
+  const std::size_t together = clock == Clock::kPressures ? 1 : kMostAtOnce;
+  for (std::size_t first = 0; first < count; first += together)
+    take(readings + first, std::min(together, count - first));
   if (clock != Clock::kCrank) takeAsLate(clock);
   if (learns_ && !explains_) forgetOil();
   if (!state_.segment(begin(), states()).allFinite()) return startAnew();
@@ -134,18 +125,67 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
   if (clock != Clock::kCrank) crank_lead_ = findCrankLead();
 }
 
-bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
-  return reading.channel >= 0 && reading.channel < kMaxChannels && std::isfinite(reading.value);
+/// Rows of readings about one state, and P row^T of each, which becomes that after those before it.
+struct ModeIdentifier::Rows {
+  alignas(64) std::array<State, kMostAtOnce> row, gain_S;
+  std::array<double, kMostAtOnce> difference;  ///< of the value from what is predicted
+  std::array<int, kMostAtOnce> offset;
+  std::array<const VibrationReading*, kMostAtOnce> reading;
+  std::size_t count{};
+};
+
+/// What they have shown: the covariance has to lose the sum of column column^T/S.
+struct ModeIdentifier::Shown {
+  alignas(64) std::array<State, 2 * kMostAtOnce> column;
+  std::array<double, 2 * kMostAtOnce> S;
+  std::size_t count{};
+  void add(const State& its_column, double its_S) noexcept { column[count] = its_column, S[count++] = its_S; }
+};
+
+void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) noexcept {
+  Rows rows;
+  findRows(readings, count, rows);
+  if (rows.count == 0) return;
+  timesRows(block(), static_cast<int>(rows.count), rows.row[0].data(), kDelays, rows.offset.data(),
+            rows.gain_S[0].data());
+  const Kept kept = keptStates();
+  const State about = state_;
+  Shown shown;
+  for (std::size_t r = 0; r < rows.count; ++r) {
+    State& gain_S = rows.gain_S[r];
+    for (std::size_t k = 0; k < shown.count; ++k)
+      add(-dot(shown.column[k], rows.row[r]) / shown.S[k], shown.column[k], gain_S);
+    const double difference = rows.difference[r] - (r > 0 ? dot(state_ - about, rows.row[r]) : 0.0);
+    const double S = weigh(*rows.reading[r], dot(gain_S, rows.row[r]), difference);
+    if (!(S > 0.0)) continue;
+    add(difference / S, gain_S, state_);
+    shown.add(gain_S, S);
+    if (kept.count > 0) takeBack(kept, difference / S, S, gain_S, shown);
+  }
+  for (std::size_t k = 0; k < shown.count; k += kMostAtOnce)
+    subtractSquares(block(), static_cast<int>(std::min<std::size_t>(kMostAtOnce, shown.count - k)),
+                    shown.column[k].data(), &shown.S[k]);
 }
 
-void ModeIdentifier::take(const VibrationReading& reading, const State& row, double difference) noexcept {
-  const int offset = offsetAt(reading.channel);
-  alignas(64) State gain_S;  // P row^T; no row has another channel's offset
-  timesRow(block(), row.data(), kDelays, offset, gain_S.data());
-  Lane sum = Lane::Zero();
-  for (int i = kDelays; i < end(); i += kLane) sum += lane(&row[i]) * lane(&gain_S[i]);
-  double S = square(reading.noise) + square(reading.neglected) + gain_S[offset] + sum.sum();
-  if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return;
+void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t count, Rows& rows) noexcept {
+  SeenModes seen;
+  for (int k = 0; k < count_; ++k)
+    seen[static_cast<std::size_t>(k)] = seenAt(k, readings->ahead - delayByCrank(readings->clock));
+  for (const VibrationReading* reading = readings; reading < readings + count; ++reading) {
+    if (reading->channel < 0 || reading->channel >= kMaxChannels || !std::isfinite(reading->value)) continue;
+    useChannel(*reading);
+    double predicted = 0.0;
+    rows.row[rows.count] = rowOf(*reading, seen, predicted);
+    rows.difference[rows.count] = reading->value - predicted;
+    rows.offset[rows.count] = offsetAt(reading->channel);
+    rows.reading[rows.count++] = reading;
+  }
+}
+
+/// S of a reading, by the variance of what is predicted; 0: it does not count.
+double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
+  const double S = predicted + square(reading.noise) + square(reading.neglected);
+  if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (reading.acceleration.squaredNorm() > 0.0) {
     explains_ = explains_ ? surprise_ < kSurprised || (learns_ && !identified()) : surprise_ < kCalm;
     surprise_ +=
@@ -153,29 +193,39 @@ void ModeIdentifier::take(const VibrationReading& reading, const State& row, dou
   }
   if (reading.oil.squaredNorm() > 0.0)
     oil_surprise_ += kOilSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - oil_surprise_);
-  if (square(difference) > square(kFarOff) * S) S *= std::abs(difference) / (kFarOff * std::sqrt(S));
-  for (int i = begin(); i < end(); i += kLane) lane(&state_[i]) += lane(&gain_S[i]) * (difference / S);
-  subtractSquare(block(), gain_S.data(), S);
-  if (learns_) takeBack(kept(), gain_S, S, difference);
+  if (!(square(difference) > square(kFarOff) * S)) return S;
+  return S * std::abs(difference) / (kFarOff * std::sqrt(S));
 }
 
 /// States that readings are not to change.
-ModeIdentifier::Kept ModeIdentifier::kept() const noexcept {
+ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
   Kept kept;
+  if (!learns_) return kept;
   for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kFrequency)), kept.add(at(k, kDamping));
   if (keeps_oil_) kept.add(delayAt(Clock::kImu));
   if (keeps_oil_ || !delayShows(Clock::kPressures)) kept.add(delayAt(Clock::kPressures));
   return kept;
 }
 
-/// What the last reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
-void ModeIdentifier::takeBack(const Kept& kept, const State& gain_S, double S, double difference) noexcept {
+/// What a reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
+void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept {
+  State its_part = State::Zero();
   for (int i : kept) {
-    const double gain = gain_S[i] / S;
-    state_[i] -= gain * difference;
-    double* changed = column(i);
-    for (int j : kept) changed[j] += gain * gain_S[j];
+    its_part[i] = gain_S[i];
+    state_[i] -= moved * gain_S[i];
   }
+  shown.add(its_part, -S);
+}
+
+/// Of the states in use.
+double ModeIdentifier::dot(const State& a, const State& b) const noexcept {
+  Lane sum = Lane::Zero();
+  for (int i = begin(); i < end(); i += kLane) sum += lane(&a[i]) * lane(&b[i]);
+  return sum.sum();
+}
+
+void ModeIdentifier::add(double factor, const State& what, State& to) const noexcept {
+  for (int i = begin(); i < end(); i += kLane) lane(&to[i]) += factor * lane(&what[i]);
 }
 
 void ModeIdentifier::forgetOil() noexcept {
@@ -193,9 +243,12 @@ void ModeIdentifier::forgetOil() noexcept {
 
 /// Frequencies, damping and delay of the state, within bounds.
 void ModeIdentifier::useOil() noexcept {
-  constexpr double kNear = 1e-4;
+  constexpr double kNear = 2e-3;
   // exp() of a small number: exact to rounding, at a tenth of the time.
-  const auto grow = [](double x) { return std::abs(x) < kNear ? 1.0 + x * (1.0 + x * (0.5 + x / 6.0)) : std::exp(x); };
+  const auto grow = [](double x) {
+    if (!(std::abs(x) < kNear)) return std::exp(x);
+    return 1.0 + x * (1.0 + x * (1.0 / 2.0 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))));
+  };
   for (int k = 0; k < count_; ++k) {
     const auto i = static_cast<std::size_t>(k);
     double &frequency = state_[at(k, kFrequency)], &damping = state_[at(k, kDamping)];

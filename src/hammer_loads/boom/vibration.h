@@ -56,7 +56,8 @@ class Vibration {
   void expectCrankLead(const CrankLead& lead) noexcept {
     if (identifier_) identifier_->expectCrankLead(lead);
   }
-  /// A sensor's readings at the end of the last step, see ModeIdentifier; nothing without identify() or followContact().
+  /// A sensor's readings at the end of the last step, see ModeIdentifier; nothing without identify() or
+  /// followContact().
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
   void observe(int channel, VibrationReading reading) noexcept {
     reading.channel = channel;

@@ -70,8 +70,8 @@ class VibrationSpread {
   std::array<std::array<Mode, kMaxJoints>, kLoads + 1> mode_;  ///< of the first runs; last: as the vibration has them
   std::array<JointVector, kMaxRuns> x_, v_, force_;            ///< modal, of each run
   LoadSpread load_;
-  JointVector swing_;                                                      ///< empty: none
-  std::array<std::array<KeptStep, kMaxJoints>, kLoads + 1> step_;          ///< as mode_
+  JointVector swing_;                                              ///< empty: none
+  std::array<std::array<KeptStep, kMaxJoints>, kLoads + 1> step_;  ///< as mode_
 };
 
 }  // namespace hammer_loads

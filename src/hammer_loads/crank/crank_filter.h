@@ -57,7 +57,9 @@ class CrankFilter final : public CrankTracker {
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
-  CrankEstimate estimate() const noexcept override { return estimateOf(model_, load_, now_.state); }
+  CrankEstimate estimate() const noexcept override {
+    return estimateOf(model_, load_ ? *load_ : model_(now_.state.position.angle), now_.state);
+  }
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
@@ -81,8 +83,7 @@ class CrankFilter final : public CrankTracker {
   BlowPrior blowPrior() const noexcept { return blows_.prior(); }
   /// Of the next step.
   CrankWalks walks() const noexcept {
-    return {roughness_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk,
-            supply_.law()};
+    return {roughness_.factor() * settings_.torque_walk, settings_.speed_walk, settings_.inertia_walk, supply_.law()};
   }
   /// As learned.
   const SupplyLaw& supplyLaw() const noexcept { return supply_.law(); }
@@ -155,16 +156,16 @@ class CrankFilter final : public CrankTracker {
   Consistency consistency_;
   ConstantErrors errors_;
   BlowHistory blows_;
-  CrankBelief now_;        ///< at the last sample, corrected by it
-  ShaftLoad load_;         ///< there
-  CrankBelief before_;     ///< at the last but one sample
-  double step_{};          ///< between these two [s]
-  ContactRival rival_;     ///< the same samples with contact where now_ has none, or the other way round
-  bool mirrored_{};        ///< now_ had no contact and is on the mirrored branch
-  double fit_{};           ///< logarithm of the last sample's likelihood by now_
-  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
+  CrankBelief now_;                ///< at the last sample, corrected by it
+  std::optional<ShaftLoad> load_;  ///< there; none: the hull's motion is another by now
+  CrankBelief before_;             ///< at the last but one sample
+  double step_{};                  ///< between these two [s]
+  ContactRival rival_;             ///< the same samples with contact where now_ has none, or the other way round
+  bool mirrored_{};                ///< now_ had no contact and is on the mirrored branch
+  double fit_{};                   ///< logarithm of the last sample's likelihood by now_
+  double speed_variance_;          ///< of measured speeds, as identified [rad2/s2]
   std::optional<Side> read_side_;  ///< of the blow, as the last reading shows it
-  double outlier_{};       ///< innovation of the outlier just seen [rad], 0: none
+  double outlier_{};               ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late
   double restart_load_{};  ///< beginnings since long, forgotten within some 2 s

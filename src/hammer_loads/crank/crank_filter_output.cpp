@@ -9,7 +9,7 @@ namespace hammer_loads {
 
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);
-  load_ = model_(now_.state.position.angle);
+  load_.reset();
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {

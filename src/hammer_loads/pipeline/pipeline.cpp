@@ -6,6 +6,7 @@
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/pipeline/beside_blow.h"
 #include "hammer_loads/pipeline/step_impulse.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
@@ -101,7 +102,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
 
   const CrankMotion motion = motionOf(result_.crank);
   const LinksBeside links(model_, motion.angle);
-  if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion))) return withhold(Refusal::kImplausible);
+  if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion)))
+    return withhold(Refusal::kImplausible);
   result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
   result_.beside_blow =
       !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, std::sqrt(result_.crank_covariance(0, 0)));
@@ -121,10 +123,10 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
 }
 
 bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
-  const double force = std::hypot(wrench.force_x, wrench.force_z);
-  if (crank_.tracker().isProven()) return force <= kMostForce * nominal_force_;
+  const double square_of_force = square(wrench.force_x) + square(wrench.force_z);
+  if (crank_.tracker().isProven()) return square_of_force <= square(kMostForce * nominal_force_);
   const double nominal_speed = kTwoPi * settings_.turn_rate;
-  return force <= kMostForceUnproven * nominal_force_ &&
+  return square_of_force <= square(kMostForceUnproven * nominal_force_) &&
          std::abs(result_.crank.speed) <= kMostSpeedUnproven * nominal_speed;
 }
 

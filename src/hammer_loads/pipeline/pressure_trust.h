@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/wrench.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -25,7 +26,7 @@ class PressureTrust {
     along_ += share * (beyond.force.z() - along_);
     turning_ += share * (beyond.torque.y() - arm * beyond.force.z() - turning_);
     if (time_ < kLeastTime) return;
-    const double size = std::abs(along_) + std::hypot(weight.force.x(), weight.force.z());
+    const double size = std::abs(along_) + std::sqrt(square(weight.force.x()) + square(weight.force.z()));
     const double off = std::max(std::abs(across_) / kAcross, std::abs(turning_) / (kTurning * arm)) / size;
     lost_ = off > (lost_ ? kBack : 1.0);
   }

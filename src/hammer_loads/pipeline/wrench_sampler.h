@@ -22,8 +22,8 @@ class WrenchSampler {
 
   /// Outputs restart with the next sample.
   void forget() noexcept { begun_ = false; }
-  /// Appends to the result's outputs those up to its sample, with which the step ended; links: at the sample. No allocation once the
-  /// outputs have the room of mostOutputs().
+  /// Appends to the result's outputs those up to its sample, with which the step ended; links: at the sample. No
+  /// allocation once the outputs have the room of mostOutputs().
   void sample(const LinksBeside& links, SampleResult& result) noexcept;
   /// Of one sample.
   std::size_t mostOutputs() const noexcept;
