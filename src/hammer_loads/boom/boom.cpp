@@ -135,8 +135,10 @@ void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept 
   g_B_ = g_B;
   forwardKinematics(chain_, joints_.position, pose_);
   jacobian_ = hammer_loads::tipJacobian(pose_);
-  for (std::size_t i = 0; i < cylinders_.size(); ++i)
-    at_[i] = cylinders_[i].at(joints_.position[cylinders_[i].joint()]);
+  for (std::size_t i = 0; i < cylinders_.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(cylinders_[i].joint());
+    at_[i] = cylinders_[i].at(pose_.cosine[joint], pose_.sine[joint]);
+  }
   weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
   motion_ = dynamics_.torqueOfMotion(pose_, motion);
 }

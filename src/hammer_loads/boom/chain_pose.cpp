@@ -29,6 +29,7 @@ void forwardKinematics(const Chain& chain, const JointVector& position, ChainPos
     pose.axis_B[joint].noalias() = X_BP.linear() * link.axis;
     pose.p_BJ_B[joint] = X_BL.translation();
     pose.prismatic[joint] = link.prismatic;
+    pose.sine[joint] = sin_q, pose.cosine[joint] = cos_q;
   }
 }
 

@@ -15,6 +15,7 @@ struct ChainPose {
   std::array<Eigen::Vector3d, kMaxJoints> axis_B;  ///< unit vector of each joint
   std::array<Eigen::Vector3d, kMaxJoints> p_BJ_B;  ///< a point on each joint's axis [m]
   std::array<bool, kMaxJoints> prismatic{};
+  std::array<double, kMaxJoints> sine{}, cosine{};  ///< of each revolute joint's position
 
   const Pose& tip() const noexcept { return X_BL[static_cast<std::size_t>(links - 1)]; }
   const Pose& link(int index) const noexcept { return X_BL[static_cast<std::size_t>(index)]; }

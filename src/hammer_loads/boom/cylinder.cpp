@@ -130,7 +130,10 @@ void Cylinder::checkReach(const Chain& chain, std::vector<std::string>& problems
 }
 
 CylinderPosition Cylinder::at(double joint_angle) const noexcept {
-  const double c = std::cos(joint_angle), s = std::sin(joint_angle);
+  return at(std::cos(joint_angle), std::sin(joint_angle));
+}
+
+CylinderPosition Cylinder::at(double c, double s) const noexcept {
   CylinderPosition position;
   position.length = std::sqrt(steady_ + cosine_ * c + sine_ * s);
   position.arm = (sine_ * c - cosine_ * s) / (2.0 * position.length);

@@ -58,6 +58,7 @@ class Cylinder {
   int joint() const noexcept { return joint_; }  ///< index in the chain
 
   CylinderPosition at(double joint_angle) const noexcept;
+  CylinderPosition at(double cosine, double sine) const noexcept;  ///< by those of the joint's angle
   /// Force that balances a torque of the load on the joint [N m], by virtual work: force dL/dq = -torque.
   CylinderLoad load(const CylinderPosition& position, double joint_torque) const noexcept;
   /// dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.

@@ -175,8 +175,9 @@ class ModeIdentifier {
   using SeenModes = std::array<Seen, kMaxJoints>;
   struct Rows;
   struct Shown;
-  void take(const VibrationReading* readings, std::size_t count) noexcept;
-  void findRows(const VibrationReading* readings, std::size_t count, Rows& rows) noexcept;
+  void take(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept;
+  void subtract(Shown& shown) noexcept;
+  void findRows(const VibrationReading* readings, std::size_t count, Rows& rows) const noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
   void takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept;
   double dot(const State& a, const State& b) const noexcept;
@@ -184,6 +185,7 @@ class ModeIdentifier {
   void takeAsLate(Clock clock) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
+  static bool counts(const VibrationReading& reading) noexcept;
   void useChannel(const VibrationReading& reading) noexcept;
   Seen seenAt(int mode, double ahead) const noexcept;
   State rowOf(const VibrationReading& reading, const SeenModes& modes, double& predicted) const noexcept;

@@ -109,22 +109,6 @@ ModeIdentifier::State ModeIdentifier::rowOf(const VibrationReading& reading, con
   return row;
 }
 
-void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
-  if (!moving_known_ || count == 0) return;
-  const Clock clock = readings->clock;
-  if (clock == Clock::kImu) imu_age_ = 0.0;
-  if (clock != Clock::kCrank) followDelay(clock);
-  // An oil torque is a product of stiffness and displacement: three of them about one state cost a tenth of accuracy.
-  const std::size_t together = clock == Clock::kPressures ? 1 : kMostAtOnce;
-  for (std::size_t first = 0; first < count; first += together)
-    take(readings + first, std::min(together, count - first));
-  if (clock != Clock::kCrank) takeAsLate(clock);
-  if (learns_ && !explains_) forgetOil();
-  if (!state_.segment(begin(), states()).allFinite()) return startAnew();
-  if (learns_) useOil();
-  if (clock != Clock::kCrank) crank_lead_ = findCrankLead();
-}
-
 /// Rows of readings about one state, and P row^T of each, which becomes that after those before it.
 struct ModeIdentifier::Rows {
   alignas(64) std::array<State, kMostAtOnce> row, gain_S;
@@ -134,15 +118,43 @@ struct ModeIdentifier::Rows {
   std::size_t count{};
 };
 
-/// What they have shown: the covariance has to lose the sum of column column^T/S.
+/// What they have shown and the covariance has not lost yet: the sum of column column^T/S.
 struct ModeIdentifier::Shown {
-  alignas(64) std::array<State, 2 * kMostAtOnce> column;
-  std::array<double, 2 * kMostAtOnce> S;
+  alignas(64) std::array<State, 4 * kMostAtOnce> column;
+  std::array<double, 4 * kMostAtOnce> S;
   std::size_t count{};
   void add(const State& its_column, double its_S) noexcept { column[count] = its_column, S[count++] = its_S; }
 };
 
-void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) noexcept {
+void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
+  if (!moving_known_ || count == 0) return;
+  const Clock clock = readings->clock;
+  if (clock == Clock::kImu) imu_age_ = 0.0;
+  if (clock != Clock::kCrank) followDelay(clock);
+  for (std::size_t r = 0; r < count; ++r)  // all of them first: a new one makes the block of what is in use larger
+    if (counts(readings[r])) useChannel(readings[r]);
+  // An oil torque is a product of stiffness and displacement: three of them about one state cost a tenth of accuracy.
+  const std::size_t together = clock == Clock::kPressures ? 1 : kMostAtOnce;
+  Shown shown;
+  for (std::size_t first = 0; first < count; first += together) {
+    take(readings + first, std::min(together, count - first), shown);
+    if (shown.count + 2 * kMostAtOnce > shown.S.size()) subtract(shown);
+  }
+  subtract(shown);
+  if (clock != Clock::kCrank) takeAsLate(clock);
+  if (learns_ && !explains_) forgetOil();
+  if (!state_.segment(begin(), states()).allFinite()) return startAnew();
+  if (learns_) useOil();
+  if (clock != Clock::kCrank) crank_lead_ = findCrankLead();
+}
+
+bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
+  return reading.channel >= 0 && reading.channel < kMaxChannels && std::isfinite(reading.value);
+}
+
+/// One reading after the other: its P row^T is that of the covariance as it stands, less what those before it have
+/// shown.
+void ModeIdentifier::take(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept {
   Rows rows;
   findRows(readings, count, rows);
   if (rows.count == 0) return;
@@ -150,7 +162,6 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
             rows.gain_S[0].data());
   const Kept kept = keptStates();
   const State about = state_;
-  Shown shown;
   for (std::size_t r = 0; r < rows.count; ++r) {
     State& gain_S = rows.gain_S[r];
     for (std::size_t k = 0; k < shown.count; ++k)
@@ -162,18 +173,21 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
     shown.add(gain_S, S);
     if (kept.count > 0) takeBack(kept, difference / S, S, gain_S, shown);
   }
+}
+
+void ModeIdentifier::subtract(Shown& shown) noexcept {
   for (std::size_t k = 0; k < shown.count; k += kMostAtOnce)
     subtractSquares(block(), static_cast<int>(std::min<std::size_t>(kMostAtOnce, shown.count - k)),
                     shown.column[k].data(), &shown.S[k]);
+  shown.count = 0;
 }
 
-void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t count, Rows& rows) noexcept {
+void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t count, Rows& rows) const noexcept {
   SeenModes seen;
   for (int k = 0; k < count_; ++k)
     seen[static_cast<std::size_t>(k)] = seenAt(k, readings->ahead - delayByCrank(readings->clock));
   for (const VibrationReading* reading = readings; reading < readings + count; ++reading) {
-    if (reading->channel < 0 || reading->channel >= kMaxChannels || !std::isfinite(reading->value)) continue;
-    useChannel(*reading);
+    if (!counts(*reading)) continue;
     double predicted = 0.0;
     rows.row[rows.count] = rowOf(*reading, seen, predicted);
     rows.difference[rows.count] = reading->value - predicted;

@@ -37,6 +37,8 @@ class VibrationSpread {
   /// swing: standard deviations [m sqrt(kg)].
   void begin(const JointVector& swing) noexcept { swing_ = swing; }
 
+  /// While the vibration follows readings: advance() does nothing.
+  bool waits() const noexcept { return waits_; }
   /// Of a mode: as given or, where that is less, as identified.
   const OilDeviation& deviation(int mode) const noexcept { return deviation_[static_cast<std::size_t>(mode)]; }
   int runs() const noexcept { return kLoads + static_cast<int>(load_.cols()); }

@@ -128,7 +128,7 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
 /// displaced_links: at the step's end; on a line from the last ones.
 void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displaced_links,
                            const WrenchSpread& spread) noexcept {
-  const LoadSpread errors = boom_.spreadTorque(spread);
+  const LoadSpread errors = spread_.waits() ? LoadSpread() : boom_.spreadTorque(spread);
   const auto torqueOf = [this](const HullWrench& motion, const HullWrench& displaced) {
     return JointVector(boom_.hammerTorque(onTip(motion + displaced)) + beside_modes_);
   };
