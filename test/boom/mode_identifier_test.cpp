@@ -211,6 +211,35 @@ TEST(ModeIdentifier, TakesFromADelayWhatTheCrankLeads) {
   }
 }
 
+/// Readings of one instant in one call or each in its own: pressures are the same, an IMU's differ by the second order.
+TEST(ModeIdentifier, ReadingsTogetherSayWhatTheySayOneByOne) {
+  for (const Clock clock : {Clock::kPressures, Clock::kImu}) {
+    Session run(0.7, Sensor::kPressures);
+    run.run(1.0);  // frequencies are still being learned
+    const Vibration& before = run.boom_->vibration();
+    Vibration together = before, apart = before;
+    std::array<VibrationReading, 3> readings;
+    for (int j = 1; j < 4; ++j) {
+      VibrationReading& one = readings[static_cast<std::size_t>(j - 1)];
+      one = oilTorqueReading(j, run.machine_.hold()[j - 1] + 50.0 * j);
+      one.noise = 200.0, one.offset_deviation = 1000.0, one.clock = clock;
+      one.channel = j == 3 ? 7 : j;  // one that has not been used
+    }
+    together.observe(readings.data(), readings.size());
+    for (const VibrationReading& one : readings) apart.observe(one.channel, one);
+    const double known = clock == Clock::kPressures ? 1e-9 : 0.1;  // of the change
+    const ModeIdentifier &a = *together.identifier(), &b = *apart.identifier(), &old = *before.identifier();
+    EXPECT_LT((a.displacement() - b.displacement()).norm(), known * (a.displacement() - old.displacement()).norm());
+    EXPECT_LT((a.velocity() - b.velocity()).norm(), known * (a.velocity() - old.velocity()).norm());
+    for (int k = 0; k < 3; ++k) {
+      const double change = std::abs(a.frequencyRatio(k) - old.frequencyRatio(k));
+      EXPECT_LT(std::abs(a.frequencyRatio(k) - b.frequencyRatio(k)), known * change + 1e-12) << k;
+      EXPECT_NEAR(a.frequencyDeviation(k) / b.frequencyDeviation(k), 1.0, known) << k;
+      EXPECT_GT(change, 1e-6) << k;
+    }
+  }
+}
+
 TEST(ModeIdentifier, WithoutReadingsNothingIsFound) {
   Session run(0.7, Sensor::kImu);
   const double before = run.identifier().frequencyDeviation(0);

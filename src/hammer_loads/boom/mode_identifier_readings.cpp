@@ -137,6 +137,7 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
   const std::size_t together = clock == Clock::kPressures ? 1 : kMostAtOnce;
   Shown shown;
   for (std::size_t first = 0; first < count; first += together) {
+    if (first > 0 && learns_) useOil();  // what the one before has shown
     take(readings + first, std::min(together, count - first), shown);
     if (shown.count + 2 * kMostAtOnce > shown.S.size()) subtract(shown);
   }
