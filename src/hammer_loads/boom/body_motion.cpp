@@ -55,7 +55,7 @@ void findChainLoads(const Chain& chain, const std::vector<RigidBody>& bodies, co
                     const JointMotion& motion, const Eigen::Vector3d& g_B, ChainLoads& result) noexcept {
   findMotions(chain, pose, motion, -g_B, result.motion);
   Wrench load;
-  for (int i = chain.links() - 1; i >= firstLoad(chain); --i) {
+  for (int i = chain.links() - 1; i > 0; --i) {
     const auto here = static_cast<std::size_t>(i);
     load = load + bodyLoad(bodies[here], pose.link(i), result.motion[here]);
     result.beyond[here] = load;

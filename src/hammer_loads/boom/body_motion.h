@@ -20,14 +20,11 @@ struct BodyMotion {
   }
 };
 
-/// Index of links as in Chain; there is no load before firstLoad(): it goes into the ground.
+/// Index of links as in Chain; the root has no load: its own goes into the ground.
 struct ChainLoads {
   std::array<BodyMotion, kMaxLinks> motion;  ///< accelerations less gravity
   std::array<Wrench, kMaxLinks> beyond;      ///< by inertia and weight of a link and all beyond it, in the root's frame
 };
-
-/// The first link whose load a joint or a cut of the steel before it carries.
-inline int firstLoad(const Chain& chain) noexcept { return chain.link(1).joint < 0 && chain.tip() > 1 ? 2 : 1; }
 
 /// Mass and inertia of each link with what is fixed to it beside the chain; the root has none: its own load goes into
 /// the ground.

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kOfSums = 1e-13;  // of a variance: what sums of some ten terms leave of zero
 
+Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
+Eigen::Vector3d across(const Wrench& w) noexcept { return {w.force.y(), w.torque.x(), w.torque.z()}; }
+
 }  // namespace
 
 LoadErrors::LoadErrors(const std::vector<Cylinder>& cylinders) noexcept : held_(static_cast<int>(cylinders.size())) {
@@ -23,29 +26,31 @@ LoadErrors::Inputs LoadErrors::inputsOf(const JointVector& acceleration) const n
 }
 
 void LoadErrors::setTip(const Wrench& tip, Inputs& inputs) noexcept {
-  inputs.segment<3>(held_) << tip.force.x(), tip.force.z(), tip.torque.y();
-  inputs.segment<3>(held_ + 3) << tip.force.y(), tip.torque.x(), tip.torque.z();
-  across_ = across_ || tip.force.y() != 0.0 || tip.torque.x() != 0.0 || tip.torque.z() != 0.0;
+  inputs.segment<3>(held_) = inPlane(tip), inputs.segment<3>(held_ + 3) = across(tip);
+  across_ = across_ || !across(tip).isZero(0.0);
+}
+
+/// one other^T, symmetric in the sum of all that is added.
+void LoadErrors::addProduct(const Inputs& one, const Inputs& other) noexcept {
+  withCount<kUsualInputs>(size(), [&](auto end) {
+    for (int c = 0; c < end; ++c) {
+      for (int r = c; r < end; ++r) covariance_(r, c) += one[r] * other[c];
+    }
+  });
 }
 
 void LoadErrors::add(const JointVector& acceleration, const Wrench& tip) noexcept {
   Inputs inputs = inputsOf(acceleration);
   setTip(tip, inputs);
-  withCount<kUsualInputs>(size(), [&](auto end) {
-    for (int c = 0; c < end; ++c) {
-      for (int r = c; r < end; ++r) covariance_(r, c) += inputs[r] * inputs[c];
-    }
-  });
+  addProduct(inputs, inputs);
 }
 
 void LoadErrors::add(const Wrench& tip) noexcept {
-  const Eigen::Vector3d in_plane(tip.force.x(), tip.force.z(), tip.torque.y());
-  const Eigen::Vector3d across(tip.force.y(), tip.torque.x(), tip.torque.z());
-  covariance_.block<3, 3>(held_, held_) += in_plane * in_plane.transpose();
-  if (across.isZero(0.0)) return;
+  covariance_.block<3, 3>(held_, held_) += inPlane(tip) * inPlane(tip).transpose();
+  if (across(tip).isZero(0.0)) return;
   across_ = true;
-  covariance_.block<3, 3>(held_ + 3, held_) += across * in_plane.transpose();
-  covariance_.block<3, 3>(held_ + 3, held_ + 3) += across * across.transpose();
+  covariance_.block<3, 3>(held_ + 3, held_) += across(tip) * inPlane(tip).transpose();
+  covariance_.block<3, 3>(held_ + 3, held_ + 3) += across(tip) * across(tip).transpose();
 }
 
 void LoadErrors::add(const BoomModes& modes, const JointMatrix& covariance,
@@ -56,18 +61,15 @@ void LoadErrors::add(const BoomModes& modes, const JointMatrix& covariance,
     for (int i = 0; i < held_; ++i) inputs[i] = modes.shape(i, k);
     setTip(tip[static_cast<std::size_t>(k)], inputs);
   }
-  withCount<kUsualInputs>(size(), [&](auto end) {
-    for (int k = 0; k < modes.count; ++k) {
-      Inputs with = Inputs::Zero();  // covariance of the inputs with mode k
+  for (int k = 0; k < modes.count; ++k) {
+    Inputs with = Inputs::Zero();  // covariance of the inputs with mode k
+    withCount<kUsualInputs>(size(), [&](auto end) {
       for (int l = 0; l < modes.count; ++l) {
         for (int r = 0; r < end; ++r) with[r] += covariance(l, k) * by_mode[static_cast<std::size_t>(l)][r];
       }
-      const Inputs& inputs = by_mode[static_cast<std::size_t>(k)];
-      for (int c = 0; c < end; ++c) {
-        for (int r = c; r < end; ++r) covariance_(r, c) += with[r] * inputs[c];
-      }
-    }
-  });
+    });
+    addProduct(with, by_mode[static_cast<std::size_t>(k)]);
+  }
 }
 
 void LoadErrors::addLarger(const JointVector& acceleration, const JointVector& other) noexcept {

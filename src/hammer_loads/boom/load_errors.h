@@ -40,6 +40,7 @@ class LoadErrors {
  private:
   Inputs inputsOf(const JointVector& acceleration) const noexcept;
   void setTip(const Wrench& tip, Inputs& inputs) noexcept;
+  void addProduct(const Inputs& one, const Inputs& other) noexcept;
 
   int held_{};  ///< by cylinders
   std::array<int, kMaxJoints> joint_{};

@@ -85,20 +85,15 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
   }
   for (int l = 0; l < count_; ++l) {
     const auto& by = row[static_cast<std::size_t>(l)];
-    const double rock = contact_[l];
-    const auto with = [&](int from, auto&& to) {  // covariance of some states with the acceleration of l
-      const auto of = [&](int state) { return Eigen::Map<const std::decay_t<decltype(to)>>(column(state) + from); };
-      const int l_x = at(l, kX);
-      to = rock * of(kContact) + by[kX] * of(l_x) + by[kV] * of(l_x + kV) + by[kFrequency] * of(l_x + kFrequency) +
-           by[kDamping] * of(l_x + kDamping);
-    };
-    Eigen::Matrix<double, 1, 1> with_contact;
-    with(kContact, with_contact);
+    const int of_l = at(l, kX);
+    const double with_contact =
+        contact_[l] * covariance_(kContact, kContact) + covariance_.col(kContact).segment<kParts>(of_l).dot(by);
     for (int k = l; k < count_; ++k) {
-      Eigen::Matrix<double, kParts, 1> with_mode;
-      with(at(k, kX), with_mode);
+      const int of_k = at(k, kX);
+      const Eigen::Matrix<double, kParts, 1> with_mode = contact_[l] * covariance_.col(kContact).segment<kParts>(of_k) +
+                                                         covariance_.block<kParts, kParts>(of_k, of_l) * by;
       covariance(k, l) = covariance(l, k) =
-          contact_[k] * with_contact[0] + row[static_cast<std::size_t>(k)].dot(with_mode);
+          contact_[k] * with_contact + row[static_cast<std::size_t>(k)].dot(with_mode);
     }
     // What the mode's shape lacks.
     const Mode m = modeAt(l);

@@ -57,7 +57,7 @@ bool SteelLoadFinder::addHammer(const ChainState& state, Working& working) const
   Wrench hammer{X_BT.linear() * state.w_tip.force, X_BT.linear() * state.w_tip.torque};
   hammer.torque += X_BT.translation().cross(hammer.force);
   bool finite = true;
-  for (int i = chain_.links() - 1; i >= firstLoad(chain_); --i) {
+  for (int i = chain_.links() - 1; i > 0; --i) {
     const auto here = static_cast<std::size_t>(i);
     const Wrench& load = working.beyond[here] = hammer + state.links.beyond[here];
     finite = finite && load.force.cwiseAbs().sum() < kMostLoad && load.torque.cwiseAbs().sum() < kMostLoad;

@@ -5,7 +5,7 @@
 
 namespace hammer_loads {
 
-/// f(count), with the count as a constant where it is the usual one: loops of three and four take a third of the
+/// f(count), with the count as a constant where it is the usual one: loops of three and four take half of the
 /// instructions then.
 template <int kUsual, typename F>
 inline decltype(auto) withCount(int count, const F& f) {
