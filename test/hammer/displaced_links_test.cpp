@@ -62,7 +62,7 @@ TEST(DisplacedLinks, AreTheBodiesWhereTheyAreLessTheirMeanOverATurn) {
     for (int i = 0; i < 40; ++i) {
       const HullMotion hull{{between(-15.0, 15.0), between(-15.0, 15.0)}, between(-1.0, 1.0), between(-30.0, 30.0)};
       const double angle = between(0.01, kTwoPi - 0.01), speed = between(-35.0, 35.0);
-      const HullWrench told = displaced.wrench({CrankAngle::fromAngle(angle), speed, 100.0}, hull);
+      const HullWrench told = displaced.wrench(linksAt(model, CrankAngle::fromAngle(angle)).links, speed, hull);
       const HullWrench right = bodies.load(angle, speed, hull) + -1.0 * bodies.mean(hull);
       EXPECT_NEAR(told.force_x, right.force_x, 1e-3);
       EXPECT_NEAR(told.force_z, right.force_z, 1e-3);
@@ -76,7 +76,8 @@ TEST(DisplacedLinks, AreTheBodiesWhereTheyAreLessTheirMeanOverATurn) {
 TEST(DisplacedLinks, AHalfSineHasNone) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   const HullModel model(mechanism, Level::kPulse);
-  const HullWrench w = DisplacedLinks(model).wrench({CrankAngle::fromAngle(2.0), 30.0, 0.0}, {{1.0, -9.0}, 0.3, 5.0});
+  const HullWrench w = DisplacedLinks(model).wrench(linksAt(model, CrankAngle::fromAngle(2.0)).links, 30.0,
+                                                    {{1.0, -9.0}, 0.3, 5.0});
   EXPECT_NEAR(w.force_x, 0.0, 1e-9);
   EXPECT_NEAR(w.force_z, 0.0, 1e-9);
   EXPECT_NEAR(w.torque_y, 0.0, 1e-9);

@@ -124,14 +124,18 @@ void CrankBelief::correct(Row row, double innovation, double variance,
   if (motor)
     return correctFlexible(row == kAngle ? kMotorAngle : kMotorSpeed, innovation, variance, measured_by_error, *this);
   const double total = covariance(row, row) + variance;
-  const Vector gain = covariance.col(row) / total;
+  const Vector column = covariance.col(row), gain = column / total;
   Vector change = gain * innovation;
   change[kInertia] = std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange);
   move(change);
   by_error += gain * (measured_by_error - by_error.row(row)).eval();
-  // (1 - K H) P (1 - K H)' + K R K' with H one row of the identity
-  const ShaftMatrix left = covariance - gain * covariance.row(row);
-  covariance = left - left.col(row) * gain.transpose() + gain * (variance * gain.transpose());
+  // P - K H P with H one row of the identity, of which what was measured is K R without the difference.
+  for (Eigen::Index j = 0; j < column.size(); ++j) {
+    for (Eigen::Index i = j; i < column.size(); ++i)
+      covariance(i, j) = covariance(j, i) = covariance(i, j) - gain[i] * column[j];
+  }
+  covariance.row(row) = variance * gain.transpose();
+  covariance.col(row) = variance * gain;
 }
 
 void CrankBelief::forgetInertiaCoupling() noexcept {
@@ -197,25 +201,26 @@ bool CrankBelief::isSound(double most_speed) const noexcept {
          (!motor || isSoundFlexible(most_speed, *this));
 }
 
-/// Linear in the state's deviation; the acceleration's derivative by the angle by a central difference.
-Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, const ShaftMatrix& covariance,
-                                 double torque_part) noexcept {
+/// Linear in the state's deviation; the acceleration's derivative by the angle by a difference.
+Eigen::Matrix3d motionCovariance(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
+                                 double growth, const ConstantErrors::Matrix& moment, double torque_part) noexcept {
   const ShaftState& state = belief.state;
-  const ShaftLoad load = model(state.position.angle);
-  const double inv = 1.0 / (state.drive_inertia + load.inertia);
-  constexpr double kStep = 1e-5;  // [rad]: error 1e-10 by curvature, 1e-11 by rounding, both relative
-  CrankAngle low = state.position.angle, high = low;
-  low.offset -= kStep;
-  high.offset += kStep;
-  Eigen::Matrix<double, 3, 4> jacobian = Eigen::Matrix<double, 3, 4>::Zero();
-  jacobian(0, CrankBelief::kAngle) = jacobian(1, CrankBelief::kSpeed) = 1.0;
-  jacobian(2, CrankBelief::kAngle) =
-      (acceleration(model(high), state) - acceleration(model(low), state)) / (2.0 * kStep);
-  jacobian(2, CrankBelief::kSpeed) = -2.0 * load.half_inertia_slope * state.speed * inv;
-  jacobian(2, CrankBelief::kTorque) = inv * torque_part;
-  jacobian(2, CrankBelief::kInertia) =
-      -(acceleration(load, state) + load.hull_acceleration) * state.drive_inertia * inv;
-  return jacobian * covariance.topLeftCorner<4, 4>() * jacobian.transpose();
+  const double inv = 1.0 / (state.drive_inertia + load.inertia), here = acceleration(load, state);
+  constexpr double kStep = 1e-6;  // [rad]: error 1e-6 by curvature, 1e-9 by rounding, both relative
+  CrankAngle beside = state.position.angle;
+  beside.offset += kStep;
+  Eigen::RowVector4d by;  // the acceleration's derivatives
+  by[CrankBelief::kAngle] = (acceleration(model(beside), state) - here) / kStep;
+  by[CrankBelief::kSpeed] = -2.0 * load.half_inertia_slope * state.speed * inv;
+  by[CrankBelief::kTorque] = inv * torque_part;
+  by[CrankBelief::kInertia] = -(here + load.hull_acceleration) * state.drive_inertia * inv;
+  const ShaftMatrix& P = belief.covariance;
+  const Eigen::RowVector4d with = by.lazyProduct(P.topLeftCorner<4, 4>());  // covariances of the acceleration
+  Eigen::Matrix3d own;
+  own << P.topLeftCorner<2, 2>(), with.head<2>().transpose(), with.head<2>(), with.dot(by);
+  Eigen::Matrix<double, 3, ConstantErrors::kSize> by_error;
+  by_error << belief.by_error.topRows<2>(), by.lazyProduct(belief.by_error.topRows<4>());
+  return growth * own + (by_error * moment).lazyProduct(by_error.transpose());
 }
 
 }  // namespace hammer_loads

@@ -52,7 +52,7 @@ struct CrankBelief {
   /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
   /// factor and the speed go together.
   void boundFactor() noexcept;
-  /// Scalar measurement of one variable, Joseph form; moves. by_error: what the sensor's errors make of the
+  /// Scalar measurement of one variable; moves. by_error: what the sensor's errors make of the
   /// measurement.
   void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error) noexcept;
   /// The same of a speed whose innovation has the variance `total`.
@@ -106,9 +106,9 @@ struct CrankBelief {
   }
 };
 
-/// Covariance of (angle, speed, acceleration) where the belief's is `covariance`; torque_part of the torque's deviation
-/// counts.
-Eigen::Matrix3d motionCovariance(const ShaftModel& model, const CrankBelief& belief, const ShaftMatrix& covariance,
-                                 double torque_part) noexcept;
+/// Covariance of (angle, speed, acceleration), grown as in CrankBelief::grown(); load: the model's at the belief's
+/// angle; torque_part of the torque's deviation counts.
+Eigen::Matrix3d motionCovariance(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
+                                 double growth, const ConstantErrors::Matrix& moment, double torque_part) noexcept;
 
 }  // namespace hammer_loads

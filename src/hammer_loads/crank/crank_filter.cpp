@@ -84,8 +84,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   supply_.restart();
   outlier_ = 0.0;
   unexplained_ = 0;
-  load_ = model_(s.position.angle);
-  now_hull_ = model_.hullMotion();
+  takeLoad();
   now_.tool_met = false;
   mirrored_ = false;
   rival_.drop();
@@ -101,6 +100,13 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   now_.by_error.setZero();
   now_.by_error.row(Belief::kAngle) = ConstantErrors::ofAngle(s.position.angle.offset);
   if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
+}
+
+/// Of now_, with the latest motion of the hull.
+void CrankFilter::takeLoad() noexcept {
+  load_ = model_(now_.state.position.angle);
+  now_hull_ = model_.hullMotion();
+  hull_moved_ = false;
 }
 
 /// (1)
@@ -263,6 +269,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     if (!without_contact) learnFrom(innovation, ratio);  // (10)
   }
   before_ = last;
+  before_load_ = load_;
   before_hull_ = now_hull_;
   step_ = dt;
   outlier_ = 0.0;
@@ -273,8 +280,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   }
   rememberBlow(last, dt);
   doubtInertia(dt);
-  load_ = model_(now_.state.position.angle);
-  now_hull_ = model_.hullMotion();
+  takeLoad();
   const bool continued = has_speed_;
   has_speed_ = true;
   if (!continued) return Tracking::kRestarted;

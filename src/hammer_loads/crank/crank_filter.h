@@ -58,12 +58,12 @@ class CrankFilter final : public CrankTracker {
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
   CrankEstimate estimate() const noexcept override {
-    return estimateOf(model_, load_ ? *load_ : model_(now_.state.position.angle), now_.state);
+    return estimateOf(model_, load(), now_.state);
   }
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
-    return covarianceOf(now_, torque_part);
+    return covarianceOf(now_, load(), torque_part);
   }
   bool hasSpeed() const noexcept override { return has_speed_; }
   bool isPlausible() const noexcept override;
@@ -113,7 +113,9 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
 
   ShaftMatrix grown(const CrankBelief& belief) const noexcept;
-  Eigen::Matrix3d covarianceOf(const CrankBelief& belief, double torque_part) const noexcept;
+  Eigen::Matrix3d covarianceOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
+  /// At now_ with the latest motion of the hull.
+  ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }
   WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
   bool isSpeedOfOtherSide(const WeighedSample& sample) const noexcept;
@@ -138,6 +140,7 @@ class CrankFilter final : public CrankTracker {
   void rememberBlow(const CrankBelief& last, double dt) noexcept;
   void learnSupply() noexcept;
   void doubtInertia(double dt) noexcept;
+  void takeLoad() noexcept;
   Tracking begin(const WeighedSample& sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
   double mostTorque() const noexcept;
@@ -157,8 +160,10 @@ class CrankFilter final : public CrankTracker {
   ConstantErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;                ///< at the last sample, corrected by it
-  std::optional<ShaftLoad> load_;  ///< there; none: the hull's motion is another by now
+  ShaftLoad load_;                 ///< there, with now_hull_
+  bool hull_moved_{true};          ///< since then
   CrankBelief before_;             ///< at the last but one sample
+  ShaftLoad before_load_;          ///< there, with before_hull_
   double step_{};                  ///< between these two [s]
   ContactRival rival_;             ///< the same samples with contact where now_ has none, or the other way round
   bool mirrored_{};                ///< now_ had no contact and is on the mirrored branch

@@ -9,7 +9,7 @@ namespace hammer_loads {
 
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);
-  load_.reset();
+  hull_moved_ = true;
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
@@ -29,6 +29,7 @@ bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torq
 
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
+  if (dt == 0.0) return estimateOf(model_, before_load_, before_.state);
   return estimateBetween({model_, step_model_, before_, now_, before_hull_, now_hull_, step_, mostSpeed()}, dt);
 }
 
@@ -39,13 +40,14 @@ Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) co
   const bool comes_to_blow = before_.state.position.angle.side == Side::kBeforeBlow && isNearTool(before_.state, step_);
   const bool is_before = comes_to_blow && between(dt).position.angle.side == Side::kBeforeBlow;
   predict(dt, !is_before, belief);
-  return covarianceOf(belief, torque_part);
+  return covarianceOf(belief, model_(belief.state.position.angle), torque_part);
 }
 
-Eigen::Matrix3d CrankFilter::covarianceOf(const CrankBelief& belief, double torque_part) const noexcept {
+Eigen::Matrix3d CrankFilter::covarianceOf(const CrankBelief& belief, const ShaftLoad& load,
+                                          double torque_part) const noexcept {
   const double part = std::min(1.0, torque_part * roughness_.deviationFactor());
   return belief.motor ? flexibleMotionCovariance(model_, belief, consistency_.growth(), errors_.moment(), part)
-                      : hammer_loads::motionCovariance(model_, belief, grown(belief), part);
+                      : hammer_loads::motionCovariance(model_, load, belief, consistency_.growth(), errors_.moment(), part);
 }
 
 ShaftMatrix CrankFilter::grown(const CrankBelief& belief) const noexcept {

@@ -64,7 +64,8 @@ Eigen::Matrix3d SmoothedCrank::motionCovariance(double torque_part) const noexce
 }
 
 Eigen::Matrix3d SmoothedCrank::covarianceOf(const CrankBelief& belief, double torque_part) const noexcept {
-  return hammer_loads::motionCovariance(model_, belief, grown(belief), kTorquePart * torque_part);
+  const ShaftLoad load = model_(belief.state.position.angle);
+  return hammer_loads::motionCovariance(model_, load, belief, now_.growth, now_.moment, kTorquePart * torque_part);
 }
 
 BlowFactor SmoothedCrank::blowFactor() const noexcept { return now_.belief.blowFactor(grown(now_.belief)); }

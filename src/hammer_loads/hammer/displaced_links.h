@@ -13,7 +13,7 @@ class DisplacedLinks {
   explicit DisplacedLinks(const HullModel& model);
 
   /// ON the hull about D, axes of hammer_hull. No allocation.
-  HullWrench wrench(const CrankMotion& crank, const HullMotion& hull) const noexcept;
+  HullWrench wrench(const LinkMotion& links, double crank_speed, const HullMotion& hull) const noexcept;
 
  private:
   const HullModel* model_;

@@ -61,15 +61,6 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
   return wrench;
 }
 
-/// A crank angle and how the links move there.
-struct LinksAtAngle {
-  CrankAngle angle;
-  LinkMotion links;
-};
-inline LinksAtAngle linksAt(const HullModel& model, CrankAngle angle) noexcept {
-  return {angle, linkMotion(model.mechanism().linkage(), angle)};
-}
-
 /// The same with the motion of the links at crank.angle, found before.
 inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
                              const CrankMotion& crank, const HullMotion& hull) noexcept {
@@ -99,8 +90,9 @@ class WrenchAtAngle {
 };
 
 /// From motion relative to the hull alone: without weight, in a hull at rest.
-inline HullWrench motionWrench(const HullModel& model, const DriveReaction& drive, const CrankMotion& crank) noexcept {
-  return hullWrench(model, drive, crank, Gravity{});
+inline HullWrench motionWrench(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
+                               const CrankMotion& crank) noexcept {
+  return hullWrench(model, drive, links, crank, Gravity{});
 }
 
 }  // namespace hammer_loads

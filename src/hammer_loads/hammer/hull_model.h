@@ -29,6 +29,15 @@ class HullModel {
   NominalPulse pulse_;
 };
 
+/// A crank angle and how the links move there.
+struct LinksAtAngle {
+  CrankAngle angle;
+  LinkMotion links;
+};
+inline LinksAtAngle linksAt(const HullModel& model, CrankAngle angle) noexcept {
+  return {angle, linkMotion(model.mechanism().linkage(), angle)};
+}
+
 /// Crank angle left until the next forward blow [rad], exact near it.
 inline double angleToBlow(CrankAngle angle) noexcept {
   return angle.side == Side::kBeforeBlow ? -angle.offset : kTwoPi - angle.offset;
@@ -70,15 +79,23 @@ inline HullWrench hullWrench(const HullModel& model, const LinkMotion& links, co
 }
 
 /// The part of hullWrench that is not the change of linkMomentum: weight and motion of the hull.
-inline HullWrench frameWrench(const HullModel& model, CrankAngle angle, double speed, const HullMotion& hull) noexcept {
-  if (model.level() != Level::kPulse) return frameWrench(model.mechanism(), model.level(), angle, speed, hull);
+inline HullWrench frameWrench(const HullModel& model, const LinkMotion& links, double speed,
+                              const HullMotion& hull) noexcept {
+  if (model.level() != Level::kPulse) return frameWrench(model.mechanism(), model.level(), links, speed, hull);
   return {0.0, model.mechanism().parameters().rocker_mass * hull.gravity.z, 0.0};
+}
+inline HullWrench frameWrench(const HullModel& model, CrankAngle angle, double speed, const HullMotion& hull) noexcept {
+  return frameWrench(model, linksAt(model, angle).links, speed, hull);
 }
 
 /// Momentum whose change is minus the impulse of hullWrench without frameWrench between blows.
-inline LinkMomentum linkMomentum(const HullModel& model, CrankAngle angle, double speed) noexcept {
+inline LinkMomentum linkMomentum(const HullModel& model, const LinkMotion& links, CrankAngle angle,
+                                 double speed) noexcept {
   if (model.level() == Level::kPulse) return linkMomentumPulse(model.nominalPulse(), angle, speed);
-  return linkMomentum(model.mechanism(), model.level(), angle, speed);
+  return linkMomentum(model.mechanism(), model.level(), links, speed);
+}
+inline LinkMomentum linkMomentum(const HullModel& model, CrankAngle angle, double speed) noexcept {
+  return linkMomentum(model, linksAt(model, angle).links, angle, speed);
 }
 
 }  // namespace hammer_loads

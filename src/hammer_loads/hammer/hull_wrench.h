@@ -156,25 +156,26 @@ HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, Level leve
 
 /// The part of hullWrench that is not the change of linkMomentum: weight and motion of the hull. Smooth in time, so
 /// that its impulse can be summed where linkMomentum's difference gives the rest.
-inline HullWrench frameWrench(const Mechanism& mechanism, Level level, CrankAngle angle, double speed,
+inline HullWrench frameWrench(const Mechanism& mechanism, Level level, const LinkMotion& l, double speed,
                               const HullMotion& hull) noexcept {
-  if (!hull.turns()) return hullWrench(mechanism, level, {angle, 0.0, 0.0}, hull.gravity);
-  const LinkMotion l = linkMotion(mechanism.linkage(), angle);
   if (level != Level::kLinkage) {
     HullWrench wrench = weightWrenchRocker(mechanism, l.rocker, hull.gravity);
-    addTurningRocker(mechanism, l.rocker, speed, hull, wrench);
+    if (hull.turns()) addTurningRocker(mechanism, l.rocker, speed, hull, wrench);
     return wrench;
   }
-  HullWrench wrench = hullWrenchLinkage(mechanism, l, {angle, 0.0, 0.0}, hull.gravity);
-  addTurningLinkage(mechanism, l, speed, hull, wrench);
+  HullWrench wrench = hullWrenchLinkage(mechanism, l, {}, hull.gravity);
+  if (hull.turns()) addTurningLinkage(mechanism, l, speed, hull, wrench);
   return wrench;
+}
+
+inline LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, const LinkMotion& l, double speed) noexcept {
+  if (level != Level::kLinkage) return linkMomentumRocker(mechanism, l.rocker, speed);
+  return linkMomentumLinkage(mechanism, l, speed);
 }
 
 HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle,
                                               double speed) noexcept {
-  const Motion m = motion(mechanism.linkage(), angle);
-  if (level != Level::kLinkage) return linkMomentumRocker(mechanism, m, speed);
-  return linkMomentumLinkage(mechanism, linkMotion(mechanism.linkage().ratios(), m), speed);
+  return linkMomentum(mechanism, level, linkMotion(mechanism.linkage(), angle), speed);
 }
 
 }  // namespace hammer_loads

@@ -7,31 +7,30 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kStep[] = {1e-5, 1e-3, 1e-2};  // of angle [rad], speed [rad/s], acceleration [rad/s2]
+// Differences to one side: 1e-6 of a slope by what bends in them, 1e-9 by rounding.
+constexpr double kAngleStep = 1e-6, kSpeedStep = 1e-5, kAccelerationStep = 1e-2;  // [rad], [rad/s], [rad/s2]
 
 using Gradient = Eigen::Matrix3d;  // rows: force_x, force_z, torque_y
 
 Eigen::Vector3d vectorOf(const HullWrench& w) noexcept { return {w.force_x, w.force_z, w.torque_y}; }
 
-CrankAngle moved(CrankAngle angle, double by) noexcept {
-  angle.offset += by;  // the side stays: the branch's own continuation past the blow
+CrankAngle nudged(CrankAngle angle) noexcept {
+  angle.offset += kAngleStep;  // the side stays: the branch's own continuation past the blow
   return angle;
 }
 
-/// By central differences; at_angle(links) gives what is wanted by speed and acceleration.
+/// at_angle(links) gives what is wanted by speed and acceleration.
 template <typename AtAngle>
 Gradient gradient(const CrankEstimate& crank, const LinksBeside& links, const AtAngle& at_angle) noexcept {
   const double speed = crank.speed, acceleration = crank.acceleration;
-  const auto [angle_step, speed_step, acceleration_step] = kStep;
-  const auto slope = [](const HullWrench& from, const HullWrench& to, double step) {
-    return Eigen::Vector3d((vectorOf(to) - vectorOf(from)) * (0.5 / step));
+  const auto here = at_angle(links.here), beside = at_angle(links.beside);
+  const Eigen::Vector3d value = vectorOf(here(speed, acceleration));
+  const auto slope = [&](const HullWrench& moved, double step) {
+    return Eigen::Vector3d((vectorOf(moved) - value) * (1.0 / step));
   };
-  const auto before = at_angle(links.before), after = at_angle(links.after), here = at_angle(links.here);
   Gradient result;
-  result << slope(before(speed, acceleration), after(speed, acceleration), angle_step),
-      slope(here(speed - speed_step, acceleration), here(speed + speed_step, acceleration), speed_step),
-      slope(here(speed, acceleration - acceleration_step), here(speed, acceleration + acceleration_step),
-            acceleration_step);
+  result << slope(beside(speed, acceleration), kAngleStep), slope(here(speed + kSpeedStep, acceleration), kSpeedStep),
+      slope(here(speed, acceleration + kAccelerationStep), kAccelerationStep);
   return result;
 }
 
@@ -57,9 +56,7 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) noexcept {
 }  // namespace
 
 LinksBeside::LinksBeside(const HullModel& model, CrankAngle angle) noexcept
-    : before(linksAt(model, moved(angle, -kStep[0]))),
-      here(linksAt(model, angle)),
-      after(linksAt(model, moved(angle, kStep[0]))) {}
+    : here(linksAt(model, angle)), beside(linksAt(model, nudged(angle))) {}
 
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                             const LinksBeside& links, const HullMotion& hull,
@@ -77,8 +74,8 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                              const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept {
   const Gradient g = gradient(crank, links, [&](const LinksAtAngle& at) {
-    return [&model, &drive, angle = at.angle](double speed, double) {
-      const LinkMomentum p = linkMomentum(model, angle, speed);
+    return [&](double speed, double) {
+      const LinkMomentum p = linkMomentum(model, at.links, at.angle, speed);
       return HullWrench{p.x, p.z, p.about_d + drive.by_crank * speed};
     };
   });

@@ -20,11 +20,11 @@ struct HullDeviation {
 /// How the links move at a crank angle and a little beside it: what gradients by the angle need.
 struct LinksBeside {
   LinksBeside(const HullModel& model, CrankAngle angle) noexcept;
-  LinksAtAngle before, here, after;
+  LinksAtAngle here, beside;
 };
 
-/// covariance of (angle, speed, acceleration), linearised at the estimate (central differences; exact in speed and
-/// acceleration), the drive's reaction included. What the model leaves out is not in it. Some 0.3 us.
+/// covariance of (angle, speed, acceleration), linearised at the estimate (differences, good to some 1e-5), the drive's
+/// reaction included. What the model leaves out is not in it. Some 0.3 us.
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                             const LinksBeside& links, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept;

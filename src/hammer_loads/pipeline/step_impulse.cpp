@@ -8,14 +8,22 @@
 namespace hammer_loads {
 namespace {
 
-LinkMomentum momentum(const HullModel& model, const CrankEstimate& crank) noexcept {
-  return linkMomentum(model, crank.position.angle, crank.speed);
+/// One end of a part of the step.
+struct PartEnd {
+  CrankEstimate crank;
+  LinkMotion links;
+};
+
+PartEnd endAt(const HullModel& model, const CrankEstimate& crank) noexcept {
+  return {crank, linksAt(model, crank.position.angle).links};
 }
 
 /// What a change of momentum has given to the hull.
-LoadImpulse change(const HullModel& model, const DriveReaction& drive, const CrankEstimate& a,
-                   const CrankEstimate& b) noexcept {
-  const LinkMomentum from = momentum(model, a), to = momentum(model, b);
+LoadImpulse change(const HullModel& model, const DriveReaction& drive, const PartEnd& from_end,
+                   const PartEnd& to_end) noexcept {
+  const CrankEstimate &a = from_end.crank, &b = to_end.crank;
+  const LinkMomentum from = linkMomentum(model, from_end.links, a.position.angle, a.speed);
+  const LinkMomentum to = linkMomentum(model, to_end.links, b.position.angle, b.speed);
   const double drive_y = drive.by_crank * (a.speed - b.speed + (a.drive_lead_speed - b.drive_lead_speed));
   return {{from.x - to.x, from.z - to.z, from.about_d - to.about_d + drive_y}, drive_y};
 }
@@ -59,7 +67,7 @@ LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, co
                           double to) noexcept {
   LoadImpulse impulse;
   forEachSmoothPart(step, from, to, [&](double, const CrankEstimate& a, double, const CrankEstimate& b) {
-    const LoadImpulse part = change(model, drive, a, b);
+    const LoadImpulse part = change(model, drive, endAt(model, a), endAt(model, b));
     impulse = {impulse.all + part.all, impulse.drive_y + part.drive_y};
   });
   return impulse;
@@ -90,7 +98,7 @@ LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, con
   return impulse;
 }
 
-WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept {
+WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step, const LinksAtAngle& last) noexcept {
   WrenchHistory result;
   if (!step.known()) return result;
   const DriveReaction drive = driveReaction(model, step.driveInertia());
@@ -102,9 +110,12 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexc
         if (result.count == result.pieces.size()) return;
         SmoothPiece& piece = result.pieces[result.count++];
         piece.duration = to - from;
-        piece.from = motionWrench(model, drive, motionOf(a));
-        piece.to = motionWrench(model, drive, motionOf(b));
-        const HullWrench impulse = change(model, drive, a, b).all;
+        const CrankAngle& angle = b.position.angle;
+        const bool is_last = angle.offset == last.angle.offset && angle.side == last.angle.side;
+        const PartEnd begin = endAt(model, a), end = is_last ? PartEnd{b, last.links} : endAt(model, b);
+        piece.from = motionWrench(model, drive, begin.links, motionOf(a));
+        piece.to = motionWrench(model, drive, end.links, motionOf(b));
+        const HullWrench impulse = change(model, drive, begin, end).all;
         piece.mean = piece.duration > 0.0 ? (1.0 / piece.duration) * impulse : 0.5 * (piece.from + piece.to);
         if (ends_at == nullptr || !ends_at->strikes) return;
         const RockerBlow blow = blowAt(model, step.struckInertia(), *ends_at);

@@ -19,9 +19,10 @@ void TurnFollower::restart() noexcept {
 
 TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const noexcept {
   const CrankMotion motion = motionOf(crank);
-  const HullWrench added = frameWrench(*model_, motion.angle, motion.speed, hull_);
-  return {time, hullWrench(*model_, motion, hull_), linkMomentum(*model_, motion.angle, motion.speed), added.force_x,
-          added.force_z};
+  const LinkMotion links = linksAt(*model_, motion.angle).links;
+  const HullWrench added = frameWrench(*model_, links, motion.speed, hull_);
+  return {time, hullWrench(*model_, links, motion, hull_), linkMomentum(*model_, links, motion.angle, motion.speed),
+          added.force_x, added.force_z};
 }
 
 /// Points of the turn in (from, to] [s] after the step's start.
