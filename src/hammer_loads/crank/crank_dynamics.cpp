@@ -27,27 +27,28 @@ double torqueOf(const ShaftLoad& load, double torque, double drive_inertia) noex
   return torque + load.weight_torque - drive_inertia * load.hull_acceleration;
 }
 
-/// Time derivative of a path where the load is known.
-Path rate(const Shaft& shaft, double h, const ShaftLoad& load) noexcept {
-  const double inv_root = 1.0 / std::sqrt(shaft.drive_inertia + load.inertia);
-  return {h * inv_root, torqueOf(load, shaft.torque, shaft.drive_inertia) * inv_root};
+/// A path's first and second time derivative.
+struct Rates {
+  Path first, second;
+};
+
+/// Where the load is known.
+Rates rates(const Shaft& shaft, double h, const ShaftLoad& load) noexcept {
+  const double inv = 1.0 / (shaft.drive_inertia + load.inertia), inv_root = std::sqrt(inv);
+  const double speed = h * inv_root, torque = torqueOf(load, shaft.torque, shaft.drive_inertia);
+  return {{speed, torque * inv_root},
+          {(torque - load.half_inertia_slope * speed * speed) * inv,
+           (load.weight_torque_slope - torque * load.half_inertia_slope * inv) * speed * inv_root}};
 }
 
-Path along(const Path& start, const Path& derivative, double dt) noexcept {
-  return {start.offset + dt * derivative.offset, start.h + dt * derivative.h};
-}
-
-/// first: the derivative at the start.
-Path rungeKutta(const Shaft& shaft, const Path& start, const Path& first, double dt) noexcept {
-  const auto derivative = [&](const Path& at) {
-    return rate(shaft, at.h, shaft.model.withoutSlopes({at.offset, shaft.side}));
-  };
-  const Path k2 = derivative(along(start, first, 0.5 * dt));
-  const Path k3 = derivative(along(start, k2, 0.5 * dt));
-  const Path k4 = derivative(along(start, k3, dt));
-  const double w = dt / 6.0;
-  return {start.offset + w * (first.offset + 2.0 * (k2.offset + k3.offset) + k4.offset),
-          start.h + w * (first.h + 2.0 * (k2.h + k3.h) + k4.h)};
+/// at: at the start. Order 4 by two derivatives, which need the load at the middle alone (Chan and Tsai 2010).
+Path rungeKutta(const Shaft& shaft, const Path& start, const Rates& at, double dt) noexcept {
+  const Path middle{start.offset + 0.5 * dt * (at.first.offset + 0.25 * dt * at.second.offset),
+                    start.h + 0.5 * dt * (at.first.h + 0.25 * dt * at.second.h)};
+  const Path bend = rates(shaft, middle.h, shaft.model({middle.offset, shaft.side})).second;
+  const double part = dt / 6.0;
+  return {start.offset + dt * (at.first.offset + part * (at.second.offset + 2.0 * bend.offset)),
+          start.h + dt * (at.first.h + part * (at.second.h + 2.0 * bend.h))};
 }
 
 /// Derivatives of h by (angle, speed, logarithm of drive inertia) at fixed others.
@@ -111,24 +112,22 @@ ShaftTransition chained(const ShaftTransition& second, const ShaftTransition& fi
 /// A state on the mirrored branch is beyond already; there is nothing to pass.
 bool passesBlow(Side side, double from, double to) noexcept { return isBeyond(side, to) && !isBeyond(side, from); }
 
-/// One smooth piece of the way, ending at dt or at the blow. total: null where no linearisation is wanted; loads are
-/// without slopes then.
+/// One smooth piece of the way, ending at dt or at the blow. total: null where no linearisation is wanted.
 WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state, ShaftLoad& load,
                       ShaftTransition* total) noexcept {
   const Shaft shaft{model, state.position.angle.side, state.torque, state.drive_inertia};
   const Path start{state.position.angle.offset, std::sqrt(state.drive_inertia + load.inertia) * state.speed};
-  const Path first = rate(shaft, start.h, load);
-  Path end = rungeKutta(shaft, start, first, dt);
+  const Rates at = rates(shaft, start.h, load);
+  Path end = rungeKutta(shaft, start, at, dt);
   const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
   WayPiece piece{dt, (contact || !forward) && passesBlow(shaft.side, start.offset, end.offset)};
   if (piece.at_blow) {
     piece.used =
-        timeToBlow([&](double t) { return rungeKutta(shaft, start, first, t).offset; }, start.offset, end.offset, dt);
-    end = rungeKutta(shaft, start, first, piece.used);
+        timeToBlow([&](double t) { return rungeKutta(shaft, start, at, t).offset; }, start.offset, end.offset, dt);
+    end = rungeKutta(shaft, start, at, piece.used);
     end.offset = 0.0;
   }
-  const CrankAngle angle_end{end.offset, shaft.side};
-  const ShaftLoad load_end = total != nullptr ? model(angle_end) : model.withoutSlopes(angle_end);
+  const ShaftLoad load_end = model({end.offset, shaft.side});
   const double speed_end = end.h / std::sqrt(state.drive_inertia + load_end.inertia);
   if (total != nullptr) *total = chained(transition(shaft, piece.used, state.speed, load, speed_end, load_end), *total);
   state.position.angle.offset = end.offset;
@@ -205,7 +204,7 @@ void advanceState(const ShaftModel& model, double dt, const Passing& passing, Sh
     advanceFlexible(model, dt, passing, state, nullptr);
     return;
   }
-  ShaftLoad load = model.withoutSlopes(state.position.angle);
+  ShaftLoad load = model(state.position.angle);
   advanceAll(model, dt, passing, state, load, nullptr);
 }
 

@@ -28,6 +28,10 @@ struct CrankAngle {
     return {offset, offset < 0.0 ? Side::kBeforeBlow : Side::kAfterBlow};
   }
 
+  friend bool operator==(const CrankAngle& a, const CrankAngle& b) noexcept {
+    return a.offset == b.offset && a.side == b.side;
+  }
+
   /// phi - 2 pi n in [-pi, pi] [rad], with 2 pi in two parts: error below the rounding of the result (for large n: of
   /// pi) and 6e-33 rad per turn, instead of 2.4e-16 per turn.
   static double wrapToPi(double phi) noexcept {

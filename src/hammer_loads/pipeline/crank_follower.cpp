@@ -34,7 +34,7 @@ CrankFollower::CrankFollower(const HullModel& model, const PipelineSettings& set
       sequence_(settings.crank_stamps, settings.stale_after),
       tracker_(make(model.mechanism(), settings)),
       gate_(limitsOf(settings, tracker_->angleResolution())),
-      step_(*tracker_) {}
+      step_(*tracker_, model) {}
 
 void CrankFollower::checkUnit(StampNs stamp, const CrankSample& measured) noexcept {
   unit_check_.add(last_raw_stamp_ ? seconds(stamp - *last_raw_stamp_) : 0.0, measured.angle, measured.speed);

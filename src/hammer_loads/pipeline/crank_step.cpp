@@ -10,13 +10,23 @@ constexpr double kBlowSpeed = 1.0;  // [rad/s] of the crank: slower, it creeps o
 
 }  // namespace
 
+void CrankStep::forget(const CrankPosition& at) noexcept {
+  known_ = false;
+  passages_ = 0;
+  furthest_blow_ = at.blowsPassed();
+  links_ = links_before_ = hammer_loads::linksAt(*model_, at.angle);
+}
+
 void CrankStep::take(StampNs start, double length, const CrankPosition& from) noexcept {
   known_ = true;
   start_ = start;
   length_ = length;
   passages_ = 0;
+  const CrankPosition now = tracker_->estimate().position;
+  links_before_ = links_;
+  links_ = hammer_loads::linksAt(*model_, now.angle);
   std::int64_t passed = from.blowsPassed();
-  const std::int64_t passed_now = tracker_->estimate().position.blowsPassed();
+  const std::int64_t passed_now = now.blowsPassed();
   for (; passed != passed_now && passages_ < passage_.size(); ++passages_) {
     const bool forward = passed < passed_now;
     const std::int64_t blow = forward ? ++passed : passed--;

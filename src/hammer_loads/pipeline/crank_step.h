@@ -31,10 +31,10 @@ class CrankStep {
     bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
   };
 
-  explicit CrankStep(const CrankTracker& tracker) : tracker_(&tracker) {}
+  CrankStep(const CrankTracker& tracker, const HullModel& model) : tracker_(&tracker), model_(&model) {}
 
   /// What lies before the last sample, in position `at`, is not known.
-  void forget(const CrankPosition& at) noexcept { known_ = false, passages_ = 0, furthest_blow_ = at.blowsPassed(); }
+  void forget(const CrankPosition& at) noexcept;
   /// A step of `length` [s] that began at stamp `start` in position `from`; finds its passages.
   void take(StampNs start, double length, const CrankPosition& from) noexcept;
 
@@ -46,6 +46,13 @@ class CrankStep {
     return start_ + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
   }
   CrankEstimate at(double time) const noexcept { return tracker_->between(time); }
+  /// At its end.
+  const LinksAtAngle& links() const noexcept { return links_; }
+  /// How the links move at an angle; at the step's ends it is known already.
+  LinkMotion linksAt(CrankAngle angle) const noexcept {
+    if (angle == links_.angle) return links_.links;
+    return angle == links_before_.angle ? links_before_.links : hammer_loads::linksAt(*model_, angle).links;
+  }
   double driveInertia() const noexcept { return tracker_->driveInertia(); }    ///< at its end [kg m2]
   double struckInertia() const noexcept { return tracker_->struckInertia(); }  ///< likewise
   /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
@@ -61,6 +68,8 @@ class CrankStep {
   double timeOfBlow(std::int64_t blow) const noexcept;
 
   const CrankTracker* tracker_;
+  const HullModel* model_;
+  LinksAtAngle links_before_, links_;  ///< at both ends
   bool known_{};
   StampNs start_{};
   double length_{};

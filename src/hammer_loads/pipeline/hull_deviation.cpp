@@ -55,8 +55,8 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) noexcept {
 
 }  // namespace
 
-LinksBeside::LinksBeside(const HullModel& model, CrankAngle angle) noexcept
-    : here(linksAt(model, angle)), beside(linksAt(model, nudged(angle))) {}
+LinksBeside::LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept
+    : here(at), beside(linksAt(model, nudged(at.angle))) {}
 
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                             const LinksBeside& links, const HullMotion& hull,

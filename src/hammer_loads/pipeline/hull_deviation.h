@@ -19,7 +19,7 @@ struct HullDeviation {
 
 /// How the links move at a crank angle and a little beside it: what gradients by the angle need.
 struct LinksBeside {
-  LinksBeside(const HullModel& model, CrankAngle angle) noexcept;
+  LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcept;
   LinksAtAngle here, beside;
 };
 
@@ -30,7 +30,7 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
                             const Eigen::Matrix3d& covariance) noexcept;
 inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                                    const HullMotion& hull, const Eigen::Matrix3d& covariance) noexcept {
-  return hullDeviation(model, drive, crank, LinksBeside(model, crank.position.angle), hull, covariance);
+  return hullDeviation(model, drive, crank, LinksBeside(model, linksAt(model, crank.position.angle)), hull, covariance);
 }
 
 /// Standard deviation of the momentum, the drive's included: of an impulse's one end [N s, N s, N m s].

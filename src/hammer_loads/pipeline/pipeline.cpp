@@ -71,8 +71,7 @@ const SampleResult& Pipeline::refuse(Refusal refusal) noexcept {
 /// The crank has taken the sample, the outputs have not: they go on from the next one.
 const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
   const bool believed = refusal == Refusal::kUnsettled && crank_.step().known();
-  swingOn(believed ? wrenchHistory(model_, crank_.step(), linksAt(model_, result_.crank.position.angle))
-                   : WrenchHistory{});
+  swingOn(believed ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
   sampler_.forget();
   return refuse(refusal);
 }
@@ -102,7 +101,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
 
   const CrankMotion motion = motionOf(result_.crank);
-  const LinksBeside links(model_, motion.angle);
+  const LinksBeside links(model_, crank_.step().links());
   if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion)))
     return withhold(Refusal::kImplausible);
   result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
@@ -179,7 +178,7 @@ void Pipeline::followBoom(const LinksBeside& links) noexcept {
   const CrankMotion crank = motionOf(result_.crank);
   const HullWrench motion = hullWrench(model_, drive, links.here.links, crank, Gravity{});
   const HullWrench displaced = displaced_links_.wrench(links.here.links, crank.speed, hull_.motion().motion);
-  const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step(), links.here) : WrenchHistory{};
+  const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
   const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, links, result_.crank_covariance);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again

@@ -14,8 +14,8 @@ struct PartEnd {
   LinkMotion links;
 };
 
-PartEnd endAt(const HullModel& model, const CrankEstimate& crank) noexcept {
-  return {crank, linksAt(model, crank.position.angle).links};
+PartEnd endAt(const CrankStep& step, const CrankEstimate& crank) noexcept {
+  return {crank, step.linksAt(crank.position.angle)};
 }
 
 /// What a change of momentum has given to the hull.
@@ -67,7 +67,7 @@ LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, co
                           double to) noexcept {
   LoadImpulse impulse;
   forEachSmoothPart(step, from, to, [&](double, const CrankEstimate& a, double, const CrankEstimate& b) {
-    const LoadImpulse part = change(model, drive, endAt(model, a), endAt(model, b));
+    const LoadImpulse part = change(model, drive, endAt(step, a), endAt(step, b));
     impulse = {impulse.all + part.all, impulse.drive_y + part.drive_y};
   });
   return impulse;
@@ -98,7 +98,7 @@ LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, con
   return impulse;
 }
 
-WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step, const LinksAtAngle& last) noexcept {
+WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept {
   WrenchHistory result;
   if (!step.known()) return result;
   const DriveReaction drive = driveReaction(model, step.driveInertia());
@@ -110,9 +110,7 @@ WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step, const
         if (result.count == result.pieces.size()) return;
         SmoothPiece& piece = result.pieces[result.count++];
         piece.duration = to - from;
-        const CrankAngle& angle = b.position.angle;
-        const bool is_last = angle.offset == last.angle.offset && angle.side == last.angle.side;
-        const PartEnd begin = endAt(model, a), end = is_last ? PartEnd{b, last.links} : endAt(model, b);
+        const PartEnd begin = endAt(step, a), end = endAt(step, b);
         piece.from = motionWrench(model, drive, begin.links, motionOf(a));
         piece.to = motionWrench(model, drive, end.links, motionOf(b));
         const HullWrench impulse = change(model, drive, begin, end).all;

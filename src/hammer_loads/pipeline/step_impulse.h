@@ -40,7 +40,7 @@ LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, con
                          const HullPath& hull, double from, double to) noexcept;
 
 /// The load of links and drive over the whole step as the boom takes it, blows included; pieces beyond those that a
-/// WrenchHistory holds are left out (a step of several turns). last: the links at the step's end, found before.
-WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step, const LinksAtAngle& last) noexcept;
+/// WrenchHistory holds are left out (a step of several turns).
+WrenchHistory wrenchHistory(const HullModel& model, const CrankStep& step) noexcept;
 
 }  // namespace hammer_loads

@@ -19,7 +19,7 @@ void TurnFollower::restart() noexcept {
 
 TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const noexcept {
   const CrankMotion motion = motionOf(crank);
-  const LinkMotion links = linksAt(*model_, motion.angle).links;
+  const LinkMotion links = step_->linksAt(motion.angle);
   const HullWrench added = frameWrench(*model_, links, motion.speed, hull_);
   return {time, hullWrench(*model_, links, motion, hull_), linkMomentum(*model_, links, motion.angle, motion.speed),
           added.force_x, added.force_z};

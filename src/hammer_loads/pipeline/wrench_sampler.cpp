@@ -104,7 +104,7 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   if (at_sample)
     addDeviation(links, hull, covariance, output);
   else
-    addDeviation(LinksBeside(*model_, output.crank.position.angle), hull, covariance, output);
+    addDeviation(LinksBeside(*model_, linksAt(*model_, output.crank.position.angle)), hull, covariance, output);
   return output;
 }
 
