@@ -114,7 +114,8 @@ void Boom::deviations(const LoadErrors& errors, BoomDeviations& result) noexcept
   } else {
     findVariances(errors, response_in_plane_, in_plane_);
     deviation_.setZero();
-    for (Eigen::Index i = 0; i < in_plane_; ++i) deviation_[rows_in_plane_[i]] = std::sqrt(variance_[i]);
+    variance_.head(in_plane_) = variance_.head(in_plane_).cwiseSqrt();
+    for (Eigen::Index i = 0; i < in_plane_; ++i) deviation_[rows_in_plane_[i]] = variance_[i];
   }
   takeDeviations(result);
 }

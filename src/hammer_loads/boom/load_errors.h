@@ -18,7 +18,7 @@ class LoadErrors {
   /// What is in error: accelerations in the order of the cylinders, then of the load what lies in the boom's plane
   /// (force x, z, moment y), then what lies across it (force y, moment x, z).
   using Inputs = Eigen::Matrix<double, kMost, 1>;
-  /// What counts is below the diagonal, and on it.
+  /// What counts is below the diagonal, and on it, of the inputs that there are.
   using Covariance = Eigen::Matrix<double, kMost, kMost>;
 
   explicit LoadErrors(const std::vector<Cylinder>& cylinders) noexcept;
@@ -45,7 +45,7 @@ class LoadErrors {
   int held_{};  ///< by cylinders
   std::array<int, kMaxJoints> joint_{};
   bool across_{}, has_larger_{};
-  Covariance covariance_ = Covariance::Zero();
+  Covariance covariance_;
   std::array<Inputs, 2> larger_;
 };
 

@@ -12,7 +12,7 @@ namespace hammer_loads {
 /// A mode at an instant.
 struct ModeThen {
   ModeState motion;
-  double force{}, force_rate{};  ///< modal, of the hammer; and by the second
+  double force, force_rate;  ///< modal, of the hammer; and by the second
 };
 
 /// The last steps of all modes, each from its begin to its end: between two of them blows and readings change what is

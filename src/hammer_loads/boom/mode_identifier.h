@@ -182,13 +182,15 @@ class ModeIdentifier {
   void takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept;
   double dot(const State& a, const State& b) const noexcept;
   void add(double factor, const State& what, State& to) const noexcept;
+  void copy(const State& from, State& to) const noexcept;
+  void clear(State& state) const noexcept;
   void takeAsLate(Clock clock) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
   static bool counts(const VibrationReading& reading) noexcept;
   void useChannel(const VibrationReading& reading) noexcept;
   Seen seenAt(int mode, double ahead) const noexcept;
-  State rowOf(const VibrationReading& reading, const SeenModes& modes, double& predicted) const noexcept;
+  double findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept;
   bool finite() const noexcept;
   void startAnew() noexcept;
   void useOil() noexcept;

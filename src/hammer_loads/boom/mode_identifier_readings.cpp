@@ -59,8 +59,8 @@ ModeThen ModeIdentifier::motionByCrank(int mode, double ahead) const noexcept {
 /// Of a mode, for readings of one instant.
 struct ModeIdentifier::Seen {
   ModeThen then;
-  double acceleration{}, stiff{}, damped{};
-  double cosine{}, sine{};  ///< of what was then: how displacement and velocity of now show in it
+  double acceleration, stiff, damped;
+  double cosine, sine;  ///< of what was then: how displacement and velocity of now show in it
 };
 
 ModeIdentifier::Seen ModeIdentifier::seenAt(int mode, double ahead) const noexcept {
@@ -75,11 +75,11 @@ ModeIdentifier::Seen ModeIdentifier::seenAt(int mode, double ahead) const noexce
   return seen;
 }
 
-ModeIdentifier::State ModeIdentifier::rowOf(const VibrationReading& reading, const SeenModes& modes,
-                                            double& predicted) const noexcept {
-  State row = State::Zero();
+/// What is predicted of the reading.
+double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept {
+  clear(row);
   row[offsetAt(reading.channel)] = 1.0;
-  predicted = state_[offsetAt(reading.channel)];
+  double predicted = state_[offsetAt(reading.channel)];
   double late = 0.0;
   withCount<3>(count_, [&](auto count) {
     for (int k = 0; k < count; ++k) {
@@ -106,7 +106,7 @@ ModeIdentifier::State ModeIdentifier::rowOf(const VibrationReading& reading, con
     }
   });
   if (reading.clock != Clock::kCrank) row[delayAt(reading.clock)] = -late;
-  return row;
+  return predicted;
 }
 
 /// Rows of readings about one state, and P row^T of each, which becomes that after those before it.
@@ -118,12 +118,16 @@ struct ModeIdentifier::Rows {
   std::size_t count{};
 };
 
-/// What they have shown and the covariance has not lost yet: the sum of column column^T/S.
+/// What they have shown and the covariance has not lost yet: the sum of column column^T/S. moved: so many of its column
+/// were added to the state.
 struct ModeIdentifier::Shown {
   alignas(64) std::array<State, 4 * kMostAtOnce> column;
-  std::array<double, 4 * kMostAtOnce> S;
+  std::array<double, 4 * kMostAtOnce> S, moved;
   std::size_t count{};
-  void add(const State& its_column, double its_S) noexcept { column[count] = its_column, S[count++] = its_S; }
+  State& add(double its_S, double its_moved) noexcept {
+    S[count] = its_S, moved[count] = its_moved;
+    return column[count++];
+  }
 };
 
 void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
@@ -162,16 +166,19 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count, S
   timesRows(block(), static_cast<int>(rows.count), rows.row[0].data(), kDelays, rows.offset.data(),
             rows.gain_S[0].data());
   const Kept kept = keptStates();
-  const State about = state_;
+  const std::size_t first = shown.count;  // shown before the rows were found: the state has it already
   for (std::size_t r = 0; r < rows.count; ++r) {
     State& gain_S = rows.gain_S[r];
-    for (std::size_t k = 0; k < shown.count; ++k)
-      add(-dot(shown.column[k], rows.row[r]) / shown.S[k], shown.column[k], gain_S);
-    const double difference = rows.difference[r] - (r > 0 ? dot(state_ - about, rows.row[r]) : 0.0);
+    double difference = rows.difference[r];
+    for (std::size_t k = 0; k < shown.count; ++k) {
+      const double seen = dot(shown.column[k], rows.row[r]);
+      add(-seen / shown.S[k], shown.column[k], gain_S);
+      if (k >= first) difference -= shown.moved[k] * seen;
+    }
     const double S = weigh(*rows.reading[r], dot(gain_S, rows.row[r]), difference);
     if (!(S > 0.0)) continue;
     add(difference / S, gain_S, state_);
-    shown.add(gain_S, S);
+    copy(gain_S, shown.add(S, difference / S));
     if (kept.count > 0) takeBack(kept, difference / S, S, gain_S, shown);
   }
 }
@@ -189,9 +196,7 @@ void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t coun
     seen[static_cast<std::size_t>(k)] = seenAt(k, readings->ahead - delayByCrank(readings->clock));
   for (const VibrationReading* reading = readings; reading < readings + count; ++reading) {
     if (!counts(*reading)) continue;
-    double predicted = 0.0;
-    rows.row[rows.count] = rowOf(*reading, seen, predicted);
-    rows.difference[rows.count] = reading->value - predicted;
+    rows.difference[rows.count] = reading->value - findRow(*reading, seen, rows.row[rows.count]);
     rows.offset[rows.count] = offsetAt(reading->channel);
     rows.reading[rows.count++] = reading;
   }
@@ -224,12 +229,12 @@ ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
 
 /// What a reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
 void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept {
-  State its_part = State::Zero();
+  State& its_part = shown.add(-S, -moved);
+  clear(its_part);
   for (int i : kept) {
     its_part[i] = gain_S[i];
     state_[i] -= moved * gain_S[i];
   }
-  shown.add(its_part, -S);
 }
 
 /// Of the states in use.
@@ -241,6 +246,14 @@ double ModeIdentifier::dot(const State& a, const State& b) const noexcept {
 
 void ModeIdentifier::add(double factor, const State& what, State& to) const noexcept {
   for (int i = begin(); i < end(); i += kLane) lane(&to[i]) += factor * lane(&what[i]);
+}
+
+void ModeIdentifier::copy(const State& from, State& to) const noexcept {
+  for (int i = begin(); i < end(); i += kLane) lane(&to[i]) = lane(&from[i]);
+}
+
+void ModeIdentifier::clear(State& state) const noexcept {
+  for (int i = begin(); i < end(); i += kLane) lane(&state[i]).setZero();
 }
 
 void ModeIdentifier::forgetOil() noexcept {
