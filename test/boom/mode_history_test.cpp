@@ -36,7 +36,8 @@ class History : public testing::Test {
   void expectAt(double ago, const SwingOfMode& truth, double tolerance) {
     ModeHistory::Place place;
     ASSERT_TRUE(history_.find(ago, place)) << ago;
-    const ModeThen then = history_.at(kSecondMode, place, kSwing, truth.at(time_ + 1e-12));
+    ModeThen then;
+    history_.find(kSecondMode, place, kSwing, truth.at(time_ + 1e-12), then);
     const ModeState right = truth.at(time_ - ago);
     EXPECT_NEAR(then.motion.x, right.x, tolerance) << ago;
     EXPECT_NEAR(then.motion.v, right.v, kSwing * tolerance) << ago;

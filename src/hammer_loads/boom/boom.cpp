@@ -148,10 +148,11 @@ void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) 
   vibration_.setPose(motion.position, g_B);
 }
 
-void Boom::moveVibrating(const JointMotion& motion, double step, const Eigen::Vector3d& g_B) noexcept {
+void Boom::moveVibrating(const JointMotion& motion, const JointVector& displacement,
+                         const Eigen::Vector3d& g_B) noexcept {
   vibration_.setPose(motion.position, g_B);
   JointMotion displaced = motion;
-  displaced.position += vibration_.displacementAfter(step);
+  displaced.position += displacement;
   move(displaced, g_B);
   steady_position_ = motion.position;
 }

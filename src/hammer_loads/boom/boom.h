@@ -72,15 +72,17 @@ class Boom {
   /// Also brings the vibration to this pose: only then modes are found.
   void moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
   /// The same for a motion without the vibration: the modes are those of its pose, the links where the vibration takes
-  /// them by the end of the step [s] that it takes next.
-  void moveVibrating(const JointMotion& motion, double step, const Eigen::Vector3d& g_B) noexcept;
+  /// them, as by Vibration::displacementAfter() [rad].
+  void moveVibrating(const JointMotion& motion, const JointVector& displacement, const Eigen::Vector3d& g_B) noexcept;
 
   const ChainPose& pose() const noexcept { return pose_; }
   /// g_B in the tip's axes [m/s2]: what the hammer's weight needs.
   Eigen::Vector3d gravityAtTip() const noexcept;
   /// tipJacobian() of the pose.
   const Jacobian& tipJacobian() const noexcept { return jacobian_; }
-  JointVector hammerTorque(const Wrench& w_tip) const noexcept { return jointTorqueOfTipLoad(jacobian_, w_tip); }
+  HAMMER_LOADS_INLINE JointVector hammerTorque(const Wrench& w_tip) const noexcept {
+    return jointTorqueOfTipLoad(jacobian_, w_tip);
+  }
 
   /// Of weight and motion on a joint [N m].
   double steadyTorque(int joint) const noexcept { return weight_[joint] + motion_[joint]; }

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "hammer_loads/util/known_count.h"
-
 namespace hammer_loads {
 
 void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept {
@@ -51,15 +49,6 @@ Jacobian tipJacobian(const ChainPose& pose) noexcept {
 
 Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexcept {
   return shifted(pose.link(link).inverse() * pose.tip(), w_tip);
-}
-
-JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept {
-  JointVector torque(tip.cols());
-  withCount<4>(static_cast<int>(tip.cols()), [&](auto joints) {
-    for (int j = 0; j < joints; ++j)
-      torque[j] = tip.col(j).head<3>().dot(w_tip.force) + tip.col(j).tail<3>().dot(w_tip.torque);
-  });
-  return torque;
 }
 
 JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept {

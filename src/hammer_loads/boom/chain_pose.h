@@ -5,6 +5,8 @@
 
 #include "hammer_loads/boom/chain.h"
 #include "hammer_loads/boom/wrench.h"
+#include "hammer_loads/util/inline.h"
+#include "hammer_loads/util/known_count.h"
 
 namespace hammer_loads {
 
@@ -32,7 +34,14 @@ Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexce
 
 /// J^T w of a load on the tip: what it does per joint rate, so torque of the load on the joint about its axis, positive
 /// when it drives the joint forward [N m] ([N] for a prismatic joint). What holds the joint gives the opposite.
-JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept;
+HAMMER_LOADS_INLINE JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept {
+  JointVector torque(tip.cols());
+  withCount<4>(static_cast<int>(tip.cols()), [&](auto joints) {
+    for (int j = 0; j < joints; ++j)
+      torque[j] = tip.col(j).head<3>().dot(w_tip.force) + tip.col(j).tail<3>().dot(w_tip.torque);
+  });
+  return torque;
+}
 inline JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_tip) noexcept {
   return jointTorqueOfTipLoad(tipJacobian(pose), w_tip);
 }

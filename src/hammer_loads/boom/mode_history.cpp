@@ -33,17 +33,18 @@ bool ModeHistory::find(double ago, Place& place) const noexcept {
   return false;
 }
 
-ModeThen ModeHistory::at(int mode, const Place& place, double omega, const ModeState& now) const noexcept {
+void ModeHistory::find(int mode, const Place& place, double omega, const ModeState& now,
+                       ModeThen& result) const noexcept {
   const auto k = static_cast<std::size_t>(mode);
   const Step& step = stepWith(place.newer);
   const OfMode& m = step.modes[k];
-  const double h = step.duration, u = place.since / h, w = 1.0 - u, moved = m.to.x - m.from.x;
+  const double h = step.duration, per_time = 1.0 / h, u = place.since * per_time, w = 1.0 - u, moved = m.to.x - m.from.x;
   const double first = h * m.from.v - moved, last = moved - h * m.to.v;  // what a straight line lacks at its ends
   ModeThen then;
   then.motion.x = w * m.from.x + u * m.to.x + u * w * (w * first + u * last);
-  then.motion.v = (moved + w * (w - 2.0 * u) * first + u * (2.0 * w - u) * last) / h;
+  then.motion.v = (moved + w * (w - 2.0 * u) * first + u * (2.0 * w - u) * last) * per_time;
   then.force = w * m.force_from + u * m.force_to;
-  then.force_rate = (m.force_to - m.force_from) / h;
+  then.force_rate = (m.force_to - m.force_from) * per_time;
   ModeState after = now;  // begin of the next step
   double end = place.ago;
   for (std::size_t newer = 0; newer <= place.newer; ++newer) {
@@ -53,7 +54,7 @@ ModeThen ModeHistory::at(int mode, const Place& place, double omega, const ModeS
     after = its.from;
     end -= stepWith(newer).duration;
   }
-  return then;
+  result = then;
 }
 
 }  // namespace hammer_loads

@@ -39,7 +39,7 @@ class ModeHistory {
   bool find(double ago, Place& place) const noexcept;
   /// By cubics through both ends of a step, relative error (omega step)^4/384. now: what readings have shown since then
   /// counts for then as well.
-  ModeThen at(int mode, const Place& place, double omega, const ModeState& now) const noexcept;
+  void find(int mode, const Place& place, double omega, const ModeState& now, ModeThen& then) const noexcept;
 
  private:
   struct OfMode {

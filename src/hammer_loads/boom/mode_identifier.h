@@ -105,7 +105,11 @@ class ModeIdentifier {
   bool learns() const noexcept { return learns_; }
   ModeState motion(int mode) const noexcept;  ///< as estimated
   /// So long [s] after the present, or before it: some ms back exactly, with what readings have shown since.
-  ModeThen motionAt(int mode, double ahead) const noexcept { return motionByCrank(mode, ahead - crankLead()); }
+  ModeThen motionAt(int mode, double ahead) const noexcept {
+    ModeThen then;
+    findMotion(mode, ahead - crankLead(), then);
+    return then;
+  }
   JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
@@ -146,7 +150,7 @@ class ModeIdentifier {
   double* column(int state) noexcept { return &covariance_(0, state); }
 
   ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
-  ModeThen motionByCrank(int mode, double ahead) const noexcept;
+  void findMotion(int mode, double ahead, ModeThen& then) const noexcept;
   double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
   bool isDelayFollowed(Clock clock) const noexcept {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
@@ -189,7 +193,7 @@ class ModeIdentifier {
   void followDelay(Clock clock) noexcept;
   static bool counts(const VibrationReading& reading) noexcept;
   void useChannel(const VibrationReading& reading) noexcept;
-  Seen seenAt(int mode, double ahead) const noexcept;
+  void see(int mode, double ahead, Seen& seen) const noexcept;
   double findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept;
   bool finite() const noexcept;
   void startAnew() noexcept;

@@ -47,13 +47,14 @@ ModeState ModeIdentifier::motion(int mode) const noexcept {
   return {now.x - back * (now.v - 0.5 * back * a), now.v - back * (a - 0.5 * back * jerk)};
 }
 
-ModeThen ModeIdentifier::motionByCrank(int mode, double ahead) const noexcept {
+/// By the crank's time.
+void ModeIdentifier::findMotion(int mode, double ahead, ModeThen& then) const noexcept {
   const ModeState now = stateOf(mode);
-  ModeHistory::Place then;
-  if (ahead < 0.0 && history_.find(-ahead, then)) return history_.at(mode, then, modeAt(mode).omega, now);
-  return {{now.x + ahead * now.v, now.v + ahead * accelerationNow(mode)},
-          force_[mode] + ahead * force_rate_[mode],
-          force_rate_[mode]};
+  ModeHistory::Place place;
+  if (ahead < 0.0 && history_.find(-ahead, place)) return history_.find(mode, place, modeAt(mode).omega, now, then);
+  then.motion = {now.x + ahead * now.v, now.v + ahead * accelerationNow(mode)};
+  then.force = force_[mode] + ahead * force_rate_[mode];
+  then.force_rate = force_rate_[mode];
 }
 
 /// Of a mode, for readings of one instant.
@@ -63,16 +64,14 @@ struct ModeIdentifier::Seen {
   double cosine, sine;  ///< of what was then: how displacement and velocity of now show in it
 };
 
-ModeIdentifier::Seen ModeIdentifier::seenAt(int mode, double ahead) const noexcept {
+void ModeIdentifier::see(int mode, double ahead, Seen& seen) const noexcept {
   const Mode m = modeAt(mode);
-  Seen seen;
-  seen.then = motionByCrank(mode, ahead);
+  findMotion(mode, ahead, seen.then);
   seen.acceleration =
       hammer_loads::acceleration(m, seen.then.motion, seen.then.force + rockOn(mode) * state_[kContact]);
   seen.stiff = m.omega * m.omega, seen.damped = 2.0 * m.zeta * m.omega;
   const double turned = seen.stiff * square(ahead);
   seen.sine = ahead * (1.0 - turned / 6.0), seen.cosine = 1.0 - turned / 2.0;
-  return seen;
 }
 
 /// What is predicted of the reading.
@@ -193,7 +192,7 @@ void ModeIdentifier::subtract(Shown& shown) noexcept {
 void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t count, Rows& rows) const noexcept {
   SeenModes seen;
   for (int k = 0; k < count_; ++k)
-    seen[static_cast<std::size_t>(k)] = seenAt(k, readings->ahead - delayByCrank(readings->clock));
+    see(k, readings->ahead - delayByCrank(readings->clock), seen[static_cast<std::size_t>(k)]);
   for (const VibrationReading* reading = readings; reading < readings + count; ++reading) {
     if (!counts(*reading)) continue;
     rows.difference[rows.count] = reading->value - findRow(*reading, seen, rows.row[rows.count]);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hammer_loads/boom/body_motion.h"
+#include "hammer_loads/util/inline.h"
 
 namespace hammer_loads {
 namespace {
@@ -13,7 +14,7 @@ constexpr double kMostLoad = 1e200;
 Wrench forceAt(const Eigen::Vector3d& p, const Eigen::Vector3d& force) noexcept { return {force, p.cross(force)}; }
 
 /// From the root's frame to a point with the axes R of the root's frame.
-Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& R, const Wrench& w_B) noexcept {
+HAMMER_LOADS_INLINE Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& R, const Wrench& w_B) noexcept {
   return {R.transpose() * w_B.force, R.transpose() * (w_B.torque - p.cross(w_B.force))};
 }
 

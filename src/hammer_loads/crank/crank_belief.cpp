@@ -128,7 +128,10 @@ void CrankBelief::correct(Row row, double innovation, double variance,
   Vector change = gain * innovation;
   change[kInertia] = std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange);
   move(change);
-  by_error += gain * (measured_by_error - by_error.row(row)).eval();
+  for (Eigen::Index j = 0; j < by_error.cols(); ++j) {
+    const double difference = measured_by_error[j] - by_error(row, j);
+    by_error.col(j) += difference * gain;
+  }
   // P - K H P with H one row of the identity, of which what was measured is K R without the difference.
   for (Eigen::Index j = 0; j < column.size(); ++j) {
     for (Eigen::Index i = j; i < column.size(); ++i)

@@ -52,6 +52,15 @@ Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
   return {{w.force_x, 0.0, w.force_z}, {0.0, w.torque_y, 0.0}};
 }
 
+/// As Boom::hammerTorque() of onTip(), which lies in the boom's plane.
+JointVector BoomFollower::hammerTorque(const HullWrench& w) const noexcept {
+  const Jacobian& J = boom_.tipJacobian();
+  JointVector torque(J.cols());
+  for (Eigen::Index j = 0; j < J.cols(); ++j)
+    torque[j] = J(0, j) * w.force_x + J(2, j) * w.force_z + J(4, j) * w.torque_y;
+  return torque;
+}
+
 Wrench BoomFollower::wrenchAtLink(int link, const HullWrench& load) const noexcept {
   ChainPose pose;  // by the joints' sensors, as other nodes have it
   forwardKinematics(boom_.chain(), motion_.position, pose);
@@ -102,11 +111,12 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
 
 /// Joint sensors see the vibration too; what is left without it is the operator's.
 void BoomFollower::pose(double since, const Eigen::Vector3d& g_B) noexcept {
+  const JointVector displacement = boom_.vibration().displacementAfter(since);
   JointMotion operated = motion_;
-  operated.position -= boom_.vibration().displacementAfter(since);
+  operated.position -= displacement;
   held_.follow(operated, since);
   if (takesCompliant()) {
-    boom_.moveVibrating(held_.motion(), since, g_B);
+    boom_.moveVibrating(held_.motion(), displacement, g_B);
   } else {
     boom_.moveCompliant(motion_, g_B);
   }
@@ -130,7 +140,7 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
                            const WrenchSpread& spread) noexcept {
   const LoadSpread errors = spread_.waits() ? LoadSpread() : boom_.spreadTorque(spread);
   const auto torqueOf = [this](const HullWrench& motion, const HullWrench& displaced) {
-    return JointVector(boom_.hammerTorque(onTip(motion + displaced)) + beside_modes_);
+    return JointVector(hammerTorque(motion + displaced) + beside_modes_);
   };
   const double length = step.length();
   double end = 0.0;
@@ -158,7 +168,7 @@ void BoomFollower::beginUnseen(double peak) noexcept {
   JointVector swing = vibration.usualSwing();
   if (!vibration.known() || (swing.isZero(0.0) && peak == 0.0)) return;
   if (swing.isZero(0.0))
-    swing = modalForce(vibration.modes(), boom_.hammerTorque(onTip({0.0, peak, 0.0})))
+    swing = modalForce(vibration.modes(), hammerTorque({0.0, peak, 0.0}))
                 .cwiseQuotient(vibration.modes().omega.cwiseAbs2())
                 .cwiseAbs();
   if (swing.allFinite()) spread_.begin(swing);
@@ -167,7 +177,7 @@ void BoomFollower::beginUnseen(double peak) noexcept {
 void BoomFollower::strike(const HullWrench& impulse) noexcept {
   held_.struck();
   last_blow_ = last_stamp_;
-  const JointVector before = boom_.vibration().velocity(), torque = boom_.hammerTorque(onTip(impulse));
+  const JointVector before = boom_.vibration().velocity(), torque = hammerTorque(impulse);
   boom_.vibration().strike(torque);
   spread_.strike(torque);
   const Vector6 velocity = boom_.tipJacobian() * (0.5 * (before + boom_.vibration().velocity()));

@@ -118,6 +118,7 @@ class BoomFollower {
 
  private:
   static Wrench onTip(const HullWrench& w) noexcept;
+  JointVector hammerTorque(const HullWrench& w) const noexcept;
   bool takesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const HullWrench& displaced_links, const WrenchSpread& spread) noexcept;
   void strike(const HullWrench& impulse) noexcept;

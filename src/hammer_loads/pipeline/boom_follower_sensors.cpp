@@ -25,7 +25,7 @@ void BoomFollower::followContact(StampNs stamp) noexcept {
   bool measured = pressuresCount();
   for (std::size_t i = 0; i < boom_.cylinders().size() && measured; ++i) measured = pressures_.known(i, stamp);
   if (measured) {
-    boom_.vibration().followContact(boom_.hammerTorque(onTip({0.0, 1.0, striking_distance_})), least_contact_);
+    boom_.vibration().followContact(hammerTorque({0.0, 1.0, striking_distance_}), least_contact_);
   } else {
     boom_.vibration().leaveContact();
   }
