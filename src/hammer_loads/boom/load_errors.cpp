@@ -16,7 +16,7 @@ Eigen::Vector3d across(const Wrench& w) noexcept { return {w.force.y(), w.torque
 }  // namespace
 
 LoadErrors::LoadErrors(const std::vector<Cylinder>& cylinders) noexcept : held_(static_cast<int>(cylinders.size())) {
-  for (int c = 0; c < held_ + 6; ++c) covariance_.col(c).head(held_ + 6).setZero();
+  covariance_.leftCols(held_ + 6).setZero();
   for (std::size_t i = 0; i < cylinders.size(); ++i) joint_[i] = cylinders[i].joint();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -141,16 +142,22 @@ void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
 
 /// Displacements and velocities of the modes by T; frequencies, dampings and offsets stay.
 void ModeIdentifier::transform(const JointMatrix& T) noexcept {
-  const auto apply = [&](auto&& value) {  // of a vector with the states' order
-    for (Part part : {kX, kV}) {
-      JointVector old(count_);
-      for (int k = 0; k < count_; ++k) old[k] = value[at(k, part)];
-      for (int k = 0; k < count_; ++k) value[at(k, part)] = T.row(k).dot(old);
-    }
+  const auto apply = [&](double* values, int stride) {  // in the states' order
+    withCount<3>(count_, [&](auto count) {
+      for (const Part part : {kX, kV}) {
+        std::array<double, kMaxJoints> old;
+        for (int k = 0; k < count; ++k) old[static_cast<std::size_t>(k)] = values[stride * at(k, part)];
+        for (int k = 0; k < count; ++k) {
+          double sum = 0.0;
+          for (int l = 0; l < count; ++l) sum += T(k, l) * old[static_cast<std::size_t>(l)];
+          values[stride * at(k, part)] = sum;
+        }
+      }
+    });
   };
-  apply(state_);
-  for (int i = begin(); i < end(); ++i) apply(covariance_.col(i));
-  for (int i = begin(); i < end(); ++i) apply(covariance_.row(i));
+  apply(state_.data(), 1);
+  for (int i = begin(); i < end(); ++i) apply(column(i), 1);
+  for (int i = begin(); i < end(); ++i) apply(covariance_.data() + i, kMaxStates);
   force_ = (T * force_).eval();
   force_rate_ = (T * force_rate_).eval();
 }
