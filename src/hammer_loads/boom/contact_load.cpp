@@ -1,7 +1,8 @@
 #include "hammer_loads/boom/contact_load.h"
 
 #include <Eigen/LU>
-#include <cmath>
+
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -11,8 +12,8 @@ std::optional<InPlaneTip> InPlaneTip::make(const Jacobian& J, const std::array<i
     const int joint = joints[static_cast<std::size_t>(i)];
     rows.row(i) << J(0, joint), J(2, joint), J(4, joint);
   }
-  const double size = rows.col(0).norm() * rows.col(1).norm() * rows.col(2).norm();
-  if (!(std::abs(rows.determinant()) > 1e-3 * size)) return std::nullopt;
+  const double size_square = rows.col(0).squaredNorm() * rows.col(1).squaredNorm() * rows.col(2).squaredNorm();
+  if (!(square(rows.determinant()) > square(1e-3) * size_square)) return std::nullopt;
   InPlaneTip tip;
   tip.joints_ = joints;
   tip.inverse_ = rows.inverse();

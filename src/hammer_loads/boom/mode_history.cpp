@@ -10,8 +10,8 @@ namespace {
 /// After time t without force, undamped; cosine and sine to the fifth power of omega t.
 ModeState swung(const ModeState& s, double omega, double t) noexcept {
   const double x = omega * t, xx = square(x);
-  const double cosine = 1.0 - xx * (0.5 - xx / 24.0), sine = x * (1.0 - xx * (1.0 / 6.0 - xx / 120.0));
-  return {cosine * s.x + sine / omega * s.v, cosine * s.v - sine * omega * s.x};
+  const double cosine = 1.0 - xx * (0.5 - xx / 24.0), sine_over_omega = t * (1.0 - xx * (1.0 / 6.0 - xx / 120.0));
+  return {cosine * s.x + sine_over_omega * s.v, cosine * s.v - square(omega) * sine_over_omega * s.x};
 }
 
 }  // namespace

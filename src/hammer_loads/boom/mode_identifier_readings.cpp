@@ -85,11 +85,14 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
       double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
       for (int i = 0; i < count; ++i) {
         const int joint = modes_.joint[static_cast<std::size_t>(i)];
+        if (reading.of_oil) {
+          by_oil += reading.oil[joint] * modes_.inertia(joint, k);
+          continue;
+        }
         const double shape = modes_.shape(i, k);
         by_x += reading.displacement[joint] * shape;
         by_v += reading.velocity[joint] * shape;
         by_a += reading.acceleration[joint] * shape;
-        by_oil += reading.oil[joint] * modes_.inertia(joint, k);
       }
       const Seen& seen = modes[static_cast<std::size_t>(k)];
       const ModeState& s = seen.then.motion;
@@ -205,12 +208,12 @@ void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t coun
 double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
   const double S = predicted + square(reading.noise) + square(reading.neglected);
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
-  if (reading.acceleration.squaredNorm() > 0.0) {
+  if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
     explains_ = explains_ ? surprise_ < kSurprised || (learns_ && !identified()) : surprise_ < kCalm;
     surprise_ +=
         kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
   }
-  if (reading.oil.squaredNorm() > 0.0)
+  if (reading.of_oil)
     oil_surprise_ += kOilSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - oil_surprise_);
   if (!(square(difference) > square(kFarOff) * S)) return S;
   return S * std::abs(difference) / (kFarOff * std::sqrt(S));

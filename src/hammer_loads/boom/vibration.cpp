@@ -182,7 +182,9 @@ JointVector Vibration::velocity() const noexcept { return jointsOf(modes_, v_); 
 
 JointVector Vibration::displacementAfter(double step) const noexcept {
   JointVector q = jointsOf(modes_, x_ + std::clamp(step, 0.0, kShort) * v_);
-  if (!(q.cwiseAbs().maxCoeff() < kSmall)) q.setZero();
+  bool small = true;
+  for (Eigen::Index j = 0; j < q.size(); ++j) small = small && std::abs(q[j]) < kSmall;
+  if (!small) q.setZero();
   return q;
 }
 

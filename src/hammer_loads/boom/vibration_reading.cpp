@@ -5,7 +5,7 @@ namespace {
 
 VibrationReading emptyReading(double value) {
   VibrationReading reading;
-  for (auto* row : {&reading.displacement, &reading.velocity, &reading.acceleration, &reading.oil}) row->setZero();
+  for (auto* row : {&reading.displacement, &reading.velocity, &reading.acceleration}) row->setZero();
   reading.value = value;
   return reading;
 }
@@ -38,8 +38,11 @@ VibrationReading jointAngleReading(int joint, double angle) {
 }
 
 VibrationReading oilTorqueReading(int joint, double torque) {
-  VibrationReading reading = emptyReading(torque);
+  VibrationReading reading;
+  reading.of_oil = true;
+  reading.oil.setZero();
   reading.oil[joint] = 1.0;
+  reading.value = torque;
   return reading;
 }
 

@@ -9,13 +9,14 @@ namespace hammer_loads {
 /// Whose stamps a reading has. Those of a sensor with a clock of its own may all be late by one time.
 enum class Clock { kCrank, kImu, kPressures };
 
-/// What one channel of a sensor reads: offset + displacement . q + velocity . q' + acceleration . q'' + oil . (K q + C
-/// q') of the joints' vibration q. Whatever else it sees (weight, the boom's slow motion) must be taken off value
+/// What one channel of a sensor reads of the joints' vibration q: offset + displacement . q + velocity . q' +
+/// acceleration . q'', or, of the oil, offset + oil . (K q + C q'). Whatever else it sees (weight, the boom's slow motion) must be taken off value
 /// first, as far as known; the offset takes up what is left of it.
 struct VibrationReading {
   /// One entry per joint of the chain, then zeros.
   using Row = Eigen::Matrix<double, kMaxJoints, 1>;
   Row displacement, velocity, acceleration, oil;
+  bool of_oil{};  ///< `oil` counts, else the three others
   int channel{-1};
   double value{};
   double ahead{};              ///< of the reading's instant over the present one [s]; negative: it is older

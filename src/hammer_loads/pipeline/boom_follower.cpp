@@ -31,7 +31,7 @@ BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double s
       observer_(settings.imu.position),
       model_(settings.boom),
       striking_distance_(striking_distance),
-      base_(settings.base),
+      g_B_(gravityInRoot(settings.gravity, settings.base)),
       follow_vibration_(model_ != BoomModel::kRigid && !boom_.cylinders().empty()),
       givers_{"front edge", "left edge", "rear edge", "right edge"} {
   const JointVector zero = JointVector::Zero(boom_.chain().joints());
@@ -54,11 +54,15 @@ Wrench BoomFollower::onTip(const HullWrench& w) noexcept {
 
 /// As Boom::hammerTorque() of onTip(), which lies in the boom's plane.
 JointVector BoomFollower::hammerTorque(const HullWrench& w) const noexcept {
-  const Jacobian& J = boom_.tipJacobian();
-  JointVector torque(J.cols());
-  for (Eigen::Index j = 0; j < J.cols(); ++j)
-    torque[j] = J(0, j) * w.force_x + J(2, j) * w.force_z + J(4, j) * w.torque_y;
+  JointVector torque = JointVector::Zero(boom_.chain().joints());
+  addHammerTorque(w, torque);
   return torque;
+}
+
+void BoomFollower::addHammerTorque(const HullWrench& w, JointVector& torque) const noexcept {
+  const Jacobian& J = boom_.tipJacobian();
+  for (Eigen::Index j = 0; j < J.cols(); ++j)
+    torque[j] += J(0, j) * w.force_x + J(2, j) * w.force_z + J(4, j) * w.torque_y;
 }
 
 Wrench BoomFollower::wrenchAtLink(int link, const HullWrench& load) const noexcept {
@@ -84,19 +88,18 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   }
   forgetWrongReadings(sample.imu_lost);
   const double since = seconds(sample.stamp - last_stamp_);
-  const Eigen::Vector3d g_B = gravityInRoot(sample.gravity, base_);
   if (follow_vibration_) {
     const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
     const bool continued = swung || (known_ && step.count > 0);
     if (!continued) boom_.vibration().rest(), spread_.rest(), beside_modes_.setZero();
-    pose(since, g_B);
+    pose(since);
     spread_.follow(boom_.vibration());
     if (!continued) beginUnseen(sample.unseen_peak);
     followContact(sample.stamp);
     if (continued && !swung) vibrate(step, sample.displaced_links, spreadWithRock(sample.spread));
     observe(sample, since);
   } else {
-    boom_.move(motion_, g_B);
+    boom_.move(motion_, g_B_);
     held_.follow(motion_, since);
     for (std::size_t i = 0; i < step.count; ++i)
       if (step.pieces[i].ends_in_blow) held_.struck(), state_.at_blow = TipVelocity{};
@@ -110,15 +113,15 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
 }
 
 /// Joint sensors see the vibration too; what is left without it is the operator's.
-void BoomFollower::pose(double since, const Eigen::Vector3d& g_B) noexcept {
+void BoomFollower::pose(double since) noexcept {
   const JointVector displacement = boom_.vibration().displacementAfter(since);
   JointMotion operated = motion_;
   operated.position -= displacement;
   held_.follow(operated, since);
   if (takesCompliant()) {
-    boom_.moveVibrating(held_.motion(), displacement, g_B);
+    boom_.moveVibrating(held_.motion(), displacement, g_B_);
   } else {
-    boom_.moveCompliant(motion_, g_B);
+    boom_.moveCompliant(motion_, g_B_);
   }
 }
 
@@ -139,8 +142,9 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
 void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displaced_links,
                            const WrenchSpread& spread) noexcept {
   const LoadSpread errors = spread_.waits() ? LoadSpread() : boom_.spreadTorque(spread);
-  const auto torqueOf = [this](const HullWrench& motion, const HullWrench& displaced) {
-    return JointVector(hammerTorque(motion + displaced) + beside_modes_);
+  const auto take = [this](const HullWrench& motion, const HullWrench& displaced, JointVector& torque) {
+    torque = beside_modes_;
+    addHammerTorque(motion + displaced, torque);
   };
   const double length = step.length();
   double end = 0.0;
@@ -150,9 +154,9 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
     end += piece.duration;
     const double part = length > 0.0 ? end / length : 1.0;
     const HullWrench to = (1.0 - part) * displaced_links_ + part * displaced_links;
-    torque_.from = torqueOf(piece.from, from);
-    torque_.to = torqueOf(piece.to, to);
-    torque_.mean = torqueOf(piece.mean, 0.5 * (from + to));
+    take(piece.from, from, torque_.from);
+    take(piece.to, to, torque_.to);
+    take(piece.mean, 0.5 * (from + to), torque_.mean);
     from = to;
     boom_.vibration().advance(piece.duration, torque_);
     spread_.advance(piece.duration, torque_, errors);

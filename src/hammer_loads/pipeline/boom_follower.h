@@ -27,7 +27,6 @@ struct BoomSample {
   StampNs stamp{};
   HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
                              ///< weight, no hull motion
-  double gravity{};          ///< [m/s2]
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
   bool imu_lost{};                  ///< earlier readings cannot be trusted
@@ -119,11 +118,12 @@ class BoomFollower {
  private:
   static Wrench onTip(const HullWrench& w) noexcept;
   JointVector hammerTorque(const HullWrench& w) const noexcept;
+  void addHammerTorque(const HullWrench& w, JointVector& torque) const noexcept;
   bool takesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const HullWrench& displaced_links, const WrenchSpread& spread) noexcept;
   void strike(const HullWrench& impulse) noexcept;
   void beginUnseen(double peak) noexcept;
-  void pose(double since, const Eigen::Vector3d& g_B) noexcept;
+  void pose(double since) noexcept;
   void findLoads(const BoomSample& sample, double step) noexcept;
   void forgetWrongReadings(bool imu_lost) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
@@ -152,7 +152,7 @@ class BoomFollower {
   ModeObserver observer_;
   BoomModel model_;
   double striking_distance_;
-  BaseTilt base_;
+  Eigen::Vector3d g_B_;  ///< gravity in the root's axes [m/s2]
   bool follow_vibration_;
   BoomState state_;
   JointMotion motion_;

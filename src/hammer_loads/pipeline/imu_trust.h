@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -32,9 +33,9 @@ class ImuTrust {
   /// weight: by the joint angles, in the plane of the hull.
   void judge(const Gravity& weight) noexcept {
     if (time_ < kLeastTime) return;
-    const double off = std::hypot(mean_.x() + weight.x, mean_.z() + weight.z);
-    const double limit = (is_lost_ ? kBack : 1.0) * kMostPart * std::hypot(weight.x, weight.z);
-    is_off_ = off > limit || rate_square_ > kMostRate * kMostRate;
+    const double off_square = square(mean_.x() + weight.x) + square(mean_.z() + weight.z);
+    const double limit = (is_lost_ ? kBack : 1.0) * kMostPart;
+    is_off_ = off_square > square(limit) * (square(weight.x) + square(weight.z)) || rate_square_ > square(kMostRate);
     is_lost_ = isFrozen() || (is_off_ && off_for_ == kOffFor);
   }
   bool isLost() const noexcept { return is_lost_; }
