@@ -21,8 +21,8 @@ RigidBody bodyOf(const KDL::Segment& segment) {
 /// root_acceleration: against gravity it stands for the weight.
 void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
                  const Eigen::Vector3d& root_acceleration, std::array<BodyMotion, kMaxLinks>& result) noexcept {
-  BodyMotion now;  // of the link before, until it is that of the link itself
-  now.acceleration = root_acceleration;
+  // Of the link before, until it is that of the link itself.
+  BodyMotion now{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), root_acceleration};
   result[0] = now;
   for (int i = 1; i < chain.links(); ++i) {
     const auto here = static_cast<std::size_t>(i);

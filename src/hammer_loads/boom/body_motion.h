@@ -11,9 +11,9 @@ namespace hammer_loads {
 
 /// How a link moves in the root's axes.
 struct BodyMotion {
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();                  ///< [rad/s]
-  Eigen::Vector3d angular_acceleration = Eigen::Vector3d::Zero();  ///< [rad/s2]
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();          ///< of its origin [m/s2]
+  Eigen::Vector3d rate;                  ///< [rad/s]
+  Eigen::Vector3d angular_acceleration;  ///< [rad/s2]
+  Eigen::Vector3d acceleration;          ///< of its origin [m/s2]
 
   Eigen::Vector3d accelerationAt(const Eigen::Vector3d& r) const noexcept {
     return acceleration + angular_acceleration.cross(r) + rate.cross(rate.cross(r));

@@ -1,6 +1,6 @@
 #include "hammer_loads/boom/chain_pose.h"
 
-#include <cmath>
+#include "hammer_loads/util/sine_cosine.h"
 
 namespace hammer_loads {
 
@@ -20,7 +20,7 @@ void forwardKinematics(const Chain& chain, const JointVector& position, ChainPos
       continue;
     }
     const double q = position[link.joint];
-    const double sin_q = link.prismatic ? 0.0 : std::sin(q), cos_q = link.prismatic ? 0.0 : std::cos(q);
+    const auto [sin_q, cos_q] = link.prismatic ? SineCosine{} : sineCosine(q);
     X_BL.linear().noalias() = X_BP.linear() * (link.steady + sin_q * link.sine + cos_q * link.cosine);
     X_BL.translation() = X_BP * (link.origin + q * link.slide);
     const auto joint = static_cast<std::size_t>(link.joint);

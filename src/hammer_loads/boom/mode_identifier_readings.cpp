@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/util/growth.h"
 #include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
 
@@ -273,19 +274,13 @@ void ModeIdentifier::forgetOil() noexcept {
 
 /// Frequencies, damping and delay of the state, within bounds.
 void ModeIdentifier::useOil() noexcept {
-  constexpr double kNear = 2e-3;
-  // exp() of a small number: exact to rounding, at a tenth of the time.
-  const auto grow = [](double x) {
-    if (!(std::abs(x) < kNear)) return std::exp(x);
-    return 1.0 + x * (1.0 + x * (1.0 / 2.0 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))));
-  };
   for (int k = 0; k < count_; ++k) {
     const auto i = static_cast<std::size_t>(k);
     double &frequency = state_[at(k, kFrequency)], &damping = state_[at(k, kDamping)];
     frequency = std::clamp(frequency, -kMostRatio, kMostRatio);
     damping = std::clamp(damping, least_damping_, most_damping_);
-    ratio_[i] *= grow(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
-    damping_[i] *= grow(damping - used_damping_[i]), used_damping_[i] = damping;
+    ratio_[i] *= growth(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
+    damping_[i] *= growth(damping - used_damping_[i]), used_damping_[i] = damping;
   }
   for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }

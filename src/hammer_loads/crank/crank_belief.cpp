@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/flexible_belief.h"
+#include "hammer_loads/util/growth.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -113,7 +114,7 @@ void CrankBelief::move(const Vector& change) noexcept {
   state.position.slide(change[kAngle]);
   state.speed += change[kSpeed];
   state.torque += change[kTorque];
-  state.drive_inertia = std::clamp(state.drive_inertia * std::exp(change[kInertia]), least_inertia, most_inertia);
+  state.drive_inertia = std::clamp(state.drive_inertia * growth(change[kInertia]), least_inertia, most_inertia);
   factor += change[kFactor];
 }
 

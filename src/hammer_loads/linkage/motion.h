@@ -9,7 +9,7 @@
 
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/crank_rocker.h"
-#include "hammer_loads/linkage/half_angle_sine.h"
+#include "hammer_loads/util/sine_cosine.h"
 
 namespace hammer_loads {
 
@@ -93,7 +93,7 @@ HAMMER_LOADS_INLINE Motion motionBeforeBlow(const CrankRocker::Ratios& k, const 
 /// Motion at a crank angle. No allocation, no failure for any finite offset.
 HAMMER_LOADS_INLINE Motion motion(const CrankRocker& linkage, CrankAngle angle) noexcept {
   const bool before = angle.side == Side::kBeforeBlow;
-  const SineCosine half = sineCosineOfHalf(before ? -0.5 * angle.offset : 0.5 * angle.offset);
+  const SineCosine half = sineCosine(before ? -0.5 * angle.offset : 0.5 * angle.offset);
   const detail::HalfAngleTerms t = detail::halfAngleTerms(linkage.ratios(), half);
   Motion m = before ? detail::motionBeforeBlow(linkage.ratios(), t) : detail::motionAfterBlow(linkage.ratios(), t);
   m.sin_half = t.s;

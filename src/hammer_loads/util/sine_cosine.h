@@ -1,4 +1,4 @@
-/// Sine and cosine of half a crank offset, by polynomials that a compiler can vectorise.
+/// Sine and cosine of an angle that is not large, by polynomials that a compiler can vectorise.
 #pragma once
 
 #include <cmath>
@@ -12,10 +12,10 @@ struct SineCosine {
   double cosine{};
 };
 
-/// Largest size of an angle for which the polynomials hold [rad]; a half turn needs pi/2.
-constexpr double kLargestHalfAngle = 1.66;
+/// Largest size of an angle for which the polynomials hold [rad]; half a crank's offset needs pi/2.
+constexpr double kPolynomialAngle = 1.66;
 
-/// |h| <= kLargestHalfAngle [rad]. Relative error of the sine some 2e-16, also near 0; of the cosine 2e-16 of 1.
+/// |h| <= kPolynomialAngle [rad]. Relative error of the sine some 2e-16, also near 0; of the cosine 2e-16 of 1.
 /// Chebyshev approximations of (sin h/h - 1)/h^2 and (cos h - 1 + h^2/2)/h^4 by h^2, truncated at 4e-17.
 HAMMER_LOADS_INLINE SineCosine sineCosinePolynomial(double h) noexcept {
   const double x = h * h, x2 = x * x, x4 = x2 * x2;
@@ -33,8 +33,8 @@ HAMMER_LOADS_INLINE SineCosine sineCosinePolynomial(double h) noexcept {
 }
 
 /// The same for any h.
-HAMMER_LOADS_INLINE SineCosine sineCosineOfHalf(double h) noexcept {
-  if (std::abs(h) <= kLargestHalfAngle) return sineCosinePolynomial(h);
+HAMMER_LOADS_INLINE SineCosine sineCosine(double h) noexcept {
+  if (std::abs(h) <= kPolynomialAngle) return sineCosinePolynomial(h);
   return {std::sin(h), std::cos(h)};
 }
 

@@ -1,4 +1,4 @@
-#include "hammer_loads/linkage/half_angle_sine.h"
+#include "hammer_loads/util/sine_cosine.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using Exact = boost::multiprecision::cpp_bin_float_50;
 TEST(HalfAngleSine, PolynomialsAreExactToRounding) {
   double worst_sine = 0.0, worst_cosine = 0.0;
   for (int i = -16600; i <= 16600; ++i) {
-    const double h = kLargestHalfAngle * i / 16600.0;
+    const double h = kPolynomialAngle * i / 16600.0;
     const SineCosine got = sineCosinePolynomial(h);
     if (i != 0) worst_sine = std::max(worst_sine, static_cast<double>(abs(Exact(got.sine) / sin(Exact(h)) - 1)));
     worst_cosine = std::max(worst_cosine, static_cast<double>(abs(Exact(got.cosine) - cos(Exact(h)))));
@@ -39,8 +39,8 @@ TEST(HalfAngleSine, IsOddAndEven) {
 
 TEST(HalfAngleSine, ServesAnyAngle) {
   for (double h : {-100.0, -2.0, -1.66, 1.5, 1.67, 3.0, 1e6}) {
-    EXPECT_NEAR(sineCosineOfHalf(h).sine, std::sin(h), 3e-16);
-    EXPECT_NEAR(sineCosineOfHalf(h).cosine, std::cos(h), 3e-16);
+    EXPECT_NEAR(sineCosine(h).sine, std::sin(h), 3e-16);
+    EXPECT_NEAR(sineCosine(h).cosine, std::cos(h), 3e-16);
   }
 }
 
