@@ -23,6 +23,7 @@ PipelineSettings modelled(BoomModel model) {
   PipelineSettings s;
   s.boom = model;
   s.joint_max_age = 0.2;
+  s.gravity = kGravity;
   s.boom_acceleration = BoomAcceleration::kDifference;
   return s;
 }
@@ -54,7 +55,7 @@ class Follower {
   const BoomState& sample(const HullWrench& w, const WrenchHistory& step, int ms = 1) {
     now += ms * kMs;
     follower.jointStates(now, kFour, kWorking, {});
-    return follower.sample({now, w, kGravity}, step);
+    return follower.sample({now, w}, step);
   }
   const BoomState& sample(const HullWrench& w) { return sample(w, steadyStep(1e-3, w)); }
 
@@ -68,7 +69,7 @@ TEST(BoomFollower, RigidLoadsAreThoseOfTheInterpolatedPose) {
   Follower rigid(BoomModel::kRigid);
   rigid.follower.jointStates(0, kFour, {0.2, -0.36, 1.18, -0.85}, {0.0, 0.2, 0.3, -0.2});
   rigid.follower.jointStates(20 * kMs, kFour, {0.2, -0.32, 1.22, -0.87}, {0.0, 0.4, 0.1, -0.1});
-  const BoomState& state = rigid.follower.sample({5 * kMs, kLoad, kGravity}, {});
+  const BoomState& state = rigid.follower.sample({5 * kMs, kLoad}, {});
   ASSERT_FALSE(state.fault);
   EXPECT_EQ(state.stamp, 5 * kMs);
 
@@ -143,13 +144,13 @@ TEST(BoomFollower, RestsAfterAGap) {
 
 TEST(BoomFollower, SaysWhichJointIsNotKnownAndGoesOnWhenItIs) {
   Follower compliant(BoomModel::kCompliant);
-  EXPECT_TRUE(compliant.follower.sample({0, kLoad, kGravity}, {}).fault);
+  EXPECT_TRUE(compliant.follower.sample({0, kLoad}, {}).fault);
   compliant.sample(kLoad);
   ASSERT_FALSE(compliant.sample(kLoad).fault);
   compliant.now += 100 * kMs;
   compliant.follower.jointStates(compliant.now, {"swing_joint", "boom_joint", "hammer_joint"}, {0.2, -0.35, -0.85}, {});
   compliant.now += 150 * kMs;
-  const BoomState& state = compliant.follower.sample({compliant.now, kLoad, kGravity}, steadyStep(1e-3, kLoad));
+  const BoomState& state = compliant.follower.sample({compliant.now, kLoad}, steadyStep(1e-3, kLoad));
   ASSERT_TRUE(state.fault);
   EXPECT_EQ(state.fault->kind, JointFault::Kind::kStale);
   EXPECT_EQ(compliant.follower.joints().name(state.fault->joint), "arm_joint");
@@ -233,7 +234,7 @@ TEST(BoomFollower, ADeadPointIsTakenAsRigid) {
 TEST(BoomFollower, TellsTheHullsLoadAtALink) {
   Follower rigid(BoomModel::kRigid);
   rigid.follower.jointStates(0, kFour, {0.0, 0.0, 0.4, 0.0}, {});
-  rigid.follower.sample({0, {}, kGravity}, {});
+  rigid.follower.sample({0, {}}, {});
   const auto arm = rigid.follower.linkIndex("arm_link");
   ASSERT_TRUE(arm);
   EXPECT_FALSE(rigid.follower.linkIndex("strain_gauge"));
@@ -308,7 +309,7 @@ class BoomSession {
     piece.mean = {0.5 * (piece.from.force_x + piece.to.force_x), 0.5 * (piece.from.force_z + piece.to.force_z),
                   0.5 * (piece.from.torque_y + piece.to.torque_y)};
     if (count_ > 0 && count_ % 200 == 0) follower_.turnEnded(pulseOf(0.018), 300.0);
-    const BoomState& state = follower_.sample({count_ * kMs, piece.to, kGravity}, step_);
+    const BoomState& state = follower_.sample({count_ * kMs, piece.to}, step_);
     for (int link = 1; link < 5; ++link) sum_ += follower_.wrenchAtLink(link, piece.to).torque.y();
     sum_ += state.loads.total.sum() + state.loads.cylinder[0].force + state.tip.acceleration[2] + state.reduced.mass;
     ++count_;

@@ -17,6 +17,7 @@ PipelineSettings settings(BoomModel model) {
   PipelineSettings s;
   s.boom = model;
   s.joint_max_age = 0.2;
+  s.gravity = test::kGravity;
   return s;
 }
 
@@ -34,7 +35,7 @@ class Messages : public testing::Test {
     step.count = 1;
     step.pieces[0] = {1e-3, kLoad, kLoad, kLoad, false, {}};
     follower_.jointStates(stamp, kFour, position_, {});
-    ASSERT_FALSE(follower_.sample({stamp, kLoad, 9.80665}, step).fault);
+    ASSERT_FALSE(follower_.sample({stamp, kLoad}, step).fault);
   }
   const std::vector<double> position_{0.2, -0.35, 1.20, -0.85};
   BoomFollower follower_{test::shippedBoom(), settings(BoomModel::kAuto), 0.1975};
