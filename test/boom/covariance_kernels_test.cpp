@@ -113,15 +113,13 @@ TEST(CovarianceKernels, VariancesAreThoseOfTheCovariance) {
   NormalDraw draw;
   for (int inputs = 1; inputs <= LoadErrors::kMost; ++inputs) {
     const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(inputs, inputs, [&] { return draw(); });
-    Eigen::MatrixXd L = Eigen::MatrixXd::Zero(20, inputs);  // of another stride than the covariance
-    Eigen::VectorXd D(inputs), one(inputs), other(inputs);
+    const Eigen::MatrixXd covariance = root * root.transpose();
+    Eigen::MatrixXd lower = Eigen::MatrixXd::Constant(20, inputs, 1e9);  // what is not to be read
+    Eigen::VectorXd one(inputs), other(inputs);
     for (int k = 0; k < inputs; ++k) {
-      D[k] = std::abs(draw()), one[k] = draw(), other[k] = draw();
-      for (int i = k + 1; i < inputs; ++i) L(i, k) = draw();
+      one[k] = draw(), other[k] = draw();
+      for (int i = k; i < inputs; ++i) lower(i, k) = covariance(i, k);
     }
-    Eigen::MatrixXd unit = L.topRows(inputs);
-    unit.diagonal().setOnes();
-    const Eigen::MatrixXd covariance = unit * D.asDiagonal() * unit.transpose();
     for (int loads : {1, 4, 7}) {
       const int fours = (loads + 3) / 4;
       const Eigen::MatrixXd by = Eigen::MatrixXd::NullaryExpr(loads, inputs, [&] { return draw(); });
@@ -129,10 +127,14 @@ TEST(CovarianceKernels, VariancesAreThoseOfTheCovariance) {
       for (int row = 0; row < loads; ++row)
         for (int i = 0; i < inputs; ++i) stored(row % 4, row / 4 * inputs + i) = by(row, i);
       Eigen::VectorXd variance = Eigen::VectorXd::Constant(4 * fours, -1.0);
-      sumOfSquares({stored.data(), loads, inputs}, L.data(), D.data(), 20, variance.data());
+      findVariances({stored.data(), loads, inputs}, lower.data(), 20, variance.data());
       const Eigen::VectorXd right = (by * covariance * by.transpose()).diagonal();
       EXPECT_LT((variance.head(loads) - right).norm(), 1e-13 * right.norm());
       EXPECT_TRUE((variance.tail(4 * fours - loads).array() == 0.0).all());
+      Eigen::VectorXd rounded = variance;
+      const Eigen::MatrixXd negative = -lower;
+      findVariances({stored.data(), loads, inputs}, negative.data(), 20, rounded.data());
+      EXPECT_TRUE((rounded.array() == 0.0).all()) << "never below zero, whatever rounding makes of it";
       addLargerSquare({stored.data(), loads, inputs}, one.data(), other.data(), variance.data());
       const Eigen::VectorXd larger = (by * one).cwiseAbs2().cwiseMax((by * other).cwiseAbs2());
       EXPECT_LT((variance.head(loads) - right - larger).norm(), 1e-13 * (right + larger).norm());

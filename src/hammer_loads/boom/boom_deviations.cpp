@@ -82,8 +82,7 @@ void Boom::findResponse() noexcept {
 /// To variance_.
 void Boom::findVariances(const LoadErrors& errors, const Fours& response, Eigen::Index rows) noexcept {
   const LinearLoads loads{response.data(), static_cast<int>(rows), errors.size()};
-  const FactoredErrors covariance = factored(errors);
-  sumOfSquares(loads, covariance.factor.data(), covariance.weight.data(), LoadErrors::kMost, variance_.data());
+  hammer_loads::findVariances(loads, errors.covariance().data(), LoadErrors::kMost, variance_.data());
   if (errors.hasLarger())
     addLargerSquare(loads, errors.larger()[0].data(), errors.larger()[1].data(), variance_.data());
 }

@@ -1,23 +1,21 @@
 #include "hammer_loads/boom/contact_load.h"
 
-#include <Eigen/LU>
-
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
-std::optional<InPlaneTip> InPlaneTip::make(const Jacobian& J, const std::array<int, 3>& joints) noexcept {
-  Eigen::Matrix3d rows;  // torque = rows . (force x, force z, moment y)
-  for (int i = 0; i < 3; ++i) {
-    const int joint = joints[static_cast<std::size_t>(i)];
-    rows.row(i) << J(0, joint), J(2, joint), J(4, joint);
-  }
-  const double size_square = rows.col(0).squaredNorm() * rows.col(1).squaredNorm() * rows.col(2).squaredNorm();
-  if (!(square(rows.determinant()) > square(1e-3) * size_square)) return std::nullopt;
-  InPlaneTip tip;
-  tip.joints_ = joints;
-  tip.inverse_ = rows.inverse();
-  return tip;
+InPlaneTip::InPlaneTip(const Jacobian& J, const std::array<int, 3>& joints) noexcept : joints_(joints) {
+  // The torque on each joint by (force x, force z, moment y).
+  const auto row = [&](std::size_t i) {
+    const int joint = joints[i];
+    return Eigen::Vector3d(J(0, joint), J(2, joint), J(4, joint));
+  };
+  const Eigen::Vector3d a = row(0), b = row(1), c = row(2), bc = b.cross(c);
+  const double determinant = a.dot(bc);
+  const Eigen::Array3d size = a.array().square() + b.array().square() + c.array().square();
+  known_ = square(determinant) > square(1e-3) * size.prod();
+  inverse_ << bc, c.cross(a), a.cross(b);
+  inverse_ *= 1.0 / determinant;
 }
 
 }  // namespace hammer_loads

@@ -1,8 +1,6 @@
 /// The rock's force on the hull from joint torques that no other load explains.
 #pragma once
 
-#include <optional>
-
 #include "hammer_loads/boom/chain_pose.h"
 
 namespace hammer_loads {
@@ -13,18 +11,24 @@ namespace hammer_loads {
 /// boom and arm.
 class InPlaneTip {
  public:
-  /// J of tipJacobian(); nothing where the three joints do not move the tip in its plane independently (boom and arm in
-  /// line).
-  static std::optional<InPlaneTip> make(const Jacobian& J, const std::array<int, 3>& joints) noexcept;
-  /// Of torques on all joints of the chain [N m]; linear in them.
+  /// J of tipJacobian().
+  InPlaneTip(const Jacobian& J, const std::array<int, 3>& joints) noexcept;
+  /// Not where the three joints do not move the tip in its plane independently (boom and arm in line).
+  bool isKnown() const noexcept { return known_; }
+  /// Of torques on all joints of the chain [N m], linear in them: force x, z [N], moment y [N m].
+  template <typename Torques>
+  Eigen::Vector3d inPlane(const Torques& torque) const noexcept {
+    return inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
+  }
   template <typename Torques>
   Wrench load(const Torques& torque) const noexcept {
-    const Eigen::Vector3d load = inverse_ * Eigen::Vector3d(torque[joints_[0]], torque[joints_[1]], torque[joints_[2]]);
+    const Eigen::Vector3d load = inPlane(torque);
     return {{load[0], 0.0, load[1]}, {0.0, load[2], 0.0}};
   }
 
  private:
-  std::array<int, 3> joints_{};
+  std::array<int, 3> joints_;
+  bool known_;
   Eigen::Matrix3d inverse_;  ///< (force x, force z, moment y) by torques on the joints
 };
 

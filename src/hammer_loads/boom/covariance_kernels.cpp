@@ -91,34 +91,36 @@ HAMMER_LOADS_INLINE void replaceTwoAny(CovarianceBlock P, int first, const int* 
 
 /// most: of inputs, a constant.
 template <int most>
-HAMMER_LOADS_INLINE void sumOfSquaresUpTo(LinearLoads loads, const double* factor, const double* weight, int stride,
-                                          double* sum) noexcept {
+HAMMER_LOADS_INLINE void findVariancesUpTo(LinearLoads loads, const double* covariance, int stride,
+                                           double* variance) noexcept {
   const double* by_input = loads.fours;
   for (int load = 0; load < loads.loads; load += kLane, by_input += kLane * loads.inputs) {
-    Lane all{};
+    Lane half{};
 #pragma GCC unroll 6
     for (int k = 0; k < most; ++k) {
       if (most != kUsualInputs && k >= loads.inputs) break;
-      Lane one = laneAt(by_input + kLane * k);
+      const double* column = covariance + k * stride;
+      const Lane by = laneAt(by_input + kLane * k);
+      Lane with = 0.5 * column[k] * by;
 #pragma GCC unroll 6
       for (int i = 0; i < most; ++i) {
         if (most != kUsualInputs && i >= loads.inputs) break;
-        if (i > k) one += factor[k * stride + i] * laneAt(by_input + kLane * i);
+        if (i > k) with += column[i] * laneAt(by_input + kLane * i);
       }
-      all += weight[k] * (one * one);
+      half += by * with;
     }
-    laneAt(sum + load) = all;
+    laneAt(variance + load) = half < 0.0 ? Lane{} : 2.0 * half;
   }
 }
 
-HAMMER_LOADS_INLINE void sumOfSquaresAny(const LinearLoads& loads, const double* factor, const double* weight,
-                                         int stride, double* sum) noexcept {
-  if (loads.inputs == kUsualInputs) return sumOfSquaresUpTo<kUsualInputs>(loads, factor, weight, stride, sum);
-  sumOfSquaresUpTo<std::numeric_limits<int>::max()>(loads, factor, weight, stride, sum);
+HAMMER_LOADS_INLINE void findVariancesAny(const LinearLoads& loads, const double* covariance, int stride,
+                                          double* variance) noexcept {
+  if (loads.inputs == kUsualInputs) return findVariancesUpTo<kUsualInputs>(loads, covariance, stride, variance);
+  findVariancesUpTo<std::numeric_limits<int>::max()>(loads, covariance, stride, variance);
 }
 
 HAMMER_LOADS_INLINE void addLargerSquareAny(LinearLoads loads, const double* one, const double* other,
-                                            double* sum) noexcept {
+                                            double* variance) noexcept {
   const double* by_input = loads.fours;
   for (int load = 0; load < loads.loads; load += kLane) {
     Lane by_one{}, by_other{};
@@ -127,7 +129,7 @@ HAMMER_LOADS_INLINE void addLargerSquareAny(LinearLoads loads, const double* one
       by_one += one[i] * by, by_other += other[i] * by;
     }
     by_one *= by_one, by_other *= by_other;
-    laneAt(sum + load) += by_one > by_other ? by_one : by_other;
+    laneAt(variance + load) += by_one > by_other ? by_one : by_other;
   }
 }
 
@@ -154,13 +156,13 @@ HAMMER_LOADS_AVX2 void replaceTwoAvx2(const CovarianceBlock& P, int first, const
                                       const double* by_other) noexcept {
   replaceTwoAny(P, first, of, by_one, by_other);
 }
-HAMMER_LOADS_AVX2 void sumOfSquaresAvx2(const LinearLoads& loads, const double* factor, const double* weight,
-                                        int stride, double* sum) noexcept {
-  sumOfSquaresAny(loads, factor, weight, stride, sum);
+HAMMER_LOADS_AVX2 void findVariancesAvx2(const LinearLoads& loads, const double* covariance, int stride,
+                                         double* variance) noexcept {
+  findVariancesAny(loads, covariance, stride, variance);
 }
 HAMMER_LOADS_AVX2 void addLargerSquareAvx2(const LinearLoads& loads, const double* one, const double* other,
-                                           double* sum) noexcept {
-  addLargerSquareAny(loads, one, other, sum);
+                                           double* variance) noexcept {
+  addLargerSquareAny(loads, one, other, variance);
 }
 
 }  // namespace
@@ -182,15 +184,14 @@ void replaceTwo(const CovarianceBlock& P, int first, const std::array<int, 5>& o
   replaceTwoAny(P, first, of.data(), by_one.data(), by_other.data());
 }
 
-void sumOfSquares(const LinearLoads& loads, const double* factor, const double* weight, int stride,
-                  double* sum) noexcept {
-  if (kHasAvx2) return sumOfSquaresAvx2(loads, factor, weight, stride, sum);
-  sumOfSquaresAny(loads, factor, weight, stride, sum);
+void findVariances(const LinearLoads& loads, const double* covariance, int stride, double* variance) noexcept {
+  if (kHasAvx2) return findVariancesAvx2(loads, covariance, stride, variance);
+  findVariancesAny(loads, covariance, stride, variance);
 }
 
-void addLargerSquare(const LinearLoads& loads, const double* one, const double* other, double* sum) noexcept {
-  if (kHasAvx2) return addLargerSquareAvx2(loads, one, other, sum);
-  addLargerSquareAny(loads, one, other, sum);
+void addLargerSquare(const LinearLoads& loads, const double* one, const double* other, double* variance) noexcept {
+  if (kHasAvx2) return addLargerSquareAvx2(loads, one, other, variance);
+  addLargerSquareAny(loads, one, other, variance);
 }
 
 }  // namespace hammer_loads

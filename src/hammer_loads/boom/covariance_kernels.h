@@ -36,12 +36,11 @@ struct LinearLoads {
 };
 constexpr int kUsualInputs = 6;  ///< compiled for: three cylinders and a load in the boom's plane
 
-/// Of each load, and what fills up the last four, the variance by a covariance L D L^T of the inputs: L one on its
-/// diagonal, below it factor(input, column), stored by columns of a stride; D diagonal, weight.
-void sumOfSquares(const LinearLoads& loads, const double* factor, const double* weight, int stride,
-                  double* sum) noexcept;
+/// Of each load, and what fills up the last four, the variance by a covariance of the inputs: its diagonal and what is
+/// below, stored by columns of a stride. Where rounding would make it negative it is zero.
+void findVariances(const LinearLoads& loads, const double* covariance, int stride, double* variance) noexcept;
 
 /// Adds of each load the larger of the squares of what two vectors of inputs make of it.
-void addLargerSquare(const LinearLoads& loads, const double* one, const double* other, double* sum) noexcept;
+void addLargerSquare(const LinearLoads& loads, const double* one, const double* other, double* variance) noexcept;
 
 }  // namespace hammer_loads

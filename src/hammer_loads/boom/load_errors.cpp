@@ -1,14 +1,9 @@
 #include "hammer_loads/boom/load_errors.h"
 
-#include <cmath>
-
 #include "hammer_loads/util/known_count.h"
-#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kOfSums = 1e-13;  // of a variance: what sums of some ten terms leave of zero
 
 Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
 Eigen::Vector3d across(const Wrench& w) noexcept { return {w.force.y(), w.torque.x(), w.torque.z()}; }
@@ -46,21 +41,20 @@ void LoadErrors::add(const JointVector& acceleration, const Wrench& tip) noexcep
   addProduct(inputs, inputs);
 }
 
-void LoadErrors::add(const Wrench& tip) noexcept {
-  covariance_.block<3, 3>(held_, held_) += inPlane(tip) * inPlane(tip).transpose();
-  if (across(tip).isZero(0.0)) return;
-  across_ = true;
-  covariance_.block<3, 3>(held_ + 3, held_) += across(tip) * inPlane(tip).transpose();
-  covariance_.block<3, 3>(held_ + 3, held_ + 3) += across(tip) * across(tip).transpose();
+void LoadErrors::addInPlane(const Eigen::Vector3d& tip) noexcept {
+  for (int c = 0; c < 3; ++c) {
+    for (int r = c; r < 3; ++r) covariance_(held_ + r, held_ + c) += tip[r] * tip[c];
+  }
 }
 
 void LoadErrors::add(const BoomModes& modes, const JointMatrix& covariance,
-                     const std::array<Wrench, kMaxJoints>& tip) noexcept {
+                     const std::array<Eigen::Vector3d, kMaxJoints>& tip) noexcept {
   std::array<Inputs, kMaxJoints> by_mode;
   for (int k = 0; k < modes.count; ++k) {
     Inputs& inputs = by_mode[static_cast<std::size_t>(k)];
     for (int i = 0; i < held_; ++i) inputs[i] = modes.shape(i, k);
-    setTip(tip[static_cast<std::size_t>(k)], inputs);
+    inputs.segment<3>(held_) = tip[static_cast<std::size_t>(k)];
+    inputs.segment<3>(held_ + 3).setZero();
   }
   for (int k = 0; k < modes.count; ++k) {
     Inputs with = Inputs::Zero();  // covariance of the inputs with mode k
@@ -76,29 +70,6 @@ void LoadErrors::add(const BoomModes& modes, const JointMatrix& covariance,
 void LoadErrors::addLarger(const JointVector& acceleration, const JointVector& other) noexcept {
   larger_ = {inputsOf(acceleration), inputsOf(other)};
   has_larger_ = true;
-}
-
-/// What is not a number stays so.
-FactoredErrors factored(const LoadErrors& errors) noexcept {
-  FactoredErrors result;
-  const LoadErrors::Covariance& C = errors.covariance();
-  withCount<kUsualInputs>(errors.size(), [&](auto inputs) {
-    LoadErrors::Covariance weighted;  // L D
-    for (int k = 0; k < inputs; ++k) {
-      double left = C(k, k);
-      for (int j = 0; j < k; ++j) left -= weighted(k, j) * result.factor(k, j);
-      const bool rounded = left <= kOfSums * C(k, k);
-      const double per_left = rounded ? 0.0 : 1.0 / left;
-      result.weight[k] = rounded ? 0.0 : left;
-      for (int i = k + 1; i < inputs; ++i) {
-        double shared = C(i, k);
-        for (int j = 0; j < k; ++j) shared -= weighted(i, j) * result.factor(k, j);
-        weighted(i, k) = rounded ? 0.0 : shared;
-        result.factor(i, k) = shared * per_left;
-      }
-    }
-  });
-  return result;
 }
 
 }  // namespace hammer_loads

@@ -25,9 +25,12 @@ class LoadErrors {
 
   /// One error that is independent of the others, one standard deviation of it; acceleration: of all joints.
   void add(const JointVector& acceleration, const Wrench& tip) noexcept;
-  void add(const Wrench& tip) noexcept;
-  /// Errors of the modes' accelerations, covariance [m2 kg/s4]; tip: of the load with one unit of each mode's.
-  void add(const BoomModes& modes, const JointMatrix& covariance, const std::array<Wrench, kMaxJoints>& tip) noexcept;
+  /// Of the load alone, in the boom's plane: force x, z, moment y.
+  void addInPlane(const Eigen::Vector3d& tip) noexcept;
+  /// Errors of the modes' accelerations, covariance [m2 kg/s4]; tip: of the load in the plane with one unit of each
+  /// mode's.
+  void add(const BoomModes& modes, const JointMatrix& covariance,
+           const std::array<Eigen::Vector3d, kMaxJoints>& tip) noexcept;
   /// Of two errors that exclude each other, one standard deviation each, the larger counts for each load.
   void addLarger(const JointVector& acceleration, const JointVector& other) noexcept;
 
@@ -48,13 +51,5 @@ class LoadErrors {
   Covariance covariance_;
   std::array<Inputs, 2> larger_;
 };
-
-/// The covariance as L D L^T: as many independent errors as there are inputs. Where nothing but rounding is left of an
-/// input beside those before it, its weight and its column are zero.
-struct FactoredErrors {
-  LoadErrors::Covariance factor;  ///< below the diagonal: L, whose diagonal is one
-  LoadErrors::Inputs weight;      ///< D
-};
-FactoredErrors factored(const LoadErrors& errors) noexcept;
 
 }  // namespace hammer_loads

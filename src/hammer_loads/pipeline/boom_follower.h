@@ -132,7 +132,6 @@ class BoomFollower {
   bool pressuresCount() const noexcept { return pressures_.accepted() > 0 && !trust_.isLost(); }
   void takeMeasured(const BoomSample& sample, double step) noexcept;
   void useMeasured() noexcept;
-  std::optional<InPlaneTip> inPlaneTip() const noexcept;
   void followContact(StampNs stamp) noexcept;
   void findContact(double step) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kUnexplainedMemory = 1.0;  // [s]
 
+/// Of a load that onTip() makes.
+Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
+
 }  // namespace
 
 /// What hammer and oil as given do not make of the hull's acceleration is a force on its mass.
@@ -60,22 +63,25 @@ LoadErrors BoomFollower::measuredErrors(const Wrench& lasting, bool rigid) const
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     double& one = torque[static_cast<std::size_t>(boom_.cylinders()[i].joint())];
     one = measured_.of(i)->deviation;
-    errors.add(tip_->load(torque.data()));
+    errors.addInPlane(tip_->inPlane(torque));
     one = 0.0;
   }
-  errors.add(lasting);
+  errors.addInPlane(inPlane(lasting));
   const BoomModes& modes = boom_.vibration().modes();
   if (rigid || modes.count == 0) return errors;
-  std::array<Wrench, kMaxJoints> tip;
-  for (int k = 0; k < modes.count; ++k) tip[static_cast<std::size_t>(k)] = tip_->load(modes.inertia.col(k));
+  std::array<Eigen::Vector3d, kMaxJoints> tip;
+  for (int k = 0; k < modes.count; ++k) tip[static_cast<std::size_t>(k)] = tip_->inPlane(modes.inertia.col(k));
   errors.add(modes, boom_.vibration().identifier()->accelerationCovariance(), tip);
   return errors;
 }
 
 LoadErrors BoomFollower::followedErrors(const WrenchSpread& spread, bool rigid) const noexcept {
   LoadErrors errors(boom_.cylinders());
-  for (int i = 0; i < spread.count; ++i) errors.add(spread.part[static_cast<std::size_t>(i)]);
-  if (!rigid) errors.add(boom_.vibration().modes(), boom_.vibration().identifier()->accelerationCovariance(), {});
+  for (int i = 0; i < spread.count; ++i) errors.addInPlane(inPlane(spread.part[static_cast<std::size_t>(i)]));
+  if (rigid) return errors;
+  std::array<Eigen::Vector3d, kMaxJoints> none;
+  none.fill(Eigen::Vector3d::Zero());
+  errors.add(boom_.vibration().modes(), boom_.vibration().identifier()->accelerationCovariance(), none);
   return errors;
 }
 

@@ -79,18 +79,13 @@ void BoomFollower::useMeasured() noexcept {
   }
 }
 
-/// Three cylinders in a plane give a load on the tip; of others the torques alone are known.
-std::optional<InPlaneTip> BoomFollower::inPlaneTip() const noexcept {
-  const auto& c = boom_.cylinders();
-  if (c.size() != 3) return std::nullopt;
-  return InPlaneTip::make(boom_.tipJacobian(), {c[0].joint(), c[1].joint(), c[2].joint()});
-}
-
-/// No force is one that is not seen beside its error.
+/// Three cylinders in a plane give a load on the tip; of others the torques alone are known. No force is one that is not
+/// seen beside its error.
 void BoomFollower::findContact(double step) noexcept {
-  if (!state_.measured) return;
-  tip_ = inPlaneTip();
-  if (!tip_) return;
+  const auto& c = boom_.cylinders();
+  if (!state_.measured || c.size() != 3) return;
+  tip_.emplace(boom_.tipJacobian(), std::array<int, 3>{c[0].joint(), c[1].joint(), c[2].joint()});
+  if (!tip_->isKnown()) return tip_.reset();
   state_.contact = tip_->load(state_.contact_torque);
   trust_.follow(state_.contact, tip_->load(state_.loads.weight), striking_distance_, step);
   const auto& observer = boom_.vibration().identifier();
