@@ -2,6 +2,9 @@
 
 #include <kdl/chain.hpp>
 
+#include "hammer_loads/boom/lanes.h"
+#include "hammer_loads/util/avx2.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -18,20 +21,59 @@ RigidBody bodyOf(const KDL::Segment& segment) {
   return body;
 }
 
+struct MotionInLanes {
+  Lanes rate, angular_acceleration, acceleration;
+};
+
+HAMMER_LOADS_INLINE void storeMotion(const MotionInLanes& m, BodyMotion& to) noexcept {
+  store(m.rate, to.rate.data()), store(m.angular_acceleration, to.angular_acceleration.data());
+  store(m.acceleration, to.acceleration.data());
+}
+
+struct WrenchInLanes {
+  Lanes force, torque;
+};
+
+HAMMER_LOADS_INLINE Lanes accelerationAt(const MotionInLanes& m, const Lanes& r) noexcept {
+  return m.acceleration + cross(m.angular_acceleration, r) + cross(m.rate, cross(m.rate, r));
+}
+
+/// R I R^T, symmetric but for rounding.
+HAMMER_LOADS_INLINE void place(const RigidBody& body, const Pose& X_BL, PlacedBody& placed) noexcept {
+  const double* R = X_BL.data();
+  const double* I = body.inertia.data();
+  placed.mass = body.mass;
+  store(product(R, body.com.data()), placed.com.data());
+  const Lanes RI[3] = {product(R, I), product(R, I + 3), product(R, I + 6)};
+  for (int c = 0; c < 3; ++c) store(RI[0] * R[c] + RI[1] * R[4 + c] + RI[2] * R[8 + c], &placed.inertia[4 * std::size_t(c)]);
+}
+
+HAMMER_LOADS_INLINE WrenchInLanes loadOf(const PlacedBody& body, const Pose& X_BL, const BodyMotion& m) noexcept {
+  const Lanes r = lanesAt(body.com.data()), rate = lanesAt(m.rate.data());
+  const Lanes acceleration =
+      accelerationAt({rate, lanesAt(m.angular_acceleration.data()), lanesAt(m.acceleration.data())}, r);
+  const Lanes moment = product(body.inertia.data(), m.angular_acceleration.data()) +
+                       cross(rate, product(body.inertia.data(), m.rate.data()));
+  const Lanes force = -body.mass * acceleration;
+  return {force, cross(lanesAt(X_BL.data() + 12) + r, force) - moment};
+}
+
 /// root_acceleration: against gravity it stands for the weight.
-void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
-                 const Eigen::Vector3d& root_acceleration, std::array<BodyMotion, kMaxLinks>& result) noexcept {
-  // Of the link before, until it is that of the link itself.
-  BodyMotion now{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), root_acceleration};
-  result[0] = now;
+HAMMER_LOADS_INLINE void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& motion,
+                                     const Lanes& root_acceleration,
+                                     std::array<BodyMotion, kMaxLinks>& result) noexcept {
+  MotionInLanes now{{}, {}, root_acceleration};  // of the link before, until it is that of the link itself
+  Lanes origin{};
+  storeMotion(now, result[0]);
   for (int i = 1; i < chain.links(); ++i) {
     const auto here = static_cast<std::size_t>(i);
-    now.acceleration = now.accelerationAt(pose.X_BL[here].translation() - pose.X_BL[here - 1].translation());
+    const Lanes p = lanesAt(pose.X_BL[here].data() + 12);
+    now.acceleration = accelerationAt(now, p - origin);
+    origin = p;
     const int joint = chain.link(i).joint;
     if (joint >= 0) {
-      const Eigen::Vector3d& axis = pose.axis_B[static_cast<std::size_t>(joint)];
+      const Lanes axis = lanesOf(pose.axis_B[static_cast<std::size_t>(joint)]), turned = cross(now.rate, axis);
       const double velocity = motion.velocity[joint], acceleration = motion.acceleration[joint];
-      const Eigen::Vector3d turned = now.rate.cross(axis);
       if (pose.prismatic[static_cast<std::size_t>(joint)]) {
         now.acceleration += acceleration * axis + (2.0 * velocity) * turned;
       } else {
@@ -39,8 +81,47 @@ void findMotions(const Chain& chain, const ChainPose& pose, const JointMotion& m
         now.angular_acceleration += acceleration * axis + velocity * turned;
       }
     }
-    result[here] = now;
+    storeMotion(now, result[here]);
   }
+}
+
+HAMMER_LOADS_INLINE void findChainLoadsAny(const Chain& chain, const PlacedBodies& bodies, const ChainPose& pose,
+                                           const JointMotion& motion, const Eigen::Vector3d& g_B,
+                                           ChainLoads& result) noexcept {
+  findMotions(chain, pose, motion, -lanesOf(g_B), result.motion);
+  WrenchInLanes load{};
+  for (int i = chain.links() - 1; i > 0; --i) {
+    const auto here = static_cast<std::size_t>(i);
+    const WrenchInLanes one = loadOf(bodies[here], pose.link(i), result.motion[here]);
+    load.force += one.force, load.torque += one.torque;
+    store(load.force, result.beyond[here].force), store(load.torque, result.beyond[here].torque);
+  }
+}
+HAMMER_LOADS_AVX2 void findChainLoadsAvx2(const Chain& chain, const PlacedBodies& bodies, const ChainPose& pose,
+                                          const JointMotion& motion, const Eigen::Vector3d& g_B,
+                                          ChainLoads& result) noexcept {
+  findChainLoadsAny(chain, bodies, pose, motion, g_B, result);
+}
+
+HAMMER_LOADS_INLINE void placeBodiesAny(const std::vector<RigidBody>& bodies, const ChainPose& pose,
+                                        PlacedBodies& placed) noexcept {
+  for (std::size_t i = 1; i < bodies.size(); ++i) place(bodies[i], pose.X_BL[i], placed[i]);
+}
+HAMMER_LOADS_AVX2 void placeBodiesAvx2(const std::vector<RigidBody>& bodies, const ChainPose& pose,
+                                       PlacedBodies& placed) noexcept {
+  placeBodiesAny(bodies, pose, placed);
+}
+
+HAMMER_LOADS_INLINE void findBodyLoadAny(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion,
+                                         Wrench& load) noexcept {
+  PlacedBody placed;
+  place(body, X_BL, placed);
+  const WrenchInLanes w = loadOf(placed, X_BL, motion);
+  store(w.force, load.force), store(w.torque, load.torque);
+}
+HAMMER_LOADS_AVX2 void findBodyLoadAvx2(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion,
+                                        Wrench& load) noexcept {
+  findBodyLoadAny(body, X_BL, motion, load);
 }
 
 }  // namespace
@@ -51,15 +132,15 @@ std::vector<RigidBody> bodiesOf(const Chain& chain) {
   return bodies;
 }
 
-void findChainLoads(const Chain& chain, const std::vector<RigidBody>& bodies, const ChainPose& pose,
-                    const JointMotion& motion, const Eigen::Vector3d& g_B, ChainLoads& result) noexcept {
-  findMotions(chain, pose, motion, -g_B, result.motion);
-  Wrench load;
-  for (int i = chain.links() - 1; i > 0; --i) {
-    const auto here = static_cast<std::size_t>(i);
-    load = load + bodyLoad(bodies[here], pose.link(i), result.motion[here]);
-    result.beyond[here] = load;
-  }
+void placeBodies(const std::vector<RigidBody>& bodies, const ChainPose& pose, PlacedBodies& placed) noexcept {
+  if (kHasAvx2) return placeBodiesAvx2(bodies, pose, placed);
+  placeBodiesAny(bodies, pose, placed);
+}
+
+void findChainLoads(const Chain& chain, const PlacedBodies& bodies, const ChainPose& pose, const JointMotion& motion,
+                    const Eigen::Vector3d& g_B, ChainLoads& result) noexcept {
+  if (kHasAvx2) return findChainLoadsAvx2(chain, bodies, pose, motion, g_B, result);
+  findChainLoadsAny(chain, bodies, pose, motion, g_B, result);
 }
 
 JointVector jointTorque(const Chain& chain, const ChainPose& pose, const ChainLoads& loads) noexcept {
@@ -74,14 +155,12 @@ JointVector jointTorque(const Chain& chain, const ChainPose& pose, const ChainLo
 }
 
 Wrench bodyLoad(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion) noexcept {
-  const Eigen::Matrix3d& R = X_BL.linear();
-  const Eigen::Vector3d r = R * body.com;
-  const Eigen::Vector3d rate_L = R.transpose() * motion.rate;
-  const Eigen::Vector3d moment_L =
-      body.inertia * (R.transpose() * motion.angular_acceleration) + rate_L.cross(body.inertia * rate_L);
   Wrench load;
-  load.force = -body.mass * motion.accelerationAt(r);
-  load.torque = (X_BL.translation() + r).cross(load.force) - R * moment_L;
+  if (kHasAvx2) {
+    findBodyLoadAvx2(body, X_BL, motion, load);
+  } else {
+    findBodyLoadAny(body, X_BL, motion, load);
+  }
   return load;
 }
 

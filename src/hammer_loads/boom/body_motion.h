@@ -9,16 +9,23 @@
 
 namespace hammer_loads {
 
+/// A vector in space in four places, the last of no meaning.
+using InFours = std::array<double, 4>;
+
 /// How a link moves in the root's axes.
 struct BodyMotion {
-  Eigen::Vector3d rate;                  ///< [rad/s]
-  Eigen::Vector3d angular_acceleration;  ///< [rad/s2]
-  Eigen::Vector3d acceleration;          ///< of its origin [m/s2]
-
-  Eigen::Vector3d accelerationAt(const Eigen::Vector3d& r) const noexcept {
-    return acceleration + angular_acceleration.cross(r) + rate.cross(rate.cross(r));
-  }
+  InFours rate;                  ///< [rad/s]
+  InFours angular_acceleration;  ///< [rad/s2]
+  InFours acceleration;          ///< of its origin [m/s2]
 };
+
+/// A body where its link stands, in the root's axes.
+struct PlacedBody {
+  double mass;                     ///< [kg]
+  InFours com;                     ///< centre of mass from the link's origin [m]
+  std::array<double, 12> inertia;  ///< about the centre of mass, columns of four [kg m2]
+};
+using PlacedBodies = std::array<PlacedBody, kMaxLinks>;  ///< index of links as in Chain
 
 /// Index of links as in Chain; the root has no load: its own goes into the ground.
 struct ChainLoads {
@@ -30,9 +37,12 @@ struct ChainLoads {
 /// the ground.
 std::vector<RigidBody> bodiesOf(const Chain& chain);
 
-/// bodies: of bodiesOf(); g_B: gravity in the root's axes [m/s2]. No allocation.
-void findChainLoads(const Chain& chain, const std::vector<RigidBody>& bodies, const ChainPose& pose,
-                    const JointMotion& motion, const Eigen::Vector3d& g_B, ChainLoads& result) noexcept;
+/// Bodies of bodiesOf() at a pose.
+void placeBodies(const std::vector<RigidBody>& bodies, const ChainPose& pose, PlacedBodies& placed) noexcept;
+
+/// bodies: at the pose; g_B: gravity in the root's axes [m/s2]. No allocation.
+void findChainLoads(const Chain& chain, const PlacedBodies& bodies, const ChainPose& pose, const JointMotion& motion,
+                    const Eigen::Vector3d& g_B, ChainLoads& result) noexcept;
 
 /// Of inertia and weight on the joints, positive drives the joint forward [N m] ([N] for a prismatic one).
 JointVector jointTorque(const Chain& chain, const ChainPose& pose, const ChainLoads& loads) noexcept;

@@ -140,7 +140,8 @@ void Boom::move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept 
     at_[i] = cylinders_[i].at(pose_.cosine[joint], pose_.sine[joint]);
   }
   weight_ = jointTorqueOfWeight(chain_, pose_, g_B);
-  motion_ = dynamics_.torqueOfMotion(pose_, motion);
+  dynamics_.place(pose_, bodies_);
+  motion_ = dynamics_.torqueOfMotion(pose_, bodies_, motion);
 }
 
 void Boom::moveCompliant(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept {
@@ -183,7 +184,7 @@ JointMotion Boom::vibratingMotion() const noexcept {
 
 ChainLoads Boom::chainLoads(bool rigid) const noexcept {
   ChainLoads links;
-  dynamics_.chainLoads(pose_, rigid ? joints_ : vibratingMotion(), g_B_, links);
+  dynamics_.chainLoads(pose_, bodies_, rigid ? joints_ : vibratingMotion(), g_B_, links);
   return links;
 }
 

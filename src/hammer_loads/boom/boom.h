@@ -149,6 +149,7 @@ class Boom {
   Vibration vibration_;
   SteelLoadFinder steel_;
   ChainPose pose_;
+  PlacedBodies bodies_;
   Jacobian jacobian_;
   JointMotion joints_;
   JointVector steady_position_;  ///< of joints_, without the vibration

@@ -65,12 +65,12 @@ void Boom::findResponse() noexcept {
   Eigen::Index column = 0;
   for (const Cylinder& cylinder : cylinders_) {
     motion.acceleration = JointVector::Unit(joints, cylinder.joint());
-    dynamics_.chainLoads(pose_, motion, weightless, links);
+    dynamics_.chainLoads(pose_, bodies_, motion, weightless, links);
     steel_.find({pose_, links, {none, none}, at_.data()}, load);
     storeResponse(column++, jointTorque(chain_, pose_, links), load);
   }
   motion.acceleration = zero;
-  dynamics_.chainLoads(pose_, motion, weightless, links);
+  dynamics_.chainLoads(pose_, bodies_, motion, weightless, links);
   for (int k = 0; k < 6; ++k) {
     const Wrench unit = k < 3 ? wrenchOf(Eigen::Vector3d::Unit(k), none) : wrenchOf(none, Eigen::Vector3d::Unit(k - 3));
     steel_.find({pose_, links, unit, at_.data()}, load);

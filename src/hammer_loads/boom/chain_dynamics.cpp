@@ -26,17 +26,22 @@ ChainDynamics& ChainDynamics::operator=(const ChainDynamics& other) { return *th
 ChainDynamics::ChainDynamics(ChainDynamics&&) noexcept = default;
 ChainDynamics& ChainDynamics::operator=(ChainDynamics&&) noexcept = default;
 
-JointVector ChainDynamics::torqueOfMotion(const ChainPose& pose, const JointMotion& motion) const noexcept {
+void ChainDynamics::place(const ChainPose& pose, PlacedBodies& bodies) const noexcept {
+  placeBodies(solvers_->bodies, pose, bodies);
+}
+
+JointVector ChainDynamics::torqueOfMotion(const ChainPose& pose, const PlacedBodies& bodies,
+                                          const JointMotion& motion) const noexcept {
   const Chain& chain = solvers_->chain;
   if (motion.velocity.isZero(0.0) && motion.acceleration.isZero(0.0)) return JointVector::Zero(chain.joints());
   ChainLoads loads;
-  chainLoads(pose, motion, Eigen::Vector3d::Zero(), loads);
+  chainLoads(pose, bodies, motion, Eigen::Vector3d::Zero(), loads);
   return jointTorque(chain, pose, loads);
 }
 
-void ChainDynamics::chainLoads(const ChainPose& pose, const JointMotion& motion, const Eigen::Vector3d& g_B,
-                               ChainLoads& result) const noexcept {
-  findChainLoads(solvers_->chain, solvers_->bodies, pose, motion, g_B, result);
+void ChainDynamics::chainLoads(const ChainPose& pose, const PlacedBodies& bodies, const JointMotion& motion,
+                               const Eigen::Vector3d& g_B, ChainLoads& result) const noexcept {
+  findChainLoads(solvers_->chain, bodies, pose, motion, g_B, result);
 }
 
 /// Second derivatives of the weight's potential: a joint turns everything beyond it, or slides it, against gravity.

@@ -20,11 +20,15 @@ class ChainDynamics {
   /// Torque on the joints from the links' inertia as the boom moves: -(M q'' + c(q, q')) [N m], without weight.
   /// Positive drives the joint forward, as in jointTorqueOfTipLoad(). pose: of motion.position. Recursive Newton-Euler;
   /// nothing is computed at rest.
-  JointVector torqueOfMotion(const ChainPose& pose, const JointMotion& motion) const noexcept;
+  JointVector torqueOfMotion(const ChainPose& pose, const PlacedBodies& bodies,
+                             const JointMotion& motion) const noexcept;
 
   /// What inertia and weight of the links make; g_B: gravity in the root's axes [m/s2].
-  void chainLoads(const ChainPose& pose, const JointMotion& motion, const Eigen::Vector3d& g_B,
-                  ChainLoads& result) const noexcept;
+  void chainLoads(const ChainPose& pose, const PlacedBodies& bodies, const JointMotion& motion,
+                  const Eigen::Vector3d& g_B, ChainLoads& result) const noexcept;
+
+  /// The links' bodies at a pose: what the loads of any motion there need.
+  void place(const ChainPose& pose, PlacedBodies& bodies) const noexcept;
 
   /// Mass matrix M(q) [kg m2], symmetric, positive definite. KDL's composite rigid bodies, its arrays made once.
   JointMatrix massMatrix(const JointVector& position) noexcept;

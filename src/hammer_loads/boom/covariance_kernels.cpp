@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "hammer_loads/util/avx2.h"
 #include "hammer_loads/util/inline.h"
 
 namespace hammer_loads {
@@ -132,17 +133,6 @@ HAMMER_LOADS_INLINE void addLargerSquareAny(LinearLoads loads, const double* one
     laneAt(variance + load) += by_one > by_other ? by_one : by_other;
   }
 }
-
-#if defined(__x86_64__) && defined(__GNUC__)
-const bool kHasAvx2 = [] {
-  __builtin_cpu_init();
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-}();
-#define HAMMER_LOADS_AVX2 [[gnu::target("avx2,fma")]]
-#else
-constexpr bool kHasAvx2 = false;
-#define HAMMER_LOADS_AVX2
-#endif
 
 HAMMER_LOADS_AVX2 void timesRowsAvx2(const CovarianceBlock& P, int count, const double* rows, int begin,
                                      const int* unit, double* results) noexcept {

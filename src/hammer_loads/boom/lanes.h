@@ -1,0 +1,40 @@
+/// Vectors of space in four lanes: one register with AVX, two of any x86-64. What is in the fourth lane does not matter.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstring>
+
+#include "hammer_loads/util/inline.h"
+
+// All of it is inlined: no call passes a register that some CPUs have not.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+namespace hammer_loads {
+
+typedef double Lanes __attribute__((vector_size(4 * sizeof(double))));
+
+HAMMER_LOADS_INLINE Lanes lanesOf(const Eigen::Vector3d& v) noexcept { return Lanes{v[0], v[1], v[2], v[2]}; }
+HAMMER_LOADS_INLINE Lanes lanesAt(const double* four) noexcept {
+  Lanes v;
+  std::memcpy(&v, four, sizeof v);
+  return v;
+}
+HAMMER_LOADS_INLINE void store(const Lanes& v, double* four) noexcept { std::memcpy(four, &v, sizeof v); }
+HAMMER_LOADS_INLINE void store(const Lanes& v, Eigen::Vector3d& to) noexcept {
+  to[0] = v[0], to[1] = v[1], to[2] = v[2];
+}
+
+HAMMER_LOADS_INLINE Lanes cross(const Lanes& a, const Lanes& b) noexcept {
+  const Lanes a_next{a[1], a[2], a[0], a[3]}, b_next{b[1], b[2], b[0], b[3]};
+  const Lanes c = a * b_next - a_next * b;  // z, x, y
+  return Lanes{c[1], c[2], c[0], c[3]};
+}
+
+/// Of a matrix in three columns of four, times v.
+HAMMER_LOADS_INLINE Lanes product(const double* columns, const double* v) noexcept {
+  return lanesAt(columns) * v[0] + lanesAt(columns + 4) * v[1] + lanesAt(columns + 8) * v[2];
+}
+
+}  // namespace hammer_loads
