@@ -30,10 +30,6 @@ HAMMER_LOADS_INLINE void storeMotion(const MotionInLanes& m, BodyMotion& to) noe
   store(m.acceleration, to.acceleration.data());
 }
 
-struct WrenchInLanes {
-  Lanes force, torque;
-};
-
 HAMMER_LOADS_INLINE Lanes accelerationAt(const MotionInLanes& m, const Lanes& r) noexcept {
   return m.acceleration + cross(m.angular_acceleration, r) + cross(m.rate, cross(m.rate, r));
 }
@@ -45,10 +41,11 @@ HAMMER_LOADS_INLINE void place(const RigidBody& body, const Pose& X_BL, PlacedBo
   placed.mass = body.mass;
   store(product(R, body.com.data()), placed.com.data());
   const Lanes RI[3] = {product(R, I), product(R, I + 3), product(R, I + 6)};
-  for (int c = 0; c < 3; ++c) store(RI[0] * R[c] + RI[1] * R[4 + c] + RI[2] * R[8 + c], &placed.inertia[4 * std::size_t(c)]);
+  for (int c = 0; c < 3; ++c)
+    store(RI[0] * R[c] + RI[1] * R[4 + c] + RI[2] * R[8 + c], &placed.inertia[4 * std::size_t(c)]);
 }
 
-HAMMER_LOADS_INLINE WrenchInLanes loadOf(const PlacedBody& body, const Pose& X_BL, const BodyMotion& m) noexcept {
+HAMMER_LOADS_INLINE LaneWrench loadOf(const PlacedBody& body, const Pose& X_BL, const BodyMotion& m) noexcept {
   const Lanes r = lanesAt(body.com.data()), rate = lanesAt(m.rate.data());
   const Lanes acceleration =
       accelerationAt({rate, lanesAt(m.angular_acceleration.data()), lanesAt(m.acceleration.data())}, r);
@@ -89,12 +86,11 @@ HAMMER_LOADS_INLINE void findChainLoadsAny(const Chain& chain, const PlacedBodie
                                            const JointMotion& motion, const Eigen::Vector3d& g_B,
                                            ChainLoads& result) noexcept {
   findMotions(chain, pose, motion, -lanesOf(g_B), result.motion);
-  WrenchInLanes load{};
+  LaneWrench load{};
   for (int i = chain.links() - 1; i > 0; --i) {
     const auto here = static_cast<std::size_t>(i);
-    const WrenchInLanes one = loadOf(bodies[here], pose.link(i), result.motion[here]);
-    load.force += one.force, load.torque += one.torque;
-    store(load.force, result.beyond[here].force), store(load.torque, result.beyond[here].torque);
+    add(loadOf(bodies[here], pose.link(i), result.motion[here]), load);
+    store(load, result.beyond[here]);
   }
 }
 HAMMER_LOADS_AVX2 void findChainLoadsAvx2(const Chain& chain, const PlacedBodies& bodies, const ChainPose& pose,
@@ -116,8 +112,7 @@ HAMMER_LOADS_INLINE void findBodyLoadAny(const RigidBody& body, const Pose& X_BL
                                          Wrench& load) noexcept {
   PlacedBody placed;
   place(body, X_BL, placed);
-  const WrenchInLanes w = loadOf(placed, X_BL, motion);
-  store(w.force, load.force), store(w.torque, load.torque);
+  store(loadOf(placed, X_BL, motion), load);
 }
 HAMMER_LOADS_AVX2 void findBodyLoadAvx2(const RigidBody& body, const Pose& X_BL, const BodyMotion& motion,
                                         Wrench& load) noexcept {

@@ -1,34 +1,51 @@
 #include "hammer_loads/boom/chain_pose.h"
 
+#include "hammer_loads/boom/lanes.h"
+#include "hammer_loads/util/avx2.h"
 #include "hammer_loads/util/sine_cosine.h"
 
 namespace hammer_loads {
+namespace {
 
-void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept {
+HAMMER_LOADS_INLINE void forwardKinematicsAny(const Chain& chain, const JointVector& position,
+                                              ChainPose& pose) noexcept {
   pose.links = chain.links();
   pose.joints = chain.joints();
   pose.X_BL[0].setIdentity();
   for (int i = 1; i < pose.links; ++i) {
     const ChainLink& link = chain.link(i);
     const auto here = static_cast<std::size_t>(i);
-    const Pose& X_BP = pose.X_BL[here - 1];
-    Pose& X_BL = pose.X_BL[here];
-    X_BL.makeAffine();
-    if (link.joint < 0) {
-      X_BL.linear().noalias() = X_BP.linear() * link.steady;
-      X_BL.translation() = X_BP * link.origin;
-      continue;
+    const Pose& before = pose.X_BL[here - 1];
+    const double* X_BP = before.data();
+    double* X_BL = pose.X_BL[here].data();
+    Eigen::Matrix3d R_PL = link.steady;
+    Eigen::Vector3d p_PL = link.origin;
+    if (link.joint >= 0) {
+      const auto joint = static_cast<std::size_t>(link.joint);
+      const double q = position[link.joint];
+      const auto [sin_q, cos_q] = link.prismatic ? SineCosine{} : sineCosine(q);
+      R_PL += sin_q * link.sine + cos_q * link.cosine;
+      p_PL += q * link.slide;
+      store(product(X_BP, link.axis.data()), pose.axis_B[joint]);
+      pose.prismatic[joint] = link.prismatic;
+      pose.sine[joint] = sin_q, pose.cosine[joint] = cos_q;
     }
-    const double q = position[link.joint];
-    const auto [sin_q, cos_q] = link.prismatic ? SineCosine{} : sineCosine(q);
-    X_BL.linear().noalias() = X_BP.linear() * (link.steady + sin_q * link.sine + cos_q * link.cosine);
-    X_BL.translation() = X_BP * (link.origin + q * link.slide);
-    const auto joint = static_cast<std::size_t>(link.joint);
-    pose.axis_B[joint].noalias() = X_BP.linear() * link.axis;
-    pose.p_BJ_B[joint] = X_BL.translation();
-    pose.prismatic[joint] = link.prismatic;
-    pose.sine[joint] = sin_q, pose.cosine[joint] = cos_q;
+    for (int c = 0; c < 3; ++c) store(product(X_BP, R_PL.data() + 3 * c), X_BL + 4 * c);
+    const Lanes p = pointAt(before, p_PL.data());
+    store(p, X_BL + 12);
+    if (link.joint >= 0) store(p, pose.p_BJ_B[static_cast<std::size_t>(link.joint)]);
   }
+}
+HAMMER_LOADS_AVX2 void forwardKinematicsAvx2(const Chain& chain, const JointVector& position,
+                                             ChainPose& pose) noexcept {
+  forwardKinematicsAny(chain, position, pose);
+}
+
+}  // namespace
+
+void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept {
+  if (kHasAvx2) return forwardKinematicsAvx2(chain, position, pose);
+  forwardKinematicsAny(chain, position, pose);
 }
 
 Jacobian tipJacobian(const ChainPose& pose) noexcept {

@@ -1,9 +1,9 @@
-/// Vectors of space in four lanes: one register with AVX, two of any x86-64. What is in the fourth lane does not matter.
+/// Vectors of space in four lanes: one register with AVX, two of any x86-64. The fourth lane does not matter.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstring>
 
+#include "hammer_loads/boom/wrench.h"
 #include "hammer_loads/util/inline.h"
 
 // All of it is inlined: no call passes a register that some CPUs have not.
@@ -35,6 +35,39 @@ HAMMER_LOADS_INLINE Lanes cross(const Lanes& a, const Lanes& b) noexcept {
 /// Of a matrix in three columns of four, times v.
 HAMMER_LOADS_INLINE Lanes product(const double* columns, const double* v) noexcept {
   return lanesAt(columns) * v[0] + lanesAt(columns + 4) * v[1] + lanesAt(columns + 8) * v[2];
+}
+
+HAMMER_LOADS_INLINE double dot(const Lanes& a, const Lanes& b) noexcept {
+  const Lanes c = a * b;
+  return c[0] + c[1] + c[2];
+}
+
+/// A point of a frame in the frame that X is seen from.
+HAMMER_LOADS_INLINE Lanes pointAt(const Pose& X, const double* p) noexcept {
+  return lanesAt(X.data() + 12) + product(X.data(), p);
+}
+
+struct LaneWrench {
+  Lanes force, torque;
+};
+HAMMER_LOADS_INLINE LaneWrench lanesOf(const Wrench& w) noexcept { return {lanesOf(w.force), lanesOf(w.torque)}; }
+HAMMER_LOADS_INLINE void store(const LaneWrench& w, Wrench& to) noexcept {
+  store(w.force, to.force), store(w.torque, to.torque);
+}
+HAMMER_LOADS_INLINE void add(const LaneWrench& other, LaneWrench& to) noexcept {
+  to.force += other.force, to.torque += other.torque;
+}
+
+/// Of the transpose of a matrix in three columns of four.
+struct TransposedLanes {
+  Lanes x, y, z;
+};
+HAMMER_LOADS_INLINE TransposedLanes transposed(const Lanes& a, const Lanes& b, const Lanes& c) noexcept {
+  const Lanes low{a[0], b[0], a[2], b[2]}, high{a[1], b[1], a[3], b[3]};
+  return {Lanes{low[0], low[1], c[0], c[1]}, Lanes{high[0], high[1], c[1], c[1]}, Lanes{low[2], low[3], c[2], c[3]}};
+}
+HAMMER_LOADS_INLINE Lanes operator*(const TransposedLanes& M, const Lanes& v) noexcept {
+  return M.x * v[0] + M.y * v[1] + M.z * v[2];
 }
 
 }  // namespace hammer_loads

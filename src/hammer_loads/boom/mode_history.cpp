@@ -38,7 +38,8 @@ void ModeHistory::find(int mode, const Place& place, double omega, const ModeSta
   const auto k = static_cast<std::size_t>(mode);
   const Step& step = stepWith(place.newer);
   const OfMode& m = step.modes[k];
-  const double h = step.duration, per_time = 1.0 / h, u = place.since * per_time, w = 1.0 - u, moved = m.to.x - m.from.x;
+  const double h = step.duration, per_time = 1.0 / h;
+  const double u = place.since * per_time, w = 1.0 - u, moved = m.to.x - m.from.x;
   const double first = h * m.from.v - moved, last = moved - h * m.to.v;  // what a straight line lacks at its ends
   ModeThen then;
   then.motion.x = w * m.from.x + u * m.to.x + u * w * (w * first + u * last);

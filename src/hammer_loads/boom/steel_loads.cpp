@@ -1,9 +1,11 @@
 #include "hammer_loads/boom/steel_loads.h"
 
+#include <cmath>
 #include <utility>
 
 #include "hammer_loads/boom/body_motion.h"
-#include "hammer_loads/util/inline.h"
+#include "hammer_loads/boom/lanes.h"
+#include "hammer_loads/util/avx2.h"
 
 namespace hammer_loads {
 namespace {
@@ -11,18 +13,23 @@ namespace {
 /// No product of it with lengths and levers of a chain that could be built overflows [N], [N m].
 constexpr double kMostLoad = 1e200;
 
-Wrench forceAt(const Eigen::Vector3d& p, const Eigen::Vector3d& force) noexcept { return {force, p.cross(force)}; }
+/// Axes of a link.
+HAMMER_LOADS_INLINE TransposedLanes axesOf(const Pose& X_BL) noexcept {
+  return transposed(lanesAt(X_BL.data()), lanesAt(X_BL.data() + 4), lanesAt(X_BL.data() + 8));
+}
 
-/// From the root's frame to a point with the axes R of the root's frame.
-HAMMER_LOADS_INLINE Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& R, const Wrench& w_B) noexcept {
-  return {R.transpose() * w_B.force, R.transpose() * (w_B.torque - p.cross(w_B.force))};
+/// At a point, in axes of its own.
+HAMMER_LOADS_INLINE void seeAt(const Lanes& p, const TransposedLanes& axes, const LaneWrench& w,
+                               Wrench& seen) noexcept {
+  store(axes * w.force, seen.force);
+  store(axes * (w.torque - cross(p, w.force)), seen.torque);
 }
 
 }  // namespace
 
 struct SteelLoadFinder::Working {
-  std::array<Wrench, kMaxLinks> beyond;     ///< hammer, weight, inertia of this link and all beyond
-  std::array<Wrench, kMaxJoints> cylinder;  ///< ON the link beyond, by each cylinder
+  std::array<LaneWrench, kMaxLinks> beyond;     ///< hammer, weight, inertia of this link and all beyond
+  std::array<LaneWrench, kMaxJoints> cylinder;  ///< ON the link beyond, by each cylinder
 };
 
 SteelLoadFinder::SteelLoadFinder(const Chain& chain, const std::vector<Cylinder>& cylinders,
@@ -45,6 +52,14 @@ SteelLoadFinder::SteelLoadFinder(const Chain& chain, const std::vector<Cylinder>
 }
 
 bool SteelLoadFinder::find(const ChainState& state, SteelLoads& result) const noexcept {
+  return kHasAvx2 ? findByAvx2(state, result) : findByAny(state, result);
+}
+
+HAMMER_LOADS_AVX2 bool SteelLoadFinder::findByAvx2(const ChainState& state, SteelLoads& result) const noexcept {
+  return findByAny(state, result);
+}
+
+HAMMER_LOADS_INLINE bool SteelLoadFinder::findByAny(const ChainState& state, SteelLoads& result) const noexcept {
   Working working;
   const bool finite = addHammer(state, working);
   findCylinders(state, working, result);
@@ -53,55 +68,64 @@ bool SteelLoadFinder::find(const ChainState& state, SteelLoads& result) const no
   return finite;
 }
 
-bool SteelLoadFinder::addHammer(const ChainState& state, Working& working) const noexcept {
+HAMMER_LOADS_INLINE bool SteelLoadFinder::addHammer(const ChainState& state, Working& working) const noexcept {
   const Pose& X_BT = state.pose.tip();
-  Wrench hammer{X_BT.linear() * state.w_tip.force, X_BT.linear() * state.w_tip.torque};
-  hammer.torque += X_BT.translation().cross(hammer.force);
+  LaneWrench hammer{product(X_BT.data(), state.w_tip.force.data()), product(X_BT.data(), state.w_tip.torque.data())};
+  hammer.torque += cross(lanesAt(X_BT.data() + 12), hammer.force);
   bool finite = true;
   for (int i = chain_.links() - 1; i > 0; --i) {
     const auto here = static_cast<std::size_t>(i);
-    const Wrench& load = working.beyond[here] = hammer + state.links.beyond[here];
-    finite = finite && load.force.cwiseAbs().sum() < kMostLoad && load.torque.cwiseAbs().sum() < kMostLoad;
+    LaneWrench& load = working.beyond[here] = hammer;
+    add(lanesOf(state.links.beyond[here]), load);
+    for (int k = 0; k < 3; ++k)
+      finite = finite && std::abs(load.force[k]) < kMostLoad && std::abs(load.torque[k]) < kMostLoad;
   }
   return finite;
 }
 
-void SteelLoadFinder::findCylinders(const ChainState& state, Working& working, SteelLoads& result) const noexcept {
+HAMMER_LOADS_INLINE void SteelLoadFinder::findCylinders(const ChainState& state, Working& working,
+                                                        SteelLoads& result) const noexcept {
   for (std::size_t i = 0; i < anchors_.size(); ++i) {
     const Anchors& a = anchors_[i];
     const auto joint = static_cast<std::size_t>(a.cylinder.joint()), beyond = static_cast<std::size_t>(a.beyond);
-    const Wrench& load = working.beyond[beyond];
-    const double torque = state.pose.axis_B[joint].dot(load.torque - state.pose.p_BJ_B[joint].cross(load.force));
-    const CylinderPosition& at = state.cylinders[i];
+    const LaneWrench& load = working.beyond[beyond];
+    const double torque =
+        dot(lanesOf(state.pose.axis_B[joint]), load.torque - cross(lanesOf(state.pose.p_BJ_B[joint]), load.force));
     const Pose &X_BP = state.pose.X_BL[beyond - 1], &X_BL = state.pose.X_BL[beyond];
-    const Eigen::Vector3d rod_B = X_BL * a.rod_L;
-    const Eigen::Vector3d push = a.cylinder.load(at, torque).force * (rod_B - X_BP * a.base_P).normalized();
-    working.cylinder[i] = forceAt(rod_B, push);
-    result.pins[i] = {-(X_BP.linear().transpose() * push), X_BL.linear().transpose() * push};
+    const Lanes rod = pointAt(X_BL, a.rod_L.data()), along = rod - pointAt(X_BP, a.base_P.data());
+    const Lanes push = a.cylinder.load(state.cylinders[i], torque).force / std::sqrt(dot(along, along)) * along;
+    working.cylinder[i] = {push, cross(rod, push)};
+    store(axesOf(X_BP) * -push, result.pins[i].base);
+    store(axesOf(X_BL) * push, result.pins[i].rod);
   }
 }
 
-void SteelLoadFinder::findJoints(const ChainState& state, const Working& working, SteelLoads& result) const noexcept {
+HAMMER_LOADS_INLINE void SteelLoadFinder::findJoints(const ChainState& state, const Working& working,
+                                                     SteelLoads& result) const noexcept {
   for (int j = 0; j < chain_.joints(); ++j) {
     const int beyond = chain_.linkBeyond(j);
-    Wrench load = working.beyond[static_cast<std::size_t>(beyond)];
+    LaneWrench load = working.beyond[static_cast<std::size_t>(beyond)];
     for (std::size_t i = 0; i < anchors_.size(); ++i) {
-      if (anchors_[i].cylinder.joint() == j) load = load + working.cylinder[i];
+      if (anchors_[i].cylinder.joint() == j) add(working.cylinder[i], load);
     }
     const Pose& X_BP = state.pose.link(beyond - 1);
-    result.joint[static_cast<std::size_t>(j)] = seenAt(X_BP * chain_.link(beyond).origin, X_BP.linear(), load);
+    seeAt(pointAt(X_BP, chain_.link(beyond).origin.data()), axesOf(X_BP), load,
+          result.joint[static_cast<std::size_t>(j)]);
   }
 }
 
-void SteelLoadFinder::findSections(const ChainState& state, const Working& working, SteelLoads& result) const noexcept {
+HAMMER_LOADS_INLINE void SteelLoadFinder::findSections(const ChainState& state, const Working& working,
+                                                       SteelLoads& result) const noexcept {
   for (std::size_t k = 0; k < sections_.size(); ++k) {
     const Section& section = sections_[k];
     const auto link = static_cast<std::size_t>(section.link());
-    const Pose& X_BL = state.pose.X_BL[link];
-    Wrench load = working.beyond[link + 1] + bodyLoad(section.part(), X_BL, state.links.motion[link]);
-    for (std::size_t i : crossing_[k]) load = load + working.cylinder[i];
-    const Pose& X_LC = section.poseInLink();
-    result.section[k] = seenAt(X_BL * X_LC.translation(), X_BL.linear() * X_LC.linear(), load);
+    const Pose &X_BL = state.pose.X_BL[link], &X_LC = section.poseInLink();
+    LaneWrench load = working.beyond[link + 1];
+    add(lanesOf(bodyLoad(section.part(), X_BL, state.links.motion[link])), load);
+    for (std::size_t i : crossing_[k]) add(working.cylinder[i], load);
+    const double *R = X_BL.data(), *own = X_LC.data();
+    const TransposedLanes axes = transposed(product(R, own), product(R, own + 4), product(R, own + 8));
+    seeAt(pointAt(X_BL, X_LC.data() + 12), axes, load, result.section[k]);
   }
 }
 

@@ -10,8 +10,8 @@ namespace hammer_loads {
 enum class Clock { kCrank, kImu, kPressures };
 
 /// What one channel of a sensor reads of the joints' vibration q: offset + displacement . q + velocity . q' +
-/// acceleration . q'', or, of the oil, offset + oil . (K q + C q'). Whatever else it sees (weight, the boom's slow motion) must be taken off value
-/// first, as far as known; the offset takes up what is left of it.
+/// acceleration . q'', or, of the oil, offset + oil . (K q + C q'). Whatever else it sees (weight, the boom's slow
+/// motion) must be taken off value first, as far as known; the offset takes up what is left of it.
 struct VibrationReading {
   /// One entry per joint of the chain, then zeros.
   using Row = Eigen::Matrix<double, kMaxJoints, 1>;

@@ -101,8 +101,8 @@ void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLo
 ///
 /// Integrates h = sqrt(Jc + J) w, half the square of which is the kinetic energy: its rate, the torques over
 /// sqrt(Jc + J), has no term with the transfer function's derivative, so its linearisation needs none of third order.
-/// Runge-Kutta of order 4 by two derivatives, steps of at most 0.04 rad: error of a free turn below 1e-7 of the energy; linearisation of
-/// order 2 per step, within 1 % of finite differences at 1 kHz (test).
+/// Runge-Kutta of order 4 by two derivatives, steps of at most 0.04 rad: error of a free turn below 1e-7 of the energy;
+/// linearisation of order 2 per step, within 1 % of finite differences at 1 kHz (test).
 Advance advance(const ShaftModel& model, double dt, const Passing& passing, ShaftState& state,
                 ShaftLoad& load) noexcept;
 /// The same without its linearisation, which costs as much as the state.

@@ -57,9 +57,7 @@ class CrankFilter final : public CrankTracker {
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
-  CrankEstimate estimate() const noexcept override {
-    return estimateOf(model_, load(), now_.state);
-  }
+  CrankEstimate estimate() const noexcept override { return estimateOf(model_, load(), now_.state); }
   CrankEstimate between(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {

@@ -46,8 +46,9 @@ Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) co
 Eigen::Matrix3d CrankFilter::covarianceOf(const CrankBelief& belief, const ShaftLoad& load,
                                           double torque_part) const noexcept {
   const double part = std::min(1.0, torque_part * roughness_.deviationFactor());
-  return belief.motor ? flexibleMotionCovariance(model_, belief, consistency_.growth(), errors_.moment(), part)
-                      : hammer_loads::motionCovariance(model_, load, belief, consistency_.growth(), errors_.moment(), part);
+  return belief.motor
+             ? flexibleMotionCovariance(model_, belief, consistency_.growth(), errors_.moment(), part)
+             : hammer_loads::motionCovariance(model_, load, belief, consistency_.growth(), errors_.moment(), part);
 }
 
 ShaftMatrix CrankFilter::grown(const CrankBelief& belief) const noexcept {

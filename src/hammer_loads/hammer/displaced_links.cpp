@@ -23,8 +23,7 @@ DisplacedLinks::DisplacedLinks(const HullModel& model)
       by_acceleration_(meanOfTurn(model, {{}, 0.0, 1.0})),
       by_square_(meanOfTurn(model, {{}, 1.0, 0.0})) {}
 
-HullWrench DisplacedLinks::wrench(const LinkMotion& links, double crank_speed,
-                                  const HullMotion& hull) const noexcept {
+HullWrench DisplacedLinks::wrench(const LinkMotion& links, double crank_speed, const HullMotion& hull) const noexcept {
   const HullWrench held = hull.gravity.x * by_gravity_x_ + hull.gravity.z * by_gravity_z_ +
                           hull.acceleration * by_acceleration_ + hull.rate * hull.rate * by_square_;
   return frameWrench(*model_, links, crank_speed, hull) + -1.0 * held;

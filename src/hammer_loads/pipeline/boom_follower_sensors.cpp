@@ -79,8 +79,8 @@ void BoomFollower::useMeasured() noexcept {
   }
 }
 
-/// Three cylinders in a plane give a load on the tip; of others the torques alone are known. No force is one that is not
-/// seen beside its error.
+/// Three cylinders in a plane give a load on the tip; of others the torques alone are known. No force is one that is
+/// not seen beside its error.
 void BoomFollower::findContact(double step) noexcept {
   const auto& c = boom_.cylinders();
   if (!state_.measured || c.size() != 3) return;

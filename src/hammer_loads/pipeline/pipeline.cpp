@@ -182,8 +182,8 @@ void Pipeline::followBoom(const LinksBeside& links) noexcept {
   const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, links, result_.crank_covariance);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
-  result_.boom = &boom_->sample({result_.stamp, motion, spread, hull_.newImuReading(result_.stamp),
-                                 imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
+  result_.boom = &boom_->sample({result_.stamp, motion, spread, hull_.newImuReading(result_.stamp), imu_lost, displaced,
+                                 stampNoise(), at_work ? nominal_force_ : 0.0},
                                 step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
