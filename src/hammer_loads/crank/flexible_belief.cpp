@@ -172,7 +172,7 @@ void correctFlexible(FlexibleRow row, double innovation, double variance, const 
   const Effect effect = jointEffect(b);
   setEffect(effect + gain * (measured_by_error - effect.row(row)), b);
   b.motor->by_odds -= gain * b.motor->by_odds[row];
-  const FlexibleMatrix left = p - gain * p.row(row);  // Joseph form, as in CrankBelief::correct()
+  const FlexibleMatrix left = p - gain * p.row(row);  // Joseph form
   setJoint(left - left.col(row) * gain.transpose() + gain * (variance * gain.transpose()), b);
 }
 
