@@ -36,13 +36,15 @@ class History : public testing::Test {
   void expectAt(double ago, const SwingOfMode& truth, double tolerance) {
     ModeHistory::Place place;
     ASSERT_TRUE(history_.find(ago, place)) << ago;
-    ModeThen then;
-    history_.find(kSecondMode, place, kSwing, truth.at(time_ + 1e-12), then);
+    const ModeState as_known = truth.at(time_ + 1e-12);
+    FourModes now{}, then;
+    now.x[kSecondMode] = as_known.x, now.v[kSecondMode] = as_known.v;
+    history_.look(0, place, Lanes{1.0, kSwing, 1.0, 1.0}, now, then);
     const ModeState right = truth.at(time_ - ago);
-    EXPECT_NEAR(then.motion.x, right.x, tolerance) << ago;
-    EXPECT_NEAR(then.motion.v, right.v, kSwing * tolerance) << ago;
-    EXPECT_NEAR(then.force, time_ - ago, 1e-12) << ago;
-    EXPECT_NEAR(then.force_rate, 1.0, 1e-9) << ago;
+    EXPECT_NEAR(then.x[kSecondMode], right.x, tolerance) << ago;
+    EXPECT_NEAR(then.v[kSecondMode], right.v, kSwing * tolerance) << ago;
+    EXPECT_NEAR(then.force[kSecondMode], time_ - ago, 1e-12) << ago;
+    EXPECT_NEAR(then.force_rate[kSecondMode], 1.0, 1e-9) << ago;
   }
 
   ModeHistory history_;

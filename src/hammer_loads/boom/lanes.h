@@ -58,6 +58,16 @@ HAMMER_LOADS_INLINE void add(const LaneWrench& other, LaneWrench& to) noexcept {
   to.force += other.force, to.torque += other.torque;
 }
 
+/// Four rows become four columns.
+HAMMER_LOADS_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) noexcept {
+  const Lanes low{a[0], b[0], a[2], b[2]}, high{a[1], b[1], a[3], b[3]};
+  const Lanes low_2{c[0], d[0], c[2], d[2]}, high_2{c[1], d[1], c[3], d[3]};
+  a = Lanes{low[0], low[1], low_2[0], low_2[1]}, b = Lanes{high[0], high[1], high_2[0], high_2[1]};
+  c = Lanes{low[2], low[3], low_2[2], low_2[3]}, d = Lanes{high[2], high[3], high_2[2], high_2[3]};
+}
+
+HAMMER_LOADS_INLINE double sumOf(const Lanes& v) noexcept { return (v[0] + v[2]) + (v[1] + v[3]); }
+
 /// Of the transpose of a matrix in three columns of four.
 struct TransposedLanes {
   Lanes x, y, z;

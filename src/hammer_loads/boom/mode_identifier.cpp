@@ -129,7 +129,14 @@ void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
   modes_ = given;
   count_ = given.count;
   history_.clear();
-  if (force_.size() != count_) force_.setZero(count_), force_rate_.setZero(count_), contact_.setZero(count_);
+  given_omega_.setZero();
+  given_omega_.head(count_) = given.given_omega;
+  for (int i = 0; i < count_; ++i) {
+    const auto at_joint = static_cast<std::size_t>(i);
+    for (auto* rows : {&shape_, &inertia_}) (*rows)[at_joint].setZero();
+    shape_[at_joint].head(count_) = given.shape.row(i);
+    inertia_[at_joint].head(count_) = given.inertia.row(given.joint[at_joint]);
+  }
   if (!carries) {
     forgetMotion();
   } else {
@@ -158,8 +165,8 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   apply(state_.data(), 1);
   for (int i = begin(); i < end(); ++i) apply(column(i), 1);
   for (int i = begin(); i < end(); ++i) apply(covariance_.data() + i, kMaxStates);
-  force_ = (T * force_).eval();
-  force_rate_ = (T * force_rate_).eval();
+  force_.head(count_) = (T * force_.head(count_)).eval();
+  force_rate_.head(count_) = (T * force_rate_.head(count_)).eval();
 }
 
 void ModeIdentifier::forget(int state, double deviation) noexcept {
@@ -179,7 +186,7 @@ void ModeIdentifier::leaveContact() noexcept {
 void ModeIdentifier::forgetMotion(const JointVector& swing) noexcept {
   moving_known_ = count_ > 0;
   history_.clear();
-  force_.setZero(count_), force_rate_.setZero(count_);
+  force_.setZero(), force_rate_.setZero();
   forget(kContact, kUnknownContact);
   for (int k = 0; k < kMaxJoints; ++k) {
     for (Part part : {kX, kV}) {
@@ -195,7 +202,8 @@ void ModeIdentifier::forgetMotion(const JointVector& swing) noexcept {
 
 void ModeIdentifier::followContact(const JointVector& torque) noexcept {
   follows_contact_ = true;
-  contact_ = modalForce(modes_, torque);
+  contact_.setZero();
+  contact_.head(count_) = modalForce(modes_, torque);
 }
 
 void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
@@ -208,8 +216,8 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
     advanceMode(k, step, {modal.from[k], modal.to[k], modal.mean[k]});
     walk(k, step);
   }
-  force_ = modal.to;
-  force_rate_ = (modal.to - modal.from) / step;
+  force_.head(count_) = modal.to;
+  force_rate_.head(count_) = (modal.to - modal.from) / step;
   for (double& age : age_) age += step;
   imu_age_ += step;
   free_for_ = follows_contact_ && !bears_ ? free_for_ + step : 0.0;

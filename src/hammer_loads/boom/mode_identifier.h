@@ -105,11 +105,7 @@ class ModeIdentifier {
   bool learns() const noexcept { return learns_; }
   ModeState motion(int mode) const noexcept;  ///< as estimated
   /// So long [s] after the present, or before it: some ms back exactly, with what readings have shown since.
-  ModeThen motionAt(int mode, double ahead) const noexcept {
-    ModeThen then;
-    findMotion(mode, ahead - crankLead(), then);
-    return then;
-  }
+  ModeState motionAt(int mode, double ahead) const noexcept;
   JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
@@ -130,7 +126,6 @@ class ModeIdentifier {
   static constexpr int kLane = 4, kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
   static_assert(kModes % kLane == 0);
-  using Lane = Eigen::Array<double, kLane, 1>;
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
   enum Part { kX, kV, kFrequency, kDamping, kParts };
@@ -142,15 +137,12 @@ class ModeIdentifier {
   int begin() const noexcept { return (kMaxChannels - channels_) / kLane * kLane; }
   int end() const noexcept { return kModes + kParts * count_; }
   int states() const noexcept { return end() - begin(); }
-  static auto lane(const double* values) noexcept { return Eigen::Map<const Lane, Eigen::Aligned16>(values); }
-  static auto lane(double* values) noexcept { return Eigen::Map<Lane, Eigen::Aligned16>(values); }
   CovarianceBlock block() noexcept { return {covariance_.data(), kMaxStates, begin(), end()}; }
   /// Covariances of a state with all.
   const double* column(int state) const noexcept { return &covariance_(0, state); }
   double* column(int state) noexcept { return &covariance_(0, state); }
 
   ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
-  void findMotion(int mode, double ahead, ModeThen& then) const noexcept;
   double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
   bool isDelayFollowed(Clock clock) const noexcept {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
@@ -176,15 +168,17 @@ class ModeIdentifier {
   };
   Kept keptStates() const noexcept;
   struct Seen;
-  using SeenModes = std::array<Seen, kMaxJoints>;
+  using SeenModes = std::array<Seen, kMaxJoints / kLane>;
   struct Rows;
   struct Shown;
   void take(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept;
+  void takeAny(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept;
+  void takeAvx2(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept;
   void subtract(Shown& shown) noexcept;
   void findRows(const VibrationReading* readings, std::size_t count, Rows& rows) const noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
   void takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept;
-  double dot(const State& a, const State& b) const noexcept;
+  double times(const State& a, int offset, const State& row) const noexcept;
   void add(double factor, const State& what, State& to) const noexcept;
   void copy(const State& from, State& to) const noexcept;
   void clear(State& state) const noexcept;
@@ -193,7 +187,9 @@ class ModeIdentifier {
   void followDelay(Clock clock) noexcept;
   static bool counts(const VibrationReading& reading) noexcept;
   void useChannel(const VibrationReading& reading) noexcept;
-  void see(int mode, double ahead, Seen& seen) const noexcept;
+  void findMotions(int first, double ahead, FourModes& then) const noexcept;
+  void findMotionsAvx2(int first, double ahead, FourModes& then) const noexcept;
+  void see(int first, double ahead, Seen& seen) const noexcept;
   double findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept;
   bool finite() const noexcept;
   void startAnew() noexcept;
@@ -211,7 +207,7 @@ class ModeIdentifier {
   ModeHistory history_;
   int count_{};
   bool follows_contact_{};
-  JointVector contact_;                               ///< modal force of the rock per newton
+  ModeVector contact_ = ModeVector::Zero();           ///< modal force of the rock per newton
   bool bears_{};                                      ///< the rock bears on the hull
   std::array<std::optional<double>, 2> least_delay_;  ///< of each clock, as a free hull showed it [s]
   double free_for_{};                                 ///< so long it has not, while pressures spoke [s]
@@ -221,7 +217,10 @@ class ModeIdentifier {
   bool moving_known_{};        ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
-  JointVector force_, force_rate_;                          ///< modal, at the present time; and by the second
+  /// Modal, at the present time; and by the second.
+  ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
+  ModeVector given_omega_ = force_;                     ///< of modes_
+  std::array<ModeVector, kMaxJoints> shape_, inertia_;  ///< of modes_, by each joint that vibrates
   std::array<double, kMaxJoints> force_power_{};            ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/util/avx2.h"
 #include "hammer_loads/util/growth.h"
-#include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -48,68 +48,91 @@ ModeState ModeIdentifier::motion(int mode) const noexcept {
   return {now.x - back * (now.v - 0.5 * back * a), now.v - back * (a - 0.5 * back * jerk)};
 }
 
-/// By the crank's time.
-void ModeIdentifier::findMotion(int mode, double ahead, ModeThen& then) const noexcept {
-  const ModeState now = stateOf(mode);
+/// Of modes first to the third after it, by the crank's time.
+HAMMER_LOADS_INLINE void ModeIdentifier::findMotions(int first, double ahead, FourModes& then) const noexcept {
+  FourModes now;
+  const double* s = &state_[at(first, kX)];  // one by one: as fours they would wait for those that were just stored alone
+  now.x = Lanes{s[0], s[4], s[8], s[12]}, now.v = Lanes{s[1], s[5], s[9], s[13]};
+  const Lanes omega = lanesAt(given_omega_.data() + first) * lanesAt(ratio_.data() + first);
   ModeHistory::Place place;
-  if (ahead < 0.0 && history_.find(-ahead, place)) return history_.find(mode, place, modeAt(mode).omega, now, then);
-  then.motion = {now.x + ahead * now.v, now.v + ahead * accelerationNow(mode)};
-  then.force = force_[mode] + ahead * force_rate_[mode];
-  then.force_rate = force_rate_[mode];
+  if (ahead < 0.0 && history_.find(-ahead, place)) return history_.look(first, place, omega, now, then);
+  const Lanes force = lanesAt(force_.data() + first), zeta = lanesAt(damping_.data() + first);
+  const Lanes rock = lanesAt(contact_.data() + first) * (follows_contact_ ? state_[kContact] : 0.0);
+  const Lanes acceleration = force + rock - 2.0 * zeta * omega * now.v - omega * omega * now.x;
+  then.force_rate = lanesAt(force_rate_.data() + first);
+  then.x = now.x + ahead * now.v, then.v = now.v + ahead * acceleration;
+  then.force = force + ahead * then.force_rate;
 }
 
-/// Of a mode, for readings of one instant.
+HAMMER_LOADS_AVX2 void ModeIdentifier::findMotionsAvx2(int first, double ahead, FourModes& then) const noexcept {
+  findMotions(first, ahead, then);
+}
+
+ModeState ModeIdentifier::motionAt(int mode, double ahead) const noexcept {
+  FourModes then;
+  const int first = mode / kLane * kLane;
+  if (kHasAvx2) {
+    findMotionsAvx2(first, ahead - crankLead(), then);
+  } else {
+    findMotions(first, ahead - crankLead(), then);
+  }
+  return {then.x[mode - first], then.v[mode - first]};
+}
+
+/// Of four modes, for readings of one instant.
 struct ModeIdentifier::Seen {
-  ModeThen then;
-  double acceleration, stiff, damped;
-  double cosine, sine;  ///< of what was then: how displacement and velocity of now show in it
+  FourModes then;
+  Lanes acceleration, stiff, damped, rock;
+  Lanes cosine, sine;  ///< of what was then: how displacement and velocity of now show in it
 };
 
-void ModeIdentifier::see(int mode, double ahead, Seen& seen) const noexcept {
-  const Mode m = modeAt(mode);
-  findMotion(mode, ahead, seen.then);
+HAMMER_LOADS_INLINE void ModeIdentifier::see(int first, double ahead, Seen& seen) const noexcept {
+  findMotions(first, ahead, seen.then);
+  const Lanes omega = lanesAt(given_omega_.data() + first) * lanesAt(ratio_.data() + first);
+  seen.stiff = omega * omega, seen.damped = 2.0 * lanesAt(damping_.data() + first) * omega;
+  seen.rock = lanesAt(contact_.data() + first) * (follows_contact_ ? 1.0 : 0.0);
   seen.acceleration =
-      hammer_loads::acceleration(m, seen.then.motion, seen.then.force + rockOn(mode) * state_[kContact]);
-  seen.stiff = m.omega * m.omega, seen.damped = 2.0 * m.zeta * m.omega;
-  const double turned = seen.stiff * square(ahead);
-  seen.sine = ahead * (1.0 - turned / 6.0), seen.cosine = 1.0 - turned / 2.0;
+      seen.then.force + seen.rock * state_[kContact] - seen.damped * seen.then.v - seen.stiff * seen.then.x;
+  const Lanes turned = seen.stiff * square(ahead);
+  seen.sine = ahead * (1.0 - turned * (1.0 / 6.0)), seen.cosine = 1.0 - 0.5 * turned;
 }
 
 /// What is predicted of the reading.
-double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept {
-  clear(row);
-  row[offsetAt(reading.channel)] = 1.0;
-  double predicted = state_[offsetAt(reading.channel)];
-  double late = 0.0;
-  withCount<3>(count_, [&](auto count) {
-    for (int k = 0; k < count; ++k) {
-      double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
-      for (int i = 0; i < count; ++i) {
-        const int joint = modes_.joint[static_cast<std::size_t>(i)];
-        if (reading.of_oil) {
-          by_oil += reading.oil[joint] * modes_.inertia(joint, k);
-          continue;
-        }
-        const double shape = modes_.shape(i, k);
-        by_x += reading.displacement[joint] * shape;
-        by_v += reading.velocity[joint] * shape;
-        by_a += reading.acceleration[joint] * shape;
+HAMMER_LOADS_INLINE double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes& modes,
+                                                   State& row) const noexcept {
+  for (int i = 0; i < kModes; i += kLane) store(Lanes{}, &row[i]);
+  Lanes predicted{}, late{}, by_contact{};
+  for (int first = 0; first < count_; first += kLane) {
+    Lanes by_x{}, by_v{}, by_a{}, by_oil{};  // per modal displacement, velocity, acceleration
+    for (int i = 0; i < count_; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const int joint = modes_.joint[k];
+      if (reading.of_oil) {
+        by_oil += reading.oil[joint] * lanesAt(inertia_[k].data() + first);
+        continue;
       }
-      const Seen& seen = modes[static_cast<std::size_t>(k)];
-      const ModeState& s = seen.then.motion;
-      const double held = by_oil - by_a, damped = seen.damped * s.v;
-      const double of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
-      predicted += by_x * s.x + by_v * s.v + by_a * seen.acceleration + by_oil * (seen.stiff * s.x + damped);
-      late += of_x * s.v + of_v * seen.acceleration + by_a * seen.then.force_rate;
-      row[kContact] += by_a * rockOn(k);
-      row[at(k, kX)] = seen.cosine * of_x - seen.stiff * seen.sine * of_v;
-      row[at(k, kV)] = seen.cosine * of_v + seen.sine * of_x;
-      row[at(k, kFrequency)] = held * (2.0 * seen.stiff * s.x + damped);
-      row[at(k, kDamping)] = held * damped;
+      const Lanes shape = lanesAt(shape_[k].data() + first);
+      by_x += reading.displacement[joint] * shape;
+      by_v += reading.velocity[joint] * shape;
+      by_a += reading.acceleration[joint] * shape;
     }
-  });
-  if (reading.clock != Clock::kCrank) row[delayAt(reading.clock)] = -late;
-  return predicted;
+    const Seen& seen = modes[static_cast<std::size_t>(first / kLane)];
+    const Lanes held = by_oil - by_a, damped = seen.damped * seen.then.v, stiff = seen.stiff * seen.then.x;
+    const Lanes of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
+    predicted += by_x * seen.then.x + by_v * seen.then.v + by_a * seen.acceleration + by_oil * (stiff + damped);
+    late += of_x * seen.then.v + of_v * seen.acceleration + by_a * seen.then.force_rate;
+    by_contact += by_a * seen.rock;
+    Lanes x = seen.cosine * of_x - seen.stiff * seen.sine * of_v, v = seen.cosine * of_v + seen.sine * of_x;
+    Lanes frequency = held * (2.0 * stiff + damped), damping = held * damped;
+    transpose(x, v, frequency, damping);
+    double* to = &row[at(first, kX)];
+    store(x, to), store(v, to + kLane), store(frequency, to + 2 * kLane), store(damping, to + 3 * kLane);
+  }
+  const int offset = offsetAt(reading.channel);
+  row[offset] = 1.0;
+  row[kContact] = sumOf(by_contact);
+  if (reading.clock != Clock::kCrank) row[delayAt(reading.clock)] = -sumOf(late);
+  return state_[offset] + sumOf(predicted);
 }
 
 /// Rows of readings about one state, and P row^T of each, which becomes that after those before it.
@@ -156,13 +179,24 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
   if (clock != Clock::kCrank) crank_lead_ = findCrankLead();
 }
 
-bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
+HAMMER_LOADS_INLINE bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
   return reading.channel >= 0 && reading.channel < kMaxChannels && std::isfinite(reading.value);
 }
 
 /// One reading after the other: its P row^T is that of the covariance as it stands, less what those before it have
 /// shown.
 void ModeIdentifier::take(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept {
+  if (kHasAvx2) return takeAvx2(readings, count, shown);
+  takeAny(readings, count, shown);
+}
+
+HAMMER_LOADS_AVX2 void ModeIdentifier::takeAvx2(const VibrationReading* readings, std::size_t count,
+                                                Shown& shown) noexcept {
+  takeAny(readings, count, shown);
+}
+
+HAMMER_LOADS_INLINE void ModeIdentifier::takeAny(const VibrationReading* readings, std::size_t count,
+                                                 Shown& shown) noexcept {
   Rows rows;
   findRows(readings, count, rows);
   if (rows.count == 0) return;
@@ -174,11 +208,11 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count, S
     State& gain_S = rows.gain_S[r];
     double difference = rows.difference[r];
     for (std::size_t k = 0; k < shown.count; ++k) {
-      const double seen = dot(shown.column[k], rows.row[r]);
+      const double seen = times(shown.column[k], rows.offset[r], rows.row[r]);
       add(-seen / shown.S[k], shown.column[k], gain_S);
       if (k >= first) difference -= shown.moved[k] * seen;
     }
-    const double S = weigh(*rows.reading[r], dot(gain_S, rows.row[r]), difference);
+    const double S = weigh(*rows.reading[r], times(gain_S, rows.offset[r], rows.row[r]), difference);
     if (!(S > 0.0)) continue;
     add(difference / S, gain_S, state_);
     copy(gain_S, shown.add(S, difference / S));
@@ -193,10 +227,11 @@ void ModeIdentifier::subtract(Shown& shown) noexcept {
   shown.count = 0;
 }
 
-void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t count, Rows& rows) const noexcept {
+HAMMER_LOADS_INLINE void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t count,
+                                                  Rows& rows) const noexcept {
   SeenModes seen;
-  for (int k = 0; k < count_; ++k)
-    see(k, readings->ahead - delayByCrank(readings->clock), seen[static_cast<std::size_t>(k)]);
+  for (int first = 0; first < count_; first += kLane)
+    see(first, readings->ahead - delayByCrank(readings->clock), seen[static_cast<std::size_t>(first / kLane)]);
   for (const VibrationReading* reading = readings; reading < readings + count; ++reading) {
     if (!counts(*reading)) continue;
     rows.difference[rows.count] = reading->value - findRow(*reading, seen, rows.row[rows.count]);
@@ -206,7 +241,7 @@ void ModeIdentifier::findRows(const VibrationReading* readings, std::size_t coun
 }
 
 /// S of a reading, by the variance of what is predicted; 0: it does not count.
-double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
+HAMMER_LOADS_INLINE double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
   const double S = predicted + square(reading.noise) + square(reading.neglected);
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
@@ -221,7 +256,7 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
 }
 
 /// States that readings are not to change.
-ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
+HAMMER_LOADS_INLINE ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
   Kept kept;
   if (!learns_) return kept;
   for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kFrequency)), kept.add(at(k, kDamping));
@@ -231,7 +266,7 @@ ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
 }
 
 /// What a reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
-void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept {
+HAMMER_LOADS_INLINE void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept {
   State& its_part = shown.add(-S, -moved);
   clear(its_part);
   for (int i : kept) {
@@ -240,23 +275,25 @@ void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const St
   }
 }
 
-/// Of the states in use.
-double ModeIdentifier::dot(const State& a, const State& b) const noexcept {
-  Lane sum = Lane::Zero();
-  for (int i = begin(); i < end(); i += kLane) sum += lane(&a[i]) * lane(&b[i]);
-  return sum.sum();
+/// Times a row, which has but one offset.
+HAMMER_LOADS_INLINE double ModeIdentifier::times(const State& a, int offset, const State& row) const noexcept {
+  Lanes sum{};
+  for (int i = kModes; i < end(); i += kLane) sum += lanesAt(&a[i]) * lanesAt(&row[i]);
+  double all = sumOf(sum) + a[offset];
+  for (int i = kDelays; i <= kContact; ++i) all += a[i] * row[i];
+  return all;
 }
 
-void ModeIdentifier::add(double factor, const State& what, State& to) const noexcept {
-  for (int i = begin(); i < end(); i += kLane) lane(&to[i]) += factor * lane(&what[i]);
+HAMMER_LOADS_INLINE void ModeIdentifier::add(double factor, const State& what, State& to) const noexcept {
+  for (int i = begin(); i < end(); i += kLane) store(lanesAt(&to[i]) + factor * lanesAt(&what[i]), &to[i]);
 }
 
-void ModeIdentifier::copy(const State& from, State& to) const noexcept {
-  for (int i = begin(); i < end(); i += kLane) lane(&to[i]) = lane(&from[i]);
+HAMMER_LOADS_INLINE void ModeIdentifier::copy(const State& from, State& to) const noexcept {
+  for (int i = begin(); i < end(); i += kLane) store(lanesAt(&from[i]), &to[i]);
 }
 
-void ModeIdentifier::clear(State& state) const noexcept {
-  for (int i = begin(); i < end(); i += kLane) lane(&state[i]).setZero();
+HAMMER_LOADS_INLINE void ModeIdentifier::clear(State& state) const noexcept {
+  for (int i = begin(); i < end(); i += kLane) store(Lanes{}, &state[i]);
 }
 
 void ModeIdentifier::forgetOil() noexcept {

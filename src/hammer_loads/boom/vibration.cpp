@@ -225,7 +225,7 @@ JointVector Vibration::oilTorqueAt(double ahead) const noexcept {
   JointVector modal(modes_.count);
   for (int k = 0; k < modes_.count; ++k) {
     const Mode m = mode(k);
-    const ModeState s = identifier_->motionAt(k, ahead).motion;
+    const ModeState s = identifier_->motionAt(k, ahead);
     modal[k] = m.omega * m.omega * s.x + 2.0 * m.zeta * m.omega * s.v;
   }
   return modes_.inertia.lazyProduct(modal);
