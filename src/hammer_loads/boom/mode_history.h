@@ -10,8 +10,10 @@
 
 namespace hammer_loads {
 
-/// One entry a mode; of those that there are not, zero.
+/// One entry a mode; zero for modes that there are not.
 using ModeVector = Eigen::Matrix<double, kMaxJoints, 1>;
+/// Of the modes `first`, a multiple of four, to the third after it.
+HAMMER_LOADS_INLINE Lanes fourOf(const ModeVector& modes, int first) noexcept { return lanesAt(modes.data() + first); }
 
 /// Four modes at an instant.
 struct FourModes {
@@ -64,9 +66,10 @@ inline void ModeHistory::look(int first, const Place& place, const Lanes& omega,
                               FourModes& then) const noexcept {
   const Step& step = stepWith(place.newer);
   const double h = step.duration, per_time = 1.0 / h, u = place.since * per_time, w = 1.0 - u;
-  const Lanes from_x = lanesAt(step.from_x.data() + first), to_x = lanesAt(step.to_x.data() + first), moved = to_x - from_x;
-  const Lanes lacks_first = h * lanesAt(step.from_v.data() + first) - moved, lacks_last = moved - h * lanesAt(step.to_v.data() + first);  // of a straight line
-  const Lanes force_from = lanesAt(step.force_from.data() + first), force_to = lanesAt(step.force_to.data() + first);
+  const Lanes from_x = fourOf(step.from_x, first), to_x = fourOf(step.to_x, first), moved = to_x - from_x;
+  // What a straight line lacks at its ends.
+  const Lanes lacks_first = h * fourOf(step.from_v, first) - moved, lacks_last = moved - h * fourOf(step.to_v, first);
+  const Lanes force_from = fourOf(step.force_from, first), force_to = fourOf(step.force_to, first);
   then.x = w * from_x + u * to_x + u * w * (w * lacks_first + u * lacks_last);
   then.v = (moved + w * (w - 2.0 * u) * lacks_first + u * (2.0 * w - u) * lacks_last) * per_time;
   then.force = w * force_from + u * force_to;
@@ -77,10 +80,11 @@ inline void ModeHistory::look(int first, const Place& place, const Lanes& omega,
   for (std::size_t newer = 0; newer <= place.newer; ++newer) {
     const Step& its = stepWith(newer);
     // What was shown then, back without force, undamped: cosine and sine to the fifth power of omega t.
-    const Lanes x = after_x - lanesAt(its.to_x.data() + first), v = after_v - lanesAt(its.to_v.data() + first) - lanesAt(its.jump.data() + first), xx = square * (t * t);
+    const Lanes x = after_x - fourOf(its.to_x, first), xx = square * (t * t);
+    const Lanes v = after_v - fourOf(its.to_v, first) - fourOf(its.jump, first);
     const Lanes cosine = 1.0 - xx * (0.5 - xx * (1.0 / 24.0)), sine = t * (1.0 - xx * (1.0 / 6.0 - xx * (1.0 / 120.0)));
     then.x += cosine * x + sine * v, then.v += cosine * v - square * sine * x;
-    after_x = lanesAt(its.from_x.data() + first), after_v = lanesAt(its.from_v.data() + first);
+    after_x = fourOf(its.from_x, first), after_v = fourOf(its.from_v, first);
     t += its.duration;
   }
 }

@@ -18,8 +18,6 @@ constexpr double kForcePart = 0.05;        // deviation of the modal force over 
 constexpr double kForceTime = 0.01;        // for which a force stays wrong the same way [s]
 constexpr double kForceMemory = 2.0;       // of the mean square [s]
 constexpr double kUnknownRate = 0.05;      // joint velocity where nothing is known [rad/s]
-constexpr double kKnown = 0.03;            // deviation of log frequency of a mode that is known
-constexpr double kOwnOil = 0.005;          // of log frequency: cylinders whose oil differs from the others'
 constexpr double kContactWalk = 1.3e5;     // of the rock's force [N/sqrt(s)]
 constexpr double kContactWalkSeen = 3e5;   // where an IMU shows each landing: they are no noise then
 constexpr double kUnknownContact = 1e4;    // of it at the start [N]
@@ -46,21 +44,6 @@ void ModeIdentifier::setFirstGuesses() noexcept {
           square(kCommonDeviation) + (k == l ? square(kOwnDeviation) : 0);
     covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
   }
-}
-
-double ModeIdentifier::frequencyVariance(int mode) const noexcept {
-  return covariance_(at(mode, kFrequency), at(mode, kFrequency));
-}
-
-double ModeIdentifier::dampingVariance(int mode) const noexcept {
-  return covariance_(at(mode, kDamping), at(mode, kDamping));
-}
-
-bool ModeIdentifier::identified() const noexcept {
-  for (int k = 0; k < count_; ++k) {
-    if (!(frequencyVariance(k) < square(kKnown))) return false;
-  }
-  return count_ > 0;
 }
 
 JointVector ModeIdentifier::displacement() const noexcept {
@@ -105,17 +88,6 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
   return covariance;
 }
 
-double ModeIdentifier::oilDifference() const noexcept {
-  double sum = 0.0, weights = 0.0;
-  for (int k = 0; k < count_; ++k) {
-    const double by_oil = 0.5 * modes_.oil_share[k];
-    const double weight = by_oil / (covariance_(at(k, kFrequency), at(k, kFrequency)) + square(kOwnOil));
-    sum += weight * state_[at(k, kFrequency)];
-    weights += weight * by_oil;
-  }
-  return weights > 0.0 ? sum / weights : 0.0;
-}
-
 void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
   const bool carries = moving_known_ && count_ == given.count;
   JointMatrix T(given.count, given.count);  // new modal displacements of the old ones, through the joints
@@ -126,6 +98,7 @@ void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
       T.col(k) = modalOf(given, jointsOf(modes_, unit));
     }
   }
+  if (count_ != given.count) history_ = ModeHistory();  // zero for modes that there are not
   modes_ = given;
   count_ = given.count;
   history_.clear();

@@ -221,7 +221,7 @@ class ModeIdentifier {
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
   ModeVector given_omega_ = force_;                     ///< of modes_
   std::array<ModeVector, kMaxJoints> shape_, inertia_;  ///< of modes_, by each joint that vibrates
-  std::array<double, kMaxJoints> force_power_{};            ///< mean square of each modal force, over some seconds
+  std::array<double, kMaxJoints> force_power_{};        ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
   std::array<double, kMaxJoints> ratio_{}, damping_{};                ///< of state_

@@ -4,19 +4,16 @@
 
 #include "hammer_loads/boom/mode_identifier.h"
 #include "hammer_loads/util/avx2.h"
-#include "hammer_loads/util/growth.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kFarOff = 3.0;                         // standard deviations beyond which a reading counts less
-constexpr double kMostRatio = 1.0;                      // of log frequency: e
-constexpr double kMostEarly = 0.004, kMostLate = 0.01;  // [s]
-constexpr double kSurpriseShare = 3e-4;                 // of one acceleration in the mean of squares: 1.7 s at 1 kHz
-constexpr double kSurprised = 5.0, kCalm = 1.8;         // of that mean, over what it should be
-constexpr double kOilSurpriseShare = 5e-4;              // of one oil torque: 1.3 s of three at 500 Hz
-constexpr double kWorstSurprise = 25.0;                 // what one can add at most
+constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
+constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
+constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
+constexpr double kOilSurpriseShare = 5e-4;       // of one oil torque: 1.3 s of three at 500 Hz
+constexpr double kWorstSurprise = 25.0;          // what one can add at most
 
 }  // namespace
 
@@ -51,15 +48,16 @@ ModeState ModeIdentifier::motion(int mode) const noexcept {
 /// Of modes first to the third after it, by the crank's time.
 HAMMER_LOADS_INLINE void ModeIdentifier::findMotions(int first, double ahead, FourModes& then) const noexcept {
   FourModes now;
-  const double* s = &state_[at(first, kX)];  // one by one: as fours they would wait for those that were just stored alone
+  // One by one: as fours they would wait for what was just stored alone.
+  const double* s = &state_[at(first, kX)];
   now.x = Lanes{s[0], s[4], s[8], s[12]}, now.v = Lanes{s[1], s[5], s[9], s[13]};
-  const Lanes omega = lanesAt(given_omega_.data() + first) * lanesAt(ratio_.data() + first);
+  const Lanes omega = fourOf(given_omega_, first) * lanesAt(ratio_.data() + first);
   ModeHistory::Place place;
   if (ahead < 0.0 && history_.find(-ahead, place)) return history_.look(first, place, omega, now, then);
-  const Lanes force = lanesAt(force_.data() + first), zeta = lanesAt(damping_.data() + first);
-  const Lanes rock = lanesAt(contact_.data() + first) * (follows_contact_ ? state_[kContact] : 0.0);
+  const Lanes force = fourOf(force_, first), zeta = lanesAt(damping_.data() + first);
+  const Lanes rock = fourOf(contact_, first) * (follows_contact_ ? state_[kContact] : 0.0);
   const Lanes acceleration = force + rock - 2.0 * zeta * omega * now.v - omega * omega * now.x;
-  then.force_rate = lanesAt(force_rate_.data() + first);
+  then.force_rate = fourOf(force_rate_, first);
   then.x = now.x + ahead * now.v, then.v = now.v + ahead * acceleration;
   then.force = force + ahead * then.force_rate;
 }
@@ -88,9 +86,9 @@ struct ModeIdentifier::Seen {
 
 HAMMER_LOADS_INLINE void ModeIdentifier::see(int first, double ahead, Seen& seen) const noexcept {
   findMotions(first, ahead, seen.then);
-  const Lanes omega = lanesAt(given_omega_.data() + first) * lanesAt(ratio_.data() + first);
+  const Lanes omega = fourOf(given_omega_, first) * lanesAt(ratio_.data() + first);
   seen.stiff = omega * omega, seen.damped = 2.0 * lanesAt(damping_.data() + first) * omega;
-  seen.rock = lanesAt(contact_.data() + first) * (follows_contact_ ? 1.0 : 0.0);
+  seen.rock = fourOf(contact_, first) * (follows_contact_ ? 1.0 : 0.0);
   seen.acceleration =
       seen.then.force + seen.rock * state_[kContact] - seen.damped * seen.then.v - seen.stiff * seen.then.x;
   const Lanes turned = seen.stiff * square(ahead);
@@ -108,10 +106,10 @@ HAMMER_LOADS_INLINE double ModeIdentifier::findRow(const VibrationReading& readi
       const auto k = static_cast<std::size_t>(i);
       const int joint = modes_.joint[k];
       if (reading.of_oil) {
-        by_oil += reading.oil[joint] * lanesAt(inertia_[k].data() + first);
+        by_oil += reading.oil[joint] * fourOf(inertia_[k], first);
         continue;
       }
-      const Lanes shape = lanesAt(shape_[k].data() + first);
+      const Lanes shape = fourOf(shape_[k], first);
       by_x += reading.displacement[joint] * shape;
       by_v += reading.velocity[joint] * shape;
       by_a += reading.acceleration[joint] * shape;
@@ -241,7 +239,8 @@ HAMMER_LOADS_INLINE void ModeIdentifier::findRows(const VibrationReading* readin
 }
 
 /// S of a reading, by the variance of what is predicted; 0: it does not count.
-HAMMER_LOADS_INLINE double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
+HAMMER_LOADS_INLINE double ModeIdentifier::weigh(const VibrationReading& reading, double predicted,
+                                                 double difference) noexcept {
   const double S = predicted + square(reading.noise) + square(reading.neglected);
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
@@ -266,7 +265,8 @@ HAMMER_LOADS_INLINE ModeIdentifier::Kept ModeIdentifier::keptStates() const noex
 }
 
 /// What a reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
-HAMMER_LOADS_INLINE void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept {
+HAMMER_LOADS_INLINE void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const State& gain_S,
+                                                  Shown& shown) noexcept {
   State& its_part = shown.add(-S, -moved);
   clear(its_part);
   for (int i : kept) {
@@ -294,32 +294,6 @@ HAMMER_LOADS_INLINE void ModeIdentifier::copy(const State& from, State& to) cons
 
 HAMMER_LOADS_INLINE void ModeIdentifier::clear(State& state) const noexcept {
   for (int i = begin(); i < end(); i += kLane) store(Lanes{}, &state[i]);
-}
-
-void ModeIdentifier::forgetOil() noexcept {
-  forget(kDelays, 0.0), forget(kDelays + 1, 0.0);
-  least_delay_ = {};
-  known_for_ = lost_for_ = crank_lead_ = 0.0;
-  for (int k = 0; k < kMaxJoints; ++k) {
-    forget(at(k, kFrequency), 0.0);
-    forget(at(k, kDamping), 0.0);
-  }
-  ratio_.fill(1.0), used_frequency_.fill(0.0);
-  damping_.fill(damping_ratio_), used_damping_.fill(0.0);
-  setFirstGuesses();
-}
-
-/// Frequencies, damping and delay of the state, within bounds.
-void ModeIdentifier::useOil() noexcept {
-  for (int k = 0; k < count_; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    double &frequency = state_[at(k, kFrequency)], &damping = state_[at(k, kDamping)];
-    frequency = std::clamp(frequency, -kMostRatio, kMostRatio);
-    damping = std::clamp(damping, least_damping_, most_damping_);
-    ratio_[i] *= growth(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
-    damping_[i] *= growth(damping - used_damping_[i]), used_damping_[i] = damping;
-  }
-  for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }
 
 }  // namespace hammer_loads
