@@ -47,10 +47,9 @@ ModeState ModeIdentifier::motion(int mode) const noexcept {
 
 /// Of modes first to the third after it, by the crank's time.
 HAMMER_LOADS_INLINE void ModeIdentifier::findMotions(int first, double ahead, FourModes& then) const noexcept {
-  FourModes now;
   // One by one: as fours they would wait for what was just stored alone.
   const double* s = &state_[at(first, kX)];
-  now.x = Lanes{s[0], s[4], s[8], s[12]}, now.v = Lanes{s[1], s[5], s[9], s[13]};
+  const FourModes now{Lanes{s[0], s[4], s[8], s[12]}, Lanes{s[1], s[5], s[9], s[13]}, Lanes{}, Lanes{}};
   const Lanes omega = fourOf(given_omega_, first) * lanesAt(ratio_.data() + first);
   ModeHistory::Place place;
   if (ahead < 0.0 && history_.find(-ahead, place)) return history_.look(first, place, omega, now, then);
