@@ -1,9 +1,9 @@
 // What a mode did some ms ago, against its closed solution.
-#include "hammer_loads/boom/mode_history.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "hammer_loads/boom/four_modes.h"
 
 namespace hammer_loads {
 namespace {
@@ -39,7 +39,7 @@ class History : public testing::Test {
     const ModeState as_known = truth.at(time_ + 1e-12);
     FourModes now{}, then;
     now.x[kSecondMode] = as_known.x, now.v[kSecondMode] = as_known.v;
-    history_.look(0, place, Lanes{1.0, kSwing, 1.0, 1.0}, now, then);
+    look(history_, place, 0, Lanes{1.0, kSwing, 1.0, 1.0}, now, then);
     const ModeState right = truth.at(time_ - ago);
     EXPECT_NEAR(then.x[kSecondMode], right.x, tolerance) << ago;
     EXPECT_NEAR(then.v[kSecondMode], right.v, kSwing * tolerance) << ago;

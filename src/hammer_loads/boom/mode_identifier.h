@@ -13,6 +13,8 @@
 
 namespace hammer_loads {
 
+struct FourModes;
+
 /// Time by which an angle is ahead of the crank [s], and its standard deviation.
 struct CrankLead {
   double mean{}, deviation{};

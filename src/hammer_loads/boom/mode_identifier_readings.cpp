@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/boom/four_modes.h"
 #include "hammer_loads/boom/mode_identifier.h"
 #include "hammer_loads/util/avx2.h"
 #include "hammer_loads/util/square.h"
@@ -52,7 +53,7 @@ HAMMER_LOADS_INLINE void ModeIdentifier::findMotions(int first, double ahead, Fo
   const FourModes now{Lanes{s[0], s[4], s[8], s[12]}, Lanes{s[1], s[5], s[9], s[13]}, Lanes{}, Lanes{}};
   const Lanes omega = fourOf(given_omega_, first) * lanesAt(ratio_.data() + first);
   ModeHistory::Place place;
-  if (ahead < 0.0 && history_.find(-ahead, place)) return history_.look(first, place, omega, now, then);
+  if (ahead < 0.0 && history_.find(-ahead, place)) return look(history_, place, first, omega, now, then);
   const Lanes force = fourOf(force_, first), zeta = lanesAt(damping_.data() + first);
   const Lanes rock = fourOf(contact_, first) * (follows_contact_ ? state_[kContact] : 0.0);
   const Lanes acceleration = force + rock - 2.0 * zeta * omega * now.v - omega * omega * now.x;
