@@ -7,7 +7,7 @@
 #include "hammer_loads/util/inline.h"
 
 // All of it is inlined: no call passes a register that some CPUs have not.
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
