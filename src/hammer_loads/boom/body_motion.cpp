@@ -52,7 +52,7 @@ HAMMER_LOADS_INLINE LaneWrench loadOf(const PlacedBody& body, const Pose& X_BL, 
   const Lanes moment = product(body.inertia.data(), m.angular_acceleration.data()) +
                        cross(rate, product(body.inertia.data(), m.rate.data()));
   const Lanes force = -body.mass * acceleration;
-  return {force, cross(lanesAt(X_BL.data() + 12) + r, force) - moment};
+  return {force, cross(originOf(X_BL) + r, force) - moment};
 }
 
 /// root_acceleration: against gravity it stands for the weight.
@@ -64,7 +64,7 @@ HAMMER_LOADS_INLINE void findMotions(const Chain& chain, const ChainPose& pose, 
   storeMotion(now, result[0]);
   for (int i = 1; i < chain.links(); ++i) {
     const auto here = static_cast<std::size_t>(i);
-    const Lanes p = lanesAt(pose.X_BL[here].data() + 12);
+    const Lanes p = originOf(pose.X_BL[here]);
     now.acceleration = accelerationAt(now, p - origin);
     origin = p;
     const int joint = chain.link(i).joint;

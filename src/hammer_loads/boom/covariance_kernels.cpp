@@ -2,18 +2,13 @@
 
 #include <limits>
 
+#include "hammer_loads/boom/lanes.h"
 #include "hammer_loads/util/avx2.h"
-#include "hammer_loads/util/inline.h"
 
 namespace hammer_loads {
 namespace {
 
 constexpr int kLane = 4;
-/// Four numbers: two registers of any x86-64, one of most.
-typedef double Lane __attribute__((vector_size(kLane * sizeof(double)), aligned(sizeof(double)), may_alias));
-
-HAMMER_LOADS_INLINE const Lane& laneAt(const double* values) noexcept { return *reinterpret_cast<const Lane*>(values); }
-HAMMER_LOADS_INLINE Lane& laneAt(double* values) noexcept { return *reinterpret_cast<Lane*>(values); }
 
 // Blocks by value, counts as constants: else each store would make the compiler read them again.
 
@@ -21,14 +16,14 @@ template <int count>
 HAMMER_LOADS_INLINE void timesRowsOf(CovarianceBlock P, const double* rows, int begin, const int* unit,
                                      double* results) noexcept {
   for (int i = P.first; i < P.last; i += kLane) {
-    Lane sum[count];
-    for (int k = 0; k < count; ++k) sum[k] = laneAt(P.values + unit[k] * P.stride + i);
+    Lanes sum[count];
+    for (int k = 0; k < count; ++k) sum[k] = lanesAt(P.values + unit[k] * P.stride + i);
     const double* column = P.values + begin * P.stride + i;
     for (int j = begin; j < P.last; ++j, column += P.stride) {
-      const Lane value = laneAt(column);
+      const Lanes value = lanesAt(column);
       for (int k = 0; k < count; ++k) sum[k] += rows[k * P.stride + j] * value;
     }
-    for (int k = 0; k < count; ++k) laneAt(results + k * P.stride + i) = sum[k];
+    for (int k = 0; k < count; ++k) store(sum[k], results + k * P.stride + i);
   }
 }
 
@@ -37,13 +32,13 @@ HAMMER_LOADS_INLINE void subtractSquaresOf(CovarianceBlock P, const double* colu
   double minus[count];
   for (int k = 0; k < count; ++k) minus[k] = -1.0 / S[k];
   for (int i = P.first; i < P.last; i += kLane) {
-    Lane gain[count];
-    for (int k = 0; k < count; ++k) gain[k] = minus[k] * laneAt(columns + k * P.stride + i);
+    Lanes gain[count];
+    for (int k = 0; k < count; ++k) gain[k] = minus[k] * lanesAt(columns + k * P.stride + i);
     double* changed = P.values + P.first * P.stride + i;
     for (int j = P.first; j < P.last; ++j, changed += P.stride) {
-      Lane value = laneAt(changed);
+      Lanes value = lanesAt(changed);
       for (int k = 0; k < count; ++k) value += gain[k] * columns[k * P.stride + j];
-      laneAt(changed) = value;
+      store(value, changed);
     }
   }
 }
@@ -68,13 +63,13 @@ HAMMER_LOADS_INLINE void replaceTwoAny(CovarianceBlock P, int first, const int* 
   for (int k = 0; k < 5; ++k) from[k] = P.values + of[k] * P.stride;
   double *one = P.values + first * P.stride, *other = one + P.stride;
   for (int i = P.first; i < P.last; i += kLane) {
-    Lane sum_one{}, sum_other{};
+    Lanes sum_one{}, sum_other{};
 #pragma GCC unroll 5
     for (int k = 0; k < 5; ++k) {
-      const Lane value = laneAt(from[k] + i);
+      const Lanes value = lanesAt(from[k] + i);
       sum_one += by_one[k] * value, sum_other += by_other[k] * value;
     }
-    laneAt(one + i) = sum_one, laneAt(other + i) = sum_other;
+    store(sum_one, one + i), store(sum_other, other + i);
   }
   // P F^T so far. The two states' own block needs the rows as well; then rows are what columns are.
   double own[2][2]{};
@@ -96,21 +91,21 @@ HAMMER_LOADS_INLINE void findVariancesUpTo(LinearLoads loads, const double* cova
                                            double* variance) noexcept {
   const double* by_input = loads.fours;
   for (int load = 0; load < loads.loads; load += kLane, by_input += kLane * loads.inputs) {
-    Lane half{};
+    Lanes half{};
 #pragma GCC unroll 6
     for (int k = 0; k < most; ++k) {
       if (most != kUsualInputs && k >= loads.inputs) break;
       const double* column = covariance + k * stride;
-      const Lane by = laneAt(by_input + kLane * k);
-      Lane with = 0.5 * column[k] * by;
+      const Lanes by = lanesAt(by_input + kLane * k);
+      Lanes with = 0.5 * column[k] * by;
 #pragma GCC unroll 6
       for (int i = 0; i < most; ++i) {
         if (most != kUsualInputs && i >= loads.inputs) break;
-        if (i > k) with += column[i] * laneAt(by_input + kLane * i);
+        if (i > k) with += column[i] * lanesAt(by_input + kLane * i);
       }
       half += by * with;
     }
-    laneAt(variance + load) = half < 0.0 ? Lane{} : 2.0 * half;
+    store(half < 0.0 ? Lanes{} : 2.0 * half, variance + load);
   }
 }
 
@@ -124,13 +119,13 @@ HAMMER_LOADS_INLINE void addLargerSquareAny(LinearLoads loads, const double* one
                                             double* variance) noexcept {
   const double* by_input = loads.fours;
   for (int load = 0; load < loads.loads; load += kLane) {
-    Lane by_one{}, by_other{};
+    Lanes by_one{}, by_other{};
     for (int i = 0; i < loads.inputs; ++i, by_input += kLane) {
-      const Lane by = laneAt(by_input);
+      const Lanes by = lanesAt(by_input);
       by_one += one[i] * by, by_other += other[i] * by;
     }
     by_one *= by_one, by_other *= by_other;
-    laneAt(variance + load) += by_one > by_other ? by_one : by_other;
+    store(lanesAt(variance + load) + (by_one > by_other ? by_one : by_other), variance + load);
   }
 }
 

@@ -1,4 +1,5 @@
-/// Vectors of space in four lanes: one register with AVX, two of any x86-64. The fourth lane does not matter.
+/// Four numbers, most of them vectors of space, in lanes: one register with AVX, two of any x86-64. Of a
+/// vector the fourth lane does not matter.
 #pragma once
 
 #include <cstring>
@@ -42,9 +43,10 @@ HAMMER_LOADS_INLINE double dot(const Lanes& a, const Lanes& b) noexcept {
   return c[0] + c[1] + c[2];
 }
 
+HAMMER_LOADS_INLINE Lanes originOf(const Pose& X) noexcept { return lanesAt(X.data() + 12); }
 /// A point of a frame in the frame that X is seen from.
 HAMMER_LOADS_INLINE Lanes pointAt(const Pose& X, const double* p) noexcept {
-  return lanesAt(X.data() + 12) + product(X.data(), p);
+  return originOf(X) + product(X.data(), p);
 }
 
 struct LaneWrench {
@@ -68,7 +70,7 @@ HAMMER_LOADS_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) noexc
 
 HAMMER_LOADS_INLINE double sumOf(const Lanes& v) noexcept { return (v[0] + v[2]) + (v[1] + v[3]); }
 
-/// Of the transpose of a matrix in three columns of four.
+/// Of the transpose of a matrix in three columns of four; by transpose() with a fourth it took 1 % of a sample more.
 struct TransposedLanes {
   Lanes x, y, z;
 };

@@ -5,7 +5,6 @@
 namespace hammer_loads {
 namespace {
 
-Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
 Eigen::Vector3d across(const Wrench& w) noexcept { return {w.force.y(), w.torque.x(), w.torque.z()}; }
 
 }  // namespace

@@ -71,7 +71,7 @@ HAMMER_LOADS_INLINE bool SteelLoadFinder::findByAny(const ChainState& state, Ste
 HAMMER_LOADS_INLINE bool SteelLoadFinder::addHammer(const ChainState& state, Working& working) const noexcept {
   const Pose& X_BT = state.pose.tip();
   LaneWrench hammer{product(X_BT.data(), state.w_tip.force.data()), product(X_BT.data(), state.w_tip.torque.data())};
-  hammer.torque += cross(lanesAt(X_BT.data() + 12), hammer.force);
+  hammer.torque += cross(originOf(X_BT), hammer.force);
   bool finite = true;
   for (int i = chain_.links() - 1; i > 0; --i) {
     const auto here = static_cast<std::size_t>(i);

@@ -52,8 +52,7 @@ struct CrankBelief {
   /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
   /// factor and the speed go together.
   void boundFactor() noexcept;
-  /// Scalar measurement of one variable; moves. by_error: what the sensor's errors make of the
-  /// measurement.
+  /// Scalar measurement of one variable; moves. by_error: what the sensor's errors make of the measurement.
   void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error) noexcept;
   /// The same of a speed whose innovation has the variance `total`.
   void correctSpeed(double innovation, double total, const ConstantErrors::Row& measured) noexcept {

@@ -23,7 +23,7 @@ class ShaftModel {
   /// Nothing: the motor turns with the crank.
   const std::optional<Coupling>& coupling() const noexcept { return coupling_; }
   ShaftLoad operator()(CrankAngle angle) const noexcept { return at(angle); }
-  /// The same with zero for the slopes, whose arithmetic the compiler then leaves out: a path's rates need none.
+  /// The same with zero for the slopes, whose arithmetic the compiler then leaves out: a flexible path needs none.
   ShaftLoad withoutSlopes(CrankAngle angle) const noexcept {
     ShaftLoad load = at(angle);
     load.half_inertia_slope = load.weight_torque_slope = 0.0;

@@ -10,9 +10,6 @@ namespace {
 
 constexpr double kUnexplainedMemory = 1.0;  // [s]
 
-/// Of a load that onTip() makes.
-Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
-
 }  // namespace
 
 /// What hammer and oil as given do not make of the hull's acceleration is a force on its mass.
