@@ -105,9 +105,9 @@ TEST(StepWrenches, NoInstantOfAStepIsBeyondThem) {
       std::vector<double> times{0.0}, forces{load.at(step.at(0.0)).force_z};
       forEachStepWrench(
           load, step,
-          [&](double time, const HullWrench& wrench) {
-            EXPECT_GE(time, times.back());
-            times.push_back(time);
+          [&](const StepPlace& place, const HullWrench& wrench) {
+            EXPECT_GE(place.time, times.back());
+            times.push_back(place.time);
             forces.push_back(wrench.force_z);
           },
           [&](double) { ++blows; });

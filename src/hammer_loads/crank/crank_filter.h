@@ -59,6 +59,7 @@ class CrankFilter final : public CrankTracker {
   Tracking update(double dt, const CrankSample& sample) noexcept override;
   CrankEstimate estimate() const noexcept override { return estimateOf(model_, load(), now_.state); }
   CrankEstimate between(double dt) const noexcept override;
+  std::optional<CrankWays> waysBetween(double dt) const noexcept override;
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
   Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
     return covarianceOf(now_, load(), torque_part);
@@ -110,6 +111,10 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
 
+  /// The last two and the step between them.
+  BetweenSamples lastStep() const noexcept {
+    return {model_, step_model_, before_, now_, before_hull_, now_hull_, step_, mostSpeed()};
+  }
   ShaftMatrix grown(const CrankBelief& belief) const noexcept;
   Eigen::Matrix3d covarianceOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
   /// At now_ with the latest motion of the hull.

@@ -30,7 +30,11 @@ bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torq
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
   if (dt == 0.0) return estimateOf(model_, before_load_, before_.state);
-  return estimateBetween({model_, step_model_, before_, now_, before_hull_, now_hull_, step_, mostSpeed()}, dt);
+  return estimateBetween(lastStep(), dt);
+}
+
+std::optional<CrankWays> CrankFilter::waysBetween(double dt) const noexcept {
+  return hammer_loads::waysBetween(lastStep(), std::min(dt, step_));
 }
 
 /// The way forward from the sample before may strike earlier than the way between both, with a blow not yet known.

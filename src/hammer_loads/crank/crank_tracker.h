@@ -28,6 +28,11 @@ struct CrankEstimate {
   double drive_lead_speed{}, drive_lead_acceleration{};
 };
 
+/// The crank at one place between two samples: by the way forward from the earlier one, by the way back from the later.
+struct CrankWays {
+  CrankEstimate forward, back;
+};
+
 /// What a blow did to the crank: its speed after over its speed before.
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
@@ -59,6 +64,9 @@ class CrankTracker {
   /// Estimate dt [s] after the last but one accepted sample, 0 <= dt <= step between the last two. Continuous in dt
   /// but for the acceleration at a blow; equals estimate() at the end. Only after kContinued.
   virtual CrankEstimate between(double dt) const noexcept = 0;
+  /// What the two samples each say of between(dt), where both say something: the estimate is that of neither where they
+  /// contradict each other. Nothing where one of the ways runs away.
+  virtual std::optional<CrankWays> waysBetween(double dt) const noexcept { return CrankWays{between(dt), between(dt)}; }
   /// False while the speed is still unknown (first sample without one).
   virtual bool hasSpeed() const noexcept = 0;
   /// False where no drive gives what the estimate needs: degrees instead of radians, for instance.

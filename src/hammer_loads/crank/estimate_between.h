@@ -1,6 +1,8 @@
 /// The estimate between two samples.
 #pragma once
 
+#include <optional>
+
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/flexible_shaft.h"
@@ -29,5 +31,8 @@ struct BetweenSamples {
 /// samples that no machine makes either may run away; it is left out then. dt after the earlier one, less than the step
 /// [s].
 CrankEstimate estimateBetween(const BetweenSamples& samples, double dt) noexcept;
+
+/// Both ways, each with its own speed and torque, at the place between them. Nothing where one has run away.
+std::optional<CrankWays> waysBetween(const BetweenSamples& samples, double dt) noexcept;
 
 }  // namespace hammer_loads

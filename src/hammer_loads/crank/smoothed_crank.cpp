@@ -1,9 +1,8 @@
 #include "hammer_loads/crank/smoothed_crank.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "hammer_loads/crank/estimate_between.h"
 
 namespace hammer_loads {
 namespace {
@@ -42,9 +41,16 @@ CrankEstimate SmoothedCrank::estimate() const noexcept {
 
 CrankEstimate SmoothedCrank::between(double dt) const noexcept {
   if (dt >= now_.step) return estimate();
+  return estimateBetween(lastStep(), dt);
+}
+
+std::optional<CrankWays> SmoothedCrank::waysBetween(double dt) const noexcept {
+  return hammer_loads::waysBetween(lastStep(), std::min(dt, now_.step));
+}
+
+BetweenSamples SmoothedCrank::lastStep() const noexcept {
   const double most_speed = track_->filter().mostSpeed();
-  return estimateBetween({model_, step_model_, before_, now_.belief, before_hull_, now_hull_, now_.step, most_speed},
-                         dt);
+  return {model_, step_model_, before_, now_.belief, before_hull_, now_hull_, now_.step, most_speed};
 }
 
 /// Between those at both ends: forward from the earlier one, with the blow as it is known by now.

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "hammer_loads/crank/crank_track.h"
+#include "hammer_loads/crank/estimate_between.h"
 
 namespace hammer_loads {
 
@@ -20,6 +21,7 @@ class SmoothedCrank final : public CrankTracker {
 
   CrankEstimate estimate() const noexcept override;
   CrankEstimate between(double dt) const noexcept override;
+  std::optional<CrankWays> waysBetween(double dt) const noexcept override;
   bool hasSpeed() const noexcept override { return now_.has_speed; }
   bool isPlausible() const noexcept override { return now_.is_plausible; }
   Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
@@ -36,6 +38,7 @@ class SmoothedCrank final : public CrankTracker {
 
  private:
   Tracking next() noexcept;
+  BetweenSamples lastStep() const noexcept;
   Eigen::Matrix3d covarianceOf(const CrankBelief& belief, double torque_part) const noexcept;
   ShaftMatrix grown(const CrankBelief& belief) const noexcept;
 

@@ -8,6 +8,10 @@ namespace {
 constexpr double kAside = 1e-7;     // [s] before and after the blow, where its two sides are looked at
 constexpr double kBlowSpeed = 1.0;  // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
 
+bool isEarlier(const CrankStep::Passage& passage, Side side) noexcept {
+  return (side == Side::kBeforeBlow) == passage.forward;
+}
+
 }  // namespace
 
 void CrankStep::forget(const CrankPosition& at) noexcept {
@@ -74,12 +78,21 @@ double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
   return f_high <= -f_low ? high : low;
 }
 
+double CrankStep::timeBesides(const Passage& passage, Side side) const noexcept {
+  return isEarlier(passage, side) ? std::max(0.0, passage.time - kAside) : passage.time + kAside;
+}
+
 CrankEstimate CrankStep::besides(const Passage& passage, Side side) const noexcept {
-  const bool earlier = (side == Side::kBeforeBlow) == passage.forward;
-  CrankEstimate estimate = at(earlier ? (passage.time > kAside ? passage.time - kAside : 0.0) : passage.time + kAside);
+  CrankEstimate estimate = at(timeBesides(passage, side));
   estimate.position = {passage.blow, {0.0, side}};
-  estimate.speed = earlier ? passage.speed_before : passage.speed_after;
+  estimate.speed = isEarlier(passage, side) ? passage.speed_before : passage.speed_after;
   return estimate;
+}
+
+std::optional<CrankWays> CrankStep::waysBesides(const Passage& passage, Side side) const noexcept {
+  std::optional<CrankWays> ways = tracker_->waysBetween(timeBesides(passage, side));
+  if (ways) ways->forward.position = ways->back.position = {passage.blow, {0.0, side}};
+  return ways;
 }
 
 }  // namespace hammer_loads

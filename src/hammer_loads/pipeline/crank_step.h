@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/hammer/hammer_model.h"
@@ -62,10 +63,15 @@ class CrankStep {
   /// Estimate on one side of a passage that is not smooth: exactly at the blow, so that nothing is lost to rounding
   /// there.
   CrankEstimate besides(const Passage& passage, Side side) const noexcept;
+  /// What the samples at the step's ends each say of at(time), of besides(passage, side); nothing where one of them
+  /// does not reach there.
+  std::optional<CrankWays> ways(double time) const noexcept { return tracker_->waysBetween(time); }
+  std::optional<CrankWays> waysBesides(const Passage& passage, Side side) const noexcept;
 
  private:
   Passage passageOf(std::int64_t blow, bool forward) const noexcept;
   double timeOfBlow(std::int64_t blow) const noexcept;
+  double timeBesides(const Passage& passage, Side side) const noexcept;
 
   const CrankTracker* tracker_;
   const HullModel* model_;

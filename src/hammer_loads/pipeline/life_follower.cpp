@@ -5,9 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/pipeline/channel_values.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
-#include "hammer_loads/pipeline/step_wrenches.h"
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {
@@ -63,26 +61,61 @@ void LifeFollower::follow() noexcept {
       recorder_.gap();
       turn_.restart();
     }
-    channelValues(result, deviationAtSample(*pipeline_), boom_, values_.data(), deviations_.data());
-    recorder_.sample(result.stamp, values_.data(), deviations_.data());
-    turn_.add(result.stamp, values_.data());
+    if (!result.beside_blow) count(result);
+    published_ = !result.beside_blow;
     last_ = result.stamp;
     if (!since_) since_ = last_;
   }
   confirmTurns(result);
 }
 
+void LifeFollower::count(const SampleResult& result) noexcept {
+  channelValues(result, deviationAtSample(*pipeline_), boom_, values_.data(), deviations_.data());
+  recorder_.sample(result.stamp, values_.data(), deviations_.data());
+  turn_.add(result.stamp, values_.data());
+}
+
 void LifeFollower::followStep(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
+  const StepLoad load{pipeline_->model(), drive, result.hull.motion};
+  const bool published = published_ && !result.beside_blow;
+  std::array<double, kHullChannels> end;
+  wrenchValues(result.wrench, end.data());
   forEachStepWrench(
-      StepLoad{pipeline_->model(), drive, result.hull.motion}, step,
-      [&](double time, const HullWrench& wrench) {
+      load, step,
+      [&](const StepPlace& place, const HullWrench& wrench) {
+        if (!published) return;
         wrenchValues(wrench, between_.data());
-        recorder_.between(step.stampAt(time), between_.data());
-        turn_.between(step.stampAt(time), between_.data());
+        keepWhatBothEndsSay(load, place, end);
+        recorder_.between(step.stampAt(place.time), between_.data());
+        turn_.between(step.stampAt(place.time), between_.data());
       },
       [&](double time) { endTurn(step.stampAt(time)); });
+}
+
+/// A load beyond those at both ends counts up to twice what the step's path has beyond them from either end: where a
+/// sample corrects the path, what lies between is of neither.
+void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place,
+                                       const std::array<double, kHullChannels>& end) noexcept {
+  const auto isWithin = [&](std::size_t i) {
+    return between_[i] >= std::min(values_[i], end[i]) && between_[i] <= std::max(values_[i], end[i]);
+  };
+  bool all_within = true;
+  for (std::size_t i = 0; i < end.size(); ++i) all_within = all_within && isWithin(i);
+  if (all_within) return;
+  std::array<double, kHullChannels> forward, back;
+  const std::optional<CrankWays> ways = place.ways(pipeline_->crank().step());
+  if (ways) {
+    wrenchValues(load.at(ways->forward), forward.data());
+    wrenchValues(load.at(ways->back), back.data());
+  }
+  for (std::size_t i = 0; i < end.size(); ++i) {
+    const double least = std::min(values_[i], end[i]), greatest = std::max(values_[i], end[i]);
+    const double above = ways ? std::max(0.0, std::min(forward[i], back[i]) - greatest) : 0.0;
+    const double below = ways ? std::max(0.0, least - std::max(forward[i], back[i])) : 0.0;
+    between_[i] = std::clamp(between_[i], least - 2.0 * below, greatest + 2.0 * above);
+  }
 }
 
 /// Whether it was a blow shows later.

@@ -8,13 +8,15 @@
 
 #include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/life/turn_loads.h"
+#include "hammer_loads/pipeline/channel_values.h"
 #include "hammer_loads/pipeline/pipeline.h"
+#include "hammer_loads/pipeline/step_wrenches.h"
 
 namespace hammer_loads {
 
-/// Takes what a pipeline's samples gave: every channel at each accepted sample, the hull wrench between them where it
-/// is extreme and on both sides of a blow, in time order. Beside the pipeline, which does not know of it. How a run
-/// goes:
+/// Takes what a pipeline's samples gave: every channel at each sample whose loads are published, the hull wrench
+/// between two such where it is extreme and on both sides of a blow, as far as both say so, in time order. Beside the
+/// pipeline, which does not know of it. How a run goes:
 ///
 ///     const SampleResult& result = pipeline.crankSample(...);
 ///     if (follower.due()) use(follower.take());
@@ -43,7 +45,10 @@ class LifeFollower {
   std::optional<StampNs> since() const noexcept { return since_; }  ///< first sample counted
 
  private:
+  void count(const SampleResult& result) noexcept;
   void followStep(const SampleResult& result) noexcept;
+  void keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place,
+                           const std::array<double, kHullChannels>& end) noexcept;
   void endTurn(StampNs stamp) noexcept;
   void confirmTurns(const SampleResult& result) noexcept;
 
@@ -54,6 +59,7 @@ class LifeFollower {
   life::TurnLoadsRecorder turn_;
   std::optional<life::LifePiece> total_;
   std::optional<StampNs> since_, last_;  ///< first and last sample counted; last_: none after a gap
+  bool published_{};                     ///< the loads at the last sample
   std::optional<StampNs> last_blow_;     ///< the last one that was none but a blow
   /// Turns whose blow is not measured yet, and those just measured: as many as a result has ends, and one.
   std::array<life::TurnLoads, std::tuple_size<decltype(SampleResult::ends)>::value + 1> turns_;

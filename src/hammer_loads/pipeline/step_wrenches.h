@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/crank_step.h"
@@ -36,7 +37,18 @@ struct ExtremeInstants {
 /// extreme where the cubic by values and slopes of both ends has it: off by some 1e-4 of the span.
 ExtremeInstants extremeInstants(const StepLoad& load, const CrankStep& step, const SmoothSpan& span) noexcept;
 
-/// Calls wrench(time, wrench) in order of time for each extreme inside the step and for both sides of each blow, and
+/// Where in a step a wrench is: at a time after its start [s], or exactly on one side of a passage of the blow.
+struct StepPlace {
+  double time{};
+  const CrankStep::Passage* passage{};  ///< null: at the time
+  Side side{};                          ///< of the passage
+
+  std::optional<CrankWays> ways(const CrankStep& step) const noexcept {
+    return passage != nullptr && !passage->smooth ? step.waysBesides(*passage, side) : step.ways(time);
+  }
+};
+
+/// Calls wrench(place, wrench) in order of time for each extreme inside the step and for both sides of each blow, and
 /// turn(time) between them where a blow may end a turn. Times are after the step's start [s]. Of
 /// extremes closer than 1.25 ms one may be missed; points on the way to them are given as well.
 template <typename OnWrench, typename OnTurn>
@@ -53,24 +65,24 @@ void forEachStepWrench(const StepLoad& load, const CrankStep& step, const OnWren
       part.to = last ? span.to : span.from + (span.to - span.from) * i / count;
       part.finish = last ? span.finish : step.at(part.to);
       const ExtremeInstants extremes = extremeInstants(load, step, part);
-      for (std::size_t k = 0; k < extremes.count; ++k) wrench(extremes.time[k], load.at(step.at(extremes.time[k])));
-      if (!last) wrench(part.to, load.at(part.finish));
+      for (std::size_t k = 0; k < extremes.count; ++k)
+        wrench(StepPlace{extremes.time[k]}, load.at(step.at(extremes.time[k])));
+      if (!last) wrench(StepPlace{part.to}, load.at(part.finish));
     }
   };
   SmoothSpan span{0.0, 0.0, step.at(0.0), {}};
   for (const CrankStep::Passage& passage : step) {
-    const auto side = [&](bool earlier) {
-      if (passage.smooth) return step.at(passage.time);
-      return step.besides(passage, earlier == passage.forward ? Side::kBeforeBlow : Side::kAfterBlow);
-    };
+    const Side first = passage.forward ? Side::kBeforeBlow : Side::kAfterBlow;
+    const Side second = passage.forward ? Side::kAfterBlow : Side::kBeforeBlow;
+    const auto on = [&](Side side) { return passage.smooth ? step.at(passage.time) : step.besides(passage, side); };
     span.to = passage.time;
-    span.finish = side(true);
+    span.finish = on(first);
     alongSpan(span);
-    wrench(passage.time, load.at(span.finish));
+    wrench(StepPlace{passage.time, &passage, first}, load.at(span.finish));
     if (passage.may_strike) turn(passage.time);
-    span.begin = side(false);
+    span.begin = on(second);
     span.from = passage.time;
-    wrench(passage.time, load.at(span.begin));
+    wrench(StepPlace{passage.time, &passage, second}, load.at(span.begin));
   }
   span.to = step.length();
   span.finish = step.at(span.to);
