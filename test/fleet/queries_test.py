@@ -27,7 +27,6 @@ class Queries(MergeTest):
 
     def test_answers(self):
         self.assertEqual([row["machine"] for row in self.answer("worst_machines")], ["red", "blue"])
-        self.assertEqual([row["machine"] for row in self.answer("sensors_to_calibrate")], ["blue"])
         self.assertEqual(self.answer("restarts")[0]["restarts"], "4")
         self.assertEqual(self.answer("highest_peaks")[0]["machine"], "red")
         self.assertEqual([(row["machine"], row["refused"]) for row in self.answer("refused_samples")], [("blue", "8")])
@@ -42,6 +41,17 @@ class Queries(MergeTest):
         self.assertEqual(len(self.answer("lowest_hold_down")), 2)
         self.assertEqual(self.answer("blank_turns"), [])
         self.assertEqual(self.answer("life_left"), [])
+
+    def test_sensors_to_calibrate_takes_warnings(self):
+        """Sound figures and a warning: the sensor asks for it; a warning about something else does not."""
+        self.assertEqual([row["machine"] for row in self.answer("sensors_to_calibrate")], ["blue"])
+        self.merge(self.add("w", "white", of=sample.Machine("white"), runs=2,
+                            warnings=[("zero", "crank_zero_rad: run calibrate"), ("jitter", "jitters")]),
+                   self.add("y", "yellow", of=sample.Machine("yellow"), warnings=[("hammer", "no hammer file")]))
+        rows = {row["machine"]: row for row in self.answer("sensors_to_calibrate")}
+        self.assertEqual(sorted(rows), ["blue", "white"])
+        self.assertEqual((rows["white"]["runs"], rows["white"]["warnings"]), ("2", "2"))
+        self.assertEqual(rows["white"]["a_warning"], "crank_zero_rad: run calibrate")
 
     def test_every_shipped_question_runs_and_says_what_it_asks(self):
         shipped = sorted(FLEET.glob("queries/*.sql"))
