@@ -7,6 +7,7 @@ import unittest
 
 from fleet_support import FLEET, MergeTest
 import sample_database as sample
+from support import Reader, report
 
 
 class Queries(MergeTest):
@@ -41,6 +42,22 @@ class Queries(MergeTest):
         self.assertEqual(len(self.answer("lowest_hold_down")), 2)
         self.assertEqual(self.answer("blank_turns"), [])
         self.assertEqual(self.answer("life_left"), [])
+
+    def test_failed_bags_are_the_last_warnings_of_a_page(self):
+        self.merge(self.add("a", "amber", status="failed"),
+                   self.add("z", "zinc", of=sample.Machine("zinc"), warnings=[("jitter", "crank stamps jitter")]))
+        out = self.directory / "all.html"
+        self.assertEqual(report(self.directory / "merged.sqlite", "--html", out).returncode, 0)
+        text = Reader(out.read_text(encoding="utf-8")).text
+        warned, amber, green = (text.index(words) for words in ("crank stamps jitter", "bag /in/a.bag", "bag /in/g.bag"))
+        self.assertLess(warned, min(amber, green))
+
+    def test_misuse_by_machine(self):
+        self.merge(self.add("m", "mauve", of=sample.Machine("mauve", misuse=(3, 100, 5, None)), seconds=80.0))
+        row = next(row for row in self.answer("misuse") if row["machine"] == "mauve")
+        self.assertAlmostEqual(float(row["blank_strokes_per_hour"]), 3 * 3600 / 80, delta=0.5)
+        self.assertAlmostEqual(float(row["unpressed_blows_per_hour"]), 5 * 3600 / 80, delta=0.5)
+        self.assertEqual(row["still_s_per_hour"], "")
 
     def test_sensors_to_calibrate_takes_warnings(self):
         """Sound figures and a warning: the sensor asks for it; a warning about something else does not."""
