@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "settings/temporary_file.h"
 
 namespace hammer_loads {
@@ -12,7 +14,7 @@ namespace {
 TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
   const test::TemporaryFile file("");
   {
-    TableWriter writer(file.path(), {}, {});
+    TableWriter writer(file.path(), {{"turn", true}}, {{"turn", true}});
     RunRecord record;
     record.blank_strokes = 3;
     writer.run(1, record);
@@ -24,9 +26,10 @@ TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
     ASSERT_EQ(writer.problem(), "");
   }
   life::Database database(file.path(), life::Database::Use::kRead, 0);
-  life::Database::Statement rows(database,
-                                 "SELECT blank_strokes, judged_blows, unpressed_blows, still_time_s, unpressed_blows IS "
-                                 "NULL FROM runs ORDER BY run_id");
+  life::Database::Statement rows(
+      database,
+      "SELECT blank_strokes, judged_blows, unpressed_blows, still_time_s, unpressed_blows IS "
+      "NULL FROM runs ORDER BY run_id");
   ASSERT_TRUE(rows.step());
   EXPECT_EQ(rows.integer(0), 3);
   EXPECT_EQ(rows.integer(1), 0);

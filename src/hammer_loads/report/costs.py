@@ -10,6 +10,7 @@ from report.subjects import MOST_TURNS_ONE_BY_ONE, add_piece
 SLOPE = 5.0  # where no S-N curve is given
 PARTS = (0.01, 0.03, 0.1, 0.3, 0.5)
 DEAREST = 10
+LEAST_TURNS = 3.0  # turns: of fewer a share is mostly the rounding of their number
 FACTORS = (0.8, 0.9, 0.95, 1.05, 1.1, 1.2)
 MOST_RECORDINGS = 500  # one by one
 HOUR_NS = 3600 * 10 ** 9
@@ -114,7 +115,7 @@ def which_turns(subject, channel):
     if not any(cost[0] > 0.0 for cost in costs):
         return ""
     words = "; ".join(f"{100 * part:g} % of the blows did {number(100 * dearest_share(costs, part), 3)} %"
-                      for part in PARTS if part * len(costs) >= 1.0)
+                      for part in PARTS if part * len(costs) >= LEAST_TURNS)
     counted = damage_of(channel, channel.count.ranges_and_means())
     held = sum(cost[0] for cost in costs)
     content = paragraph(f"Of the damage {words}.") if words else ""

@@ -19,8 +19,8 @@ def warnings_of(subject):
         found["no whole turn: there is nothing about blows, pulses and turns"] = []
     impossible = subject.impossible_blows()
     if impossible:
-        found[f"{impossible} of {subject.total('blows')} blows say nothing possible of their energy and restitution: they "
-              "are in no picture and no figure"] = []
+        found[f"blows whose energy and restitution cannot be: {impossible} of {subject.total('blows')}; they are in no "
+              "picture and no figure"] = []
     return found
 
 
