@@ -105,6 +105,21 @@ class Work(ReportTest):
                 self.assertNotIn(value[:8], page.text)
         self.assertEqual([row["Recording"] for row in page.table("Runs").values()], ["site, run 1", "site, run 2"])
 
+    def test_runs_of_one_machine_are_compared(self):
+        sample.make(self.file, seconds=60.0, runs=3)
+        self.ask("UPDATE blows SET energy_J = 1.2 * energy_J WHERE run_id = 3",
+                 "INSERT INTO warnings VALUES(2, 0, 'jitter', 'crank stamps jitter')")
+        medians = [statistics.median(e for e, in self.ask(f"SELECT energy_J FROM blows WHERE run_id = {run}"))
+                   for run in (1, 2, 3)]
+        header, *rows = self.page_of(self.file).tables["Runs below each other"][0]
+        at = header.index("Blow energy [J]")
+        self.assertEqual([row[0] for row in rows], ["site, run 1", "site, run 2", "site, run 3"])
+        for row, median in zip(rows, medians):
+            self.assertAlmostEqual(number(row[at]) / median, 1.0, delta=1e-2)
+        self.assertEqual(rows[0][at + 1], "")
+        self.assertAlmostEqual(number(rows[2][at + 1]), 100.0 * (medians[2] / medians[0] - 1.0), delta=1.0)
+        self.assertEqual([row[at].endswith("?") for row in rows], [False, True, False])
+
     def test_local_time_is_the_readers(self):
         """Its script writes it: the page's bytes hold UTC alone, wherever it is made."""
         pages = []

@@ -3,14 +3,16 @@ from collections import namedtuple
 
 from report.damage import SLOPES
 from report.doubt import COUNTS, CRANK, doubts_of, kind_of
-from report.markup import Raw, block, cell, duration, in_unit, measured, moment, number, paragraph, scaled, table, text
+from report.markup import Raw, block, cell, details, duration, in_unit, measured, moment, number, paragraph, scaled, table, text
 from report.misuse import COUNTERS, counter
-from report.names import without_unit
+from report.names import recording_of, without_unit
 from report.overview import blows_per_hour, total_energy, with_spread
 from report.quantities import QUANTITIES
 from report.sensor_health import refusals_of, worst_of
+from report.series import Segments
 
 MOST_CURVES = 8
+MOST_RUNS = 50
 MOST_SIDE_BY_SIDE = 4  # beyond: a machine is a row
 GRID = 300
 TIME_UNITS = [(86400.0, "days"), (3600.0, "h"), (60.0, "min"), (1.0, "s")]
@@ -25,7 +27,7 @@ def plain(name, value, kind):
 
 
 def turn_figures(segments):
-    for quantity in QUANTITIES:
+    for quantity in (q for q in QUANTITIES if q.key in segments):
         values = segments[quantity.key]
         unit = f" [{quantity.unit}]" if quantity.unit else ""
         yield Figure(f"{quantity.title}{unit}", with_spread(values), values.statistics()[2], CRANK)
@@ -111,6 +113,41 @@ def comparison_table(subjects, columns):
     if any(doubts.values()):
         note += f" {DOUBTFUL}: a warning above puts the figure in doubt."
     return content + paragraph(note, "note")
+
+
+def run_figures(run, segments, at):
+    """Of one run among a subject's: {name: Figure}."""
+    hours = (run["duration_s"] or 0.0) / 3600.0
+    figures = [plain("Blows", run["blows"], COUNTS),
+               plain("Blows per hour", run["blows"] / hours if hours > 0.0 and run["blows"] else None, COUNTS)]
+    for quantity in QUANTITIES:
+        values = Segments()
+        values.runs, values.deviation = [segments[quantity.key].runs[at]], segments[quantity.key].deviation
+        figures += list(turn_figures({quantity.key: values}))
+    return {figure.name: figure for figure in figures}
+
+
+def runs_compared(subject, segments):
+    """The runs of one machine below each other, the first as the measure; nothing of one run or of too many."""
+    if not 2 <= len(subject.runs) <= MOST_RUNS or any(s.of_runs for s in segments.values()):
+        return ""
+    names = recording_of(subject)
+    of_runs = [(names[run["run_id"]], run_figures(run, segments, at), doubts_of(subject, run))
+               for at, run in enumerate(subject.runs)]
+    titles, first, rows = list(of_runs[0][1]), of_runs[0][1], []
+    compared = [title for title in titles if title.startswith(("Blow energy [", "Peak force ["))]
+    header = ["Run"]
+    for title in titles:
+        header += [title, "Diff. [%]"] if title in compared else [title]
+    for name, figures, doubts in of_runs:
+        row = [name]
+        for title in titles:
+            row.append(marked(figures[title], doubts))
+            if title in compared:
+                row.append("" if figures is first else difference(first[title], figures[title]))
+        rows.append(row)
+    content = table("Runs below each other", header, rows)
+    return content if len(rows) <= 12 else details(f"{len(rows)} runs below each other", content)
 
 
 def overlaid(subjects, segments, charts):

@@ -14,10 +14,12 @@ CONCERNS = {
 }
 
 
-def doubts_of(subject):
-    """{kind: first warning that concerns it}, most important first."""
+def doubts_of(subject, only=None):
+    """{kind: first warning that concerns it}, most important first; `only`: of this run."""
     found = {}
-    for _, row in subject.of_runs("SELECT key, text FROM warnings WHERE run_id = ? ORDER BY place"):
+    for run, row in subject.of_runs("SELECT key, text FROM warnings WHERE run_id = ? ORDER BY place"):
+        if only is not None and run["run_id"] != only["run_id"]:
+            continue
         for kind in CONCERNS.get(row["key"], ALL):
             found.setdefault(kind, row["text"])
     return found

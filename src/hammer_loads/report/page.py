@@ -3,7 +3,7 @@ import pathlib
 
 from report.boom_loads import boom_loads
 from report.charts import Charts
-from report.comparison import comparison
+from report.comparison import comparison, runs_compared
 from report.costs import costs
 from report.cycle_figures import cycle_figures
 from report.database import LEDGER
@@ -64,7 +64,7 @@ def notes(databases):
 def subject_section(at, subject, segments, charts, most_points):
     name = f"m{at}"
     channels = subject.counted_channels()
-    parts = [("overview", "Who, when, which parameters", overview(subject, segments)),
+    parts = [("overview", "Who, when, which parameters", overview(subject, segments) + runs_compared(subject, segments)),
              ("work", "Work over time", over_time(subject, segments, charts, name, most_points)),
              ("turns", "Typical and worst turn", turn_pictures(subject)),
              ("loads", "Hull, boom joints and sections", boom_loads(subject, charts)),
