@@ -12,7 +12,7 @@ for home in (HERE.parent / "src" / "hammer_loads", HERE.parent):  # in the sourc
 
 from report.database import RECORDING, Database  # noqa: E402  (the path must be set first)
 from report.problem import Problem  # noqa: E402
-from report.quantities import QUANTITIES  # noqa: E402
+from report.quantities import QUANTITIES, value_of  # noqa: E402
 
 # Copied as they are, with another run_id.
 COPIED = ["refusals", "warnings", "channels", "cycles", "residues"]
@@ -163,8 +163,8 @@ def figures(source, own, run_id):
     """Of each quantity over all turns: count, least, mean, greatest, total."""
     for table in ("turns", "blows"):
         quantities = [q for q in QUANTITIES if q.table == table]
-        listed = ", ".join(f"count({q.expression}), min({q.expression}), avg({q.expression}), max({q.expression}), "
-                           f"sum({q.expression})" for q in quantities)
+        values = [value_of(q, source.columns(table)) for q in quantities]
+        listed = ", ".join(f"count({v}), min({v}), avg({v}), max({v}), sum({v})" for v in values)
         values = next(iter(source.rows(f"SELECT {listed} FROM {table} WHERE run_id = ?", own)))
         for at, quantity in enumerate(quantities):
             yield (run_id, quantity.key, *values[5 * at:5 * at + 5])

@@ -7,6 +7,7 @@ import unittest
 
 from fleet_support import FLEET, MergeTest
 import sample_database as sample
+from support import Reader, report
 
 
 class Queries(MergeTest):
@@ -27,7 +28,6 @@ class Queries(MergeTest):
 
     def test_answers(self):
         self.assertEqual([row["machine"] for row in self.answer("worst_machines")], ["red", "blue"])
-        self.assertEqual([row["machine"] for row in self.answer("sensors_to_calibrate")], ["blue"])
         self.assertEqual(self.answer("restarts")[0]["restarts"], "4")
         self.assertEqual(self.answer("highest_peaks")[0]["machine"], "red")
         self.assertEqual([(row["machine"], row["refused"]) for row in self.answer("refused_samples")], [("blue", "8")])
@@ -42,6 +42,33 @@ class Queries(MergeTest):
         self.assertEqual(len(self.answer("lowest_hold_down")), 2)
         self.assertEqual(self.answer("blank_turns"), [])
         self.assertEqual(self.answer("life_left"), [])
+
+    def test_failed_bags_are_the_last_warnings_of_a_page(self):
+        self.merge(self.add("a", "amber", status="failed"),
+                   self.add("z", "zinc", of=sample.Machine("zinc"), warnings=[("jitter", "crank stamps jitter")]))
+        out = self.directory / "all.html"
+        self.assertEqual(report(self.directory / "merged.sqlite", "--html", out).returncode, 0)
+        text = Reader(out.read_text(encoding="utf-8")).text
+        warned, amber, green = (text.index(words) for words in ("crank stamps jitter", "bag /in/a.bag", "bag /in/g.bag"))
+        self.assertLess(warned, min(amber, green))
+
+    def test_misuse_by_machine(self):
+        self.merge(self.add("m", "mauve", of=sample.Machine("mauve", misuse=(3, 100, 5, None)), seconds=80.0))
+        row = next(row for row in self.answer("misuse") if row["machine"] == "mauve")
+        self.assertAlmostEqual(float(row["blank_strokes_per_hour"]), 3 * 3600 / 80, delta=0.5)
+        self.assertAlmostEqual(float(row["unpressed_blows_per_hour"]), 5 * 3600 / 80, delta=0.5)
+        self.assertEqual(row["still_s_per_hour"], "")
+
+    def test_sensors_to_calibrate_takes_warnings(self):
+        """Sound figures and a warning: the sensor asks for it; a warning about something else does not."""
+        self.assertEqual([row["machine"] for row in self.answer("sensors_to_calibrate")], ["blue"])
+        self.merge(self.add("w", "white", of=sample.Machine("white"), runs=2,
+                            warnings=[("zero", "crank_zero_rad: run calibrate"), ("jitter", "jitters")]),
+                   self.add("y", "yellow", of=sample.Machine("yellow"), warnings=[("hammer", "no hammer file")]))
+        rows = {row["machine"]: row for row in self.answer("sensors_to_calibrate")}
+        self.assertEqual(sorted(rows), ["blue", "white"])
+        self.assertEqual((rows["white"]["runs"], rows["white"]["warnings"]), ("2", "2"))
+        self.assertEqual(rows["white"]["a_warning"], "crank_zero_rad: run calibrate")
 
     def test_every_shipped_question_runs_and_says_what_it_asks(self):
         shipped = sorted(FLEET.glob("queries/*.sql"))

@@ -35,7 +35,8 @@ class Workflow(FleetTest):
         return {bag.rsplit("/", 1)[1]: (status, reason) for bag, status, reason in rows}
 
     def test_broken_bags_are_rows_and_only_changes_run(self):
-        self.run_fleet(self.bags)
+        last = self.run_fleet(self.bags).rstrip().rsplit("\n", 1)[-1]
+        self.assertTrue(last.startswith("fleet: 7 bags, 2 failed (") and "r_broken.bag: " in last, last)
         everything = ["b0.bag", "b1.bag", "r0.bag", "r1.bag", "r2.bag", "r_broken.bag"]
         self.assertEqual(self.calls(), everything)
         rows = self.bags_table()

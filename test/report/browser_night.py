@@ -24,7 +24,7 @@ window.addEventListener('load', function () {
   }
   var after = pictures(), wide = [];
   document.querySelectorAll('main *').forEach(function (e) {
-    if (!e.closest('.scroll') && !e.closest('svg') && e.getBoundingClientRect().right > window.innerWidth + 1) wide.push(e.tagName + '.' + e.className);
+    if ((!e.closest('.scroll') || e.classList.contains('compare')) && !e.closest('svg') && e.getBoundingClientRect().right > window.innerWidth + 1) wide.push(e.tagName + '.' + e.className);
   });
   parent.postMessage(JSON.stringify({
     width: window.innerWidth, scroll: document.documentElement.scrollWidth, wide: wide,

@@ -159,7 +159,7 @@ class Ledger(ReportTest):
 
     def test_page(self):
         page = self.page_of(self.file)
-        self.assertIn("Epoch 1, machine mo100", page.text)
+        self.assertIn("Epoch 1: 2.5 hours", page.text)
         self.assertEqual(sorted(page.table("By the day on which a cycle closed")), ["2026-01-31", "2026-02-01"])
 
     def test_beside_a_recording(self):

@@ -73,7 +73,7 @@ class Page(ReportTest):
         least, mean, greatest = self.ask(
             "SELECT min(t.minimum), avg(mean), max(t.maximum) FROM turn_loads t JOIN channels USING(run_id, channel) "
             "WHERE name = 'section_loads/boom_foot/torque_y_Nm'")[0]
-        shown = rows["section_loads/boom_foot/torque_y_Nm"]
+        shown = rows["section_loads/boom_foot/torque_y"]
         for name, value in (("Least", least), ("Mean of turns", mean), ("Greatest", greatest)):
             self.assertAlmostEqual(number(shown[name]), value / 1000, delta=1e-3 * abs(greatest) / 1000)
         choices = next(c for c in page.charts() if "choices" in c)["choices"]
@@ -137,10 +137,23 @@ class Comparison(ReportTest):
 
     def test_side_by_side_and_overlaid(self):
         page = self.page_of(*self.files)
-        peaks = page.table("Machines side by side")["Peak force [kN], median"]
+        peaks = page.table("Machines side by side")["Peak force [kN]"]
         self.assertAlmostEqual(number(peaks["second"]) / number(peaks["first"]), 1.5, delta=0.05)
+        self.assertAlmostEqual(number(peaks["Diff. [%]"]), 50.0, delta=5.0)
         curves = [c for c in page.charts() if c["labels"] == ["first", "second"]]
         self.assertEqual(len(curves), 5)
+
+    def test_what_a_warning_puts_in_doubt_is_marked(self):
+        third, boom = self.directory / "third.sqlite", self.directory / "boom.sqlite"
+        sample.make(third, seconds=60.0, warnings=[("jitter", "crank stamps jitter by 0.23 ms")])
+        sample.make(boom, seconds=60.0, warnings=[("pressures", "pressures in bar")])
+        rows = self.page_of(self.files[0], third, boom).table("Machines side by side")
+        marked = {label: {name for name, row in rows.items() if row[label].endswith("?")}
+                  for label in ("first", "third", "boom")}
+        self.assertEqual(marked["first"], set())
+        self.assertIn("Blow energy [J]", marked["third"])
+        self.assertNotIn("Blows", marked["third"])
+        self.assertEqual({name.split("/")[0] for name in marked["boom"]}, {"stress"})
 
     def test_many_machines_are_rows(self):
         files = []
@@ -154,7 +167,7 @@ class Comparison(ReportTest):
         other.mkdir()
         sample.make(other / "first.sqlite", seconds=20.0, boom=False)
         header = self.page_of(self.files[0], other / "first.sqlite").tables["Machines side by side"][0][0]
-        self.assertEqual(header[1:], ["first", "first (2)"])
+        self.assertEqual(header[1:], ["first", "first (2)", "Diff. [%]"])
 
     def test_two_machines_in_one_file_are_never_added(self):
         db = sqlite3.connect(str(self.files[0]))
@@ -167,7 +180,7 @@ class Comparison(ReportTest):
         note = "first: holds 2 machines (hammer, boom or their parameters differ); each stands alone"
         page = self.page_of(self.files[0], note=note)
         self.assertIn(note, page.text)
-        self.assertEqual(len(page.tables["Machines side by side"][0][0]), 3)
+        self.assertEqual(page.tables["Machines side by side"][0][0][1:], ["first, machine 1", "first, machine 2", "Diff. [%]"])
 
 
 class LittleData(ReportTest):

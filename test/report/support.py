@@ -31,6 +31,7 @@ class Reader(html.parser.HTMLParser):
     def __init__(self, page):
         super().__init__()
         self.text, self.tables, self.ids, self.tags, self.scripts, self.links = "", {}, [], [], [], []
+        self.pieces = []  # (tag, text) of every piece of text
         self.open, self._rows, self._caption, self._cell = [], None, "", None
         self.feed(page)
         self.close()
@@ -66,10 +67,11 @@ class Reader(html.parser.HTMLParser):
             self.scripts[-1] += data
         elif inside == "caption":
             self._caption += data
-        elif self._rows and inside in ("td", "th"):
+        elif self._rows and any(tag in ("td", "th") for tag in self.open[-3:]):
             self._rows[-1][-1] += data
         if inside not in ("script", "style"):
             self.text += data
+            self.pieces.append((inside, data))
 
     def table(self, caption, at=0):
         """{first column: {header: cell}}."""

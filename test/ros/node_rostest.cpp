@@ -94,9 +94,9 @@ class NodeTest : public testing::Test {
     });
   }
 
-  std::string diagnostic(const std::string& key) {
+  std::string diagnostic(const std::string& key, const std::string& part = "crank") {
     for (const auto& [name, status] : statuses_) {
-      if (name.find("crank") == std::string::npos) continue;
+      if (name.find(part) == std::string::npos) continue;
       for (const auto& value : status.values) {
         if (value.key == key) return value.value;
       }
@@ -159,6 +159,8 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   EXPECT_GT(pulses_.back().amplitude_N, 5000.0);
   EXPECT_NEAR(blows_.back().energy_J, session.blows.back().strike.energy, 0.02 * blows_.back().energy_J);
   EXPECT_GT(blows_.back().mean_press_force_N, 500.0);
+  EXPECT_TRUE(eventually([&] { return diagnostic("blank strokes, per hour", "misuse") == "0"; }));
+  EXPECT_EQ(diagnostic("blows without press force on the rock", "misuse"), "not known: needs cylinder pressures");
 }
 
 TEST_F(NodeTest, RefusesEachBadSampleCountsItAndTakesTheNextGoodOne) {

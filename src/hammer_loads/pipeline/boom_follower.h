@@ -107,6 +107,8 @@ class BoomFollower {
 
   const BoomState& state() const noexcept { return state_; }
   bool known() const noexcept { return known_; }  ///< the last sample had no fault
+  /// Measured pressures show the rock's force on the hull.
+  bool contactKnown() const noexcept { return known_ && tip_.has_value(); }
   const Boom& boom() const noexcept { return boom_; }
   const JointBuffer& joints() const noexcept { return joints_; }
   const CylinderPressures& pressures() const noexcept { return pressures_; }

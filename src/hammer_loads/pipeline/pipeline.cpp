@@ -119,6 +119,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   sampler_.sample(links, result_);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;
+  followMisuse();
   return result_;
 }
 
@@ -192,6 +193,21 @@ void Pipeline::followBoom(const LinksBeside& links) noexcept {
   }
 }
 
+void Pipeline::followMisuse() noexcept {
+  if (crank_.step().known()) counts_.misuse.work_time += crank_.step().length();
+  const bool placed = boom_ && boom_->known();
+  if (placed)
+    misuse_.hullAt(boom_->boom().pose().tip().translation());
+  else
+    misuse_.hullLost();
+  misuse_.pressed(placed && boom_->contactKnown() ? std::make_optional(!boom_->state().press_force_lost)
+                                                  : std::nullopt);
+  for (std::size_t i = 0; i < result_.turn_ends; ++i) {
+    const std::optional<HalfSinePulse>& pulse = result_.ends[i].pulse;
+    misuse_.blow(pulse ? std::make_optional(pulse->period) : std::nullopt);
+  }
+}
+
 /// revised: the blow that is being measured stays; whether it was one shows later.
 void Pipeline::restart(bool revised) noexcept {
   if (!revised) turn_.finishBlow(result_);
@@ -213,6 +229,8 @@ SampleCounts Pipeline::counts() const noexcept {
   SampleCounts counts = counts_;
   counts.blows += turn_.blows();
   counts.backward_passes += turn_.backwardPasses();
+  counts.misuse.add(misuse_.counts());
+  counts.misuse.blank_strokes += turn_.blankStrokes();
   return counts;
 }
 

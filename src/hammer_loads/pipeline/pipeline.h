@@ -9,6 +9,7 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/crank_follower.h"
 #include "hammer_loads/pipeline/hull_state.h"
+#include "hammer_loads/pipeline/misuse.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_follower.h"
 #include "hammer_loads/pipeline/wrench_sampler.h"
@@ -61,6 +62,7 @@ class Pipeline {
   double stampNoise() const noexcept;
   CrankLead crankLead(double speed) const noexcept;
   void followBoom(const LinksBeside& links) noexcept;
+  void followMisuse() noexcept;
   void passBlows() noexcept;
   void swingOn(const WrenchHistory& step) noexcept;
 
@@ -71,6 +73,7 @@ class Pipeline {
   CrankFollower crank_;
   HullState hull_;
   TurnFollower turn_;
+  MisuseFollower misuse_;
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
   double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; see isPlausible()

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "hammer_loads/pipeline/misuse.h"
+
 namespace hammer_loads {
 
 /// Why a crank sample gave no wrench.
@@ -34,6 +36,7 @@ struct SampleCounts {
   std::uint64_t restarts{};         ///< drop-outs, jumps and time running back
   std::uint64_t blows{};            ///< forward, for the first time, not creeping
   std::uint64_t backward_passes{};  ///< passages of the blow backward, less those forward again
+  MisuseCounts misuse;
 
   std::uint64_t refusedFor(Refusal reason) const noexcept { return refused[static_cast<std::size_t>(reason)]; }
   std::uint64_t refusedTotal() const noexcept {

@@ -88,6 +88,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
     pending_.drop();
     restart();
     --turns_;
+    ++blank_;
     return;
   }
   turn_.correctBegin(linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));

@@ -34,6 +34,7 @@ class TurnFollower {
 
   double peakForce() const noexcept { return peak_force_; }            ///< of the last whole turn [N], 0 before it
   std::uint64_t blows() const noexcept { return turns_; }              ///< since the start
+  std::uint64_t blankStrokes() const noexcept { return blank_; }       ///< onto the mirrored branch: no tool was there
   std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again
 
  private:
@@ -51,7 +52,7 @@ class TurnFollower {
   HullMotion hull_;
   StampNs epoch_{};                   ///< first sample since the last restart by time
   std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole
-  std::uint64_t turns_{}, backward_{};
+  std::uint64_t turns_{}, backward_{}, blank_{};
   double peak_force_{};
 };
 

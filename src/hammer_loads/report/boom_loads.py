@@ -1,4 +1,5 @@
 """Loads of hull, boom joints, cylinders and sections, a value per turn each."""
+from report.names import without_unit
 from report.markup import Raw, details, in_unit, number, paragraph, scaled, table
 from report.series import Segments
 
@@ -44,12 +45,13 @@ def boom_loads(subject, charts):
     rows, choices = [], []
     for (name, unit), (tally, segments) in bands.items():
         factor, shown = in_unit(unit)
-        rows.append([name, shown] + [number(scaled(v, factor)) for v in
+        rows.append([without_unit(name), shown] + [number(scaled(v, factor)) for v in
                                      (tally[1], tally[2] / tally[0], tally[3])] + [tally[0]])
-        choices.append((name, shown, segments.thinned(MOST_POINTS)))
+        choices.append((name, without_unit(name), shown, segments.thinned(MOST_POINTS)))
     strongest = max(bands, key=lambda key: key[0].startswith("joint_loads") and key[1] == "Nm" and
                     bands[key][0][3] - bands[key][0][1])
     choices.sort(key=lambda choice: choice[0] != strongest[0])
+    choices = [choice[1:] for choice in choices]
     content = table("Loads over all turns", ["Channel", "Unit", "Least", "Mean of turns", "Greatest", "Turns"], rows)
     if not any(name.startswith("section_loads/") for name, _ in bands):
         content += paragraph("No sections: the boom file names none, or there was no robot description.")

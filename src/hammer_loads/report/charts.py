@@ -14,9 +14,12 @@ def band(point):
     return None if point is None else [short(v) for v in point]
 
 
-def block(title, content):
-    """What stays together on paper."""
-    return Raw(f'<div class="block"><h4>{text(title)}</h4>\n{content}</div>\n')
+def with_breaks(points):
+    rows, last = [], 0.0
+    for point in points:
+        last = point[0] if point else last
+        rows.append([round(last, 3), band(point[1:]) if point else None])
+    return rows
 
 
 class Charts:
@@ -27,11 +30,7 @@ class Charts:
 
     def over_time(self, title, unit, points, first_ns, group):
         """`points`: (time_s after first_ns, least, middle, greatest), None for a break."""
-        rows, last = [], 0.0
-        for point in points:
-            last = point[0] if point else last
-            rows.append([round(last, 3), band(point[1:]) if point else None])
-        return self._add(title, {"unit": unit, "labels": [title], "group": group, "rows": rows,
+        return self._add(title, {"unit": unit, "labels": [title], "group": group, "rows": with_breaks(points),
                                  "base_ms": (first_ns or 0) // 1000000})
 
     def compared(self, title, unit, labels, step, columns, group):
@@ -42,7 +41,7 @@ class Charts:
 
     def of_choice(self, title, choices, first_ns):
         """`choices`: (name, unit, points); the reader takes one of them."""
-        content = [{"label": f"{name} [{unit}]" if unit else name, "unit": unit, "rows": [[round(p[0], 3), band(p[1:])] for p in points if p]}
+        content = [{"label": f"{name} [{unit}]" if unit else name, "unit": unit, "rows": with_breaks(points)}
                    for name, unit, points in choices]
         options = "".join(f"<option>{text(name)}</option>" for name, _, _ in choices)
         label = f'<label class="choice">Channel <select data-chart="{len(self._charts)}">{options}</select></label>\n'

@@ -3,6 +3,7 @@ import math
 
 from report.damage import SLOPES
 from report.markup import Raw, details, in_unit, number, paragraph, scaled, table
+from report.names import without_unit
 from report.svg import Axes, figure
 
 CELLS = 24  # of a matrix, each way
@@ -21,7 +22,7 @@ def equivalents_table(channels):
         cycles = channel.count.ranges_and_means()
         factor, unit = in_unit(channel.unit)
         damage = channel.damage(cycles)
-        rows.append([channel.name, unit] + [with_deviation(f, factor) for f in channel.equivalents(cycles)] +
+        rows.append([without_unit(channel.name), unit] + [with_deviation(f, factor) for f in channel.equivalents(cycles)] +
                     [number(scaled(cycles[-1][0] if cycles else 0.0, factor)), number(sum(n for _, _, n in cycles), 6),
                      with_deviation(damage), with_deviation(channel.remaining_hours(damage)),
                      f"{channel.below + channel.above}, {channel.skipped}, {channel.gaps}"])
@@ -93,20 +94,21 @@ def histogram_picture(rows, unit, title):
 def channel_pictures(channel):
     cycles = channel.count.ranges_and_means()
     factor, unit = in_unit(channel.unit)
+    name = without_unit(channel.name)
     cycles = [(r * factor, m * factor, n) for r, m, n in cycles]
     if not cycles:
-        return paragraph(f"{channel.name}: no cycle.")
+        return paragraph(f"{name}: no cycle.")
     width = channel.count.width * factor
     rows = by_range(cycles, width)
-    pictures = figure(matrix_picture(cycles, width, unit, f"{channel.name}: cycles by range and mean"),
-                      f"{channel.name}: cycles by range and mean; the stronger the colour, the more (logarithmic)")
-    pictures += figure(histogram_picture(rows, unit, f"{channel.name}: cycles by range"),
-                       f"{channel.name}: cycles by range",
+    pictures = figure(matrix_picture(cycles, width, unit, f"{name}: cycles by range and mean"),
+                      f"{name}: cycles by range and mean; the stronger the colour, the more (logarithmic)")
+    pictures += figure(histogram_picture(rows, unit, f"{name}: cycles by range"),
+                       f"{name}: cycles by range",
                        [("bar", "cycles"), ("line second", "share of the damage at slope 5, its largest at the top")])
     shown = [[f"{number(low)} to {number(high)}", number(n, 6)] + [number(100 * s, 3) for s in shares]
              for low, high, n, *shares in rows if n > 0.0]
     header = [f"Range [{unit}]", "Cycles", "Damage at slope 3 [%]", "at slope 5 [%]", "at slope 10 [%]"]
-    return f'<div class="pair">{pictures}</div>\n' + details(f"{channel.name} by range as a table",
+    return f'<div class="pair">{pictures}</div>\n' + details(f"{name} by range as a table",
                                                            table("Cycles by range", header, shown))
 
 
@@ -118,8 +120,7 @@ def explanation(channels):
         "Deviations: of the loads, all ranges erring alike.", "note")
 
 
-def cycle_figures(subject):
-    channels = subject.counted_channels()
+def cycle_figures(channels):
     if not channels:
         return paragraph("No channel was counted.")
     main = next((c for c in channels if c.name.endswith("force_z_N")), channels[0])

@@ -27,6 +27,16 @@ def number(value, digits=4):
     return shown.replace("-", "\u2212") if not shown[:1].isalpha() else shown
 
 
+def measured(value, deviation):
+    """Value and deviation, the value to the place of the deviation's second digit."""
+    if value is None or not deviation or not math.isfinite(value) or not math.isfinite(deviation):
+        return number(value)
+    places = 1 - math.floor(math.log10(deviation))
+    if places <= 0:
+        return f"{number(round(value))} \u00b1 {number(round(deviation))}"
+    return f"{value:.{places}f} \u00b1 {deviation:.{places}f}".replace("-", "\u2212")
+
+
 def in_unit(unit):
     """Factor and name under which a unit is shown."""
     return UNITS.get(unit, (1.0, unit or ""))
@@ -54,6 +64,14 @@ def duration(seconds):
     return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
 
 
+def moment(stamp_ns, to="seconds"):
+    """UTC; page.js writes the reader's local time beside it. Bytes of a page depend on no time zone."""
+    if stamp_ns is None:
+        return "\u2013"
+    shown = utc(stamp_ns)[:19 if to == "seconds" else 16]
+    return Raw(f'<time datetime="{utc(stamp_ns)[:19].replace(" ", "T")}Z" data-to="{to}">{shown}</time>')
+
+
 class Raw(str):
     """Is HTML already."""
 
@@ -64,15 +82,20 @@ def cell(value):
     return text(value if isinstance(value, str) else number(value))
 
 
-def table(caption, header, rows, numbers=True):
-    """First column: what the row is about."""
+def table(caption, header, rows, numbers=True, kind=None):
+    """First column: what the row is about. kind: classes of the table, else by `numbers`."""
     head = "".join(f'<th scope="col">{cell(name)}</th>' for name in header)
     body = "".join(f'<tr><th scope="row">{cell(row[0])}</th>' + "".join(f"<td>{cell(v)}</td>" for v in row[1:]) + "</tr>\n"
                    for row in rows)
-    kind = "numbers" if numbers else "words"
+    kind = kind or ("numbers" if numbers else "words")
     return (f'<div class="scroll" tabindex="0" role="region" aria-label="{text(caption)}">\n'
             f'<table class="{kind}"><caption>{text(caption)}</caption>\n<thead><tr>{head}</tr></thead>\n'
             f"<tbody>\n{body}</tbody></table></div>\n")
+
+
+def block(title, content):
+    """What stays together on paper."""
+    return Raw(f'<div class="block"><h4>{text(title)}</h4>\n{content}</div>\n')
 
 
 def details(summary, content):

@@ -1,6 +1,6 @@
 """Blow rate, energy, restitution, peak force and hold-down over time."""
-from report.charts import block
-from report.markup import details, number, paragraph, table
+from report.histograms import histograms
+from report.markup import block, details, number, paragraph, table
 from report.quantities import QUANTITIES
 
 MOST_POINTS = 600
@@ -12,11 +12,15 @@ def summary_table(segments):
         values = segments[quantity.key]
         if len(values):
             unit = f" [{quantity.unit}]" if quantity.unit else ""
-            rows.append([quantity.title + unit] + [number(v) for v in values.statistics()] + [len(values)])
+            rows.append([quantity.title + unit] + [number(v) for v in values.statistics()] +
+                        [number(values.spread(), 2), number(values.deviation, 2), len(values)])
     if of_runs:
         return table("Over all runs: least and greatest of all turns, between them means of runs",
-                     ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Runs"], rows)
-    return table("Over all turns", ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Values"], rows)
+                     ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Spread", "Deviation", "Runs"], rows)
+    return table("Over all turns", ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Spread", "Deviation",
+                                    "Values"], rows) + paragraph(
+        "Spread: of the values from blow to blow (half of what holds the middle 68 %). Deviation: standard, of the "
+        "measurement of one value, median.", "note")
 
 
 def by_time_table(segments):
@@ -39,11 +43,11 @@ def by_time_table(segments):
 def over_time(subject, segments, charts, group, most=MOST_POINTS):
     if not any(len(s) for s in segments.values()):
         return paragraph("No turn, so there is nothing over time.")
-    content = ""
+    content = str(histograms(segments, QUANTITIES))
     for quantity in QUANTITIES:
         values = segments[quantity.key]
         unit = f" [{quantity.unit}]" if quantity.unit else ""
-        chart = charts.over_time(quantity.title, quantity.unit, values.thinned(most), subject.first_ns,
+        chart = charts.over_time(quantity.title, "", values.thinned(most), subject.first_ns,
                                  group) if len(values) else paragraph("No value in any turn.")
         content += block(quantity.title + unit, paragraph(quantity.meaning.capitalize() + ".", "note") + chart)
-    return content + summary_table(segments) + details("The charts as a table", by_time_table(segments))
+    return summary_table(segments) + content + details("The charts as a table", by_time_table(segments))

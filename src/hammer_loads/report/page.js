@@ -15,6 +15,22 @@
     return words.replace(/[&<>"']/g, function (c) { return '&#' + c.charCodeAt(0) + ';'; });
   }
 
+  function two(n) { return (n < 10 ? '0' : '') + n; }
+
+  // As the reader's clock shows it; the day only where it is another one than in UTC.
+  function localText(moment, to) {
+    var day = moment.getFullYear() + '-' + two(moment.getMonth() + 1) + '-' + two(moment.getDate());
+    var time = two(moment.getHours()) + ':' + two(moment.getMinutes()) + (to === 'seconds' ? ':' + two(moment.getSeconds()) : '');
+    return (day === moment.toISOString().slice(0, 10) ? '' : day + ' ') + time + ' local';
+  }
+
+  document.querySelectorAll('time[datetime]').forEach(function (place) {
+    var beside = document.createElement('span');
+    beside.className = 'local';
+    beside.textContent = ' (' + localText(new Date(place.getAttribute('datetime')), place.getAttribute('data-to')) + ')';
+    place.appendChild(beside);
+  });
+
   function numberText(value, unit) {
     if (value === null || value === undefined) return '\u2013';
     return Number(value.toPrecision(4)) + (unit ? ' ' + escaped(unit) : '');
@@ -25,10 +41,12 @@
     return {
       customBars: true, labelsUTC: true, labels: [dated ? 'time (UTC)' : 'time'].concat(chart.labels),
       colors: palette, strokeWidth: 1.5, fillAlpha: 0.22, gridLineColor: 'rgba(128,128,128,0.35)',
-      axisLineColor: 'rgba(128,128,128,0.8)', connectSeparatedPoints: !dated, animatedZooms: false,
+      axisLineColor: 'rgba(128,128,128,0.8)', connectSeparatedPoints: false, animatedZooms: false,
       legend: 'always', labelsSeparateLines: false, highlightCircleSize: 3, digitsAfterDecimal: 4,
       axes: { y: { axisLabelWidth: 52, valueFormatter: function (v) { return numberText(v, unit); } },
-              x: { pixelsPerLabel: 76, axisLabelWidth: 72 } }
+              x: { pixelsPerLabel: 76, axisLabelWidth: 72, valueFormatter: function (v) {
+                return dated ? new Date(v).toISOString().slice(0, 19).replace('T', ' ') + ' UTC, ' + localText(new Date(v), 'seconds') : numberText(v);
+              } } }
     };
   }
 

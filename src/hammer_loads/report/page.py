@@ -3,17 +3,20 @@ import pathlib
 
 from report.boom_loads import boom_loads
 from report.charts import Charts
-from report.comparison import comparison
+from report.comparison import comparison, runs_compared
+from report.costs import costs
 from report.cycle_figures import cycle_figures
 from report.database import LEDGER
 from report.ledger_section import ledger_content
+from report.misuse import misuse
+from report.names import stem
 from report.markup import paragraph, section, text
 from report.over_time import MOST_POINTS, over_time
 from report.overview import overview, warnings_list
 from report.problem import Problem
 from report.quantities import QUANTITIES
 from report.sensor_health import sensor_health
-from report.subjects import stem, subjects_of
+from report.subjects import subjects_of
 from report.turn_pictures import turn_pictures
 
 DYGRAPHS = "/usr/share/javascript/dygraphs/"  # Debian's libjs-dygraphs
@@ -60,11 +63,14 @@ def notes(databases):
 
 def subject_section(at, subject, segments, charts, most_points):
     name = f"m{at}"
-    parts = [("overview", "Who, when, which parameters", overview(subject, segments)),
+    channels = subject.counted_channels()
+    parts = [("overview", "Who, when, which parameters", overview(subject, segments) + runs_compared(subject, segments)),
              ("work", "Work over time", over_time(subject, segments, charts, name, most_points)),
              ("turns", "Typical and worst turn", turn_pictures(subject)),
              ("loads", "Hull, boom joints and sections", boom_loads(subject, charts)),
-             ("cycles", "Load cycles", cycle_figures(subject)),
+             ("misuse", "Misuse", misuse(subject)),
+             ("cycles", "Load cycles", cycle_figures(channels)),
+             ("costs", "Which blows cost what", costs(subject, channels)),
              ("sensor", "Is the sensor sound?", sensor_health(subject))]
     content = "".join(section(f"{name}-{key}", title, part, 3) for key, title, part in parts)
     return section(name, subject.label, content)
@@ -131,7 +137,7 @@ def assembled(content, links, charts, style, script, dygraphs, dygraphs_style, v
 <main id="content">
 <noscript><p class="note">The charts need JavaScript; their tables and the other pictures do not.</p></noscript>
 {content}</main>
-<footer><p>hammer_loads {text(version)}, report. Times are UTC. Charts: dygraphs, MIT licence.</p></footer>
+<footer><p>hammer_loads {text(version)}, report. Times are UTC, beside them the reader's local time. Charts: dygraphs, MIT licence.</p></footer>
 <script type="application/json" id="charts">{charts.as_json()}</script>
 <script>
 {dygraphs}

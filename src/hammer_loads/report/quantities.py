@@ -1,15 +1,34 @@
 """What is shown over time, a value for each turn."""
 from collections import namedtuple
 
-# expression: of the table's columns; factor: from its unit to the one shown.
-Quantity = namedtuple("Quantity", "key title table expression unit factor meaning")
+# expression: of the table's columns; factor: from its unit to the one shown; deviation: column of the measurement's.
+Quantity = namedtuple("Quantity", "key title table expression unit factor deviation meaning")
 
 QUANTITIES = [
-    Quantity("blow_rate_Hz", "Blow rate", "turns", "1.0 / period_s", "Hz", 1.0, "one over the time from blow to blow"),
-    Quantity("energy_J", "Blow energy", "blows", "energy_J", "J", 1.0, "given to the tool by a blow"),
-    Quantity("restitution", "Restitution", "blows", "restitution", "", 1.0,
+    Quantity("blow_rate_Hz", "Blow rate", "turns", "1.0 / period_s", "Hz", 1.0, None,
+             "one over the time from blow to blow"),
+    Quantity("energy_J", "Blow energy", "blows", "energy_J", "J", 1.0, "energy_deviation_J",
+             "given to the tool by a blow"),
+    Quantity("restitution", "Restitution", "blows", "restitution", "", 1.0, "restitution_deviation",
              "rocker's speed after the blow over that before"),
-    Quantity("amplitude_N", "Peak force", "turns", "amplitude_N", "kN", 1e-3, "largest force along the tool in a turn"),
+    Quantity("amplitude_N", "Peak force", "turns", "amplitude_N", "kN", 1e-3, "amplitude_deviation_N",
+             "largest force along the tool in a turn"),
     Quantity("mean_press_force_N", "Hold-down needed", "blows", "mean_press_force_N", "kN", 1e-3,
+             "mean_press_force_deviation_N",
              "mean force that keeps the hull on the tool: tool impulse times blow rate"),
 ]
+
+
+def is_possible(columns):
+    """SQL: what a blow says of itself can be. As the pipeline holds it: R within [0, 1], energy not below zero, by two
+    deviations; databases of older versions have blows beyond that, newer ones NULL in both."""
+    r_spread = "2 * coalesce(restitution_deviation, 0)" if "restitution_deviation" in columns else "0"
+    e_spread = "2 * coalesce(energy_deviation_J, 0)" if "energy_deviation_J" in columns else "0"
+    return (f"(restitution >= -{r_spread} AND restitution <= 1 + {r_spread} AND energy_J >= -{e_spread})")
+
+
+def value_of(quantity, columns):
+    """SQL of a quantity in a table with these columns: NULL where the blow says nothing possible."""
+    if quantity.table != "blows":
+        return quantity.expression
+    return f"CASE WHEN {is_possible(columns)} THEN {quantity.expression} END"

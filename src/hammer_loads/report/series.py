@@ -1,6 +1,9 @@
 """Numbers over time: statistics of all, and few enough to draw, with least and greatest kept."""
 import math
 
+PAUSE_TURNS = 4.0  # times the usual step: there was no work between two points
+PAUSE_S = 2.0      # and at least so long: a slow turn is no pause
+
 
 class Segments:
     """Values of several runs: each a list of (time_s since the first stamp, least, middle, greatest)."""
@@ -8,6 +11,7 @@ class Segments:
     def __init__(self):
         self.runs = []
         self.of_runs = False  # a point is a run, its middle the mean of its turns
+        self.deviation = None  # of the measurement of a value, median; None: not known
 
     def begin_run(self):
         self.runs.append([])
@@ -31,14 +35,29 @@ class Segments:
         return ([min((p[1] for p in points), default=None)] + [quantile(ordered, part) for part in (0.05, 0.5, 0.95)] +
                 [max((p[3] for p in points), default=None)])
 
+    def spread(self):
+        """Half of what holds the middle 68 %: a standard deviation that a few odd values do not change."""
+        ordered = sorted(self.middles())
+        if len(ordered) < 3 or self.of_runs:
+            return None
+        return 0.5 * (quantile(ordered, 0.8413) - quantile(ordered, 0.1587))
+
+    def stretches(self):
+        """Points of uninterrupted work: a run, cut where nothing was struck for long. Of runs each stands alone."""
+        for run in self.runs:
+            if self.of_runs:
+                yield from ([point] for point in run)
+            else:
+                yield from cut_at_pauses(run)
+
     def thinned(self, most):
-        """At most some `most` points; neighbours become one with least, mean and greatest. None between two runs."""
+        """At most some `most` points; neighbours become one with least, mean and greatest. None where work paused."""
         together = max(1, math.ceil(len(self) / most))
         points = []
-        for run in self.runs:
-            if points and run:
+        for stretch in self.stretches():
+            if points:
                 points.append(None)
-            points += [merged(run[at:at + together]) for at in range(0, len(run), together)]
+            points += [merged(stretch[at:at + together]) for at in range(0, len(stretch), together)]
         return points
 
     def on_grid(self, step_s, count):
@@ -48,6 +67,18 @@ class Segments:
             for point in run:
                 cells[min(count - 1, max(0, int(point[0] / step_s)))].append(point)
         return [merged(cell) if cell else None for cell in cells]
+
+
+def cut_at_pauses(run):
+    steps = sorted(b[0] - a[0] for a, b in zip(run, run[1:]))
+    pause = max(PAUSE_S, PAUSE_TURNS * (quantile(steps, 0.5) or 0.0))
+    begin = 0
+    for at in range(1, len(run)):
+        if run[at][0] - run[at - 1][0] > pause:
+            yield run[begin:at]
+            begin = at
+    if run:
+        yield run[begin:]
 
 
 def merged(points):

@@ -1,11 +1,12 @@
 """What a page is about: one machine's runs in one file, in the order of time."""
-import pathlib
 import re
 
 from report.channel import Channel
 from report.database import FLEET, LEDGER
+from report.names import stem
 from report.problem import Problem
-from report.series import Segments
+from report.quantities import is_possible, value_of
+from report.series import Segments, quantile
 
 MOST_TURNS_ONE_BY_ONE = 500000  # beyond: a run is a point, where the file has figures of runs
 
@@ -46,12 +47,18 @@ class Subject:
         """A value per turn, in the unit shown; per run where the file has no rows of turns."""
         result, first = Segments(), self.first_ns or 0
         if self._has_rows(quantity.table):
-            sql = f"SELECT stamp_ns, {quantity.expression} FROM {quantity.table} WHERE run_id = ? ORDER BY turn"
+            columns = self.database.columns(quantity.table)
+            deviation = quantity.deviation if quantity.deviation in columns else "NULL"
+            sql = (f"SELECT stamp_ns, {value_of(quantity, columns)}, {deviation} FROM {quantity.table} WHERE run_id = ? "
+                   "ORDER BY turn")
+            deviations = []
             for run in self.runs:
                 result.begin_run()
-                for stamp, value in self.database.rows(sql, run["run_id"]):
+                for stamp, value, spread in self.database.rows(sql, run["run_id"]):
                     if value is not None and stamp is not None:
                         result.add((stamp - first) * 1e-9, value * quantity.factor)
+                        deviations += [] if spread is None else [spread * quantity.factor]
+            result.deviation = quantile(sorted(deviations), 0.5)
             return result
         sql = "SELECT least, mean, greatest FROM run_figures WHERE run_id = ? AND quantity = ?"
         result.of_runs = True
@@ -61,6 +68,14 @@ class Subject:
                 if row[1] is not None and run["first_stamp_ns"] is not None:
                     result.add_band((run["first_stamp_ns"] - first) * 1e-9, *(v * quantity.factor for v in row))
         return result
+
+    def impossible_blows(self):
+        """Blows that say nothing possible of their energy: not drawn, not in any figure."""
+        if not self._has_rows("blows"):
+            return 0
+        possible = is_possible(self.database.columns("blows"))
+        return sum(self.database.value(f"SELECT count(*) FROM blows WHERE run_id = ? AND coalesce({possible}, 0) = 0",
+                                       run["run_id"]) for run in self.runs)
 
     def failed_bags(self):
         """(bag, reason) of a merged file's bags that gave nothing."""
@@ -120,10 +135,6 @@ def grouped(runs, key):
     return groups
 
 
-def stem(path):
-    return pathlib.Path(path).stem
-
-
 def by_number(name):
     """Machine 2 before machine 10."""
     return [(int(part), "") if part.isdigit() else (0, part) for part in re.split(r"([0-9]+)", name)]
@@ -152,4 +163,4 @@ def subjects_of(database, only_machine=None):
     name = stem(database.path)
     if len(groups) < 2:
         return [Subject(database, name, runs) for runs in groups.values()] or [Subject(database, name, [])]
-    return [Subject(database, f"{name}, machine {identity[:8]}", runs) for identity, runs in groups.items()]
+    return [Subject(database, f"{name}, machine {at}", runs) for at, runs in enumerate(groups.values(), 1)]

@@ -27,6 +27,7 @@ void add(const SampleCounts& counts, SampleCounts& sum) {
   sum.restarts += counts.restarts;
   sum.blows += counts.blows;
   sum.backward_passes += counts.backward_passes;
+  sum.misuse.add(counts.misuse);
   for (std::size_t i = 0; i < counts.refused.size(); ++i) sum.refused[i] += counts.refused[i];
 }
 

@@ -43,6 +43,10 @@ RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
 void addCounts(const SampleCounts& counts, RunRecord& record) {
   record.restarts = counts.restarts;
   record.backward_passes = counts.backward_passes;
+  record.blank_strokes = counts.misuse.blank_strokes;
+  record.judged_blows = counts.misuse.judged_blows;
+  record.unpressed_blows = counts.misuse.unpressed();
+  record.still_time = counts.misuse.still().value_or(RunRecord::kUnknown);
   for (std::size_t i = 0; i < counts.refused.size(); ++i)
     record.refusals.push_back({kRefusalNames[i], counts.refused[i]});
   record.refusals.push_back({"beside the blow", counts.beside_blow});

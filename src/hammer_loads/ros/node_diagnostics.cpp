@@ -29,6 +29,7 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   if (bridge.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
   if (bridge.needsImu()) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
   updater_.add("model", this, &NodeDiagnostics::describeModel);
+  updater_.add("misuse", this, &NodeDiagnostics::describeMisuse);
   updater_.add("life", [this](Status& status) { describeLife(bridge_.life(), ledger_, status); });
   updater_.add("log", [&log](Status& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
@@ -163,6 +164,29 @@ void NodeDiagnostics::describeImu(Status& status) {
 void NodeDiagnostics::describeModel(Status& status) {
   status.summaryf(DiagnosticStatus::OK, "level %s", nameOf(bridge_.settings().pipeline.level));
   for (const std::string& note : bridge_.settings().notes) status.add("note", note);
+}
+
+/// What nothing measures is said to be unknown: none of it is another answer.
+void NodeDiagnostics::describeMisuse(Status& status) {
+  const MisuseCounts counts = bridge_.pipeline().counts().misuse;
+  const double hours = counts.work_time / 3600.0;
+  const auto add = [&](const std::string& name, double value) {
+    status.add(name, value);
+    if (hours > 0.0) status.add(name + ", per hour", value / hours);
+  };
+  status.summary(DiagnosticStatus::OK, "counted");
+  status.add("time at work [s]", counts.work_time);
+  add("blank strokes", static_cast<double>(counts.blank_strokes));
+  if (counts.unpressed()) {
+    add("blows without press force on the rock", static_cast<double>(*counts.unpressed()));
+    status.add("blows whose press force is measured", counts.judged_blows);
+  } else {
+    status.add("blows without press force on the rock", "not known: needs cylinder pressures");
+  }
+  if (counts.still())
+    add("hammering without penetration [s]", *counts.still());
+  else
+    status.add("hammering without penetration [s]", "not known: needs the boom's joints and its description");
 }
 
 void NodeDiagnostics::describeBoom(Status& status) {

@@ -46,6 +46,7 @@ class NodeDiagnostics {
   void describeFrames(Status& status);
   void describeImu(Status& status);
   void describeModel(Status& status);
+  void describeMisuse(Status& status);
 
   const HammerBridge& bridge_;
   const BagLog& log_;

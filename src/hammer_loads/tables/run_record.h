@@ -31,6 +31,9 @@ struct RunRecord {
   double duration{};                                    ///< between published samples, gaps left out [s]
   std::string level;                                    ///< pulse, rocker or linkage
   std::uint64_t samples{}, published{}, restarts{}, turns{}, blows{}, backward_passes{};
+  std::uint64_t blank_strokes{}, judged_blows{};
+  std::optional<std::uint64_t> unpressed_blows;  ///< of the judged ones; nothing where none was
+  double still_time{kUnknown};                   ///< hammering without penetration [s]
   double consistency{kUnknown};
   double timing_noise{kUnknown};             ///< [s]
   double speed_noise{kUnknown};              ///< [rad/s]

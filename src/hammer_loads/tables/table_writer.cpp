@@ -20,7 +20,8 @@ double finite(double value) { return std::isfinite(value) ? value : RunRecord::k
 
 }  // namespace
 
-TableWriter::TurnTable::TurnTable(life::Database& database, const std::string& name, std::vector<TableColumn> of_message)
+TableWriter::TurnTable::TurnTable(life::Database& database, const std::string& name,
+                                  std::vector<TableColumn> of_message)
     : columns(std::move(of_message)), insert(database, insertSql(name, columns.size() + 2).c_str()) {}
 
 void TableWriter::TurnTable::add(std::int64_t run, const TurnRow& row) {
@@ -89,12 +90,13 @@ void TableWriter::trace(std::int64_t run, const std::string& kind, const TurnTra
 
 void TableWriter::run(std::int64_t run, const RunRecord& r) {
   const std::string key = sha256Of({r.input_sha256, r.parameters_sha256, r.version, std::to_string(run)});
-  Statement(database_, insertSql("runs", 25).c_str())
+  Statement(database_, insertSql("runs", 29).c_str())
       .run(run, key, r.input_sha256, r.parameters_sha256, r.machine, r.version, r.revision, r.parameters_yaml,
            r.first_stamp, r.last_stamp, finite(r.duration), r.level, r.samples, r.published, r.restarts, r.turns,
            r.blows, r.backward_passes, finite(r.consistency), finite(r.timing_noise), finite(r.speed_noise),
            finite(r.angle_resolution), finite(r.drive_inertia), finite(r.drive_inertia_deviation),
-           finite(r.equivalent_cycles_per_hour));
+           finite(r.equivalent_cycles_per_hour), r.blank_strokes, r.judged_blows, r.unpressed_blows,
+           finite(r.still_time));
   Statement parameter(database_, insertSql("parameters", 4).c_str());
   for (const RunRecord::Parameter& p : r.parameters) parameter.run(run, p.key, p.value, p.shipped);
   Statement refusal(database_, insertSql("refusals", 3).c_str());

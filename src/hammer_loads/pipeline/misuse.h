@@ -1,0 +1,85 @@
+/// What wears a hammer without breaking rock, counted from what is measured.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace hammer_loads {
+
+/// Since the start. What nothing measures is not counted: `judged_blows` and `placed_time` say of how much the counts
+/// beside them speak; none of it: not known, which is not zero.
+struct MisuseCounts {
+  double work_time{};             ///< over accepted samples, gaps left out [s]
+  std::uint64_t blank_strokes{};  ///< the rocker went through where the tool should have been
+  std::uint64_t judged_blows{};   ///< at which cylinder pressures show the rock's force on the hull
+  /// Of these: since the blow before it was never more than its error. The blow falls on the hull's retainer, or what
+  /// presses the hull down is too little to bring it back after its recoil; pressures cannot tell one from the other.
+  std::uint64_t unpressed_blows{};
+  double placed_time{};  ///< of whole turns at which the boom's joints show where the hull is [s]
+  double still_time{};   ///< of that: the hull had not moved for MisuseFollower::kPatience of hammering or more [s]
+
+  void add(const MisuseCounts& other) noexcept {
+    work_time += other.work_time;
+    blank_strokes += other.blank_strokes;
+    judged_blows += other.judged_blows;
+    unpressed_blows += other.unpressed_blows;
+    placed_time += other.placed_time;
+    still_time += other.still_time;
+  }
+  std::optional<std::uint64_t> unpressed() const noexcept {
+    return judged_blows > 0 ? std::make_optional(unpressed_blows) : std::nullopt;
+  }
+  std::optional<double> still() const noexcept {
+    return placed_time > 0.0 ? std::make_optional(still_time) : std::nullopt;
+  }
+};
+
+/// A tool that penetrates takes the hull along: hammering while the hull stays where it is gives heat and noise.
+class MisuseFollower {
+ public:
+  /// Makers of breakers allow 15 to 20 s at one place (Stanley MB05, operation: "15 - 20 seconds. If breakout does not
+  /// occur within this time, move").
+  static constexpr double kPatience = 15.0;  // [s]
+  /// The hull has moved: two deviations of a tip 6 m away by joint sensors of 0.1 deg.
+  static constexpr double kMoved = 0.02;  // [m]
+
+  /// Where the hull's origin is, at a sample [m]; any frame that stands still.
+  void hullAt(const Eigen::Vector3d& place) noexcept {
+    if (place_ && (place - *place_).norm() <= kMoved) return;
+    place_ = place;
+    at_place_ = 0.0;
+  }
+  /// The joints do not show where the hull is.
+  void hullLost() noexcept { place_.reset(); }
+  /// Whether the rock bears on the hull at a sample; nothing where pressures do not show it. A hull leaves the rock at
+  /// each recoil: that is no misuse as long as it comes back.
+  void pressed(std::optional<bool> now) noexcept {
+    unknown_ = unknown_ || !now;
+    pressed_ = pressed_ || now.value_or(false);
+    watched_ = true;
+  }
+  /// A turn that ended with a blow. period: its length [s], none where it was not seen whole.
+  void blow(std::optional<double> period) noexcept {
+    if (period && watched_ && !unknown_) {
+      ++counts_.judged_blows;
+      counts_.unpressed_blows += !pressed_;
+    }
+    watched_ = unknown_ = pressed_ = false;
+    if (!period || !place_) return;
+    at_place_ += *period;
+    counts_.placed_time += *period;
+    counts_.still_time += std::fmin(*period, std::fmax(0.0, at_place_ - kPatience));
+  }
+
+  const MisuseCounts& counts() const noexcept { return counts_; }
+
+ private:
+  MisuseCounts counts_;
+  std::optional<Eigen::Vector3d> place_;
+  double at_place_{};                       ///< hammering since the hull came here [s]
+  bool watched_{}, unknown_{}, pressed_{};  ///< since the last blow: at a sample, at some samples, at one
+};
+
+}  // namespace hammer_loads

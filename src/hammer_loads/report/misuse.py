@@ -1,0 +1,36 @@
+"""What wears the hammer without breaking rock, as far as it was measured."""
+from report.markup import Raw, number, paragraph, table
+
+UNKNOWN = "not known"
+COUNTERS = [
+    ("blank_strokes", "Blank strokes", "the rocker went through where the tool should have been",
+     "the database is of an older version"),
+    ("unpressed_blows", "Blows without press force", "the rock did not press on the hull since the blow before: a blow "
+     "on the retainer, or too little press force", "needs cylinder pressures"),
+    ("still_time_s", "Hammering at one place [s]", "beyond 15 s without the hull moving by 20 mm: no penetration",
+     "needs the boom's joints and its description"),
+]
+
+
+def counter(subject, name):
+    """(count, per hour) over the runs that know it; (None, None) where none does."""
+    known = [run for run in subject.runs if run.get(name) is not None]
+    if not known:
+        return None, None
+    count, hours = sum(run[name] for run in known), sum(run["duration_s"] or 0.0 for run in known) / 3600.0
+    return count, count / hours if hours > 0.0 else None
+
+
+def misuse(subject):
+    rows = []
+    for name, title, meaning, missing in COUNTERS:
+        count, per_hour = counter(subject, name)
+        if count is None:
+            rows.append([title, UNKNOWN, "\u2013", missing])
+            continue
+        if name == "unpressed_blows":
+            judged = sum(run["judged_blows"] or 0 for run in subject.runs if run.get(name) is not None)
+            meaning += f"; of {number(judged)} blows whose press force was measured"
+        rows.append([title, number(count), number(per_hour, 3), meaning])
+    return Raw(table("Misuse", ["What", "Count", "Per hour", "Meaning"], rows, kind="words figures-first") +
+               paragraph("Per hour of work. What nothing measures is not known, which is not zero.", "note"))

@@ -1,0 +1,121 @@
+// Misuse counted from what is measured, against what the simulated machine did.
+#include <gtest/gtest.h>
+
+#include "pipeline/on_boom_session.h"
+
+namespace hammer_loads {
+namespace {
+
+using Counts = MisuseCounts;
+
+Counts misuseOf(const simulation::Session& session, const Settings& settings, bool with_boom, bool pressures = true) {
+  test::Player player(settings, with_boom, session);
+  player.imu_speaks = false;
+  player.pressures_speak = pressures;
+  player.playTo(1e9, [](double, const SampleResult&) {});
+  player.pipeline.end();
+  return player.pipeline.counts().misuse;
+}
+
+simulation::Session atWork(double blank_share) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = machine.drive.stop_time = 20.0;
+  machine.blow.blank_share = blank_share;
+  return simulation::recordSession(machine);
+}
+
+/// Rocker strokes that found no tool, by the true angle: the crank passes two dead centres for each.
+double blankStrokesOf(const simulation::Session& session) {
+  return 0.5 * static_cast<double>(session.truth.back().turn - static_cast<std::int64_t>(session.blows.size()));
+}
+
+TEST(Misuse, BlankStrokesAreThoseOfTheMachine) {
+  const Settings settings = test::settingsWith("level: rocker\n", false);
+  const simulation::Session good = atWork(0.0), some = atWork(0.1);
+  const Counts of_good = misuseOf(good, settings, false), of_some = misuseOf(some, settings, false);
+  EXPECT_EQ(of_good.blank_strokes, 0U);
+  EXPECT_GT(blankStrokesOf(some), 4.0) << "what there is to count";
+  EXPECT_NEAR(static_cast<double>(of_some.blank_strokes), blankStrokesOf(some), 1.0);
+  EXPECT_NEAR(of_good.work_time, 20.0, 1.0);
+}
+
+/// Without boom and pressures nothing is known of the press force and the place: not zero.
+TEST(Misuse, WhatNothingMeasuresIsNotKnown) {
+  const Counts alone = misuseOf(atWork(0.0), test::settingsWith("level: rocker\n", false), false);
+  EXPECT_FALSE(alone.unpressed());
+  EXPECT_FALSE(alone.still());
+}
+
+Counts onRock(double press_force, double stiffness, bool pressures = true) {
+  simulation::MachineSettings machine = test::machineOnBoom(1.0, 50.0);
+  machine.on_boom.rock = {stiffness, 3.0, press_force};
+  const simulation::Session session = simulation::recordSession(machine);
+  return misuseOf(session, test::settingsWith("boom: compliant\nhull_motion: model\nboom_stiffness: identified\n"),
+                  true, pressures);
+}
+
+TEST(Misuse, BlowsWithoutPressForceAreSeenByPressures) {
+  const Counts pressed = onRock(12000.0, 3e7), hangs = onRock(0.0, 0.0);
+  ASSERT_GT(pressed.judged_blows, 25U);
+  EXPECT_EQ(*pressed.unpressed(), 0U);
+  ASSERT_GT(hangs.judged_blows, 25U);
+  EXPECT_GE(*hangs.unpressed(), hangs.judged_blows * 9 / 10);
+  EXPECT_FALSE(onRock(0.0, 0.0, false).unpressed()) << "no pressures";
+}
+
+constexpr double kPeriod = 0.2;
+
+/// Seconds at one place, the hull moving by `advance` [m] with each of 300 blows (60 s).
+Counts advancing(double advance) {
+  MisuseFollower misuse;
+  for (int blow = 0; blow < 300; ++blow) {
+    misuse.hullAt({0.0, 0.0, -advance * blow});
+    misuse.blow(kPeriod);
+  }
+  return misuse.counts();
+}
+
+TEST(Misuse, HammeringAtOnePlaceCountsBeyondThePatienceOfTheMaker) {
+  EXPECT_NEAR(*advancing(0.0).still(), 60.0 - MisuseFollower::kPatience, 1e-9);
+  EXPECT_EQ(*advancing(0.001).still(), 0.0) << "20 mm in 4 s";
+  EXPECT_NEAR(advancing(0.0).placed_time, 300 * kPeriod, 1e-9);
+}
+
+/// A hammer that rests, or that is lifted and set down between two blows, starts anew or does not count.
+TEST(Misuse, PausesAndMovesEndTheTimeAtOnePlace) {
+  MisuseFollower misuse;
+  const auto hammer = [&](double seconds) {
+    for (int blow = 0; blow < std::lround(seconds / kPeriod); ++blow) {
+      misuse.hullAt(Eigen::Vector3d::Zero());
+      misuse.blow(kPeriod);
+    }
+  };
+  hammer(14.0);
+  misuse.hullAt({0.3, 0.0, 0.5});  // lifted
+  hammer(14.0);
+  EXPECT_EQ(*misuse.counts().still(), 0.0);
+  misuse.hullLost();
+  hammer(14.0);
+  EXPECT_EQ(*misuse.counts().still(), 0.0);
+  hammer(4.0);
+  EXPECT_NEAR(*misuse.counts().still(), 3.0, 1e-9);
+}
+
+TEST(Misuse, AHullThatComesBackAfterItsRecoilIsPressed) {
+  MisuseFollower misuse;
+  const auto turn = [&](std::optional<bool> at_first, std::optional<bool> then) {
+    misuse.pressed(at_first);
+    misuse.pressed(then);
+    misuse.blow(kPeriod);
+  };
+  turn(false, true);
+  turn(true, false);
+  EXPECT_EQ(*misuse.counts().unpressed(), 0U);
+  turn(false, false);
+  EXPECT_EQ(*misuse.counts().unpressed(), 1U);
+  turn(std::nullopt, false);
+  EXPECT_EQ(misuse.counts().judged_blows, 3U);
+}
+
+}  // namespace
+}  // namespace hammer_loads

@@ -1,0 +1,247 @@
+"""Work, its pauses, its values, and what they cost: the page against formulas and SQL of the same database."""
+import os
+import sqlite3
+import statistics
+import subprocess
+import sys
+import unittest
+
+from support import REPORT, Reader, ReportTest
+import sample_database as sample
+from page_test import number
+
+IMPOSSIBLE = ("UPDATE blows SET restitution = -0.3, energy_J = -6.35e5 WHERE turn IN (10, 20, 30)",
+              "UPDATE blows SET restitution = NULL, energy_J = NULL WHERE turn IN (40, 50)")
+
+
+class Work(ReportTest):
+    def setUp(self):
+        super().setUp()
+        self.file = self.directory / "site.sqlite"
+        sample.make(self.file, seconds=200.0)
+
+    def ask(self, *sql):
+        db = sqlite3.connect(str(self.file))
+        rows = [db.execute(line).fetchall() for line in sql][-1]
+        db.commit()
+        db.close()
+        return rows
+
+    def figures(self, page):
+        """{name: value} of the large numbers."""
+        return dict(zip(self._parts(page, "dt"), self._parts(page, "dd")))
+
+    @staticmethod
+    def _parts(page, tag):
+        return [text for name, text in page.pieces if name == tag]
+
+    def test_nothing_is_drawn_where_there_was_no_work(self):
+        """Of two runs, one with a pause: no line from a blow before a pause to the one after it."""
+        sample.make(self.file, seconds=100.0, runs=2)
+        self.ask(*(f"DELETE FROM {t} WHERE run_id = 1 AND turn BETWEEN 200 AND 260" for t in ("turns", "blows", "turn_loads")))
+        first = self.ask("SELECT min(first_stamp_ns) FROM runs")[0][0]
+        stamps = [(s - first) * 1e-9 for s, in self.ask("SELECT stamp_ns FROM turns ORDER BY stamp_ns")]
+        pauses = [(a, b) for a, b in zip(stamps, stamps[1:]) if b - a > 5.0]
+        self.assertEqual(len(pauses), 2)
+        charts = self.page_of(self.file).charts()
+        self.assertGreater(len(charts), 5)
+        for chart in charts:
+            for rows in [c["rows"] for c in chart.get("choices", [chart])]:
+                crossed = [(a[0], b[0]) for a, b in zip(rows, rows[1:]) if a[1] and b[1] and
+                           any(a[0] <= before + 1e-3 and after - 1e-3 <= b[0] for before, after in pauses)]
+                self.assertEqual(crossed, [], chart["title"])
+                self.assertEqual(sum(row[1] is None for row in rows), 2, chart["title"])
+
+    def test_blows_per_hour_and_energy_of_all(self):
+        blows, seconds = self.ask("SELECT blows, duration_s FROM runs")[0]
+        figures = self.figures(self.page_of(self.file))
+        self.assertAlmostEqual(number(figures["blows per hour of work"]), blows / seconds * 3600.0, delta=1.0)
+        energy = self.ask("SELECT sum(energy_J) FROM blows")[0][0]
+        self.assertAlmostEqual(number(figures["energy of all blows"]), energy / 1e3, delta=1e-3 * energy / 1e3)
+
+    def test_median_and_spread(self):
+        energies = sorted(e for e, in self.ask("SELECT energy_J FROM blows"))
+        median, spread = self.figures(self.page_of(self.file))["blow energy, median \u00b1 spread"].split("\u00b1")
+        self.assertAlmostEqual(number(median), statistics.median(energies), delta=0.1)
+        inside = [e for e in energies if abs(e - number(median)) <= number(spread)]
+        self.assertAlmostEqual(len(inside) / len(energies), 0.6827, delta=0.05)
+
+    def test_deviation_of_the_measurement_where_it_is_known(self):
+        self.ask("ALTER TABLE blows ADD COLUMN energy_deviation_J REAL", "UPDATE blows SET energy_deviation_J = 7.0")
+        figures = self.figures(self.page_of(self.file))
+        self.assertTrue(figures["blow energy, median \u00b1 deviation"].endswith("\u00b1 7.0 J"), figures)
+
+    def test_histograms_hold_every_blow(self):
+        page = self.page_of(self.file)
+        for caption, sql in (("Blows by blow energy", "SELECT energy_J FROM blows"),
+                             ("Blows by peak force", "SELECT amplitude_N / 1000 FROM turns")):
+            values = [v for v, in self.ask(sql)]
+            rows = page.table(caption)
+            self.assertEqual(sum(number(row["Blows"]) for row in rows.values()), len(values))
+            for edges, row in rows.items():
+                low, high = map(number, edges.split(" to "))
+                self.assertEqual(number(row["Blows"]), sum(low <= v < high for v in values), edges)
+
+    def test_a_blow_that_cannot_be_is_nowhere(self):
+        self.ask(*IMPOSSIBLE)
+        page = self.page_of(self.file)
+        chart = next(c for c in page.charts() if c["title"] == "Blow energy")
+        self.assertGreater(min(row[1][0] for row in chart["rows"] if row[1]), 0.0)
+        rows = page.table("Over all turns")
+        good = self.ask("SELECT count(*), min(energy_J), sum(energy_J) FROM blows WHERE energy_J > 0")[0]
+        self.assertEqual(number(rows["Blow energy [J]"]["Values"]), good[0])
+        self.assertAlmostEqual(number(rows["Blow energy [J]"]["Least"]), good[1], delta=1e-3 * good[1])
+        self.assertGreater(number(rows["Restitution"]["Least"]), 0.0)
+        self.assertEqual(number(rows["Hold-down needed [kN]"]["Values"]), good[0] - 1)
+        self.assertEqual(sum(number(r["Blows"]) for r in page.table("Blows by blow energy").values()), good[0])
+        self.assertAlmostEqual(number(self.figures(page)["energy of all blows"]), good[2] / 1e3, delta=1e-3 * good[2] / 1e3)
+        self.assertIn("energy and restitution cannot be: 5 of 1000", page.text)
+
+    def test_names_instead_of_hashes(self):
+        sample.make(self.file, seconds=60.0, runs=2)
+        page = self.page_of(self.file)
+        for column in ("machine", "input_sha256", "run_key"):
+            for value, in self.ask(f"SELECT {column} FROM runs"):
+                self.assertNotIn(value[:8], page.text)
+        self.assertEqual([row["Recording"] for row in page.table("Runs").values()], ["site, run 1", "site, run 2"])
+
+    def test_runs_of_one_machine_are_compared(self):
+        sample.make(self.file, seconds=60.0, runs=3)
+        self.ask("UPDATE blows SET energy_J = 1.2 * energy_J WHERE run_id = 3",
+                 "INSERT INTO warnings VALUES(2, 0, 'jitter', 'crank stamps jitter')")
+        medians = [statistics.median(e for e, in self.ask(f"SELECT energy_J FROM blows WHERE run_id = {run}"))
+                   for run in (1, 2, 3)]
+        header, *rows = self.page_of(self.file).tables["Runs below each other"][0]
+        at = header.index("Blow energy [J]")
+        self.assertEqual([row[0] for row in rows], ["site, run 1", "site, run 2", "site, run 3"])
+        for row, median in zip(rows, medians):
+            self.assertAlmostEqual(number(row[at]) / median, 1.0, delta=1e-2)
+        self.assertEqual(rows[0][at + 1], "")
+        self.assertAlmostEqual(number(rows[2][at + 1]), 100.0 * (medians[2] / medians[0] - 1.0), delta=1.0)
+        self.assertEqual([row[at].endswith("?") for row in rows], [False, True, False])
+
+    def test_local_time_is_the_readers(self):
+        """Its script writes it: the page's bytes hold UTC alone, wherever it is made."""
+        pages = []
+        for zone in ("UTC", "Asia/Bishkek"):
+            out = self.directory / (zone[:4].strip("/") + ".html")
+            done = subprocess.run([sys.executable, str(REPORT), str(self.file), "--html", str(out)],
+                                  env=dict(os.environ, TZ=zone), stdout=subprocess.DEVNULL)
+            self.assertEqual(done.returncode, 0)
+            pages.append(out.read_bytes())
+        self.assertEqual(*pages)
+        times = [given["datetime"] for tag, given in Reader(pages[0].decode()).tags if tag == "time"]
+        self.assertIn("2023-11-14T22:13:20Z", times)
+
+
+class Costs(ReportTest):
+    """A channel of which three turns in a hundred have twice the range."""
+    DEAR, SLOPE = 0.03, 5.0
+
+    def setUp(self):
+        super().setUp()
+        self.file = self.directory / "site.sqlite"
+        sample.make(self.file, sample.Machine(curve=False), seconds=200.0, first_ns=1700002700 * sample.SECOND)
+        db = sqlite3.connect(str(self.file))
+        channel = db.execute("SELECT channel FROM channels WHERE name = 'hull_wrench/force_z_N'").fetchone()[0]
+        db.execute("UPDATE turn_loads SET minimum = 0.0, maximum = CASE WHEN turn <= 30 THEN 80e3 ELSE 40e3 END "
+                   "WHERE channel = ?", (channel,))
+        db.commit()
+        db.close()
+
+    def test_which_blows_cost_what(self):
+        dear = self.DEAR * 2.0 ** self.SLOPE
+        share = 100.0 * dear / (dear + 1.0 - self.DEAR)
+        page = self.page_of(self.file)
+        said = page.text.split("; 3 % of the blows did ")[1].split(" %")[0]
+        self.assertAlmostEqual(float(said), share, delta=0.1)
+        dearest = page.table("Dearest turns")
+        self.assertEqual({int(row["Turn"]) <= 30 for row in dearest.values()}, {True})
+
+    def test_by_hour(self):
+        """The recording begins 100 s before a full hour (22:58:20): the dear turns are in the first."""
+        rows = self.page_of(self.file).table("Damage by hour")
+        self.assertEqual(sorted(rows), ["2023-11-14 22:00", "2023-11-14 23:00"])
+        first, second = (rows[k] for k in sorted(rows))
+        self.assertAlmostEqual(number(first["Turns"]) + number(second["Turns"]), 1000, delta=0.5)
+        turns = number(first["Turns"])
+        damage = (30 * 2.0 ** self.SLOPE + turns - 30) / (30 * 2.0 ** self.SLOPE + 970)
+        self.assertAlmostEqual(number(first["Damage [%]"]), 100.0 * damage, delta=0.1)
+
+    def test_by_recording_is_by_its_cycles(self):
+        sample.make(self.file, sample.Machine(curve=False), seconds=100.0, runs=2)
+        db = sqlite3.connect(str(self.file))
+        totals = []
+        for run in (1, 2):
+            closed = db.execute("SELECT y.steps, y.count FROM cycles y JOIN channels c USING(run_id, channel) "
+                                "WHERE run_id = ? AND name = 'hull_wrench/force_z_N'", (run,)).fetchall()
+            ends = [r for r, in db.execute("SELECT class FROM residues JOIN channels USING(run_id, channel) WHERE run_id = ? "
+                                           "AND name = 'hull_wrench/force_z_N' ORDER BY place", (run,))]
+            halves = [(abs(a - b), 0.5) for a, b in zip(ends, ends[1:])]
+            totals.append(sum(n * steps ** self.SLOPE for steps, n in closed + halves))
+        db.close()
+        rows = self.page_of(self.file).table("Damage by recording")
+        for run, total in enumerate(totals, 1):
+            self.assertAlmostEqual(number(rows[f"site, run {run}"]["Damage [%]"]), 100.0 * total / sum(totals), delta=0.1)
+
+    def test_another_load_another_life(self):
+        rows = self.page_of(self.file).table("Life over that of now")
+        self.assertAlmostEqual(number(rows["0.9"]["slope 5"]), 0.9 ** -5, delta=0.005)
+        self.assertIn(f"slope 10: {2 ** -0.1:.3f} of the load", self.page_of(self.file, options=["--force"]).text)
+
+    def test_life_by_a_curve_of_two_slopes(self):
+        """Where cycles fall below the knee the life grows faster than by the steep slope, slower than by the other."""
+        file = self.directory / "curve.sqlite"
+        sample.make(file, seconds=100.0)
+        db = sqlite3.connect(str(file))
+        width, knee = db.execute("SELECT (greatest - least) / classes, sn_knee_range_MPa FROM channels "
+                                 "WHERE name = 'stress/boom_foot_MPa'").fetchone()
+        cycles = db.execute("SELECT steps, count FROM cycles JOIN channels USING(run_id, channel) "
+                            "WHERE name = 'stress/boom_foot_MPa'").fetchall()
+        db.close()
+        damage = lambda f: sum(n * (s * width * f / knee) ** (3.0 if s * width * f >= knee else 5.0)  # noqa: E731
+                               for s, n in cycles)
+        rows = self.page_of(file).table("Life over that of now")
+        for factor in ("0.8", "0.9", "1.1"):
+            life = damage(1.0) / damage(float(factor))
+            self.assertAlmostEqual(number(rows[factor]["stress/boom_foot"]) / life, 1.0, delta=0.02)
+
+
+class Misuse(ReportTest):
+    def test_counts_per_hour_over_the_runs_that_know(self):
+        file = self.directory / "site.sqlite"
+        sample.make(file, sample.Machine(misuse=(6, 500, 20, 12.5)), seconds=100.0, runs=2)
+        db = sqlite3.connect(str(file))
+        db.execute("UPDATE runs SET unpressed_blows = NULL, still_time_s = NULL WHERE run_id = 2")
+        hours = [h for h, in db.execute("SELECT duration_s / 3600 FROM runs ORDER BY run_id")]
+        db.commit()
+        db.close()
+        rows = self.page_of(file).table("Misuse")
+        self.assertEqual(number(rows["Blank strokes"]["Count"]), 12)
+        self.assertAlmostEqual(number(rows["Blank strokes"]["Per hour"]), 12 / sum(hours), delta=0.5)
+        self.assertEqual(number(rows["Blows without press force"]["Count"]), 20)
+        self.assertAlmostEqual(number(rows["Blows without press force"]["Per hour"]), 20 / hours[0], delta=1.0)
+        self.assertIn("of 500 blows", rows["Blows without press force"]["Meaning"])
+        self.assertAlmostEqual(number(rows["Hammering at one place [s]"]["Count"]), 12.5)
+
+    def test_what_is_not_measured_is_not_zero(self):
+        file = self.directory / "site.sqlite"
+        sample.make(file, sample.Machine(misuse=(0, 0, None, None)), seconds=50.0)
+        rows = self.page_of(file).table("Misuse")
+        self.assertEqual(rows["Blank strokes"]["Count"], "0")
+        self.assertEqual(rows["Blows without press force"]["Count"], "not known")
+        self.assertEqual(rows["Hammering at one place [s]"]["Count"], "not known")
+
+    def test_an_older_database_knows_none(self):
+        file = self.directory / "site.sqlite"
+        sample.make(file, seconds=50.0)
+        db = sqlite3.connect(str(file))
+        for column in ("blank_strokes", "judged_blows", "unpressed_blows", "still_time_s"):
+            db.execute(f"ALTER TABLE runs RENAME COLUMN {column} TO older_{column}")
+        db.commit()
+        db.close()
+        self.assertEqual({row["Count"] for row in self.page_of(file).table("Misuse").values()}, {"not known"})
+
+
+if __name__ == "__main__":
+    unittest.main()
