@@ -157,5 +157,42 @@ TEST(LedgerMix, ARunThatContradictsTheMachineGoes) {
   EXPECT_EQ(figures(file.path()), before);
 }
 
+/// As version 1 left it: no run apart, residues of what ended and of the run at work.
+void makeVersion1(const std::string& path) {
+  EXPECT_EQ(batch(path, {1}, false), "");
+  Database old(path, Database::Use::kWrite, 0);
+  old.run(R"(
+DROP INDEX days_of_run; DROP TABLE marks;
+CREATE TABLE old_residues(
+  channel INTEGER NOT NULL REFERENCES channels, open INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
+  PRIMARY KEY(channel, open, place)) WITHOUT ROWID;
+INSERT INTO old_residues SELECT channel, 0, place, class FROM residues;
+DROP TABLE residues; ALTER TABLE old_residues RENAME TO residues;
+CREATE TABLE old_days(
+  day INTEGER PRIMARY KEY, epoch INTEGER NOT NULL REFERENCES epochs, date TEXT NOT NULL,
+  duration_ns INTEGER NOT NULL, turns INTEGER NOT NULL);
+INSERT INTO old_days SELECT day, epoch, date, duration_ns, turns FROM days;
+DROP TABLE days; ALTER TABLE old_days RENAME TO days;
+CREATE TABLE old_runs(
+  run INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, epoch INTEGER NOT NULL REFERENCES epochs,
+  pieces INTEGER NOT NULL, ended INTEGER NOT NULL);
+INSERT INTO old_runs SELECT run, name, epoch, pieces, ended FROM runs;
+DROP TABLE runs; ALTER TABLE old_runs RENAME TO runs;
+PRAGMA user_version = 1;)");
+  EXPECT_EQ(old.problem(), "");
+}
+
+TEST(LedgerMix, ALedgerOfVersion1GoesOn) {
+  const LedgerFile file;
+  for (const unsigned recording : {1U, 2U}) EXPECT_EQ(batch(file.path("new"), {recording}, false), "");
+  EXPECT_EQ(batch(file.path("first"), {1}, false), "");
+  makeVersion1(file.path());
+  EXPECT_EQ(figures(file.path()), figures(file.path("first"))) << "read as it is";
+  EXPECT_EQ(batch(file.path(), {1}, false), "") << "not counted again";
+  EXPECT_EQ(batch(file.path(), {2}, false), "");
+  EXPECT_EQ(figures(file.path()), figures(file.path("new")));
+  EXPECT_NE(removeFromLedger(file.path(), "1-0").value_or("").find("cannot be taken out"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hammer_loads::life
