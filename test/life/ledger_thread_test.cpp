@@ -34,8 +34,9 @@ Contents pieceByPiece(const std::string& path) {
   class Direct final : public PieceSink {
    public:
     explicit Direct(std::string ledger) : path_(std::move(ledger)) {}
-    void begin(const LedgerMachine& of, const std::string& run) override { run_.emplace(path_, of, run); }
+    void begin(const LedgerMachine& of, const RunId& run) override { run_.emplace(path_, of, run); }
     void add(const LifePiece& piece) override { EXPECT_EQ(run_->add(piece), Problem()); }
+    void refuse(const std::string& reason) override { run_->refuse(reason); }
     void end(const LifePiece& last) override { EXPECT_EQ(run_->end(last), Problem()); }
 
    private:
@@ -114,6 +115,7 @@ TEST(LedgerBatch, WritesWhatPiecesWouldGiveAndNothingTwice) {
     work(batch);
     std::vector<std::string> known;
     EXPECT_EQ(batch.write(known), "");
+    EXPECT_EQ(batch.commit(), "");
     EXPECT_EQ(known.size(), 2 * times);
     expectTheSame(contentsOf(file.path()), expected);
   }

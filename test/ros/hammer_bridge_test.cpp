@@ -120,7 +120,8 @@ TEST(WhoListens, AndComesBackGetsWhatTheOthersGot) {
 /// Says which pieces came.
 class Notes final : public life::PieceSink {
  public:
-  void begin(const life::LedgerMachine&, const std::string& run) override { runs.push_back(run); }
+  void begin(const life::LedgerMachine&, const life::RunId& run) override { runs.push_back(run.name); }
+  void refuse(const std::string&) override {}
   void add(const life::LifePiece& piece) override { pieces.push_back(piece); }
   void end(const life::LifePiece& last) override {
     pieces.push_back(last);

@@ -139,6 +139,16 @@ int countAll(const Options& options) {
   if (!sum) return kExitFailure;
   const std::optional<life::Count> piece = counted(*sum);
   if (!piece) return kExitFailure;
+  std::optional<ReplaceLock> lock;
+  if (!options.state.empty()) {  // while the series came another run may have gone on from the file
+    lock.emplace(options.state);
+    if (!lock->problem().empty()) std::cerr << lock->problem() << '\n';
+    if (!lock->problem().empty()) return kExitFailure;
+    const std::string kind = kindText(*sum);
+    sum = savedCount(options, *empty.value);
+    if (sum && kindText(*sum) != kind) std::cerr << options.state << ": has become another kind of count meanwhile\n";
+    if (!sum || kindText(*sum) != kind) return kExitFailure;
+  }
 
   life::SampleTally tally;
   if (auto* on_grid = std::get_if<life::CycleCount>(&*sum)) {

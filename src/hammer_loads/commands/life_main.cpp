@@ -15,16 +15,32 @@ constexpr char kNotes[] =
 int run(int argc, const char* const* argv) {
   CommandLine line("Life of a machine from its ledger", "life", kNotes);
   std::string file;
-  bool as_json = false, as_csv = false;
+  std::string remove;
+  bool as_json = false, as_csv = false, list_runs = false;
   line.option("ledger", file, "file that the node or process_bag --ledger wrote").required().type("LEDGER.sqlite");
   line.flag("--json", as_json, "as JSON");
   line.flag("--csv", as_csv, "as CSV").excludes({"--json"});
+  line.flag("--runs", list_runs, "the runs that it counts, as CSV").excludes({"--json", "--csv"});
+  line.option("--remove", remove, "take this run out of the ledger")
+      .type("RUN")
+      .excludes({"--json", "--csv", "--runs"});
   if (const auto code = line.parse(argc, argv)) return *code;
+  if (!remove.empty()) {
+    const std::optional<std::string> problem = life::removeFromLedger(file, remove);
+    if (problem) std::cerr << *problem << '\n';
+    return problem ? kExitFailure : 0;
+  }
 
   Checked<life::LedgerReader> reader = life::LedgerReader::open(file);
   std::vector<std::string> problems = reader.problems;
   std::vector<life::EpochReport> epochs;
-  if (reader.value) {
+  if (reader.value && list_runs) {
+    std::cout << "run,epoch,crank_messages,blows\n";
+    for (const life::LedgerRunInfo& r : reader.value->runs())
+      std::cout << r.name << ',' << r.epoch << ',' << r.messages << ',' << r.turns << '\n';
+    if (reader.value->problem().empty()) return finishOutput();
+    problems.push_back(reader.value->problem());
+  } else if (reader.value) {
     Checked<std::vector<life::EpochReport>> report = life::lifeReport(*reader.value);
     problems = report.problems;
     if (report.value) epochs = *std::move(report.value);

@@ -111,13 +111,15 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
       part_(std::move(other.part_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       replaces_(other.replaces_),
+      published_(other.published_),
+      exchanged_(other.exchanged_),
       device_(other.device_),
       inode_(other.inode_) {}
 
 OutputFile::~OutputFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  if (!part_) return;
+  if (!part_ || (published_ && !exchanged_)) return;
   unlink(part_->c_str());
   setRemoval(nullptr);
 }
@@ -132,12 +134,28 @@ std::string OutputFile::publish() {
   const bool is_there = lstat(name_.c_str(), &found) == 0;
   if (is_there && !(replaces_ && found.st_dev == device_ && found.st_ino == inode_))
     return name_ + ": has appeared meanwhile, is not replaced";
-  const int error =
-      is_there ? (std::rename(part_->c_str(), name_.c_str()) == 0 ? 0 : errno) : renameToNew(AT_FDCWD, *part_, name_);
+  int error = is_there
+                  ? (renameat2(AT_FDCWD, part_->c_str(), AT_FDCWD, name_.c_str(), RENAME_EXCHANGE) == 0 ? 0 : errno)
+                  : renameToNew(AT_FDCWD, *part_, name_);
+  exchanged_ = is_there && error == 0;  // the old file is there until the end, under the other name
+  if (is_there && (error == EINVAL || error == ENOSYS))
+    error = std::rename(part_->c_str(), name_.c_str()) == 0 ? 0 : errno;
   if (error != 0) return name_ + ": the file cannot be given this name: " + std::strerror(error);
   setRemoval(nullptr);
-  part_.reset();
+  published_ = true;
   return {};
+}
+
+void OutputFile::withdraw() {
+  if (!published_) return;
+  published_ = false;
+  struct stat here {
+  }, there{};
+  const bool ours = fstat(descriptor_, &here) == 0 && lstat(name_.c_str(), &there) == 0 &&
+                    here.st_dev == there.st_dev && here.st_ino == there.st_ino;
+  if (!ours) return;
+  if (exchanged_) renameat2(AT_FDCWD, part_->c_str(), AT_FDCWD, name_.c_str(), RENAME_EXCHANGE);
+  if (!exchanged_) unlink(name_.c_str());
 }
 
 void endCleanlyOnSignals() {

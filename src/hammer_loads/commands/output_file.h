@@ -35,6 +35,8 @@ class OutputFile {
   std::string path() const;
   /// Gives the file its name. Why that could not be, one line; empty if it was done.
   std::string publish();
+  /// Takes the name back, for what belongs to it could not be written: what was there before is there again.
+  void withdraw();
 
  private:
   OutputFile() = default;
@@ -45,7 +47,7 @@ class OutputFile {
   std::unique_ptr<const std::string>
       part_;  ///< at the same place however often this moves: the signal handler reads it
   int descriptor_{-1};
-  bool replaces_{};
+  bool replaces_{}, published_{}, exchanged_{};
   dev_t device_{};  ///< of what may be replaced
   ino_t inode_{};
 };

@@ -1,6 +1,7 @@
 /// process_bag: a recording in, the hammer's loads or the grapple's motion out.
 #include <console_bridge/console.h>
 
+#include <csignal>
 #include <filesystem>
 #include <iostream>
 
@@ -19,7 +20,7 @@ struct Arguments {
   std::vector<std::string> bags;  ///< inputs, then the output unless there is none
   std::vector<std::string> params, grapple;
   std::string urdf, tables, ledger;
-  bool force{}, no_bag{};
+  bool force{}, no_bag{}, replace_run{};
 };
 
 void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
@@ -31,6 +32,8 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   line.option("--db", given.tables, "write the results as tables, which must not exist").type("FILE.sqlite");
   line.option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
       .type("FILE.sqlite");
+  line.flag("--replace-run", given.replace_run, "in the ledger these runs take the place of what it has of them")
+      .needs("--ledger");
   line.flag("--force", given.force, "replace OUT.bag and FILE.sqlite if they hold results of this command alone");
   addParamsOption(line, given.params);
   line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
@@ -136,7 +139,8 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
   }
   std::optional<life::LedgerBatch> ledger;
   if (!given.ledger.empty()) {
-    ledger.emplace(given.ledger, [](const std::string& busy) { std::cerr << busy << '\n'; });
+    ledger.emplace(
+        given.ledger, [](const std::string& busy) { std::cerr << busy << '\n'; }, given.replace_run);
     const std::string problem = ledger->check();
     if (!problem.empty()) return {problem};
     job.pieces = &*ledger;
@@ -148,11 +152,23 @@ std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport&
       if (problem.rfind(output.path + ":", 0) == 0) problem.replace(0, output.path.size(), output.name);
   }
   if (ledger && problems.empty()) problems = writeLedger(*ledger, report);
+  // Together or not at all: no signal may part them.
+  sigset_t all, before;
+  sigfillset(&all);
+  sigprocmask(SIG_BLOCK, &all, &before);
   for (OutputFile& file : files) {
     if (!problems.empty()) break;
     const std::string problem = file.publish();
     if (!problem.empty()) problems.push_back(problem);
   }
+  if (ledger && problems.empty()) {
+    const std::string problem = ledger->commit();
+    if (!problem.empty()) problems.push_back(problem);
+  }
+  if (!problems.empty())
+    for (OutputFile& file : files) file.withdraw();
+  files.clear();
+  sigprocmask(SIG_SETMASK, &before, nullptr);
   return problems;
 }
 

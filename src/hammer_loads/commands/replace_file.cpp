@@ -1,6 +1,7 @@
 #include "hammer_loads/commands/replace_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -81,6 +82,22 @@ std::optional<std::string> replaceFile(const std::string& path, const std::strin
   }
   unlink(part.data());
   return path + ": cannot be replaced: " + reason;
+}
+
+ReplaceLock::ReplaceLock(const std::string& path) {
+  std::error_code error;
+  const fs::path target = fs::weakly_canonical(fs::absolute(path), error);
+  const fs::path directory = (error ? fs::path(path) : target).parent_path();
+  directory_ = open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  int result = -1;
+  if (directory_ >= 0) do
+      result = flock(directory_, LOCK_EX);
+    while (result != 0 && errno == EINTR);
+  if (result != 0) problem_ = path + ": its directory cannot be locked: " + lastError();
+}
+
+ReplaceLock::~ReplaceLock() {
+  if (directory_ >= 0) close(directory_);
 }
 
 }  // namespace hammer_loads

@@ -4,7 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
-#include <limits>
+#include <map>
 #include <utility>
 
 #include "hammer_loads/life/count_state.h"
@@ -13,11 +13,19 @@
 
 namespace hammer_loads::life {
 
+/// What the residues of runs give, one after another.
+struct LedgerReader::Seams {
+  std::int64_t channel{-1};
+  std::map<std::int64_t, std::vector<ClosedCycles>> closed;  ///< by the day of the run that closed them
+  std::vector<std::uint32_t> residue;
+};
+
 struct LedgerReader::State {
   explicit State(std::string name) : path(std::move(name)), database(path, Database::Use::kRead, kReaderPatience) {}
   static constexpr int kReaderPatience = 5000;  // [ms]; a writer needs some ms
   std::string path;
   Database database;
+  Seams seams;  ///< of the channel read last
 };
 
 namespace {
@@ -78,50 +86,93 @@ std::vector<LedgerEpoch> LedgerReader::epochs() {
   while (rows.step()) {
     LedgerEpoch epoch{rows.integer(0), {rows.text(1), {}, rows.number(2)}, {}, unsignedOf(rows, 3)};
     for (ChannelRow& row : channelsOf(database, epoch.id)) epoch.machine.channels.push_back(std::move(row.channel));
-    Database::Statement days(database, "SELECT day, date, duration_ns, turns FROM days WHERE epoch = ?1 ORDER BY day");
+    Database::Statement days(database,
+                             "SELECT day, date, duration_ns, turns FROM days WHERE epoch = ?1 ORDER BY run, day");
     days.with(epoch.id);
-    while (days.step()) epoch.days.push_back({days.integer(0), days.text(1), unsignedOf(days, 2), unsignedOf(days, 3)});
+    while (days.step()) {
+      if (epoch.days.empty() || epoch.days.back().date != days.text(1)) epoch.days.push_back({{}, days.text(1), 0, 0});
+      LedgerDay& day = epoch.days.back();
+      day.ids.push_back(days.integer(0));
+      day.duration += unsignedOf(days, 2);
+      day.turns += unsignedOf(days, 3);
+    }
     epochs.push_back(std::move(epoch));
   }
   return epochs;
 }
 
-CycleCount LedgerReader::read(const LedgerEpoch& epoch, std::size_t channel, std::int64_t first_day,
-                              std::int64_t last_day) {
+std::vector<LedgerRunInfo> LedgerReader::runs() {
+  Database::Statement rows(state_->database,
+                           "SELECT name, epoch, messages, (SELECT coalesce(sum(turns), 0) FROM days WHERE days.run = "
+                           "runs.run), apart FROM runs ORDER BY epoch, run");
+  std::vector<LedgerRunInfo> runs;
+  while (rows.step())
+    runs.push_back({rows.text(0), rows.integer(1), unsignedOf(rows, 2), unsignedOf(rows, 3), rows.integer(4) != 0});
+  return runs;
+}
+
+std::int64_t LedgerReader::idOf(const LedgerEpoch& epoch, std::size_t channel) {
+  const std::vector<ChannelRow> rows = channelsOf(state_->database, epoch.id);
+  return channel < rows.size() ? rows[channel].id : -1;
+}
+
+void LedgerReader::read(std::int64_t channel, std::optional<std::int64_t> day, CycleCount& count) {
   Database& database = state_->database;
-  CycleCount count(epoch.machine.channels[channel].grid);
-  const std::vector<ChannelRow> rows = channelsOf(database, epoch.id);
-  if (!database.good()) return count;
-  const std::int64_t id = rows[channel].id;
-  Database::Statement tallies(database,
-                              "SELECT counted, skipped, below, above, gaps, deviations, deviation_sum, least, greatest "
-                              "FROM tallies WHERE channel = ?1 AND day BETWEEN ?2 AND ?3 ORDER BY day");
-  tallies.with(id, first_day, last_day);
+  const std::string place = std::string(" WHERE channel = ?1 ") + (day ? "AND day = ?2 " : "");
+  const std::string tally =
+      "SELECT counted, skipped, below, above, gaps, deviations, deviation_sum, least, greatest FROM tallies" + place;
+  const std::string cycle = "SELECT steps, low, sum(count) FROM cycles" + place + "GROUP BY steps, low";
+  Database::Statement tallies(database, tally.c_str()), cycles(database, cycle.c_str());
+  for (Database::Statement* rows : {&tallies, &cycles}) day ? rows->with(channel, *day) : rows->with(channel);
   while (tallies.step()) addTally(tallies, count);
-  Database::Statement cycles(database,
-                             "SELECT steps, low, sum(count) FROM cycles WHERE channel = ?1 AND day BETWEEN ?2 AND ?3 "
-                             "GROUP BY steps, low ORDER BY steps, low");
-  cycles.with(id, first_day, last_day);
   while (cycles.step())
     count.closed.push_back({static_cast<std::uint32_t>(cycles.integer(0)),
                             static_cast<std::uint32_t>(cycles.integer(1)), unsignedOf(cycles, 2)});
-  return count;
+}
+
+const LedgerReader::Seams& LedgerReader::seams(std::int64_t epoch, std::int64_t channel) {
+  Database& database = state_->database;
+  Seams& seams = state_->seams;
+  if (seams.channel == channel) return seams;
+  seams = {channel, {}, {}};
+  std::map<std::int64_t, std::vector<std::uint32_t>> residues;  // in the order of runs
+  Database::Statement rows(database, "SELECT run, class FROM residues WHERE channel = ?1 ORDER BY run, place");
+  rows.with(channel);
+  while (rows.step()) residues[rows.integer(0)].push_back(static_cast<std::uint32_t>(rows.integer(1)));
+  std::map<std::int64_t, std::int64_t> last_day;
+  Database::Statement days(database, "SELECT run, max(day) FROM days WHERE epoch = ?1 GROUP BY run");
+  days.with(epoch);
+  while (days.step()) last_day[days.integer(0)] = days.integer(1);
+  for (const auto& [run, residue] : residues) joinResidues(seams.residue, residue, seams.closed[last_day[run]]);
+  return seams;
 }
 
 CycleCount LedgerReader::total(const LedgerEpoch& epoch, std::size_t channel) {
-  CycleCount count = read(epoch, channel, 0, std::numeric_limits<std::int64_t>::max());
-  Database& database = state_->database;
-  const std::vector<ChannelRow> rows = channelsOf(database, epoch.id);
-  if (!database.good()) return count;
-  count.residue = residueOf(database, rows[channel].id, false);
-  joinResidues(count.residue, residueOf(database, rows[channel].id, true), count.closed);
+  CycleCount count(epoch.machine.channels[channel].grid);
+  const std::int64_t id = idOf(epoch, channel);
+  read(id, std::nullopt, count);
+  const Seams& joined = seams(epoch.id, id);
+  count.residue = joined.residue;
+  for (const auto& [day, closed] : joined.closed) count.closed.insert(count.closed.end(), closed.begin(), closed.end());
   sortClosed(count.closed);
-  if (!isPossible(count)) database.fail("damaged: no loads give the count of " + epoch.machine.channels[channel].name);
+  Database& database = state_->database;
+  if (database.good() && !isPossible(count))
+    database.fail("damaged: no loads give the count of " + epoch.machine.channels[channel].name);
   return count;
 }
 
 CycleCount LedgerReader::ofDay(const LedgerEpoch& epoch, std::size_t channel, const LedgerDay& day) {
-  return read(epoch, channel, day.id, day.id);
+  CycleCount count(epoch.machine.channels[channel].grid);
+  const std::int64_t id = idOf(epoch, channel);
+  const Seams& joined = seams(epoch.id, id);
+  for (const std::int64_t part : day.ids) {
+    read(id, part, count);
+    const auto closed = joined.closed.find(part);
+    if (closed != joined.closed.end())
+      count.closed.insert(count.closed.end(), closed->second.begin(), closed->second.end());
+  }
+  sortClosed(count.closed);
+  return count;
 }
 
 }  // namespace hammer_loads::life

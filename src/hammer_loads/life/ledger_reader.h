@@ -14,9 +14,9 @@ namespace hammer_loads::life {
 
 /// Days follow each other as they were written: a clock that ran back gives a date a second time or out of order.
 struct LedgerDay {
-  std::int64_t id{};
-  std::string date;          ///< of the samples' stamps, UTC
-  std::uint64_t duration{};  ///< [ns]
+  std::vector<std::int64_t> ids;  ///< one for each run that worked on it
+  std::string date;               ///< of the samples' stamps, UTC
+  std::uint64_t duration{};       ///< [ns]
   std::uint64_t turns{};
 };
 
@@ -25,6 +25,14 @@ struct LedgerEpoch {
   LedgerMachine machine;
   std::vector<LedgerDay> days;
   std::uint64_t runs{};
+};
+
+struct LedgerRunInfo {
+  std::string name;
+  std::int64_t epoch{};
+  std::uint64_t messages{};  ///< of the crank
+  std::uint64_t turns{};
+  bool apart{};  ///< false: counted by version 1, in one sum with others; can be neither removed nor replaced
 };
 
 /// One state of the file, that at the first query, however long the reading takes.
@@ -38,9 +46,12 @@ class LedgerReader {
 
   /// In the order in which they began.
   std::vector<LedgerEpoch> epochs();
+  /// In the order in which they count.
+  std::vector<LedgerRunInfo> runs();
   /// All cycles of a channel of an epoch with the residue of all runs, the one at work included.
   CycleCount total(const LedgerEpoch& epoch, std::size_t channel);
-  /// Cycles that closed on a day; no residue: it belongs to no day.
+  /// Cycles that closed on a day, those that a run closes with the residues before it on the run's last one; no
+  /// residue: it belongs to no day.
   CycleCount ofDay(const LedgerEpoch& epoch, std::size_t channel, const LedgerDay& day);
 
   /// One line after a failed query, whose result is then not to be used; else empty.
@@ -49,7 +60,11 @@ class LedgerReader {
  private:
   struct State;
   explicit LedgerReader(std::unique_ptr<State> state);
-  CycleCount read(const LedgerEpoch& epoch, std::size_t channel, std::int64_t first_day, std::int64_t last_day);
+  std::int64_t idOf(const LedgerEpoch& epoch, std::size_t channel);
+  /// Adds what is kept of a day; of all for nothing.
+  void read(std::int64_t channel, std::optional<std::int64_t> day, CycleCount& count);
+  struct Seams;
+  const Seams& seams(std::int64_t epoch, std::int64_t channel);
 
   std::unique_ptr<State> state_;
 };

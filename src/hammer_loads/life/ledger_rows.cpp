@@ -37,12 +37,4 @@ std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch) {
   return channels;
 }
 
-std::vector<std::uint32_t> residueOf(Database& database, std::int64_t channel, bool open) {
-  Database::Statement rows(database, "SELECT class FROM residues WHERE channel = ?1 AND open = ?2 ORDER BY place");
-  rows.with(channel, std::int64_t{open});
-  std::vector<std::uint32_t> residue;
-  while (rows.step()) residue.push_back(static_cast<std::uint32_t>(rows.integer(0)));
-  return residue;
-}
-
 }  // namespace hammer_loads::life

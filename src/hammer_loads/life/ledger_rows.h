@@ -18,7 +18,4 @@ struct ChannelRow {
 /// Of an epoch, in the order of LedgerMachine::channels. A problem for a grid or curve that none has.
 std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch);
 
-/// Classes of the run at work (`open`) or of all that ended.
-std::vector<std::uint32_t> residueOf(Database& database, std::int64_t channel, bool open);
-
 }  // namespace hammer_loads::life

@@ -1,12 +1,7 @@
 #include "hammer_loads/life/ledger_run.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include "hammer_loads/life/ledger_schema.h"
@@ -14,55 +9,7 @@
 
 namespace hammer_loads::life {
 
-/// Of a file beside the ledger, released by the kernel however the process ends. Not of the ledger itself: closing a
-/// second handle of it would release SQLite's own locks.
-class LedgerRun::Lock {
- public:
-  /// Nothing after a problem.
-  static std::unique_ptr<Lock> take(const std::string& path, std::string& problem, bool& busy) {
-    const std::string name = path + ".lock";
-    constexpr int kHow = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW;
-    int file = open(name.c_str(), kHow | O_EXCL, 0666);
-    const bool made = file >= 0;
-    if (!made) file = open(name.c_str(), kHow, 0666);
-    if (file < 0) {
-      problem = std::string("its lock cannot be opened: ") + std::strerror(errno);
-      return nullptr;
-    }
-    auto lock = std::unique_ptr<Lock>(new Lock(file, made ? name : ""));
-    const bool locked = flock(file, LOCK_EX | LOCK_NB) == 0;
-    if (locked && isAt(name, file)) return lock;
-    busy = locked || errno == EWOULDBLOCK;
-    problem = busy ? "another run is writing it; waiting for that to end"
-                   : std::string("its lock cannot be taken: ") + std::strerror(errno);
-    return nullptr;
-  }
-  ~Lock() { close(file_); }
-  /// Leaves no file behind that was not there before.
-  void remove() {
-    if (!made_.empty()) unlink(made_.c_str());
-  }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-
- private:
-  /// False: another run has removed it between opening and locking.
-  static bool isAt(const std::string& name, int file) {
-    struct stat there {
-    }, here{};
-    return stat(name.c_str(), &there) == 0 && fstat(file, &here) == 0 && there.st_ino == here.st_ino;
-  }
-  Lock(int file, std::string made) : file_(file), made_(std::move(made)) {}
-  int file_;
-  std::string made_;  ///< its name; empty where it was there before
-};
-
 namespace {
-
-bool isSomethingElse(const std::string& path) {
-  struct stat status {};
-  return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
-}
 
 bool isEmpty(const LifePiece& piece) {
   for (const CycleCount& count : piece.counts) {
@@ -81,21 +28,17 @@ LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& ide
   return machine;
 }
 
-LedgerRun::LedgerRun(std::string path, LedgerMachine machine, std::string run)
-    : path_(std::move(path)), machine_(std::move(machine)), run_(std::move(run)) {}
+LedgerRun::LedgerRun(std::string path, LedgerMachine machine, RunId run)
+    : path_(std::move(path)), machine_(std::move(machine)), id_(std::move(run)) {}
 LedgerRun::~LedgerRun() = default;
 LedgerRun::LedgerRun(LedgerRun&&) noexcept = default;
 LedgerRun& LedgerRun::operator=(LedgerRun&&) noexcept = default;
 
 std::optional<std::string> LedgerRun::hold() {
-  if (lock_) return std::nullopt;
+  if (lock_ && lock_->isAt(path_)) return std::nullopt;
+  lock_.reset();
   std::string trouble;
-  busy_ = false;
-  if (isSomethingElse(path_)) {
-    trouble = "is no regular file";
-  } else {
-    lock_ = Lock::take(path_, trouble, busy_);
-  }
+  lock_ = LedgerLock::take(path_, trouble, busy_);
   if (lock_) return std::nullopt;
   return problem(trouble);
 }
@@ -103,19 +46,22 @@ std::optional<std::string> LedgerRun::hold() {
 std::optional<std::string> LedgerRun::prepare() {
   const bool held = lock_ != nullptr;
   if (std::optional<std::string> trouble = hold()) return trouble;
-  if (access(path_.c_str(), F_OK) != 0) return std::nullopt;
-  Database database(path_, Database::Use::kWrite, kPatience);
-  beginAsLedger(database);
-  database.run("ROLLBACK");
-  if (database.good()) return std::nullopt;
-  if (!held) {
-    lock_->remove();
-    lock_.reset();
+  std::string trouble;
+  {
+    Database database(lock_->name(), Database::Use::kWrite, kPatience);
+    beginAsLedger(database);
+    database.run("ROLLBACK");
+    trouble = database.problem();
   }
-  return problem(database.problem());
+  if (trouble.empty()) return std::nullopt;
+  if (!held) lock_.reset();
+  return problem(trouble);
 }
 
 void LedgerRun::keep(LifePiece piece) {
+  messages_ += piece.messages;
+  marks_.insert(marks_.end(), piece.marks.begin(), piece.marks.end());
+  piece.marks.clear();
   if (!isEmpty(piece)) waiting_.push_back(std::move(piece));
   compact(attempted_);
 }
@@ -128,7 +74,7 @@ std::optional<std::string> LedgerRun::add(LifePiece piece) {
 std::optional<std::string> LedgerRun::end(std::optional<LifePiece> last) {
   if (last) keep(*std::move(last));
   std::optional<std::string> trouble = write(true);
-  if (!trouble) lock_.reset();
+  if (!trouble || refused()) lock_.reset();
   return trouble;
 }
 
@@ -141,48 +87,115 @@ void LedgerRun::compact(std::size_t from) {
   }
 }
 
-std::optional<std::string> LedgerRun::write(bool end) {
-  if (ended_ || (waiting_.empty() && !end)) return std::nullopt;
-  if (refused_) {
-    waiting_.clear();
-    return problem("run " + run_ + ": is in it already, not counted again");
+/// Why the run is refused, in view of what the ledger has of its samples; `like` is what it takes the place of.
+std::optional<std::string> LedgerRun::judge(Database& database, std::vector<RunRow>& like, bool end, bool replace) {
+  known_ = false;
+  if (!id_.refusal.empty()) return "is not counted: " + id_.refusal;
+  like = runsLike(database, machine_, id_, marks_);
+  for (const RunRow& row : like) {
+    const std::string sizes = std::to_string(messages_) + " of its " + std::to_string(row.messages) + " samples";
+    if (!row.apart) {
+      known_ = true;
+      return "is in it already, not counted again (by a version that kept no run apart: it cannot be replaced)";
+    }
+    if (replace && messages_ >= row.messages) continue;
+    if (replace)
+      return "cannot replace run " + row.name + ": holds " + sizes + "; life --remove takes that one out first";
+    const bool other = !id_.parameters.empty() && !row.parameters.empty() && id_.parameters != row.parameters;
+    if (other && row.name == id_.name)
+      return "is in it already with other sensor parameters; process_bag --replace-run puts this one in its place";
+    if (end && !other && messages_ > row.messages && holdsMarksOf(database, row, marks_)) continue;
+    known_ = row.name == id_.name;
+    if (known_) return "is in it already, not counted again";
+    return "has samples of run " + row.name +
+           ", which is in it already; a part of a recording counts with all its parts in one call, and "
+           "process_bag --replace-run puts a whole one in its place";
   }
+  return std::nullopt;
+}
+
+/// A commit that reported an error may be in the file all the same: what it would have made of the run's row shows it.
+bool LedgerRun::wasWritten(const RunRow& row) {
+  if (!attempting_ || row.pieces != pieces_ + 1 || row.messages != attempted_messages_) return false;
+  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(attempted_));
+  ++pieces_;
+  return true;
+}
+
+bool LedgerRun::put(Database& database, bool end, bool replace) {
+  std::optional<RunRow> row = findRun(database, id_.name);
+  if (!database.good()) return true;
+  const bool ours = row && ((pieces_ > 0 && row->pieces == pieces_ && row->apart) || wasWritten(*row));
+  attempting_ = false;
+  attempted_ = 0;
+  std::vector<RunRow> like;
+  if (!ours) pieces_ = 0, marks_written_ = 0;  // a first piece, or another file than before
+  std::optional<std::string> refusal;
+  if (!ours) {
+    refusal = judge(database, like, end, replace);
+  } else {
+    if (!id_.refusal.empty()) refusal = "is not counted: " + id_.refusal;
+    const std::vector<std::int64_t> fresh(marks_.begin() + static_cast<std::ptrdiff_t>(marks_written_), marks_.end());
+    for (const RunRow& other : runsLike(database, machine_, id_, fresh)) {
+      if (other.run != row->run && !refusal)
+        refusal = "has samples of run " + other.name + ", which is in it already: not counted twice";
+    }
+    if (refusal) removeRun(database, *row);
+  }
+  if (!database.good()) return true;
+  refusal_ = refusal ? "run " + id_.name + ": " + *refusal : "";
+  if (refusal) return false;
+  compact(0);
+  if (!ours) row = like.empty() ? beginRun(database, machine_, id_) : replaceRuns(database, machine_, id_, like);
+  for (const LifePiece& piece : waiting_) addPiece(database, *row, piece);
+  addMarks(database, *row, marks_, marks_written_);
+  setRun(database, *row, pieces_ + 1, messages_, end);
+  return true;
+}
+
+bool LedgerRun::putWhole(Database& database, bool replace) { return put(database, true, replace); }
+
+std::optional<std::string> LedgerRun::write(bool end) {
+  if (ended_) return refused() ? std::make_optional(problem(refusal_)) : std::nullopt;
+  const bool gives_up = !id_.refusal.empty();
+  if (!end && refused()) return problem(refusal_);  // the pieces stay: at its end the run may have more than the ledger
+  if (waiting_.empty() && !end && !gives_up) return std::nullopt;
   if (std::optional<std::string> trouble = hold()) return trouble;
 
-  Database database(path_, Database::Use::kWrite, kPatience);
+  Database database(lock_->name(), Database::Use::kWrite, kPatience);
   beginAsLedger(database);
-  std::optional<RunRow> row = findRun(database, run_);
-  if (!database.good()) return problem(database.problem());
-  // A commit that reported an error may be in the file all the same: the number of pieces shows it.
-  const bool attempted = attempted_ > 0 || attempted_end_;
-  if (row && attempted && row->pieces == pieces_ + 1) {
-    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(attempted_));
-    ++pieces_;
-  } else if (row && (row->pieces != pieces_ || row->ended)) {
-    refused_ = true;
-    waiting_.clear();
-    return problem("run " + run_ + ": is in it already, not counted again");
-  } else if (!row) {
-    pieces_ = 0;  // a first piece, or another file than before
-  }
-  attempted_ = 0;
-  attempted_end_ = false;
-  compact(0);
-  if (!row) row = beginRun(database, machine_, run_);
-  for (const LifePiece& piece : waiting_) addPiece(database, *row, piece);
-  setPieces(database, *row, pieces_ + 1);
-  if (end && !row->ended) endRun(database, *row);
+  const bool taken = put(database, end, false);
   if (database.good()) {
-    attempted_ = waiting_.size();
-    attempted_end_ = end;
+    attempting_ = taken;
+    attempted_ = taken ? waiting_.size() : 0;
+    attempted_messages_ = messages_;
   }
   database.run("COMMIT");
   if (!database.good()) return problem(database.problem());
-  ++pieces_;
-  waiting_.clear();
+  attempting_ = false;
   attempted_ = 0;
-  attempted_end_ = false;
   ended_ = end;
+  if (taken) ++pieces_, marks_written_ = marks_.size();
+  if (taken || end) waiting_.clear();
+  if (taken) return std::nullopt;
+  return problem(refusal_);
+}
+
+std::optional<std::string> removeFromLedger(const std::string& path, const std::string& name) {
+  std::string trouble;
+  bool busy = false;
+  if (access(path.c_str(), F_OK) != 0) return path + ": does not exist";
+  const std::unique_ptr<LedgerLock> lock = LedgerLock::take(path, trouble, busy);
+  if (!lock) return path + ": " + (busy ? "another run is writing it; remove the run when that has ended" : trouble);
+  Database database(lock->name(), Database::Use::kWrite, LedgerRun::kPatience);
+  beginAsLedger(database);
+  const std::optional<RunRow> row = findRun(database, name);
+  if (!row) database.fail("has no run " + name + "; --runs lists them");
+  if (row && !row->apart)
+    database.fail("run " + name + ": was counted by a version that kept no run apart: it cannot be taken out");
+  if (database.good()) removeRun(database, *row);
+  database.run("COMMIT");
+  if (!database.good()) return path + ": " + database.problem();
   return std::nullopt;
 }
 

@@ -8,8 +8,9 @@ namespace {
 constexpr std::int64_t kApplication = 0x484C4C31;  ///< "HLL1"
 
 // One step per version. Integers of `least`, `classes` and so on belong to LoadGrid; `steps` and `low` to ClosedCycles.
-// open = 1: residue of the run at work; 0: joined residues of all that ended.
-constexpr const char* kUpgrades[kLedgerVersion] = {R"(
+// Version 1: residues with open = 1 are of the run at work, with 0 joined of all that ended.
+constexpr const char* kUpgrades[kLedgerVersion] = {
+    R"(
 CREATE TABLE epochs(
   epoch INTEGER PRIMARY KEY, machine TEXT NOT NULL, equivalent_cycles_per_hour REAL NOT NULL);
 CREATE TABLE channels(
@@ -35,7 +36,39 @@ CREATE TABLE cycles(
 CREATE TABLE residues(
   channel INTEGER NOT NULL REFERENCES channels, open INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
   PRIMARY KEY(channel, open, place)) WITHOUT ROWID;
+)",
+    // Runs apart, so that each can be taken out or replaced. What a ledger
+    // of version 1 has stays together, with the first run of its epoch.
+    R"(
+ALTER TABLE runs ADD COLUMN apart INTEGER NOT NULL DEFAULT 1;
+ALTER TABLE runs ADD COLUMN parameters TEXT NOT NULL DEFAULT '';
+ALTER TABLE runs ADD COLUMN messages INTEGER NOT NULL DEFAULT 0;
+UPDATE runs SET apart = 0, ended = 1;
+ALTER TABLE days ADD COLUMN run INTEGER REFERENCES runs;
+UPDATE days SET run = (SELECT min(run) FROM runs WHERE runs.epoch = days.epoch);
+CREATE TABLE residues_by_run(
+  channel INTEGER NOT NULL REFERENCES channels, run INTEGER NOT NULL REFERENCES runs, place INTEGER NOT NULL,
+  class INTEGER NOT NULL, PRIMARY KEY(channel, run, place)) WITHOUT ROWID;
+INSERT INTO residues_by_run SELECT r.channel,
+  (SELECT CASE r.open WHEN 1 THEN max(run) ELSE min(run) END FROM runs WHERE runs.epoch = c.epoch), r.place, r.class
+  FROM residues r JOIN channels c USING(channel);
+DROP TABLE residues;
+ALTER TABLE residues_by_run RENAME TO residues;
+CREATE TABLE marks(
+  mark INTEGER NOT NULL, run INTEGER NOT NULL REFERENCES runs, PRIMARY KEY(mark, run)) WITHOUT ROWID;
+CREATE INDEX days_of_run ON days(run);
 )"};
+
+/// A ledger of version 1 as one of version 2, for reading: the file stays as it is.
+constexpr char kReadVersion1[] = R"(
+CREATE TEMP VIEW days AS SELECT day, epoch, date, duration_ns, turns,
+  (SELECT min(run) FROM main.runs r WHERE r.epoch = d.epoch) AS run FROM main.days d;
+CREATE TEMP VIEW residues AS SELECT r.channel, place, class,
+  (SELECT CASE r.open WHEN 1 THEN max(run) ELSE min(run) END FROM main.runs WHERE runs.epoch = c.epoch) AS run
+  FROM main.residues r JOIN main.channels c USING(channel);
+CREATE TEMP VIEW runs AS SELECT run, name, epoch, pieces, ended, 0 AS apart, '' AS parameters, 0 AS messages
+  FROM main.runs;
+)";
 
 std::int64_t valueOf(Database& database, const char* sql) {
   Database::Statement statement(database, sql);
@@ -70,7 +103,9 @@ void beginAsLedger(Database& database) {
 
 void beginReading(Database& database) {
   database.run("BEGIN");
-  if (versionOf(database) == 0) database.fail("holds no ledger");
+  const std::int64_t version = versionOf(database);
+  if (version == 0) database.fail("holds no ledger");
+  if (version == 1) database.run(kReadVersion1);
 }
 
 }  // namespace hammer_loads::life

@@ -33,11 +33,13 @@ void LedgerThread::put(Job job) {
   wake_.notify_one();
 }
 
-void LedgerThread::begin(const LedgerMachine& machine, const std::string& run) {
+void LedgerThread::begin(const LedgerMachine& machine, const RunId& run) {
   put({LedgerRun(path_, machine, run), {}, false});
 }
 
 void LedgerThread::add(const LifePiece& piece) { put({{}, piece, false}); }
+
+void LedgerThread::refuse(const std::string& reason) { put({{}, {}, false, reason}); }
 
 void LedgerThread::end(const LifePiece& last) { put({{}, last, true}); }
 
@@ -67,6 +69,7 @@ void LedgerThread::work() {
 
 void LedgerThread::take(Job job) {
   if (job.begin) runs_.push_back({*std::move(job.begin), false});
+  if (!job.refusal.empty()) runs_.back().ledger.refuse(job.refusal);
   if (job.piece) runs_.back().ledger.keep(*std::move(job.piece));
   runs_.back().ends = runs_.back().ends || job.ends;
 }
@@ -77,10 +80,12 @@ void LedgerThread::write() {
     Run& first = runs_.front();
     problem = first.ledger.prepare();
     if (!problem) problem = first.ends ? first.ledger.end({}) : first.ledger.add({});
-    if (!first.ends || (problem && !first.ledger.refused())) break;
+    const bool refused = first.ledger.refused();
+    if (!first.ends || (problem && !refused)) break;
+    if (refused) refusal_ = *std::exchange(problem, std::nullopt);
     runs_.pop_front();
   }
-  State state{problem.value_or(""), 0};
+  State state{problem.value_or(refusal_), 0};
   for (const Run& run : runs_) state.waiting += run.ledger.waiting();
   const std::lock_guard<std::mutex> lock(mutex_);
   state_ = std::move(state);

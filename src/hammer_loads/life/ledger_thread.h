@@ -23,15 +23,17 @@ class LedgerThread final : public PieceSink {
   LedgerThread(const LedgerThread&) = delete;
   LedgerThread& operator=(const LedgerThread&) = delete;
 
-  void begin(const LedgerMachine& machine, const std::string& run) override;
+  void begin(const LedgerMachine& machine, const RunId& run) override;
   void add(const LifePiece& piece) override;
+  void refuse(const std::string& reason) override;
   void end(const LifePiece& last) override;
   /// A last attempt; then the thread is at its end and nothing more is taken. Nothing when all is written, else one
   /// line.
   std::optional<std::string> close();
 
   struct State {
-    std::string problem;    ///< of the last attempt, one line; empty: all is well
+    /// Of the last attempt, else why the last run that was refused is not in the ledger; one line, empty: all is well.
+    std::string problem;
     std::size_t waiting{};  ///< pieces given but not written, those of one day added up
   };
   State state() const;
@@ -42,6 +44,7 @@ class LedgerThread final : public PieceSink {
     std::optional<LedgerRun> begin;
     std::optional<LifePiece> piece;
     bool ends{};
+    std::string refusal{};
   };
   struct Run {
     LedgerRun ledger;
@@ -55,6 +58,7 @@ class LedgerThread final : public PieceSink {
 
   const std::string path_;
   std::deque<Run> runs_;  ///< the thread's own
+  std::string refusal_;   ///< likewise: of runs that ended; it stays, for what they counted is in no ledger
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::vector<Job> jobs_;  ///< this and the rest under the mutex

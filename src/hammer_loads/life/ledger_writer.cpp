@@ -1,6 +1,8 @@
 #include "hammer_loads/life/ledger_writer.h"
 
+#include <algorithm>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "hammer_loads/life/ledger_rows.h"
@@ -71,14 +73,14 @@ void setJudgement(Database& database, std::int64_t epoch, const LedgerMachine& m
   }
 }
 
-/// The epoch's latest day; a new one where the date is another, earlier ones too: a clock that runs back reorders
+/// The run's latest day; a new one where the date is another, earlier ones too: a clock that runs back reorders
 /// nothing.
-std::int64_t dayFor(Database& database, std::int64_t epoch, const std::string& date) {
-  Database::Statement latest(database, "SELECT day, date FROM days WHERE epoch = ?1 ORDER BY day DESC LIMIT 1");
-  latest.with(epoch);
+std::int64_t dayFor(Database& database, const RunRow& run, const std::string& date) {
+  Database::Statement latest(database, "SELECT day, date FROM days WHERE run = ?1 ORDER BY day DESC LIMIT 1");
+  latest.with(run.run);
   if (latest.step() && latest.text(1) == date) return latest.integer(0);
-  Database::Statement(database, "INSERT INTO days(epoch, date, duration_ns, turns) VALUES(?1, ?2, 0, 0)")
-      .run(epoch, date);
+  Database::Statement(database, "INSERT INTO days(epoch, date, duration_ns, turns, run) VALUES(?1, ?2, 0, 0, ?3)")
+      .run(run.epoch, date, run.run);
   return lastId(database);
 }
 
@@ -105,68 +107,125 @@ void addTally(Database& database, std::int64_t channel, std::int64_t day, const 
           count.extremes.least, count.extremes.greatest);
 }
 
-void setResidue(Database& database, std::int64_t channel, bool open, const std::vector<std::uint32_t>& residue) {
-  Database::Statement(database, "DELETE FROM residues WHERE channel = ?1 AND open = ?2")
-      .run(channel, std::int64_t{open});
-  Database::Statement insert(database, "INSERT INTO residues VALUES(?1, ?2, ?3, ?4)");
-  for (std::size_t i = 0; i < residue.size(); ++i)
-    insert.run(channel, std::int64_t{open}, static_cast<std::int64_t>(i), residue[i]);
+void setResidue(Database& database, std::int64_t channel, std::int64_t run, const std::vector<std::uint32_t>& residue) {
+  Database::Statement(database, "DELETE FROM residues WHERE channel = ?1 AND run = ?2").run(channel, run);
+  Database::Statement insert(database, "INSERT INTO residues(channel, run, place, class) VALUES(?1, ?2, ?3, ?4)");
+  for (std::size_t i = 0; i < residue.size(); ++i) insert.run(channel, run, static_cast<std::int64_t>(i), residue[i]);
 }
+
+RunRow rowOf(const Database::Statement& row) {
+  return {row.integer(0), row.integer(1),      row.integer(2), row.integer(3) != 0,
+          row.text(4),    row.integer(5) != 0, row.text(6),    static_cast<std::uint64_t>(row.integer(7))};
+}
+
+#define HAMMER_LOADS_RUN_COLUMNS "SELECT run, epoch, pieces, ended, name, apart, parameters, messages FROM runs "
 
 }  // namespace
 
 std::optional<RunRow> findRun(Database& database, const std::string& name) {
-  Database::Statement row(database, "SELECT run, epoch, pieces, ended FROM runs WHERE name = ?1");
+  Database::Statement row(database, HAMMER_LOADS_RUN_COLUMNS "WHERE name = ?1");
   if (!row.with(name).step()) return std::nullopt;
-  return RunRow{row.integer(0), row.integer(1), row.integer(2), row.integer(3) != 0};
+  return rowOf(row);
 }
 
-RunRow beginRun(Database& database, const LedgerMachine& machine, const std::string& name) {
-  std::vector<RunRow> open;
-  {
-    Database::Statement rows(database, "SELECT run, epoch, pieces FROM runs WHERE ended = 0 ORDER BY run");
-    while (rows.step()) open.push_back({rows.integer(0), rows.integer(1), rows.integer(2), false});
+std::vector<RunRow> runsLike(Database& database, const LedgerMachine& machine, const RunId& id,
+                             const std::vector<std::int64_t>& marks) {
+  std::vector<RunRow> runs;
+  std::set<std::int64_t> known;
+  const auto take = [&](Database::Statement& rows) {
+    while (rows.step()) {
+      if (known.insert(rows.integer(0)).second) runs.push_back(rowOf(rows));
+    }
+  };
+  Database::Statement named(database, HAMMER_LOADS_RUN_COLUMNS "WHERE name = ?1 OR (apart = 0 AND name = ?2)");
+  take(named.with(id.name, id.older));
+  Database::Statement marked(database, HAMMER_LOADS_RUN_COLUMNS
+                             "WHERE run IN (SELECT run FROM marks WHERE mark = ?1) AND "
+                             "epoch IN (SELECT epoch FROM epochs WHERE machine = ?2)");
+  for (const std::int64_t mark : marks) take(marked.with(mark, machine.identity));
+  std::sort(runs.begin(), runs.end(), [](const RunRow& a, const RunRow& b) { return a.run < b.run; });
+  return runs;
+}
+
+bool holdsMarksOf(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks) {
+  const std::set<std::int64_t> here(marks.begin(), marks.end());
+  Database::Statement rows(database, "SELECT mark FROM marks WHERE run = ?1");
+  rows.with(run.run);
+  while (rows.step()) {
+    if (here.count(rows.integer(0)) == 0) return false;
   }
-  for (const RunRow& run : open) endRun(database, run);
+  return true;
+}
+
+RunRow beginRun(Database& database, const LedgerMachine& machine, const RunId& id) {
+  database.run("UPDATE runs SET ended = 1 WHERE ended = 0");
   const std::optional<std::int64_t> present = presentEpoch(database, machine);
   const std::int64_t epoch = present ? *present : newEpoch(database, machine);
   setJudgement(database, epoch, machine);
-  Database::Statement(database, "INSERT INTO runs(name, epoch, pieces, ended) VALUES(?1, ?2, 0, 0)").run(name, epoch);
-  return {lastId(database), epoch, 0, false};
+  Database::Statement(database, "INSERT INTO runs(name, epoch, pieces, ended, parameters) VALUES(?1, ?2, 0, 0, ?3)")
+      .run(id.name, epoch, id.parameters);
+  return {lastId(database), epoch, 0, false, id.name, true, id.parameters, 0};
+}
+
+RunRow replaceRuns(Database& database, const LedgerMachine& machine, const RunId& id, const std::vector<RunRow>& runs) {
+  const RunRow& first = runs.front();
+  Database::Statement epoch(database, "SELECT machine FROM epochs WHERE epoch = ?1");
+  epoch.with(first.epoch);
+  const bool in_place = epoch.step() && epoch.text(0) == machine.identity &&
+                        sameChannels(channelsOf(database, first.epoch), machine.channels);
+  epoch.reset();
+  if (in_place) {  // before its epoch can be left without a run
+    Database::Statement(database, "UPDATE runs SET name = ?2, pieces = 0, ended = 0, parameters = ?3 WHERE run = ?1")
+        .run(first.run, id.name + " in place", id.parameters);
+    setJudgement(database, first.epoch, machine);
+    emptyRun(database, first.run);
+  }
+  for (const RunRow& run : runs) {
+    if (!in_place || run.run != first.run) removeRun(database, run);
+  }
+  if (!in_place) return beginRun(database, machine, id);
+  Database::Statement(database, "UPDATE runs SET name = ?2 WHERE run = ?1").run(first.run, id.name);
+  return {first.run, first.epoch, 0, false, id.name, true, id.parameters, 0};
+}
+
+void emptyRun(Database& database, std::int64_t run) {
+  for (const char* sql :
+       {"DELETE FROM cycles WHERE day IN (SELECT day FROM days WHERE run = ?1)",
+        "DELETE FROM tallies WHERE day IN (SELECT day FROM days WHERE run = ?1)", "DELETE FROM days WHERE run = ?1",
+        "DELETE FROM residues WHERE run = ?1", "DELETE FROM marks WHERE run = ?1"})
+    Database::Statement(database, sql).run(run);
+}
+
+void removeRun(Database& database, const RunRow& run) {
+  emptyRun(database, run.run);
+  Database::Statement(database, "DELETE FROM runs WHERE run = ?1").run(run.run);
+  for (const char* sql : {"DELETE FROM channels WHERE epoch = ?1 AND NOT EXISTS (SELECT 1 FROM runs WHERE epoch = ?1)",
+                          "DELETE FROM epochs WHERE epoch = ?1 AND NOT EXISTS (SELECT 1 FROM runs WHERE epoch = ?1)"})
+    Database::Statement(database, sql).run(run.epoch);
 }
 
 void addPiece(Database& database, const RunRow& run, const LifePiece& piece) {
   const std::vector<ChannelRow> channels = channelsOf(database, run.epoch);
   if (!database.good()) return;
   if (channels.size() != piece.counts.size()) return database.fail("damaged: channels of an epoch are missing");
-  const std::int64_t day = dayFor(database, run.epoch, dateText(dayOf(piece.stamp)));
+  const std::int64_t day = dayFor(database, run, dateText(dayOf(piece.stamp)));
   Database::Statement(database, "UPDATE days SET duration_ns = duration_ns + ?2, turns = turns + ?3 WHERE day = ?1")
       .run(day, piece.duration, piece.turns);
   for (std::size_t i = 0; i < channels.size(); ++i) {
     addCycles(database, channels[i].id, day, piece.counts[i].closed);
     addTally(database, channels[i].id, day, piece.counts[i]);
-    setResidue(database, channels[i].id, true, piece.counts[i].residue);
+    setResidue(database, channels[i].id, run.run, piece.counts[i].residue);
   }
 }
 
-void setPieces(Database& database, const RunRow& run, std::int64_t pieces) {
-  Database::Statement(database, "UPDATE runs SET pieces = ?2 WHERE run = ?1").run(run.run, pieces);
+void setRun(Database& database, const RunRow& run, std::int64_t pieces, std::uint64_t messages, bool ended) {
+  Database::Statement(database, "UPDATE runs SET pieces = ?2, messages = ?3, ended = ?4 WHERE run = ?1")
+      .run(run.run, pieces, messages, std::int64_t{ended});
 }
 
-void endRun(Database& database, const RunRow& run) {
-  Database::Statement latest(database, "SELECT day FROM days WHERE epoch = ?1 ORDER BY day DESC LIMIT 1");
-  latest.with(run.epoch);
-  const std::int64_t day = latest.step() ? latest.integer(0) : 0;  // no day: no piece, no residue
-  for (const ChannelRow& channel : channelsOf(database, run.epoch)) {
-    std::vector<std::uint32_t> residue = residueOf(database, channel.id, false);
-    std::vector<ClosedCycles> closed;
-    joinResidues(residue, residueOf(database, channel.id, true), closed);
-    sortClosed(closed);
-    addCycles(database, channel.id, day, closed);
-    setResidue(database, channel.id, false, residue);
-    setResidue(database, channel.id, true, {});
-  }
-  Database::Statement(database, "UPDATE runs SET ended = 1 WHERE run = ?1").run(run.run);
+void addMarks(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks, std::size_t from) {
+  Database::Statement add(database, "INSERT OR IGNORE INTO marks VALUES(?1, ?2)");
+  for (std::size_t i = from; i < marks.size(); ++i) add.run(marks[i], run.run);
 }
 
 }  // namespace hammer_loads::life

@@ -19,6 +19,8 @@ void LifePiece::advance(const LifePiece& since) {
   stamp = since.stamp;
   duration += since.duration;
   turns += since.turns;
+  messages += since.messages;
+  marks.insert(marks.end(), since.marks.begin(), since.marks.end());
   for (std::size_t i = 0; i < counts.size(); ++i) counts[i].advance(since.counts[i]);
 }
 

@@ -13,10 +13,12 @@ namespace hammer_loads::life {
 
 /// What a period adds: of each channel what closed since the last piece, and the residue since the count began.
 struct LifePiece {
-  std::int64_t stamp{};            ///< of the last sample [ns]; of the first piece without one: 0
-  std::uint64_t duration{};        ///< time between its samples, gaps left out [ns]
-  std::uint64_t turns{};           ///< blows
-  std::vector<CycleCount> counts;  ///< counted channels, then hot spots, in the order of channels()
+  std::int64_t stamp{};             ///< of the last sample [ns]; of the first piece without one: 0
+  std::uint64_t duration{};         ///< time between its samples, gaps left out [ns]
+  std::uint64_t turns{};            ///< blows
+  std::uint64_t messages{};         ///< of the crank, refused ones included
+  std::vector<std::int64_t> marks;  ///< of some of them, by which a part of a recording is known again
+  std::vector<CycleCount> counts;   ///< counted channels, then hot spots, in the order of channels()
 
   /// The same run some time on.
   void advance(const LifePiece& since);

@@ -12,8 +12,11 @@ class PieceSink {
  public:
   virtual ~PieceSink() = default;
   /// machine, run: as LedgerRun takes them.
-  virtual void begin(const LedgerMachine& machine, const std::string& run) = 0;
+  virtual void begin(const LedgerMachine& machine, const RunId& run) = 0;
   virtual void add(const LifePiece& piece) = 0;
+  /// The run begun last is not to be counted, for this reason of one line; what is in the ledger of it goes. Before
+  /// end().
+  virtual void refuse(const std::string& reason) = 0;
   /// Of the run begun last, and its last piece.
   virtual void end(const LifePiece& last) = 0;
 };

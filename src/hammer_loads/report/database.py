@@ -8,7 +8,7 @@ from report.problem import Problem
 
 RECORDING, LEDGER, FLEET = "recording", "ledger", "fleet"
 KINDS = {0x484C5242: RECORDING, 0x484C4C31: LEDGER, 0x484C5246: FLEET}
-VERSIONS = {RECORDING: 1, LEDGER: 1, FLEET: 1}
+VERSIONS = {RECORDING: (1,), LEDGER: (1, 2), FLEET: (1,)}
 BUSY_S = 5.0  # a node that writes its ledger needs some ms
 
 
@@ -42,9 +42,10 @@ class Database:
             raise Problem(f"{self.path}: is another database (application_id {application}), must be written by "
                           "process_bag --db, --ledger or the fleet")
         version, known = self.value("PRAGMA user_version"), VERSIONS[kind]
-        if version != known:
-            age = "an older" if version < known else "a newer"
-            raise Problem(f"{self.path}: {kind} of {age} version, {version}; this program reads version {known}")
+        if version not in known:
+            age = "an older" if version < known[0] else "a newer"
+            raise Problem(f"{self.path}: {kind} of {age} version, {version}; this program reads version {known[-1]}")
+        self.version = version
         return kind
 
     def _guarded(self, call, *arguments, **options):

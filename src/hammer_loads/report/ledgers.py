@@ -8,15 +8,30 @@ CYCLES = "SELECT steps, low, sum(count) FROM cycles WHERE channel = ?{} GROUP BY
 DEVIATION_UNITS = 1024.0  # per class width, in tallies.deviation_sum
 
 
+# A ledger of version 1 as one of version 2: it keeps no run apart.
+VERSION_1 = (
+    "CREATE TEMP VIEW days AS SELECT day, epoch, date, duration_ns, turns, (SELECT min(run) FROM main.runs r "
+    "WHERE r.epoch = d.epoch) AS run FROM main.days d",
+    "CREATE TEMP VIEW residues AS SELECT r.channel, place, class, (SELECT CASE r.open WHEN 1 THEN max(run) ELSE "
+    "min(run) END FROM main.runs WHERE runs.epoch = c.epoch) AS run FROM main.residues r JOIN main.channels c "
+    "USING(channel)")
+
+
 class Epoch:
-    """Same hammer, boom and grids. `days`: (day, date, hours, blows)."""
+    """Same hammer, boom and grids. `days`: (ids, date, hours, blows), one id for each run of the date."""
 
     def __init__(self, database, row):
         self.number, self.machine = row["epoch"], row["machine"]
         self.cycles_per_hour = row["equivalent_cycles_per_hour"]
         self.runs = database.value("SELECT count(*) FROM runs WHERE epoch = ?", self.number)
-        self.days = [(day, date, duration / 3600e9, turns) for day, date, duration, turns in database.rows(
-            "SELECT day, date, duration_ns, turns FROM days WHERE epoch = ? ORDER BY day", self.number)]
+        self.days, self._last_day = [], {}
+        for day, date, duration, turns, run in database.rows(
+                "SELECT day, date, duration_ns, turns, run FROM days WHERE epoch = ? ORDER BY run, day", self.number):
+            if not self.days or self.days[-1][1] != date:
+                self.days.append(((), date, 0.0, 0))
+            ids, _, hours, blows = self.days[-1]
+            self.days[-1] = (ids + (day,), date, hours + duration / 3600e9, blows + turns)
+            self._last_day[run] = day
         self.hours = sum(day[2] for day in self.days)
         self.blows = sum(day[3] for day in self.days)
         self._database = database
@@ -31,8 +46,10 @@ class Epoch:
 
     def _channel(self, row, day=None):
         channel = Channel.of(row, self.cycles_per_hour)
-        place = (row["channel"],) if day is None else (row["channel"], day[0])
-        only = "" if day is None else " AND day = ?"
+        place, only = (row["channel"],), ""
+        if day is not None:
+            place += day[0]
+            only = f" AND day IN ({', '.join('?' * len(day[0]))})"
         tally = self._database.records(TALLY + only, *place)[0]
         channel.add_tally(tally)
         if tally["deviations"]:
@@ -40,11 +57,30 @@ class Epoch:
             channel.add_deviation(tally["deviation_sum"] / tally["deviations"] * unit, tally["deviations"])
         channel.count.add_closed(self._database.rows(CYCLES.format(only), *place))
         channel.hours = self.hours if day is None else day[2]
-        for is_open in (0, 1) if day is None else ():
-            channel.count.join([c for c, in self._database.rows(
-                "SELECT class FROM residues WHERE channel = ? AND open = ? ORDER BY place", row["channel"], is_open)])
+        self._join_residues(row, day, channel)
         return channel
+
+    def _join_residues(self, row, day, channel):
+        """Run by run; what one closes belongs to its last day."""
+        residues = {}
+        for run, level in self._database.rows(
+                "SELECT run, class FROM residues WHERE channel = ? ORDER BY run, place", row["channel"]):
+            residues.setdefault(run, []).append(level)
+        if day is None:
+            for residue in residues.values():
+                channel.count.join(residue)
+            return
+        joined = Channel.of(row, self.cycles_per_hour).count
+        for run, residue in residues.items():
+            before = dict(joined.closed)
+            joined.join(residue)
+            if self._last_day.get(run) in day[0]:
+                channel.count.add_closed([(b, a, n - before.get((b, a), 0)) for (b, a), n in joined.closed.items()
+                                          if n > before.get((b, a), 0)])
 
 
 def epochs_of(database):
+    if database.version == 1:
+        for view in VERSION_1:
+            database.value(view)
     return [Epoch(database, row) for row in database.records("SELECT * FROM epochs ORDER BY epoch")]

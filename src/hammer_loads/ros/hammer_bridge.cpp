@@ -139,7 +139,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   beginRun(record_time);
   const SampleResult& result =
       pipeline_->crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
-  life_->follow(stampOf(message.header.stamp), record_time);
+  life_->follow(message, record_time);
   last_record_time_ = record_time;
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;

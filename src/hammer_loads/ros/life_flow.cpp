@@ -1,15 +1,57 @@
 #include "hammer_loads/ros/life_flow.h"
 
+#include <cstring>
+#include <sstream>
+#include <utility>
+
 #include "hammer_loads/ros/fill_life.h"
+#include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/tables/sha256.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-/// The same whenever this run's messages are counted, live or from a recording.
-std::string runName(StampNs first_header, const std::string& machine) {
-  return format("%lld-%.16s", static_cast<long long>(first_header), machine.c_str());
+constexpr std::uint64_t kNamingMessages = 64;             ///< whose readings tell runs with one first stamp apart
+constexpr StampNs kMarkEvery = 4LL * 1000 * 1000 * 1000;  ///< [ns]: a split is longer; a working day gives 7200 marks
+
+/// FNV-1a, 64 bit.
+class Digest {
+ public:
+  explicit Digest(std::uint64_t from) : hash_(from) {}
+  template <typename T>
+  void add(const T& value) {
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211ULL;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_;
+};
+
+constexpr std::uint64_t kDigestStart = 14695981039346656037ULL;
+
+/// What the sensor said, whatever the parameters make of it.
+std::uint64_t digestOf(const sensor_msgs::JointState& message, std::uint64_t from) {
+  Digest digest(from);
+  digest.add(stampOf(message.header.stamp));
+  for (const double position : message.position) digest.add(position);
+  for (const double velocity : message.velocity) digest.add(velocity);
+  return digest.value();
+}
+
+/// A digest of what turns readings into loads beside the machine itself: not what is logged, counted or listened to.
+std::string sensorParameters(const std::string& yaml) {
+  std::istringstream lines(yaml);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("crank_", 0) == 0 || line.rfind("hull_", 0) == 0 || line.rfind("pitch_", 0) == 0 ||
+        line.rfind("base_", 0) == 0 || line.rfind("joint_", 0) == 0)
+      kept += line + '\n';
+  }
+  return sha256Of({kept}).substr(0, 16);
 }
 
 void addBeyond(std::uint64_t samples, const std::string& channel, const std::string& key, std::string& text) {
@@ -30,24 +72,73 @@ std::vector<LifeFlow::ScaleKeys> LifeFlow::scaleKeys(const life::LifeSettings& s
 }
 
 LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOutputs& outputs, life::PieceSink* pieces)
-    : follower_(pipeline, settings.life),
+    : pipeline_(pipeline),
+      follower_(pipeline, settings.life),
       outputs_(outputs),
       pieces_(pieces),
       machine_(life::ledgerMachine(settings.life, sha256Of({settings.machine}))),
+      parameters_(sensorParameters(settings.yaml)),
+      backward_before_(pipeline.counts().backward_passes),
+      blows_before_(pipeline.counts().blows),
       scale_keys_(scaleKeys(settings.life)),
       period_(settings.life.period) {
   prepareTurnLoads(follower_.channels(), outputs_.turn_loads.message);
+  marks_.reserve(static_cast<std::size_t>(period_ / kMarkEvery) + 64);
 }
 
-void LifeFlow::follow(StampNs header, const ros::Time& record_time) {
-  if (!begun_ && pieces_ != nullptr) pieces_->begin(machine_, runName(header, machine_.identity));
+void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& record_time) {
+  if (!begun_) first_ = stampOf(message.header.stamp), digest_ = kDigestStart;
   begun_ = true;
   record_time_ = record_time;
   if (follower_.due()) {
-    const life::LifePiece piece = sendCycles(record_time);
-    if (pieces_ != nullptr) pieces_->add(piece);
+    life::LifePiece piece = sendCycles(record_time);
+    if (pieces_ != nullptr) keep(std::move(piece));
   }
+  if (pieces_ != nullptr) mark(message);
   follower_.follow();
+}
+
+/// One message of each stretch of time, the first after the one before: wherever a part of the recording begins, it has
+/// the same ones.
+void LifeFlow::mark(const sensor_msgs::JointState& message) {
+  if (messages_++ < kNamingMessages) digest_ = digestOf(message, digest_);
+  const StampNs slot = stampOf(message.header.stamp) / kMarkEvery;
+  if (slot_ && slot > *slot_) marks_.push_back(static_cast<std::int64_t>(digestOf(message, kDigestStart)));
+  slot_ = slot;
+}
+
+void LifeFlow::name() {
+  if (named_) return;
+  named_ = true;
+  const std::string older = format("%lld-%.16s", static_cast<long long>(first_), machine_.identity.c_str());
+  life::RunId id(older + format("-%016llx", static_cast<unsigned long long>(digest_)));
+  id.older = older;
+  id.parameters = parameters_;
+  pieces_->begin(machine_, id);
+  for (const life::LifePiece& piece : unnamed_) pieces_->add(piece);
+  unnamed_.clear();
+}
+
+/// With what tells whose it is.
+void LifeFlow::keep(life::LifePiece piece) {
+  piece.messages = messages_ - std::exchange(messages_kept_, messages_);
+  piece.marks.assign(marks_.begin(), marks_.end());
+  marks_.clear();
+  if (messages_ < kNamingMessages) return unnamed_.push_back(std::move(piece));
+  name();
+  pieces_->add(piece);
+}
+
+/// Why the readings cannot be those of this machine with these parameters; empty: they can.
+std::string LifeFlow::contradiction() const {
+  const SampleCounts& counts = pipeline_.counts();
+  const std::uint64_t backward = counts.backward_passes - backward_before_, blows = counts.blows - blows_before_;
+  for (const Warning& warning : warningsOf(pipeline_)) {
+    const std::string key = warning.key;
+    const bool so = (key == "degrees" && warning.now) || (key == "backward" && backward > blows) || key == "lost";
+    if (so) return warning.text;
+  }
+  return {};
 }
 
 void LifeFlow::sendTurn(const TurnEnd& end, const ros::Time& record_time) {
@@ -58,8 +149,14 @@ void LifeFlow::sendTurn(const TurnEnd& end, const ros::Time& record_time) {
 }
 
 void LifeFlow::finish() {
-  const life::LifePiece last = sendCycles(record_time_);
-  if (pieces_ != nullptr) pieces_->end(last);
+  life::LifePiece last = sendCycles(record_time_);
+  if (pieces_ == nullptr) return;
+  name();
+  last.messages = messages_ - std::exchange(messages_kept_, messages_);
+  last.marks = std::move(marks_);
+  const std::string reason = contradiction();
+  if (!reason.empty()) pieces_->refuse(reason);
+  pieces_->end(last);
 }
 
 life::LifePiece LifeFlow::sendCycles(const ros::Time& record_time) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ros/time.h>
+#include <sensor_msgs/JointState.h>
 
 #include <string>
 #include <vector>
@@ -20,8 +21,8 @@ class LifeFlow {
   /// it, too.
   LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOutputs& outputs, life::PieceSink* pieces);
 
-  /// Takes what the pipeline made of a crank message with this header stamp; the first one names the run.
-  void follow(StampNs header, const ros::Time& record_time);
+  /// Takes what the pipeline made of a crank message; the first ones name the run.
+  void follow(const sensor_msgs::JointState& message, const ros::Time& record_time);
   /// Takes the ends of Pipeline::end().
   void end() { follower_.end(); }
   /// Of one of the ends of the result just followed.
@@ -39,11 +40,18 @@ class LifeFlow {
 
  private:
   life::LifePiece sendCycles(const ros::Time& record_time);
+  void mark(const sensor_msgs::JointState& message);
+  void name();
+  void keep(life::LifePiece piece);
+  std::string contradiction() const;
 
+  const Pipeline& pipeline_;
   LifeFollower follower_;
   HammerOutputs& outputs_;
   life::PieceSink* pieces_;
   life::LedgerMachine machine_;
+  std::string parameters_;                            ///< digest of those of the sensors
+  std::uint64_t backward_before_{}, blows_before_{};  ///< counts go on from run to run
   /// Of one channel's full scale.
   struct ScaleKeys {
     std::string least, greatest;
@@ -54,6 +62,14 @@ class LifeFlow {
   std::int64_t period_;
   ros::Time record_time_;  ///< of the last message
   bool begun_{};
+  StampNs first_{};                ///< header stamp of the first message
+  std::uint64_t digest_{};         ///< of the first messages
+  std::uint64_t messages_{};       ///< since the count began
+  std::uint64_t messages_kept_{};  ///< of them, those in pieces
+  bool named_{};
+  std::optional<StampNs> slot_;           ///< of the message before, for marks
+  std::vector<std::int64_t> marks_;       ///< since the last piece
+  std::vector<life::LifePiece> unnamed_;  ///< pieces of a run that has no name yet
 };
 
 }  // namespace hammer_loads
