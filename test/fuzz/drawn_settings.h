@@ -32,9 +32,14 @@ inline Checked<Settings> settingsWith(const Numbers& numbers, const std::map<std
   ParameterMap given = shipped;
   for (const auto& [key, number] : numbers) {
     const bool whole = asInteger(shipped.at(key).value).has_value();
-    given[key].value = YAML::Node(whole ? std::to_string(static_cast<long long>(number)) : numberText(number));
+    given.erase(key);  // nodes share what is assigned to them: a new one instead
+    given.emplace(
+        key, Parameter{YAML::Node(whole ? std::to_string(static_cast<long long>(number)) : numberText(number)), {}});
   }
-  for (const auto& [key, word] : words) given[key].value = YAML::Node(word);
+  for (const auto& [key, word] : words) {
+    given.erase(key);
+    given.emplace(key, Parameter{YAML::Node(word), {}});
+  }
   return load(configDirectory(), given);
 }
 
@@ -71,7 +76,11 @@ inline const std::vector<NumberKey>& numberKeys() {
       if (!found && key.find("_length_m") != std::string::npos) found = NumberKey{key, 1e-3, 10.0, false};
       if (!found && key == "pivot_distance_m") found = NumberKey{key, 1e-3, 10.0, false};
       if (!found && key.rfind("crank_eccentricity_", 0) == 0) found = NumberKey{key, 0.0, 0.3, false};
-      if (!found) std::fprintf(stderr, "%s: has no bounds\n", key.c_str());
+      if (!found) {
+        std::fprintf(stderr, "%s: has no bounds\n", key.c_str());
+        for (const std::string& line : settingsWith({{key, 2e8}}).problems)
+          std::fprintf(stderr, "  %s\n", line.c_str());
+      }
       require(found.has_value());
       keys.push_back(*found);
     }
