@@ -4,9 +4,11 @@ import hashlib
 import os
 import pathlib
 import re
+import unicodedata
 from collections import namedtuple
 
-Bag = namedtuple("Bag", "machine bag parameters name")  # name: of its files below the results, unique
+# name: of its files below the results, unique. problem: why it cannot be tried, or nothing.
+Bag = namedtuple("Bag", "machine bag parameters name problem")
 
 
 class BadList(Exception):
@@ -27,23 +29,48 @@ def page_name(machine):
     return readable + "-" + hashlib.sha256(machine.encode()).hexdigest()[:8]
 
 
-def made(machine, bag, parameters):
-    """Paths are absolute: jobs run elsewhere."""
+def shown(name):
+    """Fit for tables, pages and terminals, whatever bytes a name has."""
+    return "".join("\ufffd" if unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") else c for c in name)
+
+
+def made(machine, bag, parameters, problem=None):
+    """Paths are absolute: jobs run elsewhere. One that no job can be given is a row with the reason."""
     bag, parameters = os.path.abspath(bag), tuple(os.path.abspath(p) for p in parameters)
-    return Bag(machine, bag, parameters, file_name(machine, bag, parameters))
+    for text in (machine, bag, *parameters):
+        if shown(text) != text and problem is None:
+            problem = f"{shown(text)}: holds what is no UTF-8 text, or control characters: give it another name"
+    machine, bag, parameters = shown(machine), shown(bag), tuple(map(shown, parameters))
+    return Bag(machine, bag, parameters, file_name(machine, bag, parameters), problem)
 
 
 def from_rows(rows, path):
     folder, bags = os.path.dirname(os.path.abspath(path)), []
     for at, row in enumerate(rows, 1):
-        if not isinstance(row, dict) or not row.get("machine") or not row.get("bag"):
-            raise BadList(f"{path}: entry {at}: machine and bag must be given")
+        problem = why_no_entry(row)
+        if problem:
+            machine = row.get("machine") if isinstance(row, dict) else None
+            bags.append(made(str(machine or "no machine named"), f"{path}, entry {at}", [], f"entry {at}: {problem}"))
+            continue
         parameters = row.get("parameters") or []
         if isinstance(parameters, str):
             parameters = parameters.split(";")
         bags.append(made(str(row["machine"]), os.path.join(folder, row["bag"]),
                          [os.path.join(folder, p.strip()) for p in parameters]))
     return bags
+
+
+def why_no_entry(row):
+    """What is wrong with an entry of a list, or nothing."""
+    if not isinstance(row, dict) or not row.get("machine") or not row.get("bag"):
+        return "machine and bag must be given"
+    parameters = row.get("parameters") or []
+    if not isinstance(row["machine"], (str, int)) or not isinstance(row["bag"], str):
+        return f"machine and bag: {row['machine']!r}, {row['bag']!r}, must be texts"
+    if not isinstance(parameters, str) and not (isinstance(parameters, list) and
+                                                all(isinstance(p, str) for p in parameters)):
+        return f"parameters: {parameters!r}, must be a list of paths"
+    return None
 
 
 def from_folder(folder):
@@ -59,13 +86,16 @@ def from_folder(folder):
 def read_rows(path):
     if str(path).endswith((".yaml", ".yml")):
         import yaml
-        with open(path, encoding="utf-8") as file:
-            rows = yaml.safe_load(file)
+        try:
+            with open(path, encoding="utf-8") as file:
+                rows = yaml.safe_load(file)
+        except (yaml.YAMLError, UnicodeError, RecursionError) as error:
+            raise BadList(f"{path}: not valid YAML: {' '.join(str(error).split())}")
         if not isinstance(rows, list):
             raise BadList(f"{path}: must be a list of machine, bag, parameters")
         return rows
-    with open(path, encoding="utf-8", newline="") as file:
-        reader = csv.DictReader(file)
+    with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:
+        reader = csv.DictReader(line.replace("\0", "\x01") for line in file)  # csv ends at the one, not at the other
         if not {"machine", "bag"} <= set(reader.fieldnames or []):
             raise BadList(f"{path}: the first line must name the columns machine,bag,parameters")
         return list(reader)

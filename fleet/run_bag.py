@@ -52,6 +52,7 @@ def main():
     parser.add_argument("--machine", required=True)
     parser.add_argument("--bag", required=True)
     parser.add_argument("--params", action="append", default=[])
+    parser.add_argument("--problem", help="why the bag cannot be tried")
     parser.add_argument("--db", required=True, help="to write; empty if the bag gives none")
     parser.add_argument("--outcome", required=True, help="JSON to write")
     given = parser.parse_args()
@@ -59,7 +60,7 @@ def main():
         os.makedirs(os.path.dirname(path), exist_ok=True)
         if os.path.exists(path):
             os.unlink(path)
-    status, reason = processed(given.bag, given.params, given.db)
+    status, reason = ("failed", given.problem) if given.problem else processed(given.bag, given.params, given.db)
     if status != "done":
         open(given.db, "w").close()
     outcome = {"machine": given.machine, "bag": given.bag, "input_sha256": sha256([given.bag]),

@@ -5,6 +5,7 @@ import math
 import pathlib
 import struct
 
+KEYS = 80  # no fewer than test/fuzz/drawn_settings.h finds
 COUNTS = 4096  # of the encoder per turn, as shipped
 
 
@@ -18,12 +19,21 @@ def session(choice, rate, speed, turns):
     return data
 
 
+def drawn(key):
+    """Settings with this number and the next ones at the least, the most and somewhere between."""
+    places = [0, 65535, 40503 * (key + 1) % 65536]
+    return b"".join(struct.pack("<BBBBHBH", 254, 37 * key % 256, 2, key, place, key + 1, 65535 - place)
+                    + session(0, 200, 30, 1)[1:] for place in places)
+
+
 def pipeline_seeds():
     boom = struct.pack("<Bd", 6, -0.35)
     raw = struct.pack("<BId", 5, 1000000, 1.0)
     stamped = struct.pack("<BQdd", 4, 1700000001000000000, 2.0, 30.0)
     shapes = struct.pack("<BBBBBff", 7, 1, 1, 1, 0, 3.0, 30.0)
+    whole = {f"settings_{key:02d}": session(1, 200, 30, 2) + drawn(key) + session(1, 200, 30, 2)[1:] for key in range(KEYS)}
     return {
+        **whole,
         "rocker_1khz": session(1, 1000, 120, 3),
         "linkage_200hz": session(2, 200, 30, 4),
         "pulse_100hz": session(16, 100, 25, 3),

@@ -9,6 +9,7 @@
 #include <sensor_msgs/JointState.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <map>

@@ -83,6 +83,28 @@ TEST_F(BagInputFiles, ADamagedBagIsBlamedNotTheOutput) {
   EXPECT_EQ(names().size(), 1U);
 }
 
+/// Some kB that say that they are a GB unpacked, or that a record is that long: no such memory is asked for.
+TEST_F(BagInputFiles, ABagThatClaimsTooMuchIsRefused) {
+  const std::string in = write("in.bag", "/hammer/crank", sensor_msgs::JointState()), good = test::contentOf(in);
+  ASSERT_LT(good.size(), 8000U);
+  // Where the chunk begins is in its entry of the index: the length of its header.
+  std::uint64_t chunk_at = 0;
+  std::memcpy(&chunk_at, good.data() + good.find("chunk_pos=") + 10, sizeof chunk_at);
+  const std::size_t field = good.find("size=", chunk_at);
+  ASSERT_LT(field, chunk_at + 100);
+  const auto with = [&](std::size_t place, std::uint32_t value) {
+    std::string bytes = good;
+    std::memcpy(bytes.data() + place, &value, sizeof value);
+    std::ofstream(path("bad.bag"), std::ios::binary) << bytes;
+    const test::Outcome outcome = run(path("bad.bag") + " " + path("out.bag"));
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_EQ(test::linesOf(outcome.err).size(), 1U) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(with(field + 5, 0x3fffffffU).find("claims to hold 1073741823, must be at most"), std::string::npos);
+  EXPECT_NE(with(chunk_at, 0xfffffff0U).find("a record reaches beyond the file's end"), std::string::npos);
+}
+
 TEST_F(BagInputFiles, WhatIsNoBagIsNamed) {
   std::ofstream(path("text.bag")) << "no bag at all\n";
   expectRefused(run(path("text.bag") + " " + path("out.bag")), {path("text.bag") + ": cannot be read as a bag"});

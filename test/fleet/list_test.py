@@ -39,12 +39,30 @@ class Lists(unittest.TestCase):
 
     def test_bad_ones_are_one_line(self):
         for name, text, words in (("a.csv", "bag\nx.bag\n", "machine,bag,parameters"),
-                                  ("b.csv", "machine,bag\nred,\n", "entry 1: machine and bag"),
                                   ("c.csv", "machine,bag\n", "names no bag"),
                                   ("d.csv", "machine,bag\nred,x.bag\nred,x.bag\n", "twice"),
-                                  ("e.yaml", "machine: red\n", "must be a list")):
+                                  ("e.yaml", "machine: red\n", "must be a list"),
+                                  ("f.yaml", "- {machine: red, bag: \0x}\n", "not valid YAML"),
+                                  ("g.yaml", "- [", "not valid YAML")):
             with self.assertRaisesRegex(bag_list.BadList, f"{name}: .*{words}"):
                 self.listed(name, text)
+
+    def test_a_bad_entry_is_a_row_with_its_reason(self):
+        bags = self.listed("a.yaml", "- {machine: red, bag: x.bag}\n- 5\n- {machine: red}\n- {machine: 7, bag: 7.5}\n"
+                                     "- {machine: [red], bag: x.bag}\n- {machine: red, bag: y.bag, parameters: [1]}\n"
+                                     '- {machine: red, bag: "z\\0.bag"}\n- {machine: 7, bag: x.bag}\n')
+        self.assertEqual([bag.problem and bag.problem.split(":")[0] for bag in bags[:6]],
+                         [None] + [f"entry {i}" for i in range(2, 7)])
+        self.assertIn("control characters", bags[6].problem)
+        self.assertEqual((bags[7].machine, bags[7].problem), ("7", None))
+        self.assertIn("entry 1: machine and bag", self.listed("b.csv", "machine,bag\nred,\n")[0].problem)
+        path = self.directory / "c.csv"
+        path.write_bytes(b"machine,bag,parameters\nred,x.bag,a\0b.yaml\nr\xff,x.bag,\nred,y\xff.bag,\nred,x.bag,\n")
+        bags = bag_list.read(str(path))
+        self.assertEqual([bool(bag.problem) for bag in bags], [True, True, True, False])
+        for bag in bags:
+            for text in (bag.machine, bag.bag, *bag.parameters, bag.problem or ""):
+                self.assertEqual(text, bag_list.shown(text.encode("utf-8").decode("utf-8")))
 
     def test_names_of_pages_differ(self):
         names = ["a b", "a_b", "all", "../x", "a/b", ".."]

@@ -77,6 +77,30 @@ class Workflow(FleetTest):
         self.assertEqual(db.execute("SELECT count(*) FROM turns").fetchone(), (100,))
         db.close()
 
+    def test_odd_names_end_nothing(self):
+        """Each is a row: processed, or with the reason; programs may lie in a folder with a space."""
+        self.programs.rename(self.directory / "pro grams")
+        self.programs = self.directory / "pro grams"
+        for name in ("{x}.bag", "-x.bag", "a b.bag", "'q'.bag"):
+            (self.bags / "red" / name).write_text(f"{len(name)} 20 {1700001000 + 100 * ord(name[0])}")
+        listed = self.directory / "list.yaml"
+        listed.write_text("- {machine: red, bag: bags/red/r0.bag}\n- {machine: '{y}', bag: 'bags/red/{x}.bag'}\n"
+                          "- {machine: -m, bag: bags/red/-x.bag}\n- {machine: red, bag: 'bags/red/a b.bag'}\n"
+                          "- {machine: red, bag: \"bags/red/'q'.bag\"}\n- {machine: red, bag: 5}\n"
+                          '- {machine: red, bag: bags/red/r1.bag, parameters: ["h\\0.yaml"]}\n')
+        self.run_fleet(listed)
+        rows = self.bags_table()
+        self.assertEqual(sorted(name for name, row in rows.items() if row[0] == "done"),
+                         ["'q'.bag", "-x.bag", "a b.bag", "r0.bag", "{x}.bag"])
+        self.assertIn("control characters", rows["r1.bag"][1])
+        self.assertIn("entry 6: machine and bag: 'red', 5, must be texts", [row[1] for row in rows.values()])
+        self.calls()
+        self.run_fleet(listed)
+        self.assertEqual(self.calls(), [])
+        (self.bags / "red" / "{x}.bag").write_text("11 20 1700091000")
+        self.run_fleet(listed)
+        self.assertEqual(self.calls(), ["{x}.bag"])
+
     def test_a_bad_list_is_one_line(self):
         done = self.snakemake(self.directory / "none.csv")
         self.assertNotEqual(done.returncode, 0)

@@ -2,13 +2,14 @@
 //
 // Bytes of an input: first the level and the estimator, then messages, each an operation and its arguments; what is cut
 // off at the end counts as zeros. The common operation is a plausible sample, so that the filter is at work when the
-// others come.
+// others come. Operation 254 begins anew with other settings: any that the reader accepts.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 
 #include "fuzz/bytes.h"
+#include "fuzz/drawn_settings.h"
 #include "hammer_loads/life/count_state.h"
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/pipeline/pipeline.h"
@@ -24,13 +25,8 @@ constexpr std::uint64_t kLastStamp = 4294967295999999999;  // of ros::Time [ns]
 using test::Bytes;
 using test::require;
 
-const Settings& shipped() {
-  static const Settings settings = *loadFiles(configDirectory(), {}).value;
-  return settings;
-}
-
 PipelineSettings settingsOf(Bytes& bytes) {
-  PipelineSettings settings = shipped().pipeline;
+  PipelineSettings settings = test::shippedSettings().pipeline;
   const auto choice = bytes.take<std::uint8_t>();
   settings.level = choice % 16 == 0 ? Level::kPulse : choice % 2 == 0 ? Level::kLinkage : Level::kRocker;
   settings.crank_estimator = choice / 16 < 13    ? CrankEstimator::kMechanism
@@ -50,8 +46,9 @@ life::LifeSettings counted() {
 
 class Session {
  public:
-  explicit Session(Bytes bytes) : bytes_(bytes), settings_(settingsOf(bytes_)) {
-    pipeline_.emplace(shipped().mechanism, settings_);
+  explicit Session(Bytes bytes)
+      : bytes_(bytes), mechanism_(test::shippedSettings().mechanism), settings_(settingsOf(bytes_)) {
+    pipeline_.emplace(mechanism_, settings_);
     life_.emplace(*pipeline_, counted());
   }
 
@@ -64,12 +61,13 @@ class Session {
  private:
   void step() {
     const auto operation = bytes_.take<std::uint8_t>();
-    if (operation == 255) {
-      const SampleCounts counts = pipeline_->counts();
-      pipeline_.emplace(shipped().mechanism, settings_, std::nullopt, counts);
-      life_.emplace(*pipeline_, counted());
-      return;
+    if (operation == 254) {
+      if (const std::optional<Settings> drawn = test::drawnSettings(bytes_)) {
+        mechanism_ = drawn->mechanism;
+        settings_ = drawn->pipeline;
+      }
     }
+    if (operation >= 254) return beginAnew();
     switch (operation % 8) {
       case 4:
         return stampedSample();
@@ -82,6 +80,12 @@ class Session {
       default:
         return plausibleSample();
     }
+  }
+
+  void beginAnew() {
+    const SampleCounts counts = pipeline_->counts();
+    pipeline_.emplace(mechanism_, settings_, std::nullopt, counts);
+    life_.emplace(*pipeline_, counted());
   }
 
   void plausibleSample() {
@@ -155,6 +159,7 @@ class Session {
   }
 
   Bytes bytes_;
+  Mechanism mechanism_;
   PipelineSettings settings_;
   std::optional<Pipeline> pipeline_;
   std::optional<LifeFollower> life_;

@@ -173,6 +173,15 @@ TEST(Load, RefusesUnreadableFilesAndNamesEach) {
   EXPECT_NE(no_config[0].find("nowhere/pipeline.yaml: cannot be read"), std::string::npos) << no_config[0];
 }
 
+TEST(Load, AFileTooLongForParametersIsNotParsed) {
+  const std::string good = "gravity_m_s2: 9.8\n";
+  EXPECT_EQ(problemsOf(good + std::string(900000, '#')), Lines{});
+  const Lines problems = problemsOf(good + std::string(1100000, '#'));
+  EXPECT_EQ(problems, Lines{"FILE: more than 1000000 bytes, must be a file of parameters"});
+  EXPECT_EQ(loadShippedWith({"/dev/zero"}).problems,
+            Lines{"/dev/zero: more than 1000000 bytes, must be a file of parameters"});
+}
+
 struct BadPair {
   const char* good;
   const char* bad;
@@ -182,33 +191,37 @@ struct BadPair {
 TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
   const BadPair pairs[] = {
       {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage, auto"},
-      {"level: auto", "tolerance: 0", "tolerance: 0, must be a finite number > 0"},
+      {"level: auto", "tolerance: 0", "tolerance: 0, must be a number in [1.0e-09, 10.0]"},
       {"hull_motion: imu", "hull_motion: model",
        "hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring"},
       {"output: mean", "output: median", "output: median, must be one of instantaneous, mean"},
-      {"output_rate_Hz: 50", "output_rate_Hz: -1", "output_rate_Hz: -1 Hz, must be a number in [0.0, 100000.0]"},
+      {"output_rate_Hz: 50", "output_rate_Hz: -1", "output_rate_Hz: -1 Hz, must be 0 or a number in [0.001, 100000.0]"},
+      {"output_rate_Hz: 0.001", "output_rate_Hz: 1e-12",
+       "output_rate_Hz: 1e-12 Hz, must be 0 or a number in [0.001, 100000.0]"},
+      {"output_rate_Hz: 1e5", "stale_after_s: 9\noutput_rate_Hz: 1e5",
+       "output_rate_Hz: 100000 Hz, must be at most 100000 outputs over stale_after_s = 9 s"},
       {"torque_deviation_part: 1", "torque_deviation_part: 2",
        "torque_deviation_part: 2, must be a number in [0.0, 1.0]"},
       {"crank_estimator: difference", "crank_estimator: 1",
        "crank_estimator: 1, must be one of mechanism, difference, none"},
       {"crank_joint: c", "crank_joint: [c]", "crank_joint: (a list), must be a text, not empty"},
       {"pitch_joints: [a]", "pitch_joints: [a, a]", "pitch_joints: (a list), must be a list of different names"},
-      {"hull_pitch_rad: -0.5", "hull_pitch_rad: steep", "hull_pitch_rad: steep rad, must be a finite number"},
-      {"gravity_m_s2: 0", "gravity_m_s2: -9.8", "gravity_m_s2: -9.8 m/s2, must be a finite number >= 0"},
+      {"hull_pitch_rad: -0.5", "hull_pitch_rad: steep", "hull_pitch_rad: steep rad, must be a number in [-6.3, 6.3]"},
+      {"gravity_m_s2: 0", "gravity_m_s2: -9.8", "gravity_m_s2: -9.8 m/s2, must be a number in [0.0, 100.0]"},
       {"base_roll_rad: -0.1", "base_roll_rad: 2", "base_roll_rad: 2 rad, must be a number in [-1.0, 1.0]"},
       {"boom_stiffness: given", "boom_stiffness: identified",
        "boom_stiffness: identified, must be given without a boom on its cylinders' oil (boom: compliant or auto, and a "
        "boom file)"},
       {"crank_angle_noise_rad: 0", "crank_angle_noise_rad: .nan",
-       "crank_angle_noise_rad: .nan rad, must be a finite number >= 0"},
-      {"stale_after_s: 1", "stale_after_s: 0", "stale_after_s: 0 s, must be a finite number > 0"},
+       "crank_angle_noise_rad: .nan rad, must be a number in [0.0, 1.0]"},
+      {"stale_after_s: 1", "stale_after_s: 0", "stale_after_s: 0 s, must be a number in [0.001, 10.0]"},
       {"torque_walk_rad_s2: 1", "torque_walk_rad_s2: -1",
-       "torque_walk_rad_s2: -1 rad/s2/sqrt(s), must be a finite number > 0"},
+       "torque_walk_rad_s2: -1 rad/s2/sqrt(s), must be a number in [0.001, 1000000.0]"},
       {"boom: none", "boom: soft", "boom: soft, must be one of none, rigid, compliant, auto"},
       {"boom_acceleration: difference", "boom_acceleration: true",
        "boom_acceleration: true, must be one of none, difference"},
-      {"joint_max_age_s: 0.1", "joint_max_age_s: 0", "joint_max_age_s: 0 s, must be a finite number > 0"},
-      {"tf_max_wait_s: 1", "tf_max_wait_s: .inf", "tf_max_wait_s: .inf s, must be a finite number > 0"},
+      {"joint_max_age_s: 0.1", "joint_max_age_s: 0", "joint_max_age_s: 0 s, must be a number in [0.001, 10.0]"},
+      {"tf_max_wait_s: 1", "tf_max_wait_s: .inf", "tf_max_wait_s: .inf s, must be a number in [0.001, 60.0]"},
       {"boom_wrench_links: [arm_link, left/gauge_2]", "boom_wrench_links: [arm-link]",
        "boom_wrench_links: arm-link, must be names of a letter first, then letters, digits, _ and /"},
       {"boom_wrench_links: []", "boom_wrench_links: [/arm_link]",

@@ -67,9 +67,9 @@ TEST(RosParameters, ProblemsNameTheNameSpace) {
   parameters["stale_after_s"] = -1.5;
   parameters["excavator"]["length_m"] = 3.0;
   EXPECT_EQ(problemsOnServer(parameters),
-            (Lines{"hull_pitch_rad: .nan rad, must be a finite number (/node)",
-                   "gravity_m_s2: \"9.8\" m/s2, must be a finite number >= 0 (/node)",
-                   "stale_after_s: -1.5 s, must be a finite number > 0 (/node)", "excavator: unknown key (/node)"}));
+            (Lines{"hull_pitch_rad: .nan rad, must be a number in [-6.3, 6.3] (/node)",
+                   "gravity_m_s2: \"9.8\" m/s2, must be a number in [0.0, 100.0] (/node)",
+                   "stale_after_s: -1.5 s, must be a number in [0.001, 10.0] (/node)", "excavator: unknown key (/node)"}));
 }
 
 TEST(RosParameters, OneHammerKeyMeansThatAllMustBeGiven) {

@@ -12,6 +12,8 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kMostRefreshAngle = 0.05;  // [rad]: frequencies off by some 2 %; modes of another pose run away
+
 void checkParameters(const BoomParameters& p, std::vector<std::string>& problems) {
   const auto check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
     if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g%s, must be %s", key, value, unit, rule));
@@ -22,8 +24,9 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
     check("bulk_modulus_Pa", modulus, " Pa", modulus >= 1.0 && modulus <= 1e15, "from 1 to 1e15 Pa");
   const double zeta = p.vibration.damping_ratio;
   check("damping_ratio", zeta, "", zeta > 0.0 && zeta < 1.0, "> 0 and < 1");
-  check("mode_refresh_angle_rad", p.vibration.refresh_angle, " rad", p.vibration.refresh_angle >= 0.0,
-        "a finite number >= 0");
+  check("mode_refresh_angle_rad", p.vibration.refresh_angle, " rad",
+        p.vibration.refresh_angle >= 0.0 && p.vibration.refresh_angle <= kMostRefreshAngle,
+        format("from 0 to %g", kMostRefreshAngle).c_str());
   check("rigid_tolerance", p.rigid_tolerance, "", p.rigid_tolerance > 0.0, "a finite number > 0");
   if (!p.supports) return;
   const Supports& s = *p.supports;

@@ -30,6 +30,9 @@ bool Database::check(int result) {
   const int error = errno;  // sqlite3_system_errno() does not know that of a COMMIT
   std::string reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(result);
   if (error != 0 && (result & 0xFF) == SQLITE_IOERR) reason += std::string(": ") + std::strerror(error);
+  for (char& c : reason) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // SQLite quotes a damaged file's bytes
+  }
   fail(reason);
   return false;
 }

@@ -55,7 +55,11 @@ bool WrenchSampler::isKnown(const WrenchOutput& output, const SampleResult& resu
 /// Stamp of the next output, if it is not after the sample.
 bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
   stamp = sample;
-  if (rate_ > 0.0) stamp = origin_ + static_cast<StampNs>(std::llround(static_cast<double>(index_) * 1e9 / rate_));
+  if (rate_ > 0.0) {
+    const double after = static_cast<double>(index_) * 1e9 / rate_;  // [ns]
+    if (!(after <= static_cast<double>(kLastStamp))) return false;   // nor can it be told as a stamp
+    stamp = origin_ + static_cast<StampNs>(std::llround(after));
+  }
   return stamp <= sample;
 }
 

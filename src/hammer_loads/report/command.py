@@ -8,8 +8,8 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 
 from report import bags, csv_tables, output, page
-from report.database import Database
-from report.problem import Problem
+from report.database import Database, Interrupt
+from report.problem import Problem, one_line
 
 WRONG_USAGE, FAILURE, INTERRUPTED = 2, 1, 130
 HERE = pathlib.Path(__file__).resolve().parent
@@ -57,7 +57,7 @@ def run(given):
     if given.html is not None:
         output.check_file(given.html, given.files, given.force, page.why_page_must_stay)
     if given.csv is not None:
-        output.check_directory(given.csv, given.force, csv_tables.why_directory_must_stay)
+        output.check_directory(given.csv, [*given.files, *([given.html] if given.html else [])], given.force, csv_tables.why_directory_must_stay)
     with tempfile.TemporaryDirectory(prefix="hammer_loads_report") as folder:
         write(given, [Database(bags.database_of(path, given.params, given.urdf, folder) if bags.is_bag(path) else path)
                       for path in given.files])
@@ -65,7 +65,7 @@ def run(given):
 
 def write(given, databases):
     for note in page.notes(databases):
-        print(f"note: {note}", file=sys.stderr)
+        print(one_line(f"note: {note}"), file=sys.stderr)
     if given.html is not None:
         content = page.page(databases, package_version(), given.machine)
         output.publish_file(given.html, content, given.force)
@@ -73,10 +73,6 @@ def write(given, databases):
     if given.csv is not None:
         output.publish_directory(given.csv, lambda part: csv_tables.write_tables(databases, part), given.force)
         print(f"{given.csv}: {len(os.listdir(given.csv))} tables")
-
-
-def interrupted(*_):
-    raise KeyboardInterrupt
 
 
 def main(arguments):
@@ -87,14 +83,19 @@ def main(arguments):
         options.error("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
     if (given.params or given.urdf) and not any(map(bags.is_bag, given.files)):
         options.error("--params and --urdf are for bags; a database has its parameters")
-    for name in (signal.SIGTERM, signal.SIGHUP):
+    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(name) != signal.SIG_IGN:
-            signal.signal(name, interrupted)
+            signal.signal(name, Interrupt.handler)
     try:
         run(given)
         return 0
     except Problem as problem:
         print(problem, file=sys.stderr)
+        return FAILURE
+    except (ArithmeticError, AttributeError, LookupError, MemoryError, RecursionError, TypeError, ValueError) as error:
+        # What stands in the tables is no number, too large, or missing where the page must have it.
+        print(one_line(f"{', '.join(given.files)}: damaged, or not as this package writes it "
+                       f"({type(error).__name__}: {error})"), file=sys.stderr)
         return FAILURE
     except KeyboardInterrupt:
         print("interrupted: nothing is written", file=sys.stderr)

@@ -1,12 +1,27 @@
 """Every table of the files as CSV: TABLE.csv, ledgers' as ledger_TABLE.csv; the first column is the file."""
 import csv
 import os
+import re
 
-from report.database import LEDGER
+from report.database import LEDGER, quoted
+from report.problem import Problem, one_line
 from report.subjects import stem
+
+# A spreadsheet runs what begins so; a text that it does not run begins with a quotation mark.
+FORMULA = ("=", "+", "-", "@", "\t")
+
+
+def plain(value):
+    """Numbers as they are; a text that a spreadsheet would take for a formula begins with '. No control characters."""
+    if not isinstance(value, str):
+        return value
+    shown = "\n".join("\t".join(map(one_line, line.split("\t"))) for line in value.split("\n"))
+    return "'" + shown if shown.startswith(FORMULA) else shown
 
 
 def file_name(database, table):
+    if not re.fullmatch("[A-Za-z0-9_]+", table):
+        raise Problem(f"{database.path}: table {one_line(table)}: must be of letters, digits and _ to be a file's name")
     return ("ledger_" if database.kind == LEDGER else "") + table + ".csv"
 
 
@@ -20,18 +35,18 @@ def write_tables(databases, directory):
         columns = list(dict.fromkeys(c for database, table in sources for c in database.columns(table)))
         with open(directory / name, "w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(["file", *columns])
+            writer.writerow(["file", *map(plain, columns)])
             for database, table in sources:
                 write_rows(writer, database, table, columns)
 
 
 def write_rows(writer, database, table, columns):
     present = database.columns(table)
-    listed = ", ".join(f'"{c}"' if c in present else "NULL" for c in columns)
-    order = ", ".join(f'"{c}"' for c in present[:4])
+    listed = ", ".join(quoted(c) if c in present else "NULL" for c in columns)
+    order = ", ".join(map(quoted, present[:4]))
     label = stem(database.path)
-    for row in database.rows(f'SELECT {listed} FROM "{table}" ORDER BY {order}'):
-        writer.writerow([label, *row])
+    for row in database.rows(f"SELECT {listed} FROM {quoted(table)} ORDER BY {order}"):
+        writer.writerow([plain(label), *map(plain, row)])
 
 
 def why_directory_must_stay(name):

@@ -9,7 +9,24 @@ from report.problem import Problem
 RECORDING, LEDGER, FLEET = "recording", "ledger", "fleet"
 KINDS = {0x484C5242: RECORDING, 0x484C4C31: LEDGER, 0x484C5246: FLEET}
 VERSIONS = {RECORDING: (1,), LEDGER: (1, 2), FLEET: (1,)}
+STEPS = 100000  # of SQLite's machine, some ms, between two looks for a signal
 BUSY_S = 5.0  # a node that writes its ledger needs some ms
+
+
+class Interrupt:
+    """A signal that must end the command; SQLite stops by it within a query as well."""
+
+    came = False
+
+    @classmethod
+    def handler(cls, *_):
+        cls.came = True
+        raise KeyboardInterrupt
+
+
+def quoted(name):
+    """As a name in SQL."""
+    return '"' + name.replace('"', '""') + '"'
 
 
 class Database:
@@ -21,8 +38,18 @@ class Database:
         address = "file:" + urllib.parse.quote(os.path.abspath(self.path)) + "?mode=ro"
         self._connection = self._guarded(sqlite3.connect, address, uri=True, isolation_level=None, timeout=BUSY_S)
         self._connection.text_factory = lambda data: data.decode("utf-8", "replace")
+        self._connection.set_progress_handler(lambda: int(Interrupt.came), STEPS)
         self._guarded(self._connection.execute, "BEGIN")
         self.kind = self._kind()
+        self._check_tables()
+
+    def _check_tables(self):
+        """Only tables: what a name stands for must be what it says, and end."""
+        for name, kind in self.rows("SELECT name, type FROM sqlite_master WHERE type IN ('view', 'trigger') OR "
+                                    "sql LIKE 'CREATE VIRTUAL%' ORDER BY name"):
+            if self.kind == FLEET and (kind, name) == ("view", "parameters"):
+                continue  # its own (fleet/merged_schema.sql)
+            raise Problem(f"{self.path}: {kind} {name}: must hold tables alone, as this package writes them")
 
     def _check_file(self):
         try:
@@ -51,7 +78,9 @@ class Database:
     def _guarded(self, call, *arguments, **options):
         try:
             return call(*arguments, **options)
-        except sqlite3.Error as error:
+        except (sqlite3.Error, OverflowError, UnicodeError, MemoryError) as error:
+            if Interrupt.came:
+                raise KeyboardInterrupt
             raise Problem(f"{self.path}: cannot be read: {' '.join(str(error).split())}")
 
     def rows(self, sql, *values):
@@ -78,4 +107,4 @@ class Database:
             "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite%' ORDER BY name")]
 
     def columns(self, table):
-        return [row[1] for row in self.rows(f'PRAGMA table_info("{table}")')]
+        return [row[1] for row in self.rows(f"PRAGMA table_info({quoted(table)})")]

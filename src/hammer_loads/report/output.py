@@ -1,11 +1,15 @@
 """Files and directories that the command writes: complete under their name, or not there at all."""
+import contextlib
+import ctypes
 import os
 import pathlib
 import shutil
+import signal
 import stat
 
 from report.problem import Problem
 
+AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux
 KINDS = [(stat.S_ISDIR, "a directory"), (stat.S_ISLNK, "a symbolic link"), (stat.S_ISFIFO, "a FIFO"),
          (stat.S_ISSOCK, "a socket")]
 
@@ -37,12 +41,28 @@ def check_existing(name, force, is_expected, expected, keep):
         raise Problem(f"{name}: --force does not replace it: {reason}")
 
 
+def inside(place, folder):
+    """Whether a path is the folder or lies below it, whatever links lead there."""
+    place, folder = os.path.realpath(place), os.path.realpath(folder)
+    return place == folder or os.path.commonpath([place, folder]) == folder
+
+
+def refuse_place(name, needed):
+    """A directory that holds what is needed cannot be replaced."""
+    for given in [os.getcwd(), *needed]:
+        if inside(given, name):
+            held = "the working directory" if given == os.getcwd() else given
+            raise Problem(f"{name}: holds {held}, must be a directory of its own")
+
+
 def check_file(name, inputs, force, keep):
     refuse_inputs(name, inputs)
     check_existing(name, force, stat.S_ISREG, "a new file", keep)
 
 
-def check_directory(name, force, keep):
+def check_directory(name, needed, force, keep):
+    """`needed`: paths of inputs and other outputs."""
+    refuse_place(name, needed)
     check_existing(name, force, stat.S_ISDIR, "a new directory", keep)
 
 
@@ -67,15 +87,48 @@ def publish_file(name, data, force):
             os.unlink(part)
 
 
+@contextlib.contextmanager
+def signals_wait():
+    """Those that end the command come after the block: it does all or nothing."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def exchange(one, other):
+    """Each path gets what the other had, at one instant."""
+    rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)  # glibc 2.28
+    if rename is None or rename(AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other), RENAME_EXCHANGE) != 0:
+        code = ctypes.get_errno()
+        raise OSError(code, os.strerror(code))
+
+
+def take_place(part, name):
+    """The new directory gets the name; at every instant one of the two has it, where the file system can do that."""
+    if not os.path.isdir(name):
+        os.rename(part, name)
+        return
+    try:
+        exchange(part, name)
+    except OSError:
+        aside = part + ".old"
+        os.rename(name, aside)
+        os.rename(part, name)
+        os.rename(aside, part)
+
+
 def publish_directory(name, fill, force):
     """`fill(path)` writes into a new directory, which then gets this name."""
     part = part_name(name)
     try:
         os.mkdir(part)
         fill(pathlib.Path(part))
-        if force and os.path.isdir(name):
-            shutil.rmtree(name)
-        os.rename(part, name)
+        if not force and os.path.lexists(name):
+            raise Problem(f"{name}: exists meanwhile, must be a new directory")
+        with signals_wait():
+            take_place(part, name)
     except OSError as error:
         raise Problem(f"{name}: cannot be written: {error.strerror}")
     finally:

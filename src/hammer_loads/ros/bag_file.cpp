@@ -15,6 +15,9 @@ namespace hammer_loads {
 namespace {
 
 constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30U;  // unpacked [byte]; rosbag writes some 1e6
+// Unpacked over packed bytes, beside a chunk as rosbag writes it: lz4 packs to 1/255 at most, messages with stamps
+// less.
+constexpr std::uint64_t kMostPacked = 255, kUsualChunk = 1U << 20U;
 
 rosbag::CompressionType packingOf(std::string_view name) {
   if (name == "none") return rosbag::compression::Uncompressed;
@@ -81,6 +84,7 @@ void BagFile::readInto(std::uint64_t position, std::uint8_t* to, std::size_t siz
 }
 
 std::string BagFile::bytesAt(std::uint64_t position, std::uint64_t size) const {
+  if (size > size_) throw std::runtime_error("a record reaches beyond the file's end");  // before there is room for it
   std::string bytes(size, '\0');
   readInto(position, reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size());
   return bytes;
@@ -116,6 +120,9 @@ void BagFile::read(const BagChunk& chunk, const std::map<std::uint32_t, const Ba
   const auto size = numberOf<std::uint32_t>(header, "size");
   if (numberOf<std::uint8_t>(header, "op") != BagRecord::kChunk || size > kMostChunk)
     throw std::runtime_error("a chunk's header is damaged");
+  if (size > kUsualChunk + kMostPacked * data_size)
+    throw std::runtime_error("a chunk of " + std::to_string(data_size) + " bytes claims to hold " +
+                             std::to_string(size) + ", must be at most 255 times as many and 1 MB");
   if (data_size > size_) throw std::runtime_error("a chunk reaches beyond the file's end");
   read.packed.resize(data_size);
   readInto(data_at + sizeof data_size, read.packed.data(), data_size);

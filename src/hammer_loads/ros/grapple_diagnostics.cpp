@@ -3,6 +3,7 @@
 #include <string>
 
 #include "hammer_loads/ros/log_diagnostics.h"
+#include "hammer_loads/ros/report_now.h"
 #include "hammer_loads/ros/steady_time.h"
 #include "hammer_loads/util/format.h"
 
@@ -23,7 +24,7 @@ GrappleDiagnostics::GrappleDiagnostics(ros::NodeHandle node, ros::NodeHandle pri
   updater_.add("log", [&log](diagnostic_updater::DiagnosticStatusWrapper& status) { describeLog(log, status); });
   // Wall time: a stopped /clock is one of the things to report.
   timer_ = node.createWallTimer(ros::WallDuration(updater_.getPeriod()),
-                                [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+                                [this](const ros::WallTimerEvent&) { reportNow(updater_); });
 }
 
 void GrappleDiagnostics::summarise(Clock::time_point now, diagnostic_updater::DiagnosticStatusWrapper& status) const {

@@ -1,6 +1,5 @@
 #include "hammer_loads/ros/hammer_loads_node.h"
 
-#include <cmath>
 #include <iostream>
 #include <utility>
 
@@ -119,12 +118,15 @@ void HammerLoadsNode::onReconfigure(HammerLoadsConfig& config) {
   if (switched) switchLog(config.log_enabled);
   const bool changed = config.output_rate_Hz != config_.output_rate_Hz || config.tolerance != config_.tolerance ||
                        config.withhold_above != config_.withhold_above;
-  const bool finite = std::isfinite(config.output_rate_Hz + config.tolerance + config.withhold_above);
-  if (!finite) ROS_WARN("set_parameters: nan, must be numbers; nothing is changed");
-  if (changed && finite) {
-    bridge_.begin(withChanges(bridge_.settings(), {{"output_rate_Hz", config.output_rate_Hz},
-                                                   {"tolerance", config.tolerance},
-                                                   {"withhold_above", config.withhold_above}}));
+  Checked<Settings> settings;
+  if (changed)
+    settings = withChanges(bridge_.settings(), {{"output_rate_Hz", config.output_rate_Hz},
+                                                {"tolerance", config.tolerance},
+                                                {"withhold_above", config.withhold_above}});
+  for (const std::string& problem : settings.problems)
+    ROS_WARN("set_parameters: %s; nothing is changed", problem.c_str());
+  if (settings.value) {
+    bridge_.begin(*std::move(settings.value));
     log_->forgetLatched(run_info_.getTopic());
     if (!switched) log_->split();
     announceRun();

@@ -5,6 +5,7 @@
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/ros/life_diagnostics.h"
 #include "hammer_loads/ros/log_diagnostics.h"
+#include "hammer_loads/ros/report_now.h"
 #include "hammer_loads/ros/steady_time.h"
 
 namespace hammer_loads {
@@ -49,7 +50,7 @@ void NodeDiagnostics::report() {
   const bool stopped = health.state == LogState::kDiskFull || health.state == LogState::kFailed;
   if (stopped && health.state != log_state_) ROS_ERROR("log stopped: %s", health.reason.c_str());
   log_state_ = health.state;
-  updater_.force_update();
+  reportNow(updater_);
 }
 
 std::vector<Warning> NodeDiagnostics::warnings() const {

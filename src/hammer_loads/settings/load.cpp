@@ -153,13 +153,13 @@ Checked<Settings> loadFiles(const std::string& config_directory, const std::vect
   return result;
 }
 
-Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes) {
+Checked<Settings> withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes) {
   std::vector<std::string> problems;
   ParameterMap parameters = parameterMap(YAML::Load(settings.yaml), {}, problems).value();
   for (const auto& [key, value] : changes) parameters.at(key).value = YAML::Node(numberText(value));
   Checked<Settings> changed = settingsFrom(std::move(parameters), settings.robot_description, settings.hammer_given);
-  changed.value.value().notes = std::move(changed.notes);
-  return *std::move(changed.value);
+  if (changed.value) changed.value->notes = std::move(changed.notes);
+  return changed;
 }
 
 Settings withInputTopics(Settings settings, const InputTopics& topics) {

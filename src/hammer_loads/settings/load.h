@@ -49,8 +49,8 @@ Checked<Settings> load(const std::string& config_directory, const ParameterMap& 
 Checked<Settings> loadFiles(const std::string& config_directory, const std::vector<std::string>& files,
                             const std::string& robot_description = {});
 
-/// Settings in force with some numbers changed. The keys must be among those in force and the values allowed.
-Settings withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
+/// Settings in force with some numbers changed, or what forbids them. The keys must be among those in force.
+Checked<Settings> withChanges(const Settings& settings, const std::vector<std::pair<std::string, double>>& changes);
 
 /// The same settings, which say from which topics the input comes.
 Settings withInputTopics(Settings settings, const InputTopics& topics);

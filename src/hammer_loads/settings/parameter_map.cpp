@@ -26,13 +26,21 @@ std::optional<std::string> contents(const std::string& file, std::string& proble
   }
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream && stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
+  std::string text;
+  if (stream && stream.peek() != std::ifstream::traits_type::eof()) {
+    text.resize(kMostParameterBytes + 1);
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+  }
   if (!stream.is_open() || stream.bad()) {
     problem = file + ": cannot be read: " + std::strerror(errno);
     return std::nullopt;
   }
-  return text.str();
+  if (text.size() > kMostParameterBytes) {
+    problem = file + ": more than " + std::to_string(kMostParameterBytes) + " bytes, must be a file of parameters";
+    return std::nullopt;
+  }
+  return text;
 }
 
 struct IgnoreEvents final : YAML::EventHandler {

@@ -3,12 +3,16 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace hammer_loads {
+
+/// Of a file or a recorded text: the longest shipped one has 8 kB, and this many take some 1 s.
+constexpr std::size_t kMostParameterBytes = 1000 * 1000;
 
 struct Parameter {
   YAML::Node value;

@@ -16,6 +16,8 @@ std::string ruleText(NumberRule rule) {
       return "a finite number > 0";
     case NumberRule::Kind::kNotNegative:
       return "a finite number >= 0";
+    case NumberRule::Kind::kZeroOrWithin:
+      return "0 or a number in [" + numberText(rule.least) + ", " + numberText(rule.most) + "]";
     case NumberRule::Kind::kWithin:
       break;
   }
@@ -31,6 +33,9 @@ bool obeys(NumberRule rule, double value) {
       return value > 0.0;
     case NumberRule::Kind::kNotNegative:
       return value >= 0.0;
+    case NumberRule::Kind::kZeroOrWithin:
+      if (value == 0.0) return true;
+      break;
     case NumberRule::Kind::kWithin:
       break;
   }
@@ -170,6 +175,11 @@ void ParameterReader::report(const std::string& key, const std::string& line) {
   const std::string origin = found == parameters_.end() ? std::string{} : found->second.origin;
   problems_.push_back(line + (origin.empty() ? "" : " (" + origin + ")"));
   faulty_.insert(key);
+}
+
+void ParameterReader::demand(const std::string& key, const std::string& unit, double value, NumberRule rule) {
+  if (obeys(rule, value)) return;
+  addProblem(key + ": " + numberText(value) + (unit.empty() ? "" : " " + unit) + ", must be " + ruleText(rule));
 }
 
 void ParameterReader::addProblem(const std::string& line) {

@@ -15,14 +15,16 @@ namespace hammer_loads {
 
 /// What a number may be. NaN and infinity never are.
 struct NumberRule {
-  enum class Kind { kAny, kPositive, kNotNegative, kWithin };
+  enum class Kind { kAny, kPositive, kNotNegative, kWithin, kZeroOrWithin };
   Kind kind{Kind::kAny};
-  double least{}, most{};  ///< inclusive, for kWithin, in the parameter's unit
+  double least{}, most{};  ///< inclusive, for kWithin and kZeroOrWithin, in the parameter's unit
 
   static constexpr NumberRule any() { return {}; }
   static constexpr NumberRule positive() { return {Kind::kPositive, 0.0, 0.0}; }
   static constexpr NumberRule notNegative() { return {Kind::kNotNegative, 0.0, 0.0}; }
   static constexpr NumberRule within(double least, double most) { return {Kind::kWithin, least, most}; }
+  /// 0 for none.
+  static constexpr NumberRule zeroOrWithin(double least, double most) { return {Kind::kZeroOrWithin, least, most}; }
 };
 
 /// One word of a choice and what it stands for.
@@ -55,8 +57,11 @@ class ParameterReader {
     return choices[choiceIndex(key, words)].second;
   }
 
-  /// A line `KEY: ...` found by a reader that knows more than one key's rule. Left out when the parameter KEY has a problem
-  /// already; where KEY came from is added.
+  /// Once more a number that was read, where another judge had the first word: a problem unless the key has one
+  /// already.
+  void demand(const std::string& key, const std::string& unit, double value, NumberRule rule);
+  /// A line `KEY: ...` found by a reader that knows more than one key's rule. Left out when the parameter KEY has a
+  /// problem already; where KEY came from is added.
   void addProblem(const std::string& line);
   /// Call after every read: each key that was not read, with the nearest known one.
   void reportUnknownKeys();

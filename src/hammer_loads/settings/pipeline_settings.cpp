@@ -9,6 +9,14 @@
 namespace hammer_loads {
 namespace {
 
+// Beyond these no machine, sensor or supply lies; within them, in any mixture, the pipeline ends, allocates little and
+// its arithmetic stays finite: test/fuzz/pipeline_fuzz.cpp draws every one of them.
+constexpr NumberRule kTurned = NumberRule::within(-6.3, 6.3);     // [rad] a turn either way: degrees lie beyond
+constexpr NumberRule kPlace = NumberRule::within(-100.0, 100.0);  // [m] on a machine
+constexpr NumberRule kAge = NumberRule::within(1e-3, 10.0);       // [s] some samples at 1 kHz; a rest between two blows
+constexpr NumberRule kPart = NumberRule::within(1e-9, 10.0);      // [-] of a peak; as cfg/HammerLoads.cfg
+constexpr double kMostWaiting = 1e5;                              // outputs of one sample: 30 MB
+
 /// Fit to be a part of a topic's name.
 bool namesATopic(const std::string& link) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -20,40 +28,39 @@ void readBoom(ParameterReader& reader, PipelineSettings& s) {
   s.boom = reader.choice("boom", kBoomModelNames);
   s.boom_acceleration = reader.choice("boom_acceleration", kBoomAccelerationNames);
   s.boom_stiffness = reader.choice("boom_stiffness", kBoomStiffnessNames);
-  s.joint_max_age = reader.number("joint_max_age_s", "s", NumberRule::positive());
+  s.joint_max_age = reader.number("joint_max_age_s", "s", kAge);
   s.boom_wrench_links = reader.names("boom_wrench_links");
   for (const std::string& link : s.boom_wrench_links) {
     if (namesATopic(link)) continue;
     reader.addProblem(
         format("boom_wrench_links: %s, must be names of a letter first, then letters, digits, _ and /", link.c_str()));
   }
-  s.tf_max_wait = reader.number("tf_max_wait_s", "s", NumberRule::positive());
+  s.tf_max_wait = reader.number("tf_max_wait_s", "s", NumberRule::within(1e-3, 60.0));
 }
 
 void readHullMotion(ParameterReader& reader, PipelineSettings& s) {
-  constexpr NumberRule kAny = NumberRule::any();
   s.hull_motion = reader.choice("hull_motion", kHullMotionNames);
   if (s.hull_motion == HullMotionSource::kModel && (s.boom == BoomModel::kNone || s.boom == BoomModel::kRigid))
     reader.addProblem("hull_motion: model, must be fixed or imu with a boom that is none or rigid");
-  const double x = reader.number("imu_x_m", "m", kAny), y = reader.number("imu_y_m", "m", kAny);
-  s.imu.position = {x, y, reader.number("imu_z_m", "m", kAny)};
-  const double roll = reader.number("imu_roll_rad", "rad", kAny), pitch = reader.number("imu_pitch_rad", "rad", kAny);
-  s.imu.rotation = rotationOf(roll, pitch, reader.number("imu_yaw_rad", "rad", kAny));
-  s.imu.max_age = reader.number("imu_max_age_s", "s", NumberRule::positive());
+  const double x = reader.number("imu_x_m", "m", kPlace), y = reader.number("imu_y_m", "m", kPlace);
+  s.imu.position = {x, y, reader.number("imu_z_m", "m", kPlace)};
+  const double roll = reader.number("imu_roll_rad", "rad", kTurned),
+               pitch = reader.number("imu_pitch_rad", "rad", kTurned);
+  s.imu.rotation = rotationOf(roll, pitch, reader.number("imu_yaw_rad", "rad", kTurned));
+  s.imu.max_age = reader.number("imu_max_age_s", "s", kAge);
 }
 
 CrankSensor readCrankSensor(ParameterReader& reader) {
-  constexpr NumberRule kAny = NumberRule::any();
   constexpr NumberRule kNotNegative = NumberRule::notNegative();
   const std::size_t problems_before = reader.problems().size();
   CrankSensorPlace place;
-  place.zero = reader.number("crank_zero_rad", "rad", kAny);
+  place.zero = reader.number("crank_zero_rad", "rad", NumberRule::within(-1e6, 1e6));
   place.direction = static_cast<int>(reader.integer("crank_direction", "", -1, 1));
-  place.ratio = reader.number("crank_ratio", "", NumberRule::positive());
+  place.ratio = reader.number("crank_ratio", "", NumberRule::within(1e-3, 1e3));
   place.eccentricity[0] = reader.number("crank_eccentricity_1_rad", "rad", kNotNegative);
-  place.eccentricity_phase[0] = reader.number("crank_eccentricity_1_phase_rad", "rad", kAny);
+  place.eccentricity_phase[0] = reader.number("crank_eccentricity_1_phase_rad", "rad", kTurned);
   place.eccentricity[1] = reader.number("crank_eccentricity_2_rad", "rad", kNotNegative);
-  place.eccentricity_phase[1] = reader.number("crank_eccentricity_2_phase_rad", "rad", kAny);
+  place.eccentricity_phase[1] = reader.number("crank_eccentricity_2_phase_rad", "rad", kTurned);
   if (reader.problems().size() != problems_before) return {};
   const Checked<CrankSensor> sensor = CrankSensor::make(place);
   for (const std::string& problem : sensor.problems) reader.addProblem(problem);
@@ -77,42 +84,44 @@ std::optional<Coupling> readCoupling(ParameterReader& reader, CrankEstimator est
 }  // namespace
 
 PipelineSettings readPipelineSettings(ParameterReader& reader) {
-  constexpr NumberRule kAny = NumberRule::any();
-  constexpr NumberRule kPositive = NumberRule::positive();
-  constexpr NumberRule kNotNegative = NumberRule::notNegative();
   PipelineSettings s;
   const std::optional<Level> level = reader.choice("level", kLevelChoices);
   s.choose_level = !level;
   s.level = level.value_or(Level::kLinkage);
-  s.tolerance = reader.number("tolerance", "", kPositive);
-  s.turn_rate = reader.number("turn_rate_Hz", "Hz", kPositive);
+  s.tolerance = reader.number("tolerance", "", kPart);
+  s.turn_rate = reader.number("turn_rate_Hz", "Hz", NumberRule::within(0.01, 100.0));
   s.output = reader.choice("output", kOutputNames);
-  s.output_rate = reader.number("output_rate_Hz", "Hz", NumberRule::within(0.0, 1e5));
+  s.output_rate = reader.number("output_rate_Hz", "Hz", NumberRule::zeroOrWithin(1e-3, 1e5));
   s.crank_estimator = reader.choice("crank_estimator", kCrankEstimatorNames);
   s.crank_joint = reader.text("crank_joint");
   s.pitch_joints = reader.names("pitch_joints");
-  s.hull_pitch = reader.number("hull_pitch_rad", "rad", kAny);
-  s.gravity = reader.number("gravity_m_s2", "m/s2", kNotNegative);
+  s.hull_pitch = reader.number("hull_pitch_rad", "rad", kTurned);
+  s.gravity = reader.number("gravity_m_s2", "m/s2", NumberRule::within(0.0, 100.0));
   s.base.roll = reader.number("base_roll_rad", "rad", NumberRule::within(-1.0, 1.0));
   s.base.pitch = reader.number("base_pitch_rad", "rad", NumberRule::within(-1.0, 1.0));
   s.crank_sensor = readCrankSensor(reader);
   s.crank_latency = reader.number("crank_latency_s", "s", NumberRule::within(0.0, 1.0));
-  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", kNotNegative);
-  s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", kNotNegative);
+  s.crank_angle_resolution = reader.number("crank_angle_resolution_rad", "rad", NumberRule::within(0.0, 1.6));
+  s.crank_angle_noise = reader.number("crank_angle_noise_rad", "rad", NumberRule::within(0.0, 1.0));
   s.crank_stamps = reader.choice("crank_stamps", kCrankStampsNames);
-  s.crank_timing_noise = reader.number("crank_timing_noise_s", "s", kNotNegative);
-  s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kPositive);
+  s.crank_timing_noise = reader.number("crank_timing_noise_s", "s", NumberRule::within(0.0, 1.0));
+  s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", NumberRule::within(1e-3, 1e3));
   s.coupling = readCoupling(reader, s.crank_estimator);
-  s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", kPositive);
-  s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", kNotNegative);
-  s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", kNotNegative);
-  s.initial_torque_deviation = reader.number("initial_torque_deviation_rad_s2", "rad/s2", kPositive);
-  s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", kNotNegative);
+  s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", NumberRule::within(1e-3, 1e6));
+  s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", NumberRule::within(0.0, 1e3));
+  s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", NumberRule::within(0.0, 1.0));
+  s.initial_torque_deviation =
+      reader.number("initial_torque_deviation_rad_s2", "rad/s2", NumberRule::within(1e-3, 1e6));
+  s.initial_inertia_deviation = reader.number("initial_inertia_deviation", "", NumberRule::within(0.0, 10.0));
   s.torque_deviation_part = reader.number("torque_deviation_part", "", NumberRule::within(0.0, 1.0));
   s.near_blow = kDegree * reader.number("near_blow_deg", "deg", NumberRule::within(0.0, 89.0));
-  s.stale_after = reader.number("stale_after_s", "s", kPositive);
-  s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", kPositive);
-  s.withhold_above = reader.number("withhold_above", "", kPositive);
+  s.stale_after = reader.number("stale_after_s", "s", kAge);
+  s.max_crank_speed = reader.number("max_crank_speed_rad_s", "rad/s", NumberRule::within(1.0, 1e4));
+  s.withhold_above = reader.number("withhold_above", "", kPart);
+  if (s.output_rate * s.stale_after > kMostWaiting) {
+    reader.addProblem(format("output_rate_Hz: %.9g Hz, must be at most %g outputs over stale_after_s = %.9g s",
+                             s.output_rate, kMostWaiting, s.stale_after));
+  }
   readBoom(reader, s);
   readHullMotion(reader, s);
   return s;

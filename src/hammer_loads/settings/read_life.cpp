@@ -15,6 +15,7 @@ namespace {
 using life::LoadGrid;
 
 constexpr double kPaPerMPa = 1e6;
+constexpr NumberRule kFullScale = NumberRule::within(-1e15, 1e15);  // [N], [N m], [Pa]: beyond it nothing holds
 
 /// A short name in the file and the channel that it stands for.
 struct NamedChannel {
@@ -29,8 +30,8 @@ bool endsWith(const std::string& text, const std::string& end) {
 std::optional<LoadGrid> readGrid(ParameterReader& reader, const std::string& name, const std::string& unit,
                                  std::int64_t classes) {
   const std::string ending = unit.empty() ? "" : "_" + unit, key = name + "_full_scale_least" + ending;
-  const double least = reader.number(key, unit, NumberRule::any());
-  const double greatest = reader.number(name + "_full_scale_greatest" + ending, unit, NumberRule::any());
+  const double least = reader.number(key, unit, kFullScale);
+  const double greatest = reader.number(name + "_full_scale_greatest" + ending, unit, kFullScale);
   if (!std::isfinite(least) || !std::isfinite(greatest) || classes == 0) return std::nullopt;
   Checked<LoadGrid> grid = LoadGrid::make(least, greatest, classes);
   for (const std::string& problem : grid.problems) reader.addProblem(key + ": " + problem);
@@ -148,7 +149,7 @@ life::LifeSettings readLifeSettings(ParameterReader& reader) {
   constexpr double kNsPerSecond = 1e9;
   const double period = reader.number("life_period_s", "s", NumberRule::within(0.1, 86400.0));
   if (std::isfinite(period)) s.period = std::llround(kNsPerSecond * period);
-  s.equivalent_cycles_per_hour = reader.number("life_equivalent_cycles_per_hour", "1/h", NumberRule::positive());
+  s.equivalent_cycles_per_hour = reader.number("life_equivalent_cycles_per_hour", "1/h", NumberRule::within(1e-3, 1e9));
   const std::string ledger = reader.text("life_ledger");
   if (!ledger.empty() && ledger != "none" && ledger.front() != '/')
     reader.addProblem("life_ledger: " + quotedText(ledger) + ", must be an absolute path, or none");

@@ -34,6 +34,10 @@ ParameterMap lifeOfNoCount(const std::string& config_directory, const ParameterM
 }  // namespace
 
 std::optional<ParameterMap> recordedParameters(const std::string& parameters_yaml, std::vector<std::string>& problems) {
+  if (parameters_yaml.size() > kMostParameterBytes) {
+    problems.push_back("run_info: more than " + std::to_string(kMostParameterBytes) + " bytes, must be parameters");
+    return std::nullopt;
+  }
   try {
     return parameterMap(YAML::Load(parameters_yaml), "run_info", problems);
   } catch (const YAML::Exception& error) {
