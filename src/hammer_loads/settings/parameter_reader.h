@@ -47,6 +47,8 @@ class ParameterReader {
   /// List of texts, each not empty and given once; the list may be empty. With a problem, the different texts of it, so
   /// that keys named after them are not unknown.
   std::vector<std::string> names(const std::string& key);
+  /// List of 1 and -1; may be empty.
+  std::vector<int> signs(const std::string& key);
   /// One of several words.
   template <typename T, std::size_t N>
   T choice(const std::string& key, const std::array<Named<T>, N>& choices) {
@@ -55,8 +57,8 @@ class ParameterReader {
     return choices[choiceIndex(key, words)].second;
   }
 
-  /// A line `KEY: ...` found by a reader that knows more than one key's rule. Left out when the parameter KEY has a problem
-  /// already; where KEY came from is added.
+  /// A line `KEY: ...` found by a reader that knows more than one key's rule. Left out when the parameter KEY has a
+  /// problem already; where KEY came from is added.
   void addProblem(const std::string& line);
   /// Call after every read: each key that was not read, with the nearest known one.
   void reportUnknownKeys();
