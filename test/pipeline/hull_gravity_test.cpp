@@ -136,11 +136,12 @@ TEST(HullGravity, SignsThatContradictTheDescriptionAreRefused) {
       << refused.problems[0];
 }
 
-TEST(HullGravity, ADescriptionWithoutThePitchJointsIsNamedAndNotUsed) {
+TEST(HullGravity, ADescriptionWithoutThePitchJointsIsNotUsed) {
   const Settings settings = strangersSettings("hull_pitch_rad: 0.1\n", strangersUrdf(true));
-  EXPECT_FALSE(settings.pipeline.pitch_chain);
-  EXPECT_EQ(settings.notes.back(),
-            "robot_description: not used for the weight, it does not have the pitch_joints in one chain");
+  HullGravity gravity(settings.pipeline, std::nullopt);
+  gravity.joints(kStrangersNames, {0.9, 0.3, 0.2, 0.1});
+  EXPECT_NEAR(gravity.gravity().x, kG * std::sin(0.1), 1e-12);
+  EXPECT_EQ(gravity.pitch().unheard(), settings.pipeline.pitch_joints);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/commands/bag_options.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/life/ledger_batch.h"
@@ -35,13 +35,10 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   addParamsOption(line, given.params);
   line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(line, given.urdf);
-  const auto topic = [&](const char* option, std::string& name, const std::string& by_default) {
-    line.option(option, name).type("TOPIC").showDefault("as in run_info, else " + by_default);
-  };
-  topic("--crank-topic", job.topics.crank, kDefaultTopics.crank);
-  topic("--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
-  topic("--imu-topic", job.topics.hull_imu, kDefaultTopics.hull_imu);
-  topic("--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures);
+  addTopicOption(line, "--crank-topic", job.topics.crank, kDefaultTopics.crank);
+  addTopicOption(line, "--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
+  addTopicOption(line, "--imu-topic", job.topics.hull_imu, kDefaultTopics.hull_imu);
+  addTopicOption(line, "--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures);
   line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
   line.flag("--smooth", job.smooth, "the crank by later samples as well: more exact than the live node can be")
@@ -61,14 +58,7 @@ int fail(const std::vector<std::string>& problems) {
 
 /// Parameters, robot description and grapple of the job; what is wrong with their files, one line each.
 std::vector<std::string> readFiles(const Arguments& given, BagJob& job) {
-  std::vector<std::string> problems;
-  ParameterMap parameters;
-  if (!given.params.empty() && addFiles(given.params, parameters, problems)) job.parameters = std::move(parameters);
-  if (!given.urdf.empty()) {
-    Checked<std::string> description = fileText(given.urdf);
-    problems.insert(problems.end(), description.problems.begin(), description.problems.end());
-    job.robot_description = std::move(description.value);
-  }
+  std::vector<std::string> problems = readParameterFiles(given.params, given.urdf, job);
   if (!given.grapple.empty()) {
     Checked<GrappleSettings> grapple = loadGrappleSettings(configDirectory(), given.grapple);
     problems.insert(problems.end(), grapple.problems.begin(), grapple.problems.end());

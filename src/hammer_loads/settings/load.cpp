@@ -80,8 +80,6 @@ void takePitchChain(ParameterReader& reader, PipelineSettings& pipeline, const s
     if (pipeline.pitch_chain)
       notes.push_back("weight by the robot description's axes and zeros, from " + request->root + " to " +
                       request->tip);
-    else
-      notes.push_back("robot_description: not used for the weight, it does not have the pitch_joints in one chain");
   }
   const std::optional<Chain> chain = boom ? boom->chain() : pipeline.pitch_chain;
   if (!chain || pipeline.pitch_signs.empty()) return;
