@@ -10,6 +10,7 @@
 #include "hammer_loads/life/ledger_batch.h"
 #include "hammer_loads/ros/bag_output.h"
 #include "hammer_loads/ros/bag_processing.h"
+#include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/tables/table_schema.h"
 
 namespace hammer_loads {
@@ -19,7 +20,7 @@ struct Arguments {
   std::vector<std::string> bags;  ///< inputs, then the output unless there is none
   std::vector<std::string> params, grapple;
   std::string urdf, tables, ledger;
-  bool force{}, no_bag{};
+  bool force{}, no_bag{}, recordings{};
 };
 
 void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
@@ -28,6 +29,8 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
       .required()
       .values(1, 1000000);
   line.flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
+  line.flag("--recordings", given.recordings,
+            "write nothing; a line for each bag, in order: number of the recording that it is a split of, name");
   line.option("--db", given.tables, "write the results as tables, which must not exist").type("FILE.sqlite");
   line.option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
       .type("FILE.sqlite");
@@ -67,8 +70,18 @@ std::vector<std::string> readFiles(const Arguments& given, BagJob& job) {
   return problems;
 }
 
+int printRecordings(const std::vector<std::string>& bags) {
+  std::size_t number = 0;
+  for (const std::vector<std::string>& recording : recordingsOf(bags)) {
+    for (const std::string& bag : recording) std::cout << number << ' ' << bag << '\n';
+    ++number;
+  }
+  return finishOutput();
+}
+
 /// What the command line alone shows to be wrong; empty: nothing.
 std::string usageProblem(const Arguments& given) {
+  if (given.recordings) return {};
   if (given.no_bag && given.tables.empty() && given.ledger.empty())
     return "--no-bag: nothing would be written, --db or --ledger FILE.sqlite is required";
   if (!given.no_bag && given.bags.size() < 2) return "bags: IN.bag... and OUT.bag are required, or --no-bag";
@@ -158,6 +171,7 @@ int run(int argc, const char* const* argv) {
     std::cerr << "process_bag: " << usage << " (--help shows the options)\n";
     return kExitWrongUsage;
   }
+  if (given.recordings) return printRecordings(given.bags);
   endCleanlyOnSignals();
   job.inputs.assign(given.bags.begin(), given.bags.end() - (given.no_bag ? 0 : 1));
   const std::vector<std::string> bad_files = readFiles(given, job);

@@ -106,6 +106,13 @@ std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const 
   return span;
 }
 
+ros::Time BagInputs::begin() const {
+  ros::Time begin = ros::TIME_MAX;
+  for (const auto& bag : bags_)
+    for (const BagChunk& chunk : bag->chunks()) begin = std::min(begin, chunk.first);
+  return begin == ros::TIME_MAX ? ros::Time() : begin;
+}
+
 BagMessages BagInputs::messagesOn(const std::set<std::string>& topics) const {
   return messages([&topics](const BagConnection& connection) { return topics.count(connection.topic) != 0; });
 }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <map>
 
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/tables/sha256.h"
 
 namespace hammer_loads {
 namespace {
@@ -141,7 +143,61 @@ Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob&
   return result;
 }
 
+/// Runs that a bag begins and ends with; empty: not known.
+struct SplitRuns {
+  std::size_t file{};
+  std::string first, last;
+  ros::Time begin;  ///< record time of its first message
+};
+
+SplitRuns splitRunsOf(const std::string& file, std::size_t index) {
+  SplitRuns split{index, {}, {}, {}};
+  try {
+    const Checked<BagInputs> inputs = BagInputs::open({file});
+    if (!inputs.value) return split;
+    std::vector<BagWarning> ignored;
+    const RunInfos infos = readRunInfos(*inputs.value, ignored);
+    split.begin = inputs.value->begin();
+    if (infos.topics.size() != 1) return split;
+    const auto nameOf = [&](const RunInfo& info) {
+      return sha256Of({*infos.topics.begin(), std::to_string(info.header.stamp.toNSec()), info.parameters_yaml,
+                       info.robot_description});
+    };
+    split.first = nameOf(infos.runs.front().info);
+    split.last = nameOf(infos.runs.back().info);
+  } catch (const std::exception&) {  // who processes it is told why
+    split.first.clear(), split.last.clear();
+  }
+  return split;
+}
+
 }  // namespace
+
+std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string>& files) {
+  std::vector<SplitRuns> splits;
+  for (std::size_t i = 0; i < files.size(); ++i) splits.push_back(splitRunsOf(files[i], i));
+  std::stable_sort(splits.begin(), splits.end(),
+                   [](const SplitRuns& a, const SplitRuns& b) { return a.begin < b.begin; });
+  std::vector<std::vector<std::size_t>> recordings;
+  std::map<std::string, std::size_t> ended;  // run -> recording that ends with it
+  for (const SplitRuns& split : splits) {
+    const auto before = split.first.empty() ? ended.end() : ended.find(split.first);
+    const std::size_t at = before == ended.end() ? recordings.size() : before->second;
+    if (before == ended.end()) recordings.emplace_back();
+    if (before != ended.end()) ended.erase(before);
+    recordings[at].push_back(split.file);
+    if (!split.last.empty()) ended.emplace(split.last, at);
+  }
+  std::sort(recordings.begin(), recordings.end(), [](const auto& a, const auto& b) {
+    return *std::min_element(a.begin(), a.end()) < *std::min_element(b.begin(), b.end());
+  });
+  std::vector<std::vector<std::string>> names;
+  for (const std::vector<std::size_t>& recording : recordings) {
+    names.emplace_back();
+    for (const std::size_t file : recording) names.back().push_back(files[file]);
+  }
+  return names;
+}
 
 Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
   const RunInfos infos = readRunInfos(inputs, warnings);
