@@ -95,22 +95,16 @@ std::string BagInputs::topicsOfType(const std::string& type) const {
 std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const {
   std::pair<ros::Time, ros::Time> span{ros::TIME_MAX, ros::TIME_MIN};
   for (const auto& bag : bags_) {
+    const auto isWanted = [&](const auto& counted) {
+      const auto connection = bag->connections().find(counted.first);
+      return topic.empty() || (connection != bag->connections().end() && connection->second.topic == topic);
+    };
     for (const BagChunk& chunk : bag->chunks()) {
-      for (const auto& [id, count] : chunk.counts) {
-        const auto connection = bag->connections().find(id);
-        if (connection == bag->connections().end() || connection->second.topic != topic) continue;
+      if (std::any_of(chunk.counts.begin(), chunk.counts.end(), isWanted))
         span = {std::min(span.first, chunk.first), std::max(span.second, chunk.last)};
-      }
     }
   }
-  return span;
-}
-
-ros::Time BagInputs::begin() const {
-  ros::Time begin = ros::TIME_MAX;
-  for (const auto& bag : bags_)
-    for (const BagChunk& chunk : bag->chunks()) begin = std::min(begin, chunk.first);
-  return begin == ros::TIME_MAX ? ros::Time() : begin;
+  return span.first <= span.second ? span : std::pair<ros::Time, ros::Time>{};
 }
 
 BagMessages BagInputs::messagesOn(const std::set<std::string>& topics) const {

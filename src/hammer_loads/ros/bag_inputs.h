@@ -37,10 +37,9 @@ class BagInputs {
   std::string topicList() const;
   /// Names of the topics of this type, in one line; "none" if there are none.
   std::string topicsOfType(const std::string& type) const;
-  /// Record times of the first and last message of the chunks in which the topic is.
-  std::pair<ros::Time, ros::Time> span(const std::string& topic) const;
-  /// Record time of the first message; zero where there is none.
-  ros::Time begin() const;
+  /// Record times of the first and last message of the chunks in which the topic is, or any if it is empty; zero where
+  /// there is none.
+  std::pair<ros::Time, ros::Time> span(const std::string& topic = {}) const;
   /// The files' names, in one line.
   const std::string& names() const { return names_; }
   /// What the query takes of every bag, in record order. One reader at a time.

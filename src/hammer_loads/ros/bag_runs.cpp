@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <map>
+#include <tuple>
 
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/settings/hammer_parameters.h"
@@ -147,17 +148,17 @@ Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob&
 struct SplitRuns {
   std::size_t file{};
   std::string first, last;
-  ros::Time begin;  ///< record time of its first message
+  ros::Time begin, end;  ///< record times of its first and last message
 };
 
 SplitRuns splitRunsOf(const std::string& file, std::size_t index) {
-  SplitRuns split{index, {}, {}, {}};
+  SplitRuns split{index, {}, {}, {}, {}};
   try {
     const Checked<BagInputs> inputs = BagInputs::open({file});
     if (!inputs.value) return split;
     std::vector<BagWarning> ignored;
     const RunInfos infos = readRunInfos(*inputs.value, ignored);
-    split.begin = inputs.value->begin();
+    std::tie(split.begin, split.end) = inputs.value->span();
     if (infos.topics.size() != 1) return split;
     const auto nameOf = [&](const RunInfo& info) {
       return sha256Of({*infos.topics.begin(), std::to_string(info.header.stamp.toNSec()), info.parameters_yaml,
@@ -179,14 +180,17 @@ std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string
   std::stable_sort(splits.begin(), splits.end(),
                    [](const SplitRuns& a, const SplitRuns& b) { return a.begin < b.begin; });
   std::vector<std::vector<std::size_t>> recordings;
-  std::map<std::string, std::size_t> ended;  // run -> recording that ends with it
+  // By the run that they end with. Two records of one run at the same time are no splits.
+  std::map<std::string, std::pair<std::size_t, ros::Time>> ended;
+  const ros::Duration overlap(1.0);  // what is latched may be repeated with an earlier time
   for (const SplitRuns& split : splits) {
     const auto before = split.first.empty() ? ended.end() : ended.find(split.first);
-    const std::size_t at = before == ended.end() ? recordings.size() : before->second;
-    if (before == ended.end()) recordings.emplace_back();
-    if (before != ended.end()) ended.erase(before);
+    const bool goes_on = before != ended.end() && split.begin + overlap >= before->second.second;
+    const std::size_t at = goes_on ? before->second.first : recordings.size();
+    if (goes_on) ended.erase(before);
+    if (!goes_on) recordings.emplace_back();
     recordings[at].push_back(split.file);
-    if (!split.last.empty()) ended.emplace(split.last, at);
+    if (!split.last.empty()) ended[split.last] = {at, split.end};
   }
   std::sort(recordings.begin(), recordings.end(), [](const auto& a, const auto& b) {
     return *std::min_element(a.begin(), a.end()) < *std::min_element(b.begin(), b.end());

@@ -83,8 +83,6 @@ void HammerLoadsNode::sayWhatRuns() const {
   for (const std::string& note : settings.notes) notes += "; " + note;
   ROS_INFO("hammer: %s; level %s%s", settings.hammer_given ? "its own file" : "the shipped MO-100",
            nameOf(settings.pipeline.level), notes.c_str());
-  if (!settings.hammer_given)
-    ROS_WARN("no hammer file was given (hammer:=FILE.yaml): the masses and lengths of the shipped MO-100 are used");
   ROS_INFO("log: %s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "not recording");
   if (ledger_) ROS_INFO("ledger of load cycles: %s", ledger_->path().c_str());
   ROS_INFO("waits for %s with joint %s, %s%s", crank_topic_.c_str(), settings.pipeline.crank_joint.c_str(),
