@@ -4,7 +4,9 @@
 #include <sensor_msgs/JointState.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <regex>
 
@@ -163,6 +165,22 @@ TEST(ProgressBar, TimeLeftIsThatOfThePartLeft) {
   EXPECT_NE(progressLine(0.25, 30.0).find(" 25 %  1:30 left"), std::string::npos);
   EXPECT_NE(progressLine(0.5, 5400.0).find(" 50 %  1:30:00 left"), std::string::npos);
   EXPECT_NE(progressLine(1.0, 61.2).find("100 %  1:02"), std::string::npos);
+}
+
+TEST(Calibrate, ADamagedBagIsOneLine) {
+  const TemporaryFile bag("", ".bag");
+  const FreeName output;
+  recordWork(bag.path(), 30.0, 100.0, "/drive/encoder");
+  std::string bytes = contentOf(bag.path());
+  const std::size_t at = bytes.find("crank_joint");  // within the chunk that holds the run_info
+  ASSERT_NE(at, std::string::npos);
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at) + 60000,
+            '\xff');
+  std::ofstream(bag.path(), std::ios::binary) << bytes;
+  const Outcome outcome = runCalibrate(bag.path() + " --write " + output.path());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(test::linesOf(outcome.err).size(), 1U) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind(bag.path() + ": cannot be read", 0), 0U) << outcome.err;
 }
 
 TEST(Calibrate, RefusesAPipe) {

@@ -11,6 +11,7 @@
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/crank_recording_bag.h"
+#include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
@@ -85,7 +86,12 @@ int fail(const std::vector<std::string>& problems) {
 /// Of the last run in the recording, whose sensor is the one that will be used on.
 Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
   Checked<Settings> result;
-  Checked<std::vector<BagRun>> runs = runsOf(inputs, job, warnings);
+  Checked<std::vector<BagRun>> runs;
+  try {
+    runs = runsOf(inputs, job, warnings);
+  } catch (const std::exception& error) {  // a damaged bag
+    runs.problems = {inputs.names() + ": cannot be read: " + onOneLine(error.what())};
+  }
   result.problems = std::move(runs.problems);
   if (!runs.value) return result;
   if (runs.value->back().settings.pipeline.coupling) {
