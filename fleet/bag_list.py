@@ -7,8 +7,9 @@ import re
 import unicodedata
 from collections import namedtuple
 
-# name: of its files below the results, unique. problem: why it cannot be tried, or nothing.
-Bag = namedtuple("Bag", "machine bag parameters name problem")
+# name: of its files below the results, unique. bag: the first of a recording, later: its other splits. problem: why it
+# cannot be tried, or nothing.
+Bag = namedtuple("Bag", "machine bag parameters name problem later", defaults=("", ()))
 
 
 class BadList(Exception):
@@ -113,3 +114,23 @@ def read(path):
     if twice:
         raise BadList(f"{path}: {twice[0]} is in the list twice")
     return bags
+
+
+def may_be_split(bag):
+    """By its name, as the node's log and rosbag record --split give it: those alone are opened for the question."""
+    return re.search(r"_\d+\.bag$", bag) is not None
+
+
+def joined(bags, recordings):
+    """Splits of one recording as one bag. recordings: from paths to a list of lists of them, in order."""
+    groups = {}
+    for bag in bags:
+        groups.setdefault((bag.machine, bag.parameters, os.path.dirname(bag.bag)), []).append(bag)
+    later_of, later = {}, set()
+    for members in groups.values():
+        asked = [bag.bag for bag in members if not bag.problem and may_be_split(bag.bag)]
+        for first, *rest in recordings(asked) if len(asked) > 1 else ():
+            names = {bag.bag: bag.name for bag in members}
+            later_of[names[first]] = tuple(rest)
+            later.update(names[bag] for bag in rest)
+    return [bag._replace(later=later_of.get(bag.name, ())) for bag in bags if bag.name not in later]

@@ -33,13 +33,14 @@ def reason_of(done):
     return (lines[0] if lines else f"process_bag ended with code {done.returncode}")[:LONGEST_REASON]
 
 
-def processed(bag, parameters, database):
+def processed(bags, parameters, options, database):
     """(status, reason); the database is there if the status is `done`."""
-    if bag.endswith(".active"):
-        return "failed", "is still being written, or was left by a power cut: rosbag reindex makes it a bag"
-    if not os.path.isfile(bag):
-        return "failed", "does not exist" if not os.path.exists(bag) else "is no regular file"
-    arguments = [program("process_bag"), "--no-bag", bag, "--db", database]
+    for bag in bags:
+        if bag.endswith(".active"):
+            return "failed", "is still being written, or was left by a power cut: rosbag reindex makes it a bag"
+        if not os.path.isfile(bag):
+            return "failed", "does not exist" if not os.path.exists(bag) else "is no regular file"
+    arguments = [program("process_bag"), "--no-bag", *bags, "--db", database, *options]
     for file in parameters:
         arguments += ["--params", file]
     done = subprocess.run(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, encoding="utf-8",
@@ -51,6 +52,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--machine", required=True)
     parser.add_argument("--bag", required=True)
+    parser.add_argument("--split", action="append", default=[], help="another bag of the same recording, in order")
+    parser.add_argument("--option", action="append", default=[], help="a word for process_bag")
     parser.add_argument("--params", action="append", default=[])
     parser.add_argument("--problem", help="why the bag cannot be tried")
     parser.add_argument("--db", required=True, help="to write; empty if the bag gives none")
@@ -60,10 +63,11 @@ def main():
         os.makedirs(os.path.dirname(path), exist_ok=True)
         if os.path.exists(path):
             os.unlink(path)
-    status, reason = ("failed", given.problem) if given.problem else processed(given.bag, given.params, given.db)
+    status, reason = (("failed", given.problem) if given.problem else
+                      processed([given.bag, *given.split], given.params, given.option, given.db))
     if status != "done":
         open(given.db, "w").close()
-    outcome = {"machine": given.machine, "bag": given.bag, "input_sha256": sha256([given.bag]),
+    outcome = {"machine": given.machine, "bag": given.bag, "input_sha256": sha256([given.bag, *given.split]),
                "parameters_sha256": sha256(given.params), "status": status, "reason": reason}
     part = given.outcome + ".part"
     with open(part, "w", encoding="utf-8") as file:

@@ -1,8 +1,19 @@
 // The command calibrate as its user meets it: files, errors and exit codes.
-#include <filesystem>
+#include <hammer_loads/RunInfo.h>
+#include <rosbag/bag.h>
+#include <sensor_msgs/JointState.h>
+#include <sys/stat.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+
+#include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/session.h"
 #include "support/command.h"
 
 namespace hammer_loads {
@@ -81,6 +92,103 @@ TEST(Calibrate, RefusesWhatItCannotUse) {
   const TemporaryFile wrong("crank_direction: 2\n");
   EXPECT_EQ(runCalibrate(kBag + " --params " + wrong.path() + " --write " + output.path()).exit_code, 1);
   EXPECT_FALSE(fs::exists(output.path()));
+}
+
+/// A machine at work, recorded on a topic of its own, its encoder 0.4 deg off and with 1024 counts.
+void recordWork(const std::string& path, double seconds, double rate, const std::string& topic) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = seconds;
+  machine.drive.stop_time = seconds + 10.0;
+  machine.crank.rate = rate;
+  machine.crank.zero = 0.4 * kDegree;
+  machine.crank.counts = 1024;
+  rosbag::Bag bag(path, rosbag::bagmode::Write);
+  bag.setChunkThreshold(100000);  // [byte], of some seconds
+  RunInfo info;
+  info.header.stamp.fromNSec(static_cast<std::uint64_t>(machine.start_stamp));
+  info.parameters_yaml = loadFiles(configDirectory(), {}).value.value().yaml + "input_topic_crank: \"" + topic + "\"\n";
+  bag.write("/hammer_loads/run_info", info.header.stamp, info);
+  sensor_msgs::JointState message;
+  message.name = {"hammer_crank_joint"};
+  for (const simulation::CrankReading& reading : simulation::recordSession(machine).crank) {
+    message.header.stamp.fromNSec(static_cast<std::uint64_t>(reading.stamp));
+    message.position = {reading.angle};
+    message.velocity.clear();
+    if (reading.speed) message.velocity = {*reading.speed};
+    bag.write(topic, message.header.stamp, message);
+  }
+}
+
+/// Each key's deviation and limit as printed.
+std::map<std::string, std::pair<double, double>> deviationsIn(const std::string& out) {
+  std::map<std::string, std::pair<double, double>> found;
+  const std::regex line(R"((\w+) +\S+.* \+- (\S+), limit ([0-9.e+-]+))");
+  std::smatch parts;
+  for (const std::string& text : test::linesOf(out))
+    if (std::regex_search(text, parts, line)) found[parts[1]] = {std::stod(parts[2]), std::stod(parts[3])};
+  return found;
+}
+
+TEST(Calibrate, ReadsNoMoreOfALongRecordingThanItNeeds) {
+  const TemporaryFile bag("", ".bag");
+  const FreeName output;
+  recordWork(bag.path(), 400.0, 100.0, "/drive/encoder");  // topic and parameters are those of the run_info in it
+  const Outcome outcome = runCalibrate(bag.path() + " --write " + output.path());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("parameters of /hammer_loads/run_info are used"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find('\r'), std::string::npos);  // no bar without a terminal
+  const double seconds = std::stod(outcome.out);
+  EXPECT_GT(seconds, 100.0);
+  EXPECT_LT(seconds, 250.0);
+  const auto deviations = deviationsIn(outcome.out);
+  ASSERT_EQ(deviations.count("crank_zero_rad"), 1U) << outcome.out;
+  for (const auto& [key, known] : deviations) {
+    if (key != "drive_inertia_kg_m2") EXPECT_LE(known.first, 0.5 * known.second) << key;
+  }
+  const Checked<Settings> settings = loadFiles(configDirectory(), {output.path()});
+  ASSERT_TRUE(settings.value);
+  EXPECT_NEAR(settings.value->pipeline.crank_sensor.reading(0.0), 0.4 * kDegree,
+              3.0 * deviations.at("crank_zero_rad").first);
+}
+
+TEST(Calibrate, ShowsTheTimeLeftOnATerminal) {
+  const FreeName output;
+  const Outcome outcome = test::runCommand(
+      "script", "-qec '" HAMMER_LOADS_CALIBRATE " " + kBag + " --write " + output.path() + "' /dev/null");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_TRUE(std::regex_search(outcome.out, std::regex(R"(\r\[#+ +\] +\d+ %  \d+:\d\d left)"))) << outcome.out;
+  EXPECT_NE(outcome.out.find(" 100 %"), std::string::npos);
+}
+
+TEST(ProgressBar, TimeLeftIsThatOfThePartLeft) {
+  EXPECT_EQ(progressLine(0.01, 1.0).find("left"), std::string::npos);
+  EXPECT_NE(progressLine(0.25, 30.0).find(" 25 %  1:30 left"), std::string::npos);
+  EXPECT_NE(progressLine(0.5, 5400.0).find(" 50 %  1:30:00 left"), std::string::npos);
+  EXPECT_NE(progressLine(1.0, 61.2).find("100 %  1:02"), std::string::npos);
+}
+
+TEST(Calibrate, ADamagedBagIsOneLine) {
+  const TemporaryFile bag("", ".bag");
+  const FreeName output;
+  recordWork(bag.path(), 30.0, 100.0, "/drive/encoder");
+  std::string bytes = contentOf(bag.path());
+  const std::size_t at = bytes.find("crank_joint");  // within the chunk that holds the run_info
+  ASSERT_NE(at, std::string::npos);
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at) + 60000,
+            '\xff');
+  std::ofstream(bag.path(), std::ios::binary) << bytes;
+  const Outcome outcome = runCalibrate(bag.path() + " --write " + output.path());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(test::linesOf(outcome.err).size(), 1U) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind(bag.path() + ": cannot be read", 0), 0U) << outcome.err;
+}
+
+TEST(Calibrate, RefusesAPipe) {
+  const FreeName pipe, output;
+  ASSERT_EQ(mkfifo(pipe.path().c_str(), 0600), 0);
+  const Outcome outcome = runCalibrate(pipe.path() + " --write " + output.path());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.err, pipe.path() + ": is no regular file, must be a bag\n");
 }
 
 TEST(Calibrate, WrongUsageAndHelp) {

@@ -65,6 +65,26 @@ class RecordedRuns : public test::BagFiles {
   }
 };
 
+TEST_F(RecordedRuns, SplitsOfOneRecordingFindEachOther) {
+  const std::string yaml = yamlWith();
+  const ros::Time quarter(1700000007.0);
+  // Each split repeats the run_info in force, with the instant when the run began.
+  const auto repeats = [&](const ros::Time& began, const ros::Time& time, const std::string& text) {
+    return [=](rosbag::Bag& bag) { bag.write("/hammer_loads/run_info", time, runInfo(text, began)); };
+  };
+  const std::string late = writeLog("late.bag", repeats(kStart, kMiddle, yaml), kMiddle, kEnd);
+  const std::string early = writeLog("early.bag", repeats(kStart, kStart, yaml), kStart, quarter);
+  const std::string other = writeLog("other.bag", repeats(quarter, quarter, yaml), quarter, kEnd);  // a restarted node
+  const std::string middle = writeLog("m i d.bag", repeats(kStart, quarter, yaml), quarter, kMiddle);
+  const std::string bare = plain("bare.bag");
+  const test::TemporaryFile broken("no bag");
+  const test::Outcome outcome =
+      run("--recordings " + late + " " + broken.path() + " " + early + " " + other + " '" + middle + "' " + bare);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(test::linesOf(outcome.out), (std::vector<std::string>{"0 " + early, "0 " + middle, "0 " + late,
+                                                                  "1 " + broken.path(), "2 " + other, "3 " + bare}));
+}
+
 TEST_F(RecordedRuns, ParametersAndTopicsAreThoseOfTheLog) {
   const std::string changed = "level: linkage\ngravity_m_s2: 3.7\n";
   const InputTopics topics{"/machine/turns", "/machine/joints", "/machine/imu"};

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""process_bag --no-bag BAG --params FILE --db OUT without ROS: a bag is a line of text, `SEED SECONDS FIRST_S` or `broken`.
+"""process_bag --no-bag BAG --params FILE --db OUT without ROS: a bag is a line of text, `SEED SECONDS FIRST_S`, with
+`RUN`
+behind it where it has one (--recordings), or `broken`.
 
 Each call adds a line to calls.txt beside this program, so that a test sees which bags ran.
 """
@@ -20,9 +22,22 @@ def main(arguments):
     if "--version" in arguments:
         print(f"hammer_loads {version}")
         return 0
-    bag, out = arguments[arguments.index("--no-bag") + 1], arguments[arguments.index("--db") + 1]
+    if "--recordings" in arguments:
+        runs, numbers = {}, []
+        for bag in arguments[arguments.index("--recordings") + 1:]:
+            run = (open(bag).read().split() + [bag] * 4)[3] if os.path.isfile(bag) else bag
+            runs.setdefault(run, []).append(bag)
+        for number, splits in enumerate(runs.values()):
+            for bag in sorted(splits, key=lambda name: open(name).read().split()[2:3] if len(splits) > 1 else 0):
+                print(number, bag)
+        return 0
+    begin = arguments.index("--no-bag") + 1
+    bags, out = arguments[begin:arguments.index("--db")], arguments[arguments.index("--db") + 1]
+    bag = bags[0]
     with open(SELF / "calls.txt", "a") as file:
-        file.write(os.path.basename(bag) + "\n")
+        file.write("+".join(map(os.path.basename, bags)) + "\n")
+    with open(SELF / "options.txt", "w") as file:
+        file.write(" ".join(arguments[arguments.index("--db") + 2:]))
     words = open(bag).read().split()
     if words[0] == "broken":
         print(f"{bag}: is no bag, or a damaged one", file=sys.stderr)

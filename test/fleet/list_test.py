@@ -37,6 +37,19 @@ class Lists(unittest.TestCase):
                          [("blue", "1.bag", 0), ("red", "1.bag", 1), ("red", "2.bag.active", 1)])
         self.assertEqual(len({bag.name for bag in bags}), 3)
 
+    def test_splits_of_one_recording_are_one_bag(self):
+        bags = self.listed("a.csv", "machine,bag,parameters\nred,w_0.bag,\nred,w_1.bag,\nblue,w_1.bag,\nred,other.bag,\n")
+        asked = []
+
+        def recordings(paths):
+            asked.append([pathlib.Path(path).name for path in paths])
+            return [sorted(paths)]
+        joined = bag_list.joined(bags, recordings)
+        self.assertEqual([(b.machine, pathlib.Path(b.bag).name, len(b.later)) for b in joined],
+                         [("red", "w_0.bag", 1), ("blue", "w_1.bag", 0), ("red", "other.bag", 0)])
+        self.assertEqual(asked, [["w_0.bag", "w_1.bag"]])  # what cannot be a split is not opened
+        self.assertEqual(joined[0].name, bags[0].name)
+
     def test_bad_ones_are_one_line(self):
         for name, text, words in (("a.csv", "bag\nx.bag\n", "machine,bag,parameters"),
                                   ("c.csv", "machine,bag\n", "names no bag"),

@@ -67,6 +67,18 @@ class Workflow(FleetTest):
         self.run_fleet(self.bags)
         self.assertEqual(self.calls(), everything)
 
+    def test_splits_of_one_recording_and_names_of_topics(self):
+        folder = self.directory / "splits"
+        folder.mkdir()
+        (folder / "w_1.bag").write_text("3 20 1700000020 run1")
+        (folder / "w_0.bag").write_text("3 20 1700000000 run1")
+        (folder / "w_2.bag").write_text("4 20 1700000090 run2")
+        self.run_fleet(folder, config=["crank_topic=/drive/encoder", "imu_topic=/imu"])
+        self.assertEqual(self.calls(), ["w_0.bag+w_1.bag", "w_2.bag"])
+        self.assertEqual((self.programs / "options.txt").read_text().split(),
+                         ["--crank-topic", "/drive/encoder", "--imu-topic", "/imu"])
+        self.assertEqual(sorted(self.bags_table()), ["w_0.bag", "w_2.bag"])
+
     def test_list_and_rows_of_turns(self):
         listed = self.directory / "list.csv"
         listed.write_text("machine,bag,parameters\nred,bags/red/r0.bag,bags/red/hammer.yaml\n"

@@ -89,6 +89,14 @@ TEST_F(DownstreamTest, LinksTheLibrariesWithoutRosByTheirOwnNames) {
     EXPECT_EQ(libraries.text.find(other), std::string::npos) << libraries.text;
 }
 
+TEST_F(DownstreamTest, LinksAndIncludesWhatTheReadmeSays) {
+  build("use_readme");
+  for (const char* name : {"pipeline", "load", "hull_model", "batch"}) {
+    const Answer own = run((build_ / "devel/lib/use_readme/use_").string() + name, build_ / "own.txt");
+    EXPECT_EQ(own.status, 0) << name << ": " << own.text;
+  }
+}
+
 TEST_F(DownstreamTest, RunsWhatIsPython) {
   const Answer report = inInstallSpace("rosrun hammer_loads report --version");
   EXPECT_EQ(report.status, 0) << report.text;
@@ -142,6 +150,26 @@ TEST_F(DownstreamTest, LaunchArgumentsBecomeParameters) {
   const Answer shipped = inInstallSpace("roslaunch --dump-params hammer_loads hammer_loads.launch");
   for (const char* line : {"/crank_joint: hammer_crank_joint", "/boom: auto", "/boom_wrench_links: []"})
     EXPECT_NE(shipped.text.find(std::string("/hammer_loads") + line), std::string::npos) << line;
+  EXPECT_EQ(shipped.text.find("crank_length_m"), std::string::npos);  // the node says that it takes the MO-100
+  const fs::path calibration = build_ / "calibration.yaml";
+  std::ofstream(calibration) << "crank_zero_rad: 0.125\ndrive_inertia_kg_m2: 0.375\n";
+  for (const char* launch : {"hammer_loads", "hammer_loads_nodelet", "replay", "demo"}) {
+    const Answer merged = inInstallSpace(
+        "roslaunch --dump-params hammer_loads " + std::string(launch) + ".launch calibration:=" + calibration.string() +
+        " hammer:=" + (kPrefix / "share/hammer_loads/config/hammer_mo100.yaml").string() +
+        (std::string(launch) == "replay" ? " bag:=some.bag" : ""));
+    for (const char* line : {"/crank_zero_rad: 0.125", "/drive_inertia_kg_m2: 0.375", "/crank_length_m: 0.048"})
+      EXPECT_NE(merged.text.find(std::string("/hammer_loads") + line), std::string::npos)
+          << launch << line << merged.text;
+  }
+  // In a namespace, and with frames of its own, rviz shows the machine of that namespace.
+  std::ostringstream launch_text;
+  launch_text << std::ifstream(kPrefix / "share/hammer_loads/launch/hammer_loads.launch").rdbuf();
+  EXPECT_NE(launch_text.str().find("-f '$(arg fixed_frame)'"), std::string::npos);
+  std::ostringstream picture;
+  picture << std::ifstream(kPrefix / "share/hammer_loads/rviz/hammer_loads.rviz").rdbuf();
+  EXPECT_NE(picture.str().find("Topic: hammer_loads/hull_wrench"), std::string::npos);
+  EXPECT_EQ(picture.str().find("Topic: /"), std::string::npos);
   const Answer command =
       inInstallSpace("roslaunch --args /hammer_loads hammer_loads hammer_loads.launch hull_imu:=/imu");
   EXPECT_NE(command.text.find("hull_imu:=/imu"), std::string::npos) << command.text;

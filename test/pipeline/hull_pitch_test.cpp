@@ -17,6 +17,14 @@ TEST(HullPitch, IsTheSumOnceEveryJointWasHeard) {
   EXPECT_DOUBLE_EQ(pitch.pitch(), 0.2 - 0.5 + 0.1);
 }
 
+TEST(HullPitch, SignsAndOffsetCountOnceItIsKnown) {
+  HullPitch pitch({"boom", "arm"}, {1, -1}, 0.5, 0.7);
+  EXPECT_TRUE(pitch.update({"arm"}, {0.2}));
+  EXPECT_EQ(pitch.pitch(), 0.7);
+  EXPECT_TRUE(pitch.update({"boom"}, {0.1}));
+  EXPECT_DOUBLE_EQ(pitch.pitch(), 0.5 + 0.1 - 0.2);
+}
+
 TEST(HullPitch, ForeignJointsChangeNothing) {
   HullPitch pitch({"boom"}, 0.0);
   EXPECT_FALSE(pitch.update({"wheel"}, {1.0}));

@@ -31,6 +31,21 @@ class Bags(ReportTest):
         other.write_text("9 20 1700000000")
         self.assertIn("Machines side by side", self.page_of(self.bag, other).tables)
 
+    def test_splits_of_one_recording_are_one(self):
+        self.bag.write_text("3 20 1700000000 run1")
+        later, last, other = (self.directory / name for name in ("b.bag", "a.bag", "other.bag"))
+        later.write_text("3 20 1700000020 run1")
+        last.write_text("3 20 1700000040 run1")
+        other.write_text("9 20 1700000010 run3")
+        page = self.page_of(last, other, later, self.bag)
+        self.assertIn("Machines side by side", page.tables)  # the recording and the other one
+        self.assertEqual(sorted((self.programs / "calls.txt").read_text().split()), ["other.bag", "work.bag+b.bag+a.bag"])
+
+    def test_names_of_topics_reach_process_bag(self):
+        topics = ["--crank-topic", "/drive", "--joint-states-topic", "/js", "--imu-topic", "/imu", "--pressures-topic", "/p"]
+        self.page_of(self.bag, options=topics)
+        self.assertEqual((self.programs / "options.txt").read_text().split(), topics)
+
     def test_bad_ones(self):
         out = self.directory / "out.html"
         self.bag.write_text("broken")

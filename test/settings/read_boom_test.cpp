@@ -11,6 +11,14 @@
 namespace hammer_loads {
 namespace {
 
+/// Every occurrence of each pair's first text replaced by its second.
+std::string withReplaced(std::string text, const std::vector<std::pair<std::string, std::string>>& pairs) {
+  for (const auto& [from, to] : pairs)
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size(), to);
+  return text;
+}
+
 class BoomFile : public testing::Test {
  protected:
   BoomFile()
@@ -144,6 +152,32 @@ TEST_F(BoomFile, TwoCylindersCannotShareAJoint) {
   const Checked<Boom> made = Boom::make(urdf_, parameters);
   ASSERT_EQ(made.problems.size(), 1U);
   EXPECT_EQ(made.problems[0], "second_joint: boom_joint, has a cylinder already, must have at most one");
+}
+
+TEST_F(BoomFile, WithoutCylindersThreeKeysAreEnough) {
+  urdf_ = withReplaced(urdf_, {{"\"base_link\"", "\"chassis\""}, {"\"hammer_hull\"", "\"breaker\""}});
+  yaml_ = "root_link: chassis\ntip_link: breaker\ncylinders: []\n";
+  EXPECT_TRUE(problems("chassis", "chassis").empty());
+  const Checked<Boom> made = test::loadBoom(urdf_, {file_.string()});
+  ASSERT_TRUE(made.value);
+  EXPECT_FALSE(made.value->parameters().supports);
+  // The torques are those of the whole file's boom held rigid: no cylinder counts in them.
+  Boom bare = *made.value, shipped = test::shippedBoom();
+  const JointMotion motion{test::workingPosition(), test::kZero, test::kZero};
+  const Wrench w_tip{{1000.0, 0.0, -30000.0}, {0.0, 500.0, 0.0}};
+  BoomLoads a, b;
+  for (auto [boom, loads] : {std::make_pair(&bare, &a), std::make_pair(&shipped, &b)}) {
+    boom->move(motion, test::kLevel);
+    ASSERT_TRUE(boom->loads(w_tip, true, *loads));
+  }
+  EXPECT_EQ(a.total, b.total);
+  EXPECT_GT(a.total.cwiseAbs().maxCoeff(), 1000.0);
+  // What is given is checked, and whole.
+  EXPECT_EQ(problems("cylinders: []", "cylinders: []\nsupport_front_x_m: 0.1").size(), 3U);
+  expectOne("cylinders: []",
+            "cylinders: []\nbulk_modulus_Pa: -1\ndamping_ratio: 0.05\nmode_refresh_angle_rad: 0.001\n"
+            "rigid_tolerance: 0.05",
+            "bulk_modulus_Pa: -1 Pa, must be");
 }
 
 TEST_F(BoomFile, WithoutCylindersTheBoomIsRigid) {

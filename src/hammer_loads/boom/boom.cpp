@@ -1,6 +1,7 @@
 #include "hammer_loads/boom/boom.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <utility>
@@ -14,10 +15,10 @@ namespace {
 
 constexpr double kMostRefreshAngle = 0.05;  // [rad]: frequencies off by some 2 %; modes of another pose run away
 
-void checkParameters(const BoomParameters& p, std::vector<std::string>& problems) {
-  const auto check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
-    if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g%s, must be %s", key, value, unit, rule));
-  };
+/// Notes a value that is not good: key, value, unit, whether it is good, rule.
+using Check = std::function<void(const char*, double, const char*, bool, const char*)>;
+
+void checkOil(const BoomParameters& p, const Check& check) {
   check("bulk_modulus_Pa", p.bulk_modulus, " Pa", p.bulk_modulus > 0.0, "a finite number > 0");
   const double modulus = p.bulk_modulus;
   if (std::isfinite(modulus) && modulus > 0.0)
@@ -28,13 +29,24 @@ void checkParameters(const BoomParameters& p, std::vector<std::string>& problems
         p.vibration.refresh_angle >= 0.0 && p.vibration.refresh_angle <= kMostRefreshAngle,
         format("from 0 to %g", kMostRefreshAngle).c_str());
   check("rigid_tolerance", p.rigid_tolerance, "", p.rigid_tolerance > 0.0, "a finite number > 0");
-  if (!p.supports) return;
-  const Supports& s = *p.supports;
+}
+
+void checkSupports(const Supports& s, const Check& check) {
   check("support_front_x_m", s.front_x, " m", s.front_x > s.rear_x,
         format("> support_rear_x_m = %.9g m", s.rear_x).c_str());
   check("support_front_half_width_m", s.front_half_width, " m", s.front_half_width > 0.0, "a finite number > 0");
   check("support_rear_x_m", s.rear_x, " m", true, "a finite number");
   check("support_rear_half_width_m", s.rear_half_width, " m", s.rear_half_width > 0.0, "a finite number > 0");
+}
+
+void checkParameters(const BoomParameters& p, std::vector<std::string>& problems) {
+  const Check check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
+    if (!good || !std::isfinite(value)) problems.push_back(format("%s: %.9g%s, must be %s", key, value, unit, rule));
+  };
+  const bool no_oil = p.cylinders.empty() && p.bulk_modulus == 0.0 && p.vibration.damping_ratio == 0.0 &&
+                      p.vibration.refresh_angle == 0.0 && p.rigid_tolerance == 0.0;
+  if (!no_oil) checkOil(p, check);
+  if (p.supports) checkSupports(*p.supports, check);
 }
 
 std::vector<Section> makeSections(const std::vector<SectionParameters>& given, const Chain& chain,

@@ -73,7 +73,7 @@ class ChainBuilder {
       return;
     }
     addLinks();
-    checkMassBeyondJoints();
+    if (!request_.massless) checkMassBeyondJoints();
     if (!result_.problems.empty()) return;
     result_.value = Chain(std::make_shared<const Chain::Data>(std::move(data_)));
   }

@@ -21,11 +21,17 @@ struct ChainRequest {
   std::string root{"base_link"};
   std::string tip{"hammer_hull"};
   std::vector<std::string> joints;  ///< that must move between root and tip
+  bool massless{};                  ///< for directions alone: it need have no mass
 };
 
 /// One line when the description can be read but does not have root or tip: it is that of another machine. Empty when
 /// both are there, and when the text cannot be read, which Chain::make() reports.
 std::string linksMissing(const std::string& urdf_text, const ChainRequest& request);
+
+/// From `base_link`, or the tree's root where that is not before them, over these joints to `hammer_hull`, or to the
+/// last joint's link where that is not beyond them; for directions alone. Nothing where the description does not have
+/// them one behind the other, or cannot be read.
+std::optional<ChainRequest> chainOver(const std::string& urdf_text, const std::vector<std::string>& joints);
 
 /// A body's mass and where it acts.
 struct PointMass {

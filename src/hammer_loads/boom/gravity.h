@@ -1,6 +1,9 @@
 /// Gravity as the base and the hull see it, with every tilt that the description or the ground has.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "hammer_loads/boom/joint_space.h"
 
 namespace hammer_loads {
@@ -20,5 +23,15 @@ Eigen::Vector3d gravityInRoot(double gravity, const BaseTilt& base) noexcept;
 /// level base and joints about +y that add up to the pitch. The y component acts across the mechanism's plane, where no
 /// link moves. No allocation.
 Eigen::Vector3d gravityInTip(const Chain& chain, const JointVector& position, const Eigen::Vector3d& g_B) noexcept;
+
+/// How a chain's joints pitch its tip, as the sum that HullPitch takes: exact where their axes are along y of the tip.
+struct PitchOfChain {
+  std::vector<std::string> joints;
+  std::vector<int> signs;  ///< 1 about +y of the tip, -1 about -y
+  double offset{};         ///< pitch of the tip with every joint at zero [rad]
+};
+
+/// Of the joints asked for if the chain has them all, else of those of its joints that turn about y rather than across.
+PitchOfChain pitchOf(const Chain& chain, const std::vector<std::string>& asked);
 
 }  // namespace hammer_loads

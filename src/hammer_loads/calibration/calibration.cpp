@@ -87,16 +87,19 @@ void addEccentricity(Calibration& result, const JointFit& fit, int n, double lim
   result.estimates.push_back(
       {key + "_rad", "rad", amount, larger, limit,
        format("%s a turn; its sine and cosine are known to %.2g and %.2g rad", n == 1 ? "once" : "twice",
-              std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)))});
+              std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1))),
+       larger});
   result.estimates.push_back({key + "_phase_rad", "rad", phase, larger / scale, limit / scale,
-                              amount < 2.0 * larger ? "its amount is hardly more than the deviation" : "its phase"});
+                              amount < 2.0 * larger ? "its amount is hardly more than the deviation" : "its phase",
+                              larger / scale});
 }
 
 void addEstimates(Calibration& result, const JointFit& fit, const CalibrationBasis& basis, bool centred) {
   const double gain = result.direction / basis.ratio;
   const auto deviation = [&](Eigen::Index k) { return std::sqrt(fit.covariance(k, k)); };
   result.estimates.push_back({"crank_zero_rad", "rad", CrankAngle::wrapToPi(fit.globals[kZero] / gain),
-                              deviation(kZero) / std::abs(gain), kZeroLimit / std::abs(gain), "reading at the blow"});
+                              deviation(kZero) / std::abs(gain), kZeroLimit / std::abs(gain), "reading at the blow",
+                              deviation(kZero) / std::abs(gain)});
   result.estimates.push_back(
       {"crank_direction", "", static_cast<double>(result.direction), 0.0, 0.5, "the crank turns forward at work"});
   if (!centred) {
@@ -116,7 +119,8 @@ void addEstimates(Calibration& result, const JointFit& fit, const CalibrationBas
   result.estimates.push_back({"crank_timing_noise_s", "s", timing, timing_deviation,
                               std::max(kTimingLimit * timing, 2e-5),
                               result.facts.retimed ? "after re-timing: the stamps repeat or change places"
-                                                   : "of a stamp against the instant of the measurement"});
+                                                   : "of a stamp against the instant of the measurement",
+                              timing_deviation});
   const double inertia = std::exp(fit.globals[kLogInertia]);
   const double relative = std::hypot(deviation(kLogInertia), basis.rocker_inertia_deviation);
   result.estimates.push_back(
@@ -124,7 +128,8 @@ void addEstimates(Calibration& result, const JointFit& fit, const CalibrationBas
        format("%.4g +- %.2g of the rocker's, whose own %.1f %% are in the deviation",
               inertia / basis.mechanism.parameters().rocker_inertia_about_pivot,
               deviation(kLogInertia) * inertia / basis.mechanism.parameters().rocker_inertia_about_pivot,
-              100.0 * basis.rocker_inertia_deviation)});
+              100.0 * basis.rocker_inertia_deviation),
+       deviation(kLogInertia) * inertia});
 }
 
 void addCorrelations(Calibration& result, const JointFit& fit) {
@@ -166,6 +171,16 @@ void addRemarks(Calibration& result, double curve_square) {
     say.push_back(format("%zu blows are not like the others (no tool, a stop) and are left out", result.left_out));
 }
 
+/// Without the gaps.
+double secondsOf(const CrankTrack& track) {
+  double seconds = 0.0;
+  for (std::size_t i = 0; i < track.starts.size(); ++i) {
+    const std::size_t end = i + 1 < track.starts.size() ? track.starts[i + 1] : track.points.size();
+    seconds += track.points[end - 1].time - track.points[track.starts[i]].time;
+  }
+  return seconds;
+}
+
 void countNeeds(Calibration& result) {
   double most = 1.0;
   for (const Estimate& e : result.estimates) {
@@ -176,13 +191,20 @@ void countNeeds(Calibration& result) {
 
 }  // namespace
 
-Calibration calibrate(const std::vector<RecordedSample>& samples, const CalibrationBasis& basis) {
+double Calibration::worstByBlows() const {
+  double worst = problem.empty() ? 0.0 : std::numeric_limits<double>::infinity();
+  for (const Estimate& e : estimates) worst = std::max(worst, e.by_blows / e.limit);
+  return worst;
+}
+
+Calibration calibrate(const std::vector<RecordedSample>& samples, const CalibrationBasis& basis,
+                      const Progress& progress) {
   Calibration result;
   const CrankTrack track = trackOf(samples, basis.ratio);
   result.facts = track.facts;
   result.direction = track.direction;
   result.more_blows = 60.0;
-  if (track.points.size() > 1) result.seconds = track.points.back().time - track.points.front().time;
+  result.seconds = secondsOf(track);
   const SegmentModel model{basis.mechanism, basis.level};
   const std::optional<FirstGuess> guess = firstGuess(track, model, basis.mechanism.parameters().drive_inertia);
   if (!guess) {
@@ -207,7 +229,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   noise.torque_walk = basis.torque_walk;
   noise.torque = basis.torque_deviation;
   const bool centred = basis.ratio != 1.0;
-  const JointFit rough = fitJointly(segments, model, start, noise, allFree(true));
+  const JointFit rough = fitJointly(segments, model, start, noise, allFree(true), piece(progress, 0.05, 0.22));
   segments = cutAtBlows(track, rough.globals[kZero]);
   result.blows = segments.size();
 
@@ -216,11 +238,12 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   const std::vector<BlowSegment> first(segments.begin(),
                                        segments.begin() + static_cast<std::ptrdiff_t>(three_quarters));
   const std::vector<BlowSegment> last(segments.begin() + static_cast<std::ptrdiff_t>(three_quarters), segments.end());
-  const JointFit part = fitJointly(first, model, rough.globals, rough.noise, allFree(centred));
-  result.fitted = meanSquareOf(first, model, part.globals, part.noise);
-  result.held_out = meanSquareOf(last, model, part.globals, part.noise);
+  const JointFit part =
+      fitJointly(first, model, rough.globals, rough.noise, allFree(centred), piece(progress, 0.22, 0.35));
+  result.fitted = meanSquareOf(first, model, part.globals, part.noise, piece(progress, 0.35, 0.45));
+  result.held_out = meanSquareOf(last, model, part.globals, part.noise, piece(progress, 0.45, 0.48));
 
-  JointFit fit = fitJointly(segments, model, part.globals, part.noise, allFree(centred));
+  JointFit fit = fitJointly(segments, model, part.globals, part.noise, allFree(centred), piece(progress, 0.48, 0.65));
   if (!fit.converged || fit.fits.size() < kLeastBlows) {
     result.problem = "its blows are not those of this mechanism: the fit does not settle";
     return result;
@@ -230,10 +253,11 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   result.after = curveOf(fit.fits, model, fit.globals, fit.noise);
   const double curve_square = systematic(result.after);
   fit.covariance *= std::max(1.0, curve_square);
-  removeBias(fit, model, allFree(centred), gain * track.facts.count);
+  removeBias(fit, model, allFree(centred), gain * track.facts.count, piece(progress, 0.65, 0.88));
   Globals in_force = basis.in_force;
   in_force.tail<kShaping>() = fit.globals.tail<kShaping>();
-  result.before = curveOf(fittedAlone(segments, model, in_force, fit.noise), model, in_force, fit.noise);
+  result.before = curveOf(fittedAlone(segments, model, in_force, fit.noise, piece(progress, 0.88, 1.0)), model,
+                          in_force, fit.noise);
   addEstimates(result, fit, basis, centred);
   addCorrelations(result, fit);
   addRemarks(result, curve_square);

@@ -25,6 +25,7 @@ struct Estimate {
   double value{}, deviation{};
   double limit{};  ///< a larger deviation costs more than some 0.8 % of the wrench's peak, or of what the key is for
   std::string meaning;
+  double by_blows{};  ///< what of the deviation more blows would lessen; the rest comes from what is given
   bool determined() const { return deviation <= limit; }
 };
 
@@ -53,8 +54,16 @@ struct Calibration {
       held_out{};  ///< mean square over variance: of the first three quarters, of the last with their values
   ResidualCurve before, after;  ///< with the parameters in force, with those found
   double more_blows{};          ///< needed for every key that is not determined
+
+  /// Of the key that is known least: what more blows would lessen of its deviation, over its limit. Infinity with a
+  /// problem.
+  double worstByBlows() const;
+  /// More of the recording would not serve: every key is known to half of its limit or better, as far as blows can tell
+  /// it. Then it adds 12 % to an error that is at the limit for another reason.
+  bool isSettled() const { return worstByBlows() <= 0.5; }
 };
 
-Calibration calibrate(const std::vector<RecordedSample>& samples, const CalibrationBasis& basis);
+Calibration calibrate(const std::vector<RecordedSample>& samples, const CalibrationBasis& basis,
+                      const Progress& progress = {});
 
 }  // namespace hammer_loads::calibration

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kMostIterations = 40;
 constexpr int kLeastIterations = 8;
+constexpr int kUsualExcess = 2;  // iterations beyond the least: for the progress shown alone
 constexpr int kLocalIterations = 4;
 constexpr int kReplicas = 4;  // of the recording, by which the bias is found
 constexpr int kReplicaIterations = 3;
@@ -251,8 +252,10 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Fr
 }
 
 /// Until nothing changes any more, at least so many times.
-void settle(JointFit& joint, const SegmentModel& model, const Globals& start, const Free& free, int least) {
+void settle(JointFit& joint, const SegmentModel& model, const Globals& start, const Free& free, int least,
+            const Progress& progress) {
   for (int i = 0; i < kMostIterations && !joint.fits.empty(); ++i) {
+    report(progress, std::min(1.0, static_cast<double>(i) / (least + kUsualExcess)));
     System s = linearised(joint, model, start);
     joint.converged = improve(joint, model, start, s, free) < kConverged;
     learnNoise(joint, model, s.reduced);
@@ -282,21 +285,23 @@ void judge(JointFit& joint, const SegmentModel& model, const Globals& start, con
 Globals priorDeviations() { return (Globals() << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3).finished(); }
 
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
-                    const Noise& noise, const Free& free) {
+                    const Noise& noise, const Free& free, const Progress& progress) {
+  constexpr double kOwn = 0.3;  // of the time, for what each blow has of its own
   JointFit joint;
   joint.globals = start;
   joint.noise = noise;
   for (const BlowSegment& segment : segments) {
     joint.fits.emplace_back(segment, start);
     fitLocals(joint.fits.back(), model, start, noise, kLocalIterations);
+    report(progress, kOwn * static_cast<double>(joint.fits.size()) / static_cast<double>(segments.size()));
   }
   leaveOut(joint, model);
-  settle(joint, model, start, free, kLeastIterations);
+  settle(joint, model, start, free, kLeastIterations, piece(progress, kOwn, 1.0));
   judge(joint, model, start, free);
   return joint;
 }
 
-void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count) {
+void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count, const Progress& progress) {
   if (joint.fits.empty()) return;
   std::mt19937_64 random(1);
   Globals mean = Globals::Zero();
@@ -306,7 +311,8 @@ void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, do
       segments.push_back(fit.replica(model, joint.globals, joint.noise, count, random));
     JointFit replica = joint;
     for (std::size_t k = 0; k < segments.size(); ++k) replica.fits[k] = joint.fits[k].onto(segments[k]);
-    settle(replica, model, joint.globals, free, kReplicaIterations);
+    settle(replica, model, joint.globals, free, kReplicaIterations,
+           piece(progress, static_cast<double>(i) / kReplicas, (i + 1.0) / kReplicas));
     mean += replica.globals / kReplicas;
   }
   const Globals bias = mean - joint.globals;
@@ -317,20 +323,21 @@ void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, do
 }
 
 std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
-                                    const Globals& globals, const Noise& noise) {
+                                    const Globals& globals, const Noise& noise, const Progress& progress) {
   std::vector<SegmentFit> fits;
   for (const BlowSegment& segment : segments) {
     fits.emplace_back(segment, globals);
     fitLocals(fits.back(), model, globals, noise, 3 * kLocalIterations);
+    report(progress, static_cast<double>(fits.size()) / static_cast<double>(segments.size()));
   }
   return fits;
 }
 
 double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
-                    const Noise& noise) {
+                    const Noise& noise, const Progress& progress) {
   double sum = 0.0, freedom = 0.0;
   std::vector<std::pair<double, double>> each;
-  for (const SegmentFit& fit : fittedAlone(segments, model, globals, noise)) {
+  for (const SegmentFit& fit : fittedAlone(segments, model, globals, noise, progress)) {
     const auto n = static_cast<double>(fit.size());
     const Reduced r = reduce(fit.linearise(model, globals, noise));
     const double left = freeOf(n, r.angle_freedom);

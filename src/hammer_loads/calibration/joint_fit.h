@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hammer_loads/calibration/segment_fit.h"
+#include "hammer_loads/util/progress.h"
 
 namespace hammer_loads::calibration {
 
@@ -30,19 +31,20 @@ Globals priorDeviations();
 /// residuals meanwhile. Parameters with `free` false stay. The covariance is the sandwich over blows with what
 /// neighbours have in common (Newey-West), at least the plain one.
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
-                    const Noise& noise, const Free& free);
+                    const Noise& noise, const Free& free, const Progress& progress = {});
 
 /// With noise, what each blow has of its own is bent the same way at every blow, and the shared parameters with it: no
 /// number of blows averages that out. So recordings are made up from the fit, with its noise and the counts, and fitted
 /// again; what they are off on the mean is taken off. count: of the encoder, in `seen` [rad]; 0: none.
-void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count);
+void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count,
+                const Progress& progress = {});
 
 /// What belongs to each blow alone, the shared parameters given.
 std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
-                                    const Globals& globals, const Noise& noise);
+                                    const Globals& globals, const Noise& noise, const Progress& progress = {});
 
 /// The same; mean square as above, without the blows that are far off the others.
 double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
-                    const Noise& noise);
+                    const Noise& noise, const Progress& progress = {});
 
 }  // namespace hammer_loads::calibration

@@ -1,12 +1,18 @@
 /// calibrate: a recording of the hammer at work in, the crank sensor's place and the drive's inertia out.
+#include <console_bridge/console.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
 #include "hammer_loads/calibration/report.h"
-#include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/commands/bag_options.h"
 #include "hammer_loads/commands/output_file.h"
+#include "hammer_loads/commands/progress_bar.h"
+#include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/ros/crank_recording_bag.h"
+#include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 namespace {
@@ -48,67 +54,128 @@ calibration::Globals inForce(const CrankSensor& sensor) {
   return g;
 }
 
-int run(int argc, const char* const* argv) {
-  CommandLine line("Crank sensor's place and drive's inertia from a recording of the hammer at work", "calibrate");
+struct Arguments {
   std::vector<std::string> bags, params;
-  std::string output, crank_topic = "/hammer/crank", joint_topic = "/joint_states";
-  bool force = false;
-  double rocker_deviation = 0.02;
-  line.option("input", bags, "bags to read, splits of one recording in their order").required().type("IN.bag");
-  line.option("--write", output, "parameters found, for --params; the picture goes beside it as .svg")
+  std::string output, urdf;
+  double rocker_deviation{0.02};
+  bool force{};
+};
+
+void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
+  line.option("input", given.bags, "bags to read, splits of one recording in their order").required().type("IN.bag");
+  line.option("--write", given.output, "parameters found, for --params; the picture goes beside it as .svg")
       .required()
       .type("FILE.yaml");
-  addParamsOption(line, params);
-  line.option("--crank-topic", crank_topic).showDefault();
-  line.option("--joint-states-topic", joint_topic, "for the hull's pitch").showDefault();
-  line.option("--rocker-inertia-deviation", rocker_deviation, "of the given rocker inertia, relative")
+  addParamsOption(line, given.params);
+  line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
+  addUrdfOption(line, given.urdf);
+  line["--urdf"].description("robot description, for the hull's pitch");
+  addTopicOption(line, "--crank-topic", job.topics.crank, kDefaultTopics.crank);
+  addTopicOption(line, "--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
+  line.option("--rocker-inertia-deviation", given.rocker_deviation, "of the given rocker inertia, relative")
       .within(1e-6, 1.0, "")
       .showDefault();
-  line.flag("--force", force, "replaces files that exist");
-  if (const auto code = line.parse(argc, argv)) return *code;
-  const std::string picture = pictureBeside(output);
-  std::vector<std::string> inputs = bags;
-  inputs.insert(inputs.end(), params.begin(), params.end());
-  if (picture == output) {
-    std::cerr << output << ": ends in .svg, must be a name for YAML\n";
-    return kExitFailure;
+  line.flag("--force", given.force, "replaces files that exist");
+}
+
+int fail(const std::vector<std::string>& problems) {
+  for (const std::string& problem : problems) std::cerr << problem << '\n';
+  return kExitFailure;
+}
+
+/// Of the last run in the recording, whose sensor is the one that will be used on.
+Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
+  Checked<Settings> result;
+  Checked<std::vector<BagRun>> runs;
+  try {
+    runs = runsOf(inputs, job, warnings);
+  } catch (const std::exception& error) {  // a damaged bag
+    runs.problems = {inputs.names() + ": cannot be read: " + onOneLine(error.what())};
   }
+  result.problems = std::move(runs.problems);
+  if (!runs.value) return result;
+  if (runs.value->back().settings.pipeline.coupling) {
+    result.problems.emplace_back("shaft: flexible, must be rigid for calibrate");
+    return result;
+  }
+  result.notes = std::move(runs.notes);
+  if (runs.value->size() > 1)
+    result.notes.push_back(std::to_string(runs.value->size()) + " runs in it: the parameters of the last are used");
+  result.value = std::move(runs.value->back().settings);
+  return result;
+}
+
+calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_deviation) {
+  const PipelineSettings& pipeline = settings.pipeline;
+  const double inertia = settings.mechanism.parameters().rocker_inertia_about_pivot;
+  return {settings.mechanism,
+          pipeline.level,
+          pipeline.crank_sensor.place().ratio,
+          rocker_deviation,
+          pipeline.torque_walk * inertia,
+          pipeline.initial_torque_deviation * inertia,
+          inForce(pipeline.crank_sensor)};
+}
+
+/// Pieces of the recording, and more of them until no more are needed.
+calibration::Calibration calibrated(const BagInputs& inputs, const Settings& settings, double rocker_deviation,
+                                    CrankBag& bag) {
+  constexpr double kReading = 0.2;  // of the time of a round
+  constexpr double kGain =
+      0.8;  // of the deviation: twice the blows leave 0.71 of noise, all of what they have in common
+  double before = kInfinity;
+  for (ReadPieces pieces;; pieces = pieces.more()) {
+    ProgressBar bar;
+    const Progress progress = std::ref(bar);
+    bag = readCrankBag(inputs, settings, pieces, piece(progress, 0.0, kReading));
+    if (!bag.problem.empty()) return {};
+    calibration::Calibration found =
+        calibration::calibrate(bag.samples, basisOf(settings, rocker_deviation), piece(progress, kReading, 1.0));
+    report(progress, 1.0);
+    const double worst = found.worstByBlows();
+    if (bag.whole || found.isSettled() || worst > kGain * before) return found;
+    before = worst;
+    std::cerr << "note: " << pieces.count << " pieces of " << pieces.length
+              << " s do not suffice, more of the recording is read\n";
+  }
+}
+
+int run(int argc, const char* const* argv) {
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
+  CommandLine line("Crank sensor's place and drive's inertia from a recording of the hammer at work", "calibrate");
+  Arguments given;
+  BagJob job;
+  addOptions(line, given, job);
+  if (const auto code = line.parse(argc, argv)) return *code;
+  const std::string picture = pictureBeside(given.output);
+  std::vector<std::string> inputs = given.bags;
+  inputs.insert(inputs.end(), given.params.begin(), given.params.end());
+  if (picture == given.output) return fail({given.output + ": ends in .svg, must be a name for YAML"});
   endCleanlyOnSignals();
   std::vector<OutputFile> files;
-  for (const std::string& file : {output, picture}) {
-    Checked<OutputFile> made = OutputFile::make({file, inputs, force, whyFileMustStay});
-    for (const std::string& problem : made.problems) std::cerr << problem << '\n';
-    if (!made.value) return kExitFailure;
+  for (const std::string& file : {given.output, picture}) {
+    Checked<OutputFile> made = OutputFile::make({file, inputs, given.force, whyFileMustStay});
+    if (!made.value) return fail(made.problems);
     files.push_back(*std::move(made.value));
   }
-  const std::optional<Settings> settings = loadOrReport(params);
-  if (!settings) return kExitFailure;
-  const PipelineSettings& pipeline = settings->pipeline;
-  if (pipeline.coupling) {
-    std::cerr << "shaft: flexible, must be rigid for calibrate\n";
-    return kExitFailure;
-  }
-  const CrankBag bag = readCrankBag(bags, crank_topic, joint_topic, pipeline);
-  if (!bag.problem.empty()) {
-    std::cerr << bag.problem << '\n';
-    return kExitFailure;
-  }
-  if (!bag.pitch_known && !pipeline.pitch_joints.empty())
-    std::cerr << "note: not every pitch joint is on " << joint_topic
+  const std::vector<std::string> bad_files = readParameterFiles(given.params, given.urdf, job);
+  if (!bad_files.empty()) return fail(bad_files);
+  const Checked<BagInputs> recording = BagInputs::open(given.bags);
+  if (!recording.value) return fail(recording.problems);
+  std::vector<BagWarning> warnings;
+  const Checked<Settings> settings = settingsOf(*recording.value, job, warnings);
+  if (!settings.value) return fail(settings.problems);
+  for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
+  for (const std::string& warning : textsOf(warnings)) std::cerr << "warning: " << warning << '\n';
+  CrankBag bag;
+  const calibration::Calibration found = calibrated(*recording.value, *settings.value, given.rocker_deviation, bag);
+  if (!bag.problem.empty()) return fail({bag.problem});
+  if (!bag.pitch_known && !settings.value->pipeline.pitch_joints.empty())
+    std::cerr << "note: not every pitch joint is on " << settings.value->input_topics.joint_states
               << ": the hull's pitch is taken as hull_pitch_rad\n";
-  const double inertia = settings->mechanism.parameters().rocker_inertia_about_pivot;
-  const CrankSensor& sensor = pipeline.crank_sensor;
-  const calibration::CalibrationBasis basis{settings->mechanism,
-                                            pipeline.level,
-                                            sensor.place().ratio,
-                                            rocker_deviation,
-                                            pipeline.torque_walk * inertia,
-                                            pipeline.initial_torque_deviation * inertia,
-                                            inForce(sensor)};
-  const calibration::Calibration found = calibration::calibrate(bag.samples, basis);
-  const std::string yaml = found.problem.empty() ? yamlOf(found, fs::path(bags.front()).filename().string()) : "";
-  (yaml.empty() ? std::cerr : std::cout) << (found.problem.empty() ? "" : bags.front() + ": ") << textOf(found);
-  if (yaml.empty() || !write(files, {output, picture}, {yaml, svgOf(found)})) return kExitFailure;
+  const std::string yaml = found.problem.empty() ? yamlOf(found, fs::path(given.bags.front()).filename().string()) : "";
+  (yaml.empty() ? std::cerr : std::cout) << (found.problem.empty() ? "" : given.bags.front() + ": ") << textOf(found);
+  if (yaml.empty() || !write(files, {given.output, picture}, {yaml, svgOf(found)})) return kExitFailure;
   return finishOutput();
 }
 

@@ -5,12 +5,13 @@
 #include <filesystem>
 #include <iostream>
 
-#include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/commands/bag_options.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/life/ledger_batch.h"
 #include "hammer_loads/ros/bag_output.h"
 #include "hammer_loads/ros/bag_processing.h"
+#include "hammer_loads/ros/bag_runs.h"
 #include "hammer_loads/tables/table_schema.h"
 
 namespace hammer_loads {
@@ -20,7 +21,7 @@ struct Arguments {
   std::vector<std::string> bags;  ///< inputs, then the output unless there is none
   std::vector<std::string> params, grapple;
   std::string urdf, tables, ledger;
-  bool force{}, no_bag{}, replace_run{};
+  bool force{}, no_bag{}, replace_run{}, recordings{};
 };
 
 void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
@@ -29,6 +30,8 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
       .required()
       .values(1, 1000000);
   line.flag("--no-bag", given.no_bag, "write no OUT.bag: all bags are inputs");
+  line.flag("--recordings", given.recordings,
+            "write nothing; a line for each bag, in order: number of the recording that it is a split of, name");
   line.option("--db", given.tables, "write the results as tables, which must not exist").type("FILE.sqlite");
   line.option("--ledger", given.ledger, "add the load cycles to a machine's ledger, unless they are in it")
       .type("FILE.sqlite");
@@ -38,13 +41,10 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   addParamsOption(line, given.params);
   line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(line, given.urdf);
-  const auto topic = [&](const char* option, std::string& name, const std::string& by_default) {
-    line.option(option, name).type("TOPIC").showDefault("as in run_info, else " + by_default);
-  };
-  topic("--crank-topic", job.topics.crank, kDefaultTopics.crank);
-  topic("--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
-  topic("--imu-topic", job.topics.hull_imu, kDefaultTopics.hull_imu);
-  topic("--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures);
+  addTopicOption(line, "--crank-topic", job.topics.crank, kDefaultTopics.crank);
+  addTopicOption(line, "--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
+  addTopicOption(line, "--imu-topic", job.topics.hull_imu, kDefaultTopics.hull_imu);
+  addTopicOption(line, "--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures);
   line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
   line.flag("--smooth", job.smooth, "the crank by later samples as well: more exact than the live node can be")
@@ -64,14 +64,7 @@ int fail(const std::vector<std::string>& problems) {
 
 /// Parameters, robot description and grapple of the job; what is wrong with their files, one line each.
 std::vector<std::string> readFiles(const Arguments& given, BagJob& job) {
-  std::vector<std::string> problems;
-  ParameterMap parameters;
-  if (!given.params.empty() && addFiles(given.params, parameters, problems)) job.parameters = std::move(parameters);
-  if (!given.urdf.empty()) {
-    Checked<std::string> description = fileText(given.urdf);
-    problems.insert(problems.end(), description.problems.begin(), description.problems.end());
-    job.robot_description = std::move(description.value);
-  }
+  std::vector<std::string> problems = readParameterFiles(given.params, given.urdf, job);
   if (!given.grapple.empty()) {
     Checked<GrappleSettings> grapple = loadGrappleSettings(configDirectory(), given.grapple);
     problems.insert(problems.end(), grapple.problems.begin(), grapple.problems.end());
@@ -80,8 +73,18 @@ std::vector<std::string> readFiles(const Arguments& given, BagJob& job) {
   return problems;
 }
 
+int printRecordings(const std::vector<std::string>& bags) {
+  std::size_t number = 0;
+  for (const std::vector<std::string>& recording : recordingsOf(bags)) {
+    for (const std::string& bag : recording) std::cout << number << ' ' << bag << '\n';
+    ++number;
+  }
+  return finishOutput();
+}
+
 /// What the command line alone shows to be wrong; empty: nothing.
 std::string usageProblem(const Arguments& given) {
+  if (given.recordings) return {};
   if (given.no_bag && given.tables.empty() && given.ledger.empty())
     return "--no-bag: nothing would be written, --db or --ledger FILE.sqlite is required";
   if (!given.no_bag && given.bags.size() < 2) return "bags: IN.bag... and OUT.bag are required, or --no-bag";
@@ -184,6 +187,7 @@ int run(int argc, const char* const* argv) {
     std::cerr << "process_bag: " << usage << " (--help shows the options)\n";
     return kExitWrongUsage;
   }
+  if (given.recordings) return printRecordings(given.bags);
   endCleanlyOnSignals();
   job.inputs.assign(given.bags.begin(), given.bags.end() - (given.no_bag ? 0 : 1));
   const std::vector<std::string> bad_files = readFiles(given, job);

@@ -1,15 +1,23 @@
 #include "hammer_loads/pipeline/hull_gravity.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hammer_loads {
 
 HullGravity::HullGravity(const PipelineSettings& settings, const std::optional<Boom>& boom)
-    : pitch_(settings.pitch_joints, settings.hull_pitch), g_B_(gravityInRoot(settings.gravity, settings.base)) {
-  if (boom) {
-    chain_ = boom->chain();
-    position_ = JointVector::Constant(chain_->joints(), std::numeric_limits<double>::quiet_NaN());
+    : pitch_(settings.pitch_joints, settings.pitch_signs, settings.pitch_offset, settings.hull_pitch),
+      g_B_(gravityInRoot(settings.gravity, settings.base)),
+      chain_(boom ? boom->chain() : settings.pitch_chain) {
+  if (chain_) {
+    if (!boom && chain_->link(chain_->tip()).name != ChainRequest{}.tip) beyond_ = settings.pitch_offset;
+    position_ = JointVector::Zero(chain_->joints());
+    heard_.resize(static_cast<std::size_t>(chain_->joints()));
+    if (!settings.pitch_joints.empty()) {
+      const PitchOfChain law = pitchOf(*chain_, settings.pitch_joints);
+      pitch_is_of_chain_ = !law.joints.empty();
+      if (pitch_is_of_chain_) pitch_ = HullPitch(law.joints, law.signs, law.offset + beyond_, settings.hull_pitch);
+    }
   }
   find();
 }
@@ -26,19 +34,19 @@ bool HullGravity::takePosition(const std::vector<std::string>& names, const std:
     const std::optional<int> joint = chain_->jointIndex(names[i]);
     if (!joint || !(std::abs(positions[i]) <= HullPitch::kMostAngle)) continue;
     position_[*joint] = positions[i];
+    heard_[static_cast<std::size_t>(*joint)] = true;
     taken = true;
   }
   return taken;
 }
 
 void HullGravity::find() noexcept {
-  if (chain_ && position_.allFinite()) {
-    const Eigen::Vector3d g_T = gravityInTip(*chain_, position_, g_B_);
-    gravity_ = {g_T.x(), g_T.z()};
-    return;
-  }
-  const double s = std::sin(pitch_.pitch()), c = std::cos(pitch_.pitch());
-  gravity_ = {c * g_B_.x() - s * g_B_.z(), s * g_B_.x() + c * g_B_.z()};
+  const bool all_heard = std::find(heard_.begin(), heard_.end(), false) == heard_.end();
+  const bool by_chain = chain_ && (all_heard || (pitch_is_of_chain_ && pitch_.known()));
+  const Eigen::Vector3d g = by_chain ? gravityInTip(*chain_, position_, g_B_) : g_B_;
+  const double pitch = by_chain ? beyond_ : pitch_.pitch();
+  const double s = std::sin(pitch), c = std::cos(pitch);
+  gravity_ = {c * g.x() - s * g.z(), s * g.x() + c * g.z()};
 }
 
 }  // namespace hammer_loads

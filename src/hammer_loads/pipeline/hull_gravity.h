@@ -13,8 +13,8 @@
 
 namespace hammer_loads {
 
-/// With a boom by its description, whose fixed tilts and swing count, once every joint of its chain has been heard.
-/// Else by the sum of the pitch joints, swing at zero.
+/// With a boom, or a description that has the pitch joints, by its axes, zeros, fixed tilts and swing, once every pitch
+/// joint has been heard: joints beside these are at zero until they are heard. Else by the sum of the pitch joints.
 class HullGravity {
  public:
   HullGravity(const PipelineSettings& settings, const std::optional<Boom>& boom);
@@ -32,7 +32,10 @@ class HullGravity {
   HullPitch pitch_;
   Eigen::Vector3d g_B_;  ///< in the root's axes [m/s2]
   std::optional<Chain> chain_;
-  JointVector position_;  ///< of the chain's joints; NaN: not heard
+  double beyond_{};           ///< pitch of the hull against the chain's tip [rad]
+  JointVector position_;      ///< of the chain's joints; zero: not heard
+  std::vector<bool> heard_;   ///< of each of them
+  bool pitch_is_of_chain_{};  ///< the pitch joints are joints of the chain
   Gravity gravity_;
 };
 

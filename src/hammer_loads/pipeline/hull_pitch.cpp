@@ -9,12 +9,16 @@
 
 namespace hammer_loads {
 
-HullPitch::HullPitch(std::vector<std::string> joints, double initial)
+HullPitch::HullPitch(std::vector<std::string> joints, std::vector<int> signs, double offset, double initial)
     : joints_(std::move(joints)),
+      signs_(std::move(signs)),
+      offset_(offset),
       angles_(joints_.size(), 0.0),
       heard_(joints_.size(), false),
       unheard_(joints_.size()),
-      pitch_(initial) {}
+      pitch_(initial) {
+  signs_.resize(joints_.size(), 1);
+}
 
 bool HullPitch::update(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
   bool any = false;
@@ -31,7 +35,7 @@ bool HullPitch::update(const std::vector<std::string>& names, const std::vector<
     heard_[j] = true;
     any = true;
   }
-  if (any && known()) pitch_ = std::accumulate(angles_.begin(), angles_.end(), 0.0);
+  if (any && known()) pitch_ = std::inner_product(angles_.begin(), angles_.end(), signs_.begin(), offset_);
   return any;
 }
 

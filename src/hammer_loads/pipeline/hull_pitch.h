@@ -3,19 +3,23 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hammer_loads {
 
-/// Sum of the pitch joints' latest angles (contract: boom + arm + hammer, all about +y). Messages may hold any subset
-/// of joints in any order.
+/// Sum of the pitch joints' latest angles, each with its sign (contract: boom + arm + hammer, all about +y), and an
+/// offset. Messages may hold any subset of joints in any order.
 class HullPitch {
  public:
   /// A larger angle is refused: degrees are taken and recognised, garbage is not [rad].
   static constexpr double kMostAngle = 1e4;
 
   /// initial: pitch until every joint has been heard [rad].
-  HullPitch(std::vector<std::string> joints, double initial);
+  HullPitch(std::vector<std::string> joints, double initial) : HullPitch(std::move(joints), {}, 0.0, initial) {}
+  /// signs: 1 about +y, -1 about -y, one for each joint; empty: all 1. offset: pitch where all of them are at zero
+  /// [rad].
+  HullPitch(std::vector<std::string> joints, std::vector<int> signs, double offset, double initial);
 
   /// Takes what it knows from a message; returns whether any pitch joint was in it. Angles that are not finite
   /// or beyond 1e4 rad are refused and counted.
@@ -31,6 +35,8 @@ class HullPitch {
 
  private:
   std::vector<std::string> joints_;
+  std::vector<int> signs_;
+  double offset_;
   std::vector<double> angles_;
   std::vector<bool> heard_;
   std::size_t unheard_;

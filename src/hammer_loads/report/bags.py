@@ -22,19 +22,31 @@ def is_bag(name):
     return name.endswith(".bag")
 
 
-def database_of(bag, parameters, urdf, folder):
-    """Path of a new database in the folder, named as the bag; what process_bag says goes to stderr."""
-    if not os.path.isfile(bag):
-        raise Problem(f"{bag}: " + ("is no regular file" if os.path.exists(bag) else "cannot be read: No such file"))
+def recordings(bags):
+    """Lists of bags: the splits of one recording in their order, as process_bag finds them; every other bag alone."""
+    if len(bags) < 2:
+        return [[bag] for bag in bags]
+    done = subprocess.run([program(), "--recordings", *bags], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                          encoding="utf-8", errors="surrogateescape")
+    splits_of = {}
+    for line in done.stdout.splitlines():
+        number, _, bag = line.partition(" ")
+        splits_of.setdefault(number, []).append(bag)
+    found = list(splits_of.values())
+    whole = done.returncode == 0 and sorted(bag for splits in found for bag in splits) == sorted(bags)
+    return found if whole else [[bag] for bag in bags]
+
+
+def database_of(splits, options, folder):
+    """Path of a new database in the folder, named as the recording's first bag; what process_bag says goes to stderr.
+    options: of process_bag, for parameters and topics."""
+    for bag in splits:
+        if not os.path.isfile(bag):
+            raise Problem(f"{bag}: " + ("is no regular file" if os.path.exists(bag) else "cannot be read: No such file"))
     place = pathlib.Path(folder) / str(len(os.listdir(folder)))
     place.mkdir()
-    database = str(place / (pathlib.Path(bag).stem + ".sqlite"))
-    arguments = [program(), "--no-bag", bag, "--db", database]
-    for file in parameters:
-        arguments += ["--params", file]
-    if urdf is not None:
-        arguments += ["--urdf", urdf]
-    done = subprocess.run(arguments, stdout=subprocess.DEVNULL)
+    database = str(place / (pathlib.Path(splits[0]).stem + ".sqlite"))
+    done = subprocess.run([program(), "--no-bag", *splits, "--db", database, *options], stdout=subprocess.DEVNULL)
     if done.returncode != 0:
-        raise Problem(f"{bag}: {PROGRAM} ended with code {done.returncode}, there is no page")
+        raise Problem(f"{splits[0]}: {PROGRAM} ended with code {done.returncode}, there is no page")
     return database

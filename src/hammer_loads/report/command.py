@@ -11,6 +11,8 @@ from report import bags, csv_tables, output, page
 from report.database import Database, Interrupt
 from report.problem import Problem, one_line
 
+TOPICS = {"crank-topic": "the crank's samples", "joint-states-topic": "the boom's joints", "imu-topic": "the hull's IMU",
+          "pressures-topic": "the cylinders' pressures, a prefix"}
 WRONG_USAGE, FAILURE, INTERRUPTED = 2, 1, 130
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -41,13 +43,16 @@ def parser():
         epilog="The page needs no other file and no network. Two or more machines are compared. Errors are one line "
                "each; exit code 1, or 2 for wrong usage.")
     result.add_argument("files", nargs="+", metavar="FILE",
-                        help="a database of process_bag --db, a ledger, a fleet's merged file, or a bag")
+                        help="a database of process_bag --db, a ledger, a fleet's merged file, or a bag; splits of one "
+                             "recording of the node count as one")
     result.add_argument("--html", metavar="OUT.html", help="page to write, which must not exist")
     result.add_argument("--csv", metavar="DIRECTORY", help="every table as CSV into a new directory")
     result.add_argument("--machine", metavar="NAME", help="of a fleet's merged file this machine alone")
     result.add_argument("--params", action="append", default=[], metavar="FILE.yaml",
                         help="for bags: parameters, as of process_bag; may be repeated")
     result.add_argument("--urdf", metavar="FILE.urdf", help="for bags: robot description")
+    for topic, of in TOPICS.items():
+        result.add_argument(f"--{topic}", metavar="TOPIC", help=f"for bags: of {of}; else as in their run_info")
     result.add_argument("--force", action="store_true", help="replace what this command wrote")
     result.add_argument("--version", action=Version, nargs=0, help="print the version and end")
     return result
@@ -59,8 +64,27 @@ def run(given):
     if given.csv is not None:
         output.check_directory(given.csv, [*given.files, *([given.html] if given.html else [])], given.force, csv_tables.why_directory_must_stay)
     with tempfile.TemporaryDirectory(prefix="hammer_loads_report") as folder:
-        write(given, [Database(bags.database_of(path, given.params, given.urdf, folder) if bags.is_bag(path) else path)
-                      for path in given.files])
+        write(given, [Database(path) for path in databases(given, folder)])
+
+
+def bag_options(given):
+    """Options of process_bag that were given."""
+    options = [word for file in given.params for word in ("--params", file)]
+    for name in ("urdf", *TOPICS):
+        value = getattr(given, name.replace("-", "_"))
+        options += [f"--{name}", value] if value is not None else []
+    return options
+
+
+def databases(given, folder):
+    """Paths in the order of the files given; the splits of one recording are one, at the place of the first."""
+    splits_of = {splits[0]: splits for splits in bags.recordings(list(filter(bags.is_bag, given.files)))}
+    later = {bag for splits in splits_of.values() for bag in splits[1:]}
+    for path in given.files:
+        if not bags.is_bag(path):
+            yield path
+        elif path not in later:
+            yield bags.database_of(splits_of[path], bag_options(given), folder)
 
 
 def write(given, databases):
@@ -81,8 +105,8 @@ def main(arguments):
     given = options.parse_args(arguments)
     if given.html is None and given.csv is None:
         options.error("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
-    if (given.params or given.urdf) and not any(map(bags.is_bag, given.files)):
-        options.error("--params and --urdf are for bags; a database has its parameters")
+    if bag_options(given) and not any(map(bags.is_bag, given.files)):
+        options.error("--params, --urdf and topics are for bags; a database has its parameters")
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(name) != signal.SIG_IGN:
             signal.signal(name, Interrupt.handler)

@@ -3,6 +3,7 @@
 #include <rosbag/exceptions.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -89,6 +90,21 @@ std::string BagInputs::topicsOfType(const std::string& type) const {
     if (topic.types.count(type) != 0) list += (list.empty() ? "" : ", ") + onOneLine(name);
   }
   return list.empty() ? "none" : list;
+}
+
+std::pair<ros::Time, ros::Time> BagInputs::span(const std::string& topic) const {
+  std::pair<ros::Time, ros::Time> span{ros::TIME_MAX, ros::TIME_MIN};
+  for (const auto& bag : bags_) {
+    const auto isWanted = [&](const auto& counted) {
+      const auto connection = bag->connections().find(counted.first);
+      return topic.empty() || (connection != bag->connections().end() && connection->second.topic == topic);
+    };
+    for (const BagChunk& chunk : bag->chunks()) {
+      if (std::any_of(chunk.counts.begin(), chunk.counts.end(), isWanted))
+        span = {std::min(span.first, chunk.first), std::max(span.second, chunk.last)};
+    }
+  }
+  return span.first <= span.second ? span : std::pair<ros::Time, ros::Time>{};
 }
 
 BagMessages BagInputs::messagesOn(const std::set<std::string>& topics) const {

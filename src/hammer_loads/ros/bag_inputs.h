@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hammer_loads/ros/bag_messages.h"
@@ -36,10 +37,13 @@ class BagInputs {
   std::string topicList() const;
   /// Names of the topics of this type, in one line; "none" if there are none.
   std::string topicsOfType(const std::string& type) const;
+  /// Record times of the first and last message of the chunks in which the topic is, or any if it is empty; zero where
+  /// there is none.
+  std::pair<ros::Time, ros::Time> span(const std::string& topic = {}) const;
   /// The files' names, in one line.
   const std::string& names() const { return names_; }
   /// What the query takes of every bag, in record order. One reader at a time.
-  BagMessages messages(const BagQuery& query) const { return {bags_, query}; }
+  BagMessages messages(const BagQuery& query, const ChunkQuery& chunks = {}) const { return {bags_, query, chunks}; }
   BagMessages messagesOn(const std::set<std::string>& topics) const;
 
  private:

@@ -6,13 +6,15 @@
 
 namespace hammer_loads {
 
-BagMessages::BagMessages(const std::vector<std::unique_ptr<BagFile>>& bags, const BagQuery& query) {
+BagMessages::BagMessages(const std::vector<std::unique_ptr<BagFile>>& bags, const BagQuery& query,
+                         const ChunkQuery& chunks) {
   for (const auto& bag : bags) {
     Source source{bag.get(), {}};
     for (const auto& [id, connection] : bag->connections()) {
       if (query(connection)) source.wanted.emplace(id, &connection);
     }
     for (const BagChunk& chunk : bag->chunks()) {
+      if (chunks && !chunks(chunk)) continue;
       std::uint64_t count = 0;
       for (const auto& [id, messages] : chunk.counts) count += source.wanted.count(id) * messages;
       if (count > 0) places_.push_back({&chunk, sources_.size()});

@@ -11,17 +11,19 @@ namespace hammer_loads {
 
 /// Which connections are wanted.
 using BagQuery = std::function<bool(const BagConnection&)>;
+/// Which chunks are: those that may hold what is wanted, by their times. Empty: all.
+using ChunkQuery = std::function<bool(const BagChunk&)>;
 
 /// Holds the chunks whose times overlap at the present place, no more. Messages of one time come in the order of the
 /// bags, then of the file.
 class BagMessages {
  public:
   /// The bags must outlive it and are not read by others meanwhile.
-  BagMessages(const std::vector<std::unique_ptr<BagFile>>& bags, const BagQuery& query);
+  BagMessages(const std::vector<std::unique_ptr<BagFile>>& bags, const BagQuery& query, const ChunkQuery& chunks = {});
 
   /// Valid until the next call; null after the last one. Throws std::runtime_error where a bag is damaged.
   const BagMessage* next();
-  /// Messages in all.
+  /// Messages in all chunks that are wanted.
   std::uint64_t size() const { return size_; }
 
  private:

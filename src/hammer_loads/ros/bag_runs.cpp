@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <map>
+#include <tuple>
 
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/tables/sha256.h"
 
 namespace hammer_loads {
 namespace {
@@ -141,7 +144,64 @@ Checked<std::vector<BagRun>> recordedRuns(const BagInputs& inputs, const BagJob&
   return result;
 }
 
+/// Runs that a bag begins and ends with; empty: not known.
+struct SplitRuns {
+  std::size_t file{};
+  std::string first, last;
+  ros::Time begin, end;  ///< record times of its first and last message
+};
+
+SplitRuns splitRunsOf(const std::string& file, std::size_t index) {
+  SplitRuns split{index, {}, {}, {}, {}};
+  try {
+    const Checked<BagInputs> inputs = BagInputs::open({file});
+    if (!inputs.value) return split;
+    std::vector<BagWarning> ignored;
+    const RunInfos infos = readRunInfos(*inputs.value, ignored);
+    std::tie(split.begin, split.end) = inputs.value->span();
+    if (infos.topics.size() != 1) return split;
+    const auto nameOf = [&](const RunInfo& info) {
+      return sha256Of({*infos.topics.begin(), std::to_string(info.header.stamp.toNSec()), info.parameters_yaml,
+                       info.robot_description});
+    };
+    split.first = nameOf(infos.runs.front().info);
+    split.last = nameOf(infos.runs.back().info);
+  } catch (const std::exception&) {  // who processes it is told why
+    split.first.clear(), split.last.clear();
+  }
+  return split;
+}
+
 }  // namespace
+
+std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string>& files) {
+  std::vector<SplitRuns> splits;
+  for (std::size_t i = 0; i < files.size(); ++i) splits.push_back(splitRunsOf(files[i], i));
+  std::stable_sort(splits.begin(), splits.end(),
+                   [](const SplitRuns& a, const SplitRuns& b) { return a.begin < b.begin; });
+  std::vector<std::vector<std::size_t>> recordings;
+  // By the run that they end with. Two records of one run at the same time are no splits.
+  std::map<std::string, std::pair<std::size_t, ros::Time>> ended;
+  const ros::Duration overlap(1.0);  // what is latched may be repeated with an earlier time
+  for (const SplitRuns& split : splits) {
+    const auto before = split.first.empty() ? ended.end() : ended.find(split.first);
+    const bool goes_on = before != ended.end() && split.begin + overlap >= before->second.second;
+    const std::size_t at = goes_on ? before->second.first : recordings.size();
+    if (goes_on) ended.erase(before);
+    if (!goes_on) recordings.emplace_back();
+    recordings[at].push_back(split.file);
+    if (!split.last.empty()) ended[split.last] = {at, split.end};
+  }
+  std::sort(recordings.begin(), recordings.end(), [](const auto& a, const auto& b) {
+    return *std::min_element(a.begin(), a.end()) < *std::min_element(b.begin(), b.end());
+  });
+  std::vector<std::vector<std::string>> names;
+  for (const std::vector<std::size_t>& recording : recordings) {
+    names.emplace_back();
+    for (const std::size_t file : recording) names.back().push_back(files[file]);
+  }
+  return names;
+}
 
 Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
   const RunInfos infos = readRunInfos(inputs, warnings);

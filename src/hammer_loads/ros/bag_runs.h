@@ -22,4 +22,9 @@ struct BagRun {
 /// first one also for what comes before it. Notes say what is used; what makes it doubtful is added to `warnings`.
 Checked<std::vector<BagRun>> runsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings);
 
+/// Bags by the recordings that they are splits of: one goes on where the run that it ends with is the one that another
+/// begins with, later. Runs are known by their run_info; a bag without one, or one that cannot be read, is alone. The
+/// splits in the order of their times, the recordings in that of their first bags given.
+std::vector<std::vector<std::string>> recordingsOf(const std::vector<std::string>& files);
+
 }  // namespace hammer_loads

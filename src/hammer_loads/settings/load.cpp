@@ -13,6 +13,7 @@
 #include "hammer_loads/settings/read_life.h"
 #include "hammer_loads/settings/read_log.h"
 #include "hammer_loads/settings/yaml_value.h"
+#include "hammer_loads/util/format.h"
 
 #ifndef HAMMER_LOADS_CONFIG_DIR
 #error "HAMMER_LOADS_CONFIG_DIR must name the source tree's config directory"
@@ -68,6 +69,28 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
   return std::move(boom.value);
 }
 
+/// Weight by the description's axes and zeros where there is no boom. Signs that contradict it are a problem.
+void takePitchChain(ParameterReader& reader, PipelineSettings& pipeline, const std::optional<Boom>& boom,
+                    const std::string& description, std::vector<std::string>& notes) {
+  const std::vector<std::string>& joints = pipeline.pitch_joints;
+  if (description.empty() || joints.empty() || !reader.problems().empty()) return;
+  if (!boom) {
+    const std::optional<ChainRequest> request = chainOver(description, joints);
+    if (request) pipeline.pitch_chain = Chain::make(description, *request).value;
+    if (pipeline.pitch_chain)
+      notes.push_back("weight by the robot description's axes and zeros, from " + request->root + " to " +
+                      request->tip);
+  }
+  const std::optional<Chain> chain = boom ? boom->chain() : pipeline.pitch_chain;
+  if (!chain || pipeline.pitch_signs.empty()) return;
+  const PitchOfChain described = pitchOf(*chain, joints);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (described.joints != joints || described.signs[i] == pipeline.pitch_signs[i]) continue;
+    reader.addProblem(format("pitch_signs: %d for %s, must be %d as its axis in the robot description, or []",
+                             pipeline.pitch_signs[i], joints[i].c_str(), described.signs[i]));
+  }
+}
+
 std::string withoutDriveInertia(std::string yaml) {
   const std::size_t begin = yaml.find("drive_inertia_kg_m2:");
   if (begin != std::string::npos) yaml.erase(begin, yaml.find('\n', begin) - begin + 1);
@@ -96,6 +119,7 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   const bool vibrates = boom_file && pipeline.boom != BoomModel::kNone && pipeline.boom != BoomModel::kRigid;
   const std::string conflict = vibrationConflict(pipeline, boom_file, vibrates);
   if (!conflict.empty()) reader.addProblem(conflict);
+  takePitchChain(reader, pipeline, boom, robot_description, result.notes);
   life::LifeSettings life = readLife(reader, boom);
   reader.reportUnknownKeys();
   result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());

@@ -142,6 +142,28 @@ std::vector<std::string> ParameterReader::names(const std::string& key) {
   return *value;
 }
 
+std::vector<int> ParameterReader::signs(const std::string& key) {
+  const std::string rule = "a list of 1 and -1";
+  const Parameter* parameter = find(key, "", rule);
+  if (parameter == nullptr) return {};
+  std::vector<int> result;
+  std::string list;
+  bool good = parameter->value.IsSequence();
+  for (std::size_t i = 0; good && i < parameter->value.size(); ++i) {
+    const std::optional<std::int64_t> sign = asInteger(parameter->value[i]);
+    good = sign && (*sign == 1 || *sign == -1);
+    if (!good) break;
+    result.push_back(static_cast<int>(*sign));
+    list += (list.empty() ? "" : ", ") + std::to_string(*sign);
+  }
+  if (!good) {
+    refuse(key, *parameter, "", rule);
+    return {};
+  }
+  keep(key, "[" + list + "]");
+  return result;
+}
+
 std::size_t ParameterReader::choiceIndex(const std::string& key, const std::vector<std::string>& words) {
   std::string rule;
   for (const std::string& word : words) rule += (rule.empty() ? "one of " : ", ") + word;

@@ -49,6 +49,8 @@ class ParameterReader {
   /// List of texts, each not empty and given once; the list may be empty. With a problem, the different texts of it, so
   /// that keys named after them are not unknown.
   std::vector<std::string> names(const std::string& key);
+  /// List of 1 and -1; may be empty.
+  std::vector<int> signs(const std::string& key);
   /// One of several words.
   template <typename T, std::size_t N>
   T choice(const std::string& key, const std::array<Named<T>, N>& choices) {

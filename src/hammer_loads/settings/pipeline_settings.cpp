@@ -95,6 +95,11 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.crank_estimator = reader.choice("crank_estimator", kCrankEstimatorNames);
   s.crank_joint = reader.text("crank_joint");
   s.pitch_joints = reader.names("pitch_joints");
+  s.pitch_signs = reader.signs("pitch_signs");
+  if (!s.pitch_signs.empty() && s.pitch_signs.size() != s.pitch_joints.size())
+    reader.addProblem(format("pitch_signs: %zu numbers, must be one for each of the %zu pitch_joints, or none",
+                             s.pitch_signs.size(), s.pitch_joints.size()));
+  s.pitch_offset = reader.number("pitch_offset_rad", "rad", NumberRule::within(-3.2, 3.2));
   s.hull_pitch = reader.number("hull_pitch_rad", "rad", kTurned);
   s.gravity = reader.number("gravity_m_s2", "m/s2", NumberRule::within(0.0, 100.0));
   s.base.roll = reader.number("base_roll_rad", "rad", NumberRule::within(-1.0, 1.0));

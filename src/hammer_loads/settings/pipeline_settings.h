@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hammer_loads/boom/chain.h"
 #include "hammer_loads/boom/gravity.h"
 #include "hammer_loads/crank/coupling.h"
 #include "hammer_loads/crank/crank_sensor.h"
@@ -109,6 +110,10 @@ struct PipelineSettings {
   CrankEstimator crank_estimator{};
   std::string crank_joint;                ///< joint whose position is the crank angle
   std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
+  std::vector<int> pitch_signs;           ///< of each of them, 1 or -1: how it turns about +y; empty: all 1
+  double pitch_offset{};                  ///< hull's pitch where all of them are at zero [rad]
+  std::optional<Chain> pitch_chain;       ///< up to the hull or the last pitch joint's link, where a robot description
+                                          ///< has them and there is no boom: its axes and zeros count for the weight
   double hull_pitch{};                    ///< until every pitch joint has been heard [rad]
   HullMotionSource hull_motion{};
   HullImuSettings imu;                 ///< where the IMU sits

@@ -1,6 +1,7 @@
 #include "hammer_loads/settings/read_boom.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -61,6 +62,36 @@ SectionParameters readSection(ParameterReader& reader, const std::string& name) 
   return section;
 }
 
+constexpr std::array<const char*, 4> kOilKeys{"bulk_modulus_Pa", "damping_ratio", "mode_refresh_angle_rad",
+                                              "rigid_tolerance"};
+constexpr std::array<const char*, 4> kSupportKeys{"support_front_x_m", "support_front_half_width_m", "support_rear_x_m",
+                                                  "support_rear_half_width_m"};
+
+template <std::size_t N>
+bool anyGiven(ParameterReader& reader, const std::array<const char*, N>& keys) {
+  bool any = false;
+  for (const char* key : keys) any = reader.given(key) || any;  // each is known then
+  return any;
+}
+
+/// Without a cylinder there is no oil: then its keys may be left out together, and nothing stands for them.
+void readOil(ParameterReader& reader, bool cylinders, BoomParameters& p) {
+  if (!anyGiven(reader, kOilKeys) && !cylinders) return;
+  p.bulk_modulus = reader.number("bulk_modulus_Pa", "Pa", NumberRule::any());
+  p.vibration.damping_ratio = reader.number("damping_ratio", "", NumberRule::any());
+  p.vibration.refresh_angle = reader.number("mode_refresh_angle_rad", "rad", NumberRule::any());
+  p.rigid_tolerance = reader.number("rigid_tolerance", "", NumberRule::any());
+}
+
+Supports readSupports(ParameterReader& reader) {
+  Supports s;
+  s.front_x = reader.number("support_front_x_m", "m", NumberRule::any());
+  s.front_half_width = reader.number("support_front_half_width_m", "m", NumberRule::any());
+  s.rear_x = reader.number("support_rear_x_m", "m", NumberRule::any());
+  s.rear_half_width = reader.number("support_rear_half_width_m", "m", NumberRule::any());
+  return s;
+}
+
 }  // namespace
 
 BoomParameters readBoomParameters(ParameterReader& reader) {
@@ -68,18 +99,11 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
   p.chain.root = reader.text("root_link");
   p.chain.tip = reader.text("tip_link");
   for (const std::string& name : reader.names("cylinders")) p.cylinders.push_back(readCylinder(reader, name));
-  p.bulk_modulus = reader.number("bulk_modulus_Pa", "Pa", NumberRule::any());
-  p.vibration.damping_ratio = reader.number("damping_ratio", "", NumberRule::any());
-  p.vibration.refresh_angle = reader.number("mode_refresh_angle_rad", "rad", NumberRule::any());
-  p.rigid_tolerance = reader.number("rigid_tolerance", "", NumberRule::any());
+  readOil(reader, !p.cylinders.empty(), p);
   if (reader.given("sections")) {
     for (const std::string& name : reader.names("sections")) p.sections.push_back(readSection(reader, name));
   }
-  Supports& s = p.supports.emplace();
-  s.front_x = reader.number("support_front_x_m", "m", NumberRule::any());
-  s.front_half_width = reader.number("support_front_half_width_m", "m", NumberRule::any());
-  s.rear_x = reader.number("support_rear_x_m", "m", NumberRule::any());
-  s.rear_half_width = reader.number("support_rear_half_width_m", "m", NumberRule::any());
+  if (!p.cylinders.empty() || anyGiven(reader, kSupportKeys)) p.supports = readSupports(reader);
   return p;
 }
 

@@ -1,4 +1,5 @@
-/// The boom file: cylinders, damping, supports, sections; every key required but `sections`.
+/// The boom file: cylinders, damping, supports, sections. Every key is required but `sections`; with `cylinders: []` so
+/// are only `root_link` and `tip_link`, and the keys of the oil and those of the supports each together or not at all.
 #pragma once
 
 #include <optional>

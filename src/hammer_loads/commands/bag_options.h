@@ -1,0 +1,29 @@
+/// What commands that read a recording share: names of topics, and parameter files in place of a run_info.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/commands/command_line.h"
+#include "hammer_loads/ros/bag_processing.h"
+
+namespace hammer_loads {
+
+inline Option addTopicOption(CommandLine& line, const char* option, std::string& name, const std::string& by_default) {
+  return line.option(option, name).type("TOPIC").showDefault("as in run_info, else " + by_default);
+}
+
+/// Parameters and robot description of the job; what is wrong with their files, one line each.
+inline std::vector<std::string> readParameterFiles(const std::vector<std::string>& params, const std::string& urdf,
+                                                   BagJob& job) {
+  std::vector<std::string> problems;
+  ParameterMap parameters;
+  if (!params.empty() && addFiles(params, parameters, problems)) job.parameters = std::move(parameters);
+  if (urdf.empty()) return problems;
+  Checked<std::string> description = fileText(urdf);
+  problems.insert(problems.end(), description.problems.begin(), description.problems.end());
+  job.robot_description = std::move(description.value);
+  return problems;
+}
+
+}  // namespace hammer_loads

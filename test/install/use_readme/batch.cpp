@@ -1,0 +1,12 @@
+/// Many states, with nothing but what the README names.
+#include README_HEADER
+
+int main() {
+  using namespace hammer_loads;
+  const auto mechanism = Mechanism::make({});
+  if (!mechanism.value) return 0;
+  const double angle = 1.0, speed = 30.0, acceleration = 0.0;
+  double x, z, torque;
+  hullWrenches(HullModel(*mechanism.value, Level::kRocker), {&angle, &speed, &acceleration, 1}, {}, {&x, &z, &torque});
+  return 0;
+}

@@ -1,0 +1,10 @@
+/// Samples to loads, with nothing but what the README names.
+#include README_HEADER
+
+int main() {
+  using namespace hammer_loads;
+  const auto mechanism = Mechanism::make({});
+  if (!mechanism.value) return 0;
+  const Pipeline pipeline(*mechanism.value, PipelineSettings{});
+  return pipeline.counts().accepted == 0 ? 0 : 1;
+}
