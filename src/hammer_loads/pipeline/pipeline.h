@@ -62,6 +62,7 @@ class Pipeline {
   CrankLead crankLead(double speed) const noexcept;
   void followBoom(const LinksBeside& links) noexcept;
   void passBlows() noexcept;
+  void followHull() noexcept;
   void swingOn(const WrenchHistory& step) noexcept;
 
   Mechanism mechanism_;

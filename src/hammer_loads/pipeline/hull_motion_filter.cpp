@@ -1,0 +1,112 @@
+#include "hammer_loads/pipeline/hull_motion_filter.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+// First guesses of a reading's noise, a usual MEMS unit's; learned.
+constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
+// Standard deviation of what such a unit adds to all readings alike, which no filter shows.
+constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
+// A hull is some five times as heavy as its rocker at least.
+constexpr double kLightest = 0.2;
+constexpr double kWorking = 0.05;     // of the greatest load: the hammer is at work
+
+/// Of the hull's compliance by force x, force z and moment about D.
+Eigen::Vector3d firstGuess(double by_force, double by_moment) { return kLightest * Eigen::Vector3d(by_force, by_force, by_moment); }
+
+DrivenSignal::Settings forceSignal(const HammerParameters& p) {
+  const double first_moment = p.rocker_mass * p.rocker_com_distance;
+  return {DrivenSignal::Reads::kItself, kForceNoise, firstGuess(1.0 / p.rocker_mass, 1.0 / first_moment)};
+}
+
+DrivenSignal::Settings turningSignal(const HammerParameters& p) {
+  const double first_moment = p.rocker_mass * p.rocker_com_distance;
+  return {DrivenSignal::Reads::kIntegral, kRateNoise,
+          firstGuess(1.0 / first_moment, 1.0 / p.rocker_inertia_about_pivot)};
+}
+
+}  // namespace
+
+HullMotionFilter::HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer)
+    : settings_(imu), x_(forceSignal(hammer)), z_(forceSignal(hammer)), turning_(turningSignal(hammer)) {}
+
+void HullMotionFilter::add(StampNs stamp, const ImuReading& reading) noexcept {
+  if (waits_ == kWaiting) std::move(waiting_.begin() + 1, waiting_.end(), waiting_.begin()), --waits_;
+  waiting_[waits_++] = {stamp, reading};
+}
+
+void HullMotionFilter::forgetMotion() noexcept {
+  x_.forgetMotion(), z_.forgetMotion(), turning_.forgetMotion();
+  readings_ = 0;
+}
+
+void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
+  if (step.count == 0) {
+    path_.forget();
+    forgetMotion();
+  } else {
+    path_.add(sample, step, path_.known() ? beside_ : beside, beside);
+  }
+  beside_ = beside;
+  std::size_t taken = 0;
+  while (taken < waits_ && waiting_[taken].stamp <= sample) {
+    if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken]);
+    ++taken;
+  }
+  std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken), waiting_.begin() + static_cast<std::ptrdiff_t>(waits_),
+            waiting_.begin());
+  waits_ -= taken;
+}
+
+/// At rest readings show noise alone.
+bool HullMotionFilter::works(const Eigen::Vector3d& load) noexcept {
+  const double size = load.head<2>().norm();
+  greatest_load_ = std::max(greatest_load_, size);
+  return size > kWorking * greatest_load_;
+}
+
+void HullMotionFilter::take(const Reading& next) noexcept {
+  const double step = seconds(next.stamp - last_.stamp);
+  if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();
+  const WrenchPath::Instant now = path_.at(next.stamp);
+  const Eigen::Vector3d impulse = now.impulse - at_last_.impulse;
+  const bool counts = works(now.load);
+  const ImuReading& r = next.reading;
+  x_.read(r.specific_force.x(), step, now.load, impulse, counts);
+  z_.read(r.specific_force.z(), step, now.load, impulse, counts);
+  turning_.read(r.rate.y(), step, now.load, impulse, counts);
+  last_ = next;
+  at_last_ = now;
+  readings_ = std::min(readings_ + 1, 2);
+}
+
+std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcept {
+  const double step = seconds(stamp - last_.stamp);
+  if (readings_ < 2 || !path_.known() || !(step >= 0.0 && step <= settings_.max_age)) return std::nullopt;
+  const WrenchPath::Instant now = path_.at(stamp);
+  const Eigen::Vector3d impulse = now.impulse - at_last_.impulse;
+  const DrivenSignal::Value x = x_.foretell(step, now.load, impulse), z = z_.foretell(step, now.load, impulse),
+                            turns = turning_.foretell(step, now.load, impulse);
+  Eigen::Vector3d rate = last_.reading.rate;
+  rate.y() = turns.integral;
+  const Eigen::Vector3d& r = settings_.position;
+  const Eigen::Vector3d force = Eigen::Vector3d(x.signal, 0.0, z.signal) -
+                                Eigen::Vector3d(0.0, turns.signal, 0.0).cross(r) - rate.cross(rate.cross(r));
+  KnownHullMotion known;
+  known.motion = {{-force.x(), -force.z()}, turns.integral, turns.signal};
+  Eigen::Vector4d by_turning(r.z(), -r.x(), 0.0, 1.0), by_rate(-2.0 * rate.y() * r.x(), -2.0 * rate.y() * r.z(), 1.0, 0.0);
+  HullMotionCovariance& P = known.covariance;
+  P = turns.signal_variance * by_turning * by_turning.transpose() +
+      (turns.integral_variance + square(kRateOffset)) * by_rate * by_rate.transpose() +
+      turns.covariance * (by_turning * by_rate.transpose() + by_rate * by_turning.transpose());
+  P(0, 0) += x.signal_variance + square(kForceOffset), P(1, 1) += z.signal_variance + square(kForceOffset);
+  return known;
+}
+
+}  // namespace hammer_loads
