@@ -8,11 +8,13 @@
 namespace hammer_loads {
 namespace {
 
-enum Part { kIntegral, kSmooth, kSlope, kCompliance };
+enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6 };
 // Of slopes' walk times interval^3 (of a signal) or interval^5 (of its integral) over the noise's variance: from a hull
 // that drifts to one whose readings leave no doubt.
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
+constexpr double kSteadyBegin = 0.2, kSteadyMemory = 2.0;  // [s]: a turn or less; of the signal's mean, which is weight
+constexpr double kBlowPart = 0.3;           // of a blow's impulse, which is known when the crank has turned on
 constexpr double kMemoryOfReadings = 1000.0;          // readings
 constexpr double kFarOff = 9.0;                // of variances: a reading that is farther off counts as this
 constexpr double kComplianceWalk = 0.02;    // of the first guess's deviation in a second: a pose that changes
@@ -23,12 +25,16 @@ constexpr double kUnknownSignal = 1e3;            // of the noise: smooth part a
 }  // namespace
 
 DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settings) {
+  Eigen::Matrix<double, 6, 1> guess;
+  guess << settings.compliance, settings.stiffness;
+  guess = (guess / settings.noise).cwiseAbs2();
+  walk_ = square(kComplianceWalk) * guess;
   for (std::size_t i = 0; i < kCandidates; ++i) {
     Candidate& c = candidates_[i];
     c.walk = settings.reads == Reads::kItself ? kWalks[i] : kWalksOfIntegral[i];
     c.x.setZero(), c.P.setZero();
     c.variance = square(settings.noise);
-    for (int k = 0; k < 3; ++k) c.P(kCompliance + k, kCompliance + k) = square(settings.compliance[k] / settings.noise);
+    c.P.diagonal().tail<6>() = guess;
   }
   best_ = kCandidates / 2;
 }
@@ -40,7 +46,7 @@ DrivenSignal::State DrivenSignal::rowOf(const Eigen::Vector3d& load) const noexc
   if (settings_.reads == Reads::kIntegral) {
     row[kIntegral] = 1.0;
   } else {
-    row[kSmooth] = 1.0, row.tail<3>() = load;
+    row[kSmooth] = 1.0, row.segment<3>(kCompliance) = load;
   }
   return row;
 }
@@ -55,31 +61,38 @@ void DrivenSignal::begin(double reading, const Eigen::Vector3d& load) noexcept {
   for (Candidate& c : candidates_) {
     c.x.head<3>().setZero();
     c.P.topRows<3>().setZero(), c.P.leftCols<3>().setZero();
-    if (itself) c.x[kSmooth] = reading - load.dot(c.x.tail<3>());
+    if (itself) c.x[kSmooth] = reading - load.dot(c.x.segment<3>(kCompliance));
     else c.x[kIntegral] = reading;
     // Of a rate that is read the acceleration is not.
     const double smooth = itself ? square(kUnknownSignal) : square(kUnknownSignal * kUnknownSlope);
     c.P(kIntegral, kIntegral) = 1.0, c.P(kSmooth, kSmooth) = smooth;
     c.P(kSlope, kSlope) = smooth * square(kUnknownSlope);
   }
+  if (itself && steady_time_ == 0.0) steady_ = reading, steady_time_ = kSteadyBegin;
   begun_ = true;
 }
 
-void DrivenSignal::advance(double h, double slope_step, const Eigen::Vector3d& impulse, double walk, State& x,
-                           Covariance& P) const noexcept {
-  Covariance F = Covariance::Identity();
+void DrivenSignal::advance(const Step& step, double slope_step, double walk, double unit, State& x, Covariance& P) const noexcept {
+  const double h = step.length, hh = h * h, q = walk * h;
+  Eigen::Matrix<double, 3, 9> F = Eigen::Matrix<double, 3, 9>::Identity();
   F(kIntegral, kSmooth) = h, F(kIntegral, kSlope) = slope_step * (h - 0.5 * slope_step);
   F(kSmooth, kSlope) = slope_step;
-  F.block<1, 3>(kIntegral, kCompliance) = impulse.transpose();
-  x = F * x;
-  F(kIntegral, kSlope) = 0.5 * h * h, F(kSmooth, kSlope) = h;
-  P = F * P * F.transpose();
-  const double hh = h * h, q = walk * h;
+  F.block<1, 3>(kIntegral, kCompliance) = step.impulse.transpose();
+  F.block<1, 3>(kIntegral, kBending) = -h / 3.0 * step.way.transpose();
+  F.block<1, 3>(kSmooth, kBending) = -step.way.transpose();
+  F.block<1, 3>(kSlope, kBending) = -step.velocity.transpose();
+  const double struck = square(kBlowPart * step.blow.dot(x.segment<3>(kCompliance)));
+  x.head<3>() = (F * x).eval();
+  F(kIntegral, kSlope) = 0.5 * hh, F(kSmooth, kSlope) = h;
+  const Eigen::Matrix<double, 3, 9> FP = F * P;
+  P.topRows<3>() = FP;
+  P.topLeftCorner<3, 3>() = FP * F.transpose();
+  P.leftCols<3>() = P.topRows<3>().transpose().eval();
   P(kIntegral, kIntegral) += q * hh * hh / 20.0, P(kSmooth, kSmooth) += q * hh / 3.0, P(kSlope, kSlope) += q;
   const auto both = [&](int i, int j, double value) { P(i, j) += value, P(j, i) += value; };
   both(kIntegral, kSmooth, q * hh * h / 8.0), both(kIntegral, kSlope, q * hh / 6.0), both(kSmooth, kSlope, q * h / 2.0);
-  for (int k = 0; k < 3; ++k)
-    P(kCompliance + k, kCompliance + k) += h * square(kComplianceWalk * settings_.compliance[k] / settings_.noise);
+  P(kIntegral, kIntegral) += struck / unit;
+  P.diagonal().tail<6>() += h * walk_;
 }
 
 void DrivenSignal::update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& c) noexcept {
@@ -95,14 +108,16 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, bool coun
   c.log_spread += share * (std::log(S) - c.log_spread);
 }
 
-void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load, const Eigen::Vector3d& impulse,
-                        bool counts) noexcept {
-  if (!begun_) return begin(reading, load);
-  interval_ = interval_ > 0.0 ? interval_ + 0.05 * (step - interval_) : step;
+void DrivenSignal::read(double reading, const Step& step, bool counts) noexcept {
+  if (!begun_) return begin(reading, step.load);
+  interval_ = interval_ > 0.0 ? interval_ + 0.05 * (step.length - interval_) : step.length;
   for (Candidate& c : candidates_) {
-    advance(step, step, impulse, walkOf(c), c.x, c.P);
-    update(reading, load, counts, c);
+    advance(step, step.length, walkOf(c), c.variance, c.x, c.P);
+    update(reading, step.load, counts, c);
   }
+  const double value = rowOf(step.load).dot(best().x);
+  if (settings_.reads == Reads::kItself) steady_ += std::min(1.0, step.length / steady_time_) * (value - steady_);
+  steady_time_ = std::min(steady_time_ + step.length, kSteadyMemory);
   if (!counts) return;
   counted_ += 1.0;
   const auto lower = [](const Candidate& a, const Candidate& b) { return a.score() < b.score(); };
@@ -110,22 +125,29 @@ void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load
                                    candidates_.begin());
 }
 
-DrivenSignal::Value DrivenSignal::foretell(double step, const Eigen::Vector3d& load,
-                                           const Eigen::Vector3d& impulse) const noexcept {
+DrivenSignal::Value DrivenSignal::foretell(const Step& step) const noexcept {
   State x = best().x;
   Covariance P = best().P;
-  advance(step, std::min(step, interval_), impulse, walkOf(best()), x, P);
+  advance(step, std::min(step.length, interval_), walkOf(best()), best().variance, x, P);
   State row = State::Zero();
-  row[kSmooth] = 1.0, row.tail<3>() = load;
+  row[kSmooth] = 1.0, row.segment<3>(kCompliance) = step.load;
   const State PH = P * row;
   const double unit = best().variance;
   return {row.dot(x), x[kIntegral], unit * row.dot(PH), unit * PH[kIntegral], unit * P(kIntegral, kIntegral)};
 }
 
+DrivenSignal::Swing DrivenSignal::swing(double h, const Eigen::Vector3d& impulse,
+                                        const Eigen::Vector3d& lasting) const noexcept {
+  const State& x = best().x;
+  const double smooth = x[kSmooth] - steady_;
+  return {h * (smooth + 0.5 * h * x[kSlope]) + compliance().dot(impulse),
+          h * h * (0.5 * smooth + h / 6.0 * x[kSlope]) + compliance().dot(lasting)};
+}
+
 double DrivenSignal::noise() const noexcept { return std::sqrt(best().variance); }
 
 Eigen::Vector3d DrivenSignal::complianceDeviation() const noexcept {
-  return (best().variance * best().P.diagonal().tail<3>()).cwiseSqrt();
+  return (best().variance * best().P.diagonal().segment<3>(kCompliance)).cwiseSqrt();
 }
 
 }  // namespace hammer_loads

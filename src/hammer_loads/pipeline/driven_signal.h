@@ -12,7 +12,8 @@ namespace hammer_loads {
 /// jump of the acceleration, and what is interpolated and foretold between readings is the smooth rest.
 ///
 /// Kalman filter: integral of the signal (a rate that is read), the smooth part, its slope, which walks at random, and
-/// three compliances, which are learned from all that the load does. How strongly the slope walks against the noise of a
+/// three compliances, which are learned from all that the load does. The smooth part is what the oil pulls with, so that
+/// it is bent by the hull's own acceleration: three stiffnesses over inertia are learned likewise. How strongly the slope walks against the noise of a
 /// reading is that of some candidates which foretells the readings best, and the noise is what these foretellings miss
 /// (maximum likelihood over some thousand readings), so that no sensor's noise need be given.
 ///
@@ -24,7 +25,18 @@ class DrivenSignal {
   struct Settings {
     Reads reads{};
     double noise{};              ///< first guess, standard: of the signal's unit or its integral's
-    Eigen::Vector3d compliance;  ///< standard deviation of the first guess, which is zero [signal/N, N, N m]
+    /// Standard deviations of first guesses, which are zero: signal over force x, force z, moment; second derivative
+    /// of the signal over acceleration x, z, turning.
+    Eigen::Vector3d compliance, stiffness;
+  };
+  /// Since the last reading.
+  struct Step {
+    double length{};           ///< [s]
+    Eigen::Vector3d load;      ///< at its end
+    Eigen::Vector3d impulse;   ///< of the load, blows included
+    Eigen::Vector3d blow;      ///< of the blows alone
+    Eigen::Vector3d velocity;  ///< by which the hull's vibration has changed: x, z, turning
+    Eigen::Vector3d way;       ///< the integral of that from 0
   };
   struct Value {
     double signal{}, integral{};  ///< the integral only where it is read
@@ -36,20 +48,22 @@ class DrivenSignal {
 
   /// Readings are not continuous with those before; what the hull is stays known.
   void forgetMotion() noexcept { begun_ = false; }
-  /// step: since the last reading [s]; load at the reading; impulse: of the load since the last reading; counts: the
-  /// readings show how the signal walks, as they do while the hammer works.
-  void read(double reading, double step, const Eigen::Vector3d& load, const Eigen::Vector3d& impulse,
-            bool counts) noexcept;
-  /// So long after the last reading [s], at a load, with the impulse since then. The smooth part's slope counts for one
-  /// interval of the readings.
-  Value foretell(double step, const Eigen::Vector3d& load, const Eigen::Vector3d& impulse) const noexcept;
+  /// counts: the readings show how the signal walks, as they do while the hammer works.
+  void read(double reading, const Step& step, bool counts) noexcept;
+  /// After the last reading. The smooth part's slope counts for one interval of the readings.
+  Value foretell(const Step& step) const noexcept;
+  /// Change of the signal's integral, and the integral of that from 0, over a step without velocity and way.
+  struct Swing {
+    double velocity{}, way{};
+  };
+  Swing swing(double length, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) const noexcept;
   double noise() const noexcept;  ///< of a reading, as learned
-  Eigen::Vector3d compliance() const noexcept { return best().x.tail<3>(); }
+  Eigen::Vector3d compliance() const noexcept { return best().x.segment<3>(3); }
   Eigen::Vector3d complianceDeviation() const noexcept;
 
  private:
-  using State = Eigen::Matrix<double, 6, 1>;
-  using Covariance = Eigen::Matrix<double, 6, 6>;
+  using State = Eigen::Matrix<double, 9, 1>;
+  using Covariance = Eigen::Matrix<double, 9, 9>;
   /// The covariance is in units of the noise's variance.
   struct Candidate {
     double walk{};  ///< of the slope, intensity over the noise's variance, in units of the reading's interval
@@ -61,8 +75,7 @@ class DrivenSignal {
   static constexpr std::size_t kCandidates = 4;
 
   void begin(double reading, const Eigen::Vector3d& load) noexcept;
-  void advance(double step, double slope_step, const Eigen::Vector3d& impulse, double walk, State& x,
-               Covariance& P) const noexcept;
+  void advance(const Step& step, double slope_step, double walk, double unit, State& x, Covariance& P) const noexcept;
   void update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& candidate) noexcept;
   State rowOf(const Eigen::Vector3d& load) const noexcept;
   double walkOf(const Candidate& candidate) const noexcept;
@@ -71,8 +84,10 @@ class DrivenSignal {
   Settings settings_;
   std::array<Candidate, kCandidates> candidates_;
   std::size_t best_{};
+  Eigen::Matrix<double, 6, 1> walk_;  ///< of compliances and stiffnesses, variance in a second
   double interval_{};  ///< mean, of the readings [s]
   double counted_{};
+  double steady_{}, steady_time_{};  ///< mean of the signal that is read; over [s]
   bool begun_{};
 };
 

@@ -17,18 +17,24 @@ constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
 constexpr double kLightest = 0.2;
 constexpr double kWorking = 0.05;     // of the greatest load: the hammer is at work
 
-/// Of the hull's compliance by force x, force z and moment about D.
-Eigen::Vector3d firstGuess(double by_force, double by_moment) { return kLightest * Eigen::Vector3d(by_force, by_force, by_moment); }
+constexpr double kStiffest = 4e3;     // [1/s2]: some 10 Hz
+constexpr double kArm = 0.5;          // [m] of a hull's turning: from D to where it hangs
+
+/// signal_arm: 1 of a force's signal; of turning over kArm.
+DrivenSignal::Settings signalOf(DrivenSignal::Reads reads, double noise, Eigen::Vector3d compliance,
+                                double signal_arm) {
+  return {reads, noise, kLightest * compliance, kStiffest / signal_arm * Eigen::Vector3d(1.0, 1.0, kArm)};
+}
 
 DrivenSignal::Settings forceSignal(const HammerParameters& p) {
-  const double first_moment = p.rocker_mass * p.rocker_com_distance;
-  return {DrivenSignal::Reads::kItself, kForceNoise, firstGuess(1.0 / p.rocker_mass, 1.0 / first_moment)};
+  const double by_force = 1.0 / p.rocker_mass, by_moment = by_force / p.rocker_com_distance;
+  return signalOf(DrivenSignal::Reads::kItself, kForceNoise, {by_force, by_force, by_moment}, 1.0);
 }
 
 DrivenSignal::Settings turningSignal(const HammerParameters& p) {
-  const double first_moment = p.rocker_mass * p.rocker_com_distance;
-  return {DrivenSignal::Reads::kIntegral, kRateNoise,
-          firstGuess(1.0 / first_moment, 1.0 / p.rocker_inertia_about_pivot)};
+  const double by_force = 1.0 / (p.rocker_mass * p.rocker_com_distance);
+  return signalOf(DrivenSignal::Reads::kIntegral, kRateNoise,
+                  {by_force, by_force, 1.0 / p.rocker_inertia_about_pivot}, kArm);
 }
 
 }  // namespace
@@ -71,16 +77,31 @@ bool HullMotionFilter::works(const Eigen::Vector3d& load) noexcept {
   return size > kWorking * greatest_load_;
 }
 
+/// From the last reading.
+DrivenSignal::Step HullMotionFilter::stepTo(const WrenchPath::Instant& now, double length) const noexcept {
+  if (readings_ == 0) return {length, now.load, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  const Eigen::Vector3d impulse = now.impulse - at_last_.impulse;
+  const Eigen::Vector3d lasting = now.lasting - at_last_.lasting - length * at_last_.impulse;
+  const DrivenSignal::Swing x = x_.swing(length, impulse, lasting), z = z_.swing(length, impulse, lasting),
+                            turns = turning_.swing(length, impulse, lasting);
+  return {length,
+          now.load,
+          impulse,
+          now.blows - at_last_.blows,
+          {x.velocity, z.velocity, turns.velocity},
+          {x.way, z.way, turns.way}};
+}
+
 void HullMotionFilter::take(const Reading& next) noexcept {
   const double step = seconds(next.stamp - last_.stamp);
   if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();
   const WrenchPath::Instant now = path_.at(next.stamp);
-  const Eigen::Vector3d impulse = now.impulse - at_last_.impulse;
+  const DrivenSignal::Step since = stepTo(now, step);
   const bool counts = works(now.load);
   const ImuReading& r = next.reading;
-  x_.read(r.specific_force.x(), step, now.load, impulse, counts);
-  z_.read(r.specific_force.z(), step, now.load, impulse, counts);
-  turning_.read(r.rate.y(), step, now.load, impulse, counts);
+  x_.read(r.specific_force.x(), since, counts);
+  z_.read(r.specific_force.z(), since, counts);
+  turning_.read(r.rate.y(), since, counts);
   last_ = next;
   at_last_ = now;
   readings_ = std::min(readings_ + 1, 2);
@@ -90,9 +111,8 @@ std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcep
   const double step = seconds(stamp - last_.stamp);
   if (readings_ < 2 || !path_.known() || !(step >= 0.0 && step <= settings_.max_age)) return std::nullopt;
   const WrenchPath::Instant now = path_.at(stamp);
-  const Eigen::Vector3d impulse = now.impulse - at_last_.impulse;
-  const DrivenSignal::Value x = x_.foretell(step, now.load, impulse), z = z_.foretell(step, now.load, impulse),
-                            turns = turning_.foretell(step, now.load, impulse);
+  const DrivenSignal::Step since = stepTo(now, step);
+  const DrivenSignal::Value x = x_.foretell(since), z = z_.foretell(since), turns = turning_.foretell(since);
   Eigen::Vector3d rate = last_.reading.rate;
   rate.y() = turns.integral;
   const Eigen::Vector3d& r = settings_.position;

@@ -51,6 +51,7 @@ class HullMotionFilter {
   };
   static constexpr std::size_t kWaiting = 64;
 
+  DrivenSignal::Step stepTo(const WrenchPath::Instant& now, double length) const noexcept;
   void take(const Reading& reading) noexcept;
   void forgetMotion() noexcept;
   bool works(const Eigen::Vector3d& load) noexcept;

@@ -11,7 +11,8 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
   StampNs start = end - static_cast<StampNs>(std::llround(length / kSecondsPerNs));
   if (known() && std::abs(start - end_) > 1) forget();
   double passed = 0.0;
-  Eigen::Vector3d impulse = known() ? back(0).after : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  Instant begin = known() ? after(back(0)) : Instant{none, none, none, none};
   const Eigen::Vector3d first = vectorOf(beside_from), change = vectorOf(beside_to) - first;
   for (std::size_t i = 0; i < step.count; ++i) {
     const SmoothPiece& given = step.pieces[i];
@@ -21,10 +22,9 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
     const Eigen::Vector3d mean = vectorOf(given.mean) + (passed + 0.5 * h) * per_length * change + first;
     const Eigen::Vector3d bump = 6.0 * (mean - 0.5 * (from + to));
     Piece& piece = pieces_[count_++ % kKept];
-    piece = {start, h, from, per_time * (to - from + bump), -2.0 * per_time * per_time * bump, impulse,
-             impulse + h * mean};
-    if (given.ends_in_blow) piece.after += vectorOf(given.blow);
-    impulse = piece.after;
+    piece = {start, h, from, per_time * (to - from + bump), -2.0 * per_time * per_time * bump, begin.impulse, begin.blows,
+             begin.lasting, given.ends_in_blow ? vectorOf(given.blow) : none};
+    begin = after(piece);
     passed += h;
     start = end - static_cast<StampNs>(std::llround((length - passed) / kSecondsPerNs));
   }
@@ -32,15 +32,26 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
 }
 
 WrenchPath::Instant WrenchPath::within(const Piece& p, double t) noexcept {
-  return {p.from + t * p.slope + 0.5 * t * t * p.bend,
-          p.impulse + t * (p.from + t * (0.5 * p.slope + t / 6.0 * p.bend))};
+  const double tt = t * t;
+  return {p.from + t * p.slope + 0.5 * tt * p.bend,
+          p.impulse + t * p.from + 0.5 * tt * p.slope + tt * t / 6.0 * p.bend, p.blows,
+          p.lasting + t * p.impulse + 0.5 * tt * p.from + tt * t / 6.0 * p.slope + tt * tt / 24.0 * p.bend};
+}
+
+/// With the blow at its end.
+WrenchPath::Instant WrenchPath::after(const Piece& p) noexcept {
+  Instant end = within(p, p.duration);
+  end.impulse += p.blow, end.blows += p.blow;
+  return end;
 }
 
 WrenchPath::Instant WrenchPath::at(StampNs stamp) const noexcept {
   const Piece& last = back(0);
   if (stamp >= end_) {
-    Instant now = within(last, last.duration);
-    now.impulse = last.after + seconds(stamp - end_) * now.load;
+    Instant now = after(last);
+    const double time = seconds(stamp - end_);
+    now.lasting += time * now.impulse + 0.5 * time * time * now.load;
+    now.impulse += time * now.load;
     return now;
   }
   std::size_t k = 0;

@@ -17,7 +17,9 @@ inline Eigen::Vector3d vectorOf(const HullWrench& w) noexcept { return {w.force_
 class WrenchPath {
  public:
   struct Instant {
-    Eigen::Vector3d load, impulse;  ///< the impulse counts from the first step, blows included
+    Eigen::Vector3d load;
+    Eigen::Vector3d impulse, blows;  ///< from the first step on: all, and that of the blows alone
+    Eigen::Vector3d lasting;         ///< the impulse's integral likewise [N s2, N s2, N m s2]
   };
 
   void forget() noexcept { count_ = 0; }
@@ -36,14 +38,15 @@ class WrenchPath {
     StampNs start{};
     double duration{};                 ///< [s]
     Eigen::Vector3d from, slope, bend;  ///< load from + slope t + bend t^2/2
-    Eigen::Vector3d impulse;           ///< at the start
-    Eigen::Vector3d after;             ///< at the end, a blow there included
+    Eigen::Vector3d impulse, blows, lasting;  ///< at the start
+    Eigen::Vector3d blow;                     ///< impulse at the end
   };
   static constexpr std::size_t kKept = 256;  ///< a quarter of a second of samples at 1 kHz
 
   const Piece& back(std::size_t steps) const noexcept { return pieces_[(count_ - 1 - steps) % kKept]; }
   std::size_t kept() const noexcept { return count_ < kKept ? static_cast<std::size_t>(count_) : kKept; }
   const Piece& oldest() const noexcept { return back(kept() - 1); }
+  static Instant after(const Piece& piece) noexcept;
   static Instant within(const Piece& piece, double time) noexcept;
 
   std::array<Piece, kKept> pieces_;
