@@ -37,6 +37,7 @@ class HullMotionFilter {
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
   /// Known from the second reading with a known load on, until the last one is max_age old.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
+  std::size_t waiting() const noexcept { return waits_; }  ///< readings that no crank sample has followed yet
   /// Of the last reading used [ns].
   StampNs last() const noexcept { return last_.stamp; }
 

@@ -50,11 +50,11 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
   return now_.motion;
 }
 
-/// With the load's step known up to the stamp by the filter, which holds more; before that by the newest readings.
+/// By the filter, unless a slow crank has left it behind: then by the newest readings alone.
 std::optional<KnownHullMotion> HullState::measured(StampNs stamp) const noexcept {
   if (imu_trust_.isLost()) return std::nullopt;
-  const bool newer = imu_.last() > last_sample_;
-  if (!newer || stamp == last_sample_)
+  constexpr std::size_t kLeftBehind = 3;  // readings
+  if (filter_.waiting() < kLeftBehind)
     if (const std::optional<KnownHullMotion> known = filter_.at(stamp)) return known;
   const std::optional<HullMotion> read = imu_.at(stamp);
   if (!read) return std::nullopt;
@@ -97,7 +97,6 @@ void HullState::findByBoom() noexcept {
 
 void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
   if (!followsLoad()) return;
-  last_sample_ = sample;
   filter_.follow(sample, step, beside);
   find(sample);
 }

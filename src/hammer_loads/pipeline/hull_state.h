@@ -80,7 +80,6 @@ class HullState {
   HullGravity weight_;
   HullImu imu_;
   HullMotionFilter filter_;
-  StampNs last_sample_{};
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
   std::optional<HullMotion> vibration_;  ///< of the boom's tip at the last sample, without weight; none: not known
