@@ -15,15 +15,18 @@ constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
 constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
 // A hull is some five times as heavy as its rocker at least.
 constexpr double kLightest = 0.2;
-constexpr double kWorking = 0.05;     // of the greatest load: the hammer is at work
+constexpr double kLongestPiece = 2e-3;  // [s]: some 20 of a period of 25 Hz
+constexpr double kWorking = 0.05;       // of the greatest load: the hammer is at work
 
-constexpr double kStiffest = 4e3;     // [1/s2]: some 10 Hz
-constexpr double kArm = 0.5;          // [m] of a hull's turning: from D to where it hangs
+constexpr double kStiffest = 4e3;  // [1/s2]: some 10 Hz
+constexpr double kDamped = 10.0;   // [1/s]: of that a twelfth of the critical
+constexpr double kArm = 0.5;       // [m] of a hull's turning: from D to where it hangs
 
 /// signal_arm: 1 of a force's signal; of turning over kArm.
 DrivenSignal::Settings signalOf(DrivenSignal::Reads reads, double noise, Eigen::Vector3d compliance,
                                 double signal_arm) {
-  return {reads, noise, kLightest * compliance, kStiffest / signal_arm * Eigen::Vector3d(1.0, 1.0, kArm)};
+  const Eigen::Vector3d by = 1.0 / signal_arm * Eigen::Vector3d(1.0, 1.0, kArm);
+  return {reads, noise, kLightest * compliance, kStiffest * by, kDamped * by};
 }
 
 DrivenSignal::Settings forceSignal(const HammerParameters& p) {
@@ -33,8 +36,8 @@ DrivenSignal::Settings forceSignal(const HammerParameters& p) {
 
 DrivenSignal::Settings turningSignal(const HammerParameters& p) {
   const double by_force = 1.0 / (p.rocker_mass * p.rocker_com_distance);
-  return signalOf(DrivenSignal::Reads::kIntegral, kRateNoise,
-                  {by_force, by_force, 1.0 / p.rocker_inertia_about_pivot}, kArm);
+  return signalOf(DrivenSignal::Reads::kIntegral, kRateNoise, {by_force, by_force, 1.0 / p.rocker_inertia_about_pivot},
+                  kArm);
 }
 
 }  // namespace
@@ -65,8 +68,8 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
     if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken]);
     ++taken;
   }
-  std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken), waiting_.begin() + static_cast<std::ptrdiff_t>(waits_),
-            waiting_.begin());
+  std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
+            waiting_.begin() + static_cast<std::ptrdiff_t>(waits_), waiting_.begin());
   waits_ -= taken;
 }
 
@@ -77,31 +80,47 @@ bool HullMotionFilter::works(const Eigen::Vector3d& load) noexcept {
   return size > kWorking * greatest_load_;
 }
 
-/// From the last reading.
-DrivenSignal::Step HullMotionFilter::stepTo(const WrenchPath::Instant& now, double length) const noexcept {
-  if (readings_ == 0) return {length, now.load, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-  const Eigen::Vector3d impulse = now.impulse - at_last_.impulse;
-  const Eigen::Vector3d lasting = now.lasting - at_last_.lasting - length * at_last_.impulse;
-  const DrivenSignal::Swing x = x_.swing(length, impulse, lasting), z = z_.swing(length, impulse, lasting),
-                            turns = turning_.swing(length, impulse, lasting);
-  return {length,
-          now.load,
-          impulse,
-          now.blows - at_last_.blows,
-          {x.velocity, z.velocity, turns.velocity},
-          {x.way, z.way, turns.way}};
+/// Calls each(step) for short pieces from the last reading to a stamp, with what all three signals do in it.
+template <typename Signals, typename Each>
+void HullMotionFilter::forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept {
+  const int count = std::max(1, static_cast<int>(std::ceil(seconds(to - last_.stamp) / kLongestPiece)));
+  WrenchPath::Instant before = at_last_;
+  StampNs from = last_.stamp;
+  for (int i = 1; i <= count; ++i) {
+    const StampNs next = last_.stamp + (to - last_.stamp) * i / count;
+    const WrenchPath::Instant now = path_.at(next);
+    const double h = seconds(next - from);
+    const Eigen::Vector3d impulse = now.impulse - before.impulse;
+    const Eigen::Vector3d lasting = now.lasting - before.lasting - h * before.impulse;
+    const auto [x, z, turns] = signals(h, impulse, lasting);
+    each(DrivenSignal::Step{
+        h, impulse, now.blows - before.blows, {x.velocity, z.velocity, turns.velocity}, {x.way, z.way, turns.way}});
+    before = now, from = next;
+  }
 }
 
 void HullMotionFilter::take(const Reading& next) noexcept {
   const double step = seconds(next.stamp - last_.stamp);
   if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();
   const WrenchPath::Instant now = path_.at(next.stamp);
-  const DrivenSignal::Step since = stepTo(now, step);
+  if (readings_ > 0) {
+    const auto swings = [&](double h, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) {
+      return std::array<DrivenSignal::Swing, 3>{x_.swing(h, impulse, lasting), z_.swing(h, impulse, lasting),
+                                                turning_.swing(h, impulse, lasting)};
+    };
+    forEachStep(next.stamp, swings,
+                [&](const DrivenSignal::Step& one) { x_.advance(one), z_.advance(one), turning_.advance(one); });
+  }
   const bool counts = works(now.load);
   const ImuReading& r = next.reading;
-  x_.read(r.specific_force.x(), since, counts);
-  z_.read(r.specific_force.z(), since, counts);
-  turning_.read(r.rate.y(), since, counts);
+  x_.read(r.specific_force.x(), step, now.load, counts);
+  z_.read(r.specific_force.z(), step, now.load, counts);
+  turning_.read(r.rate.y(), step, now.load, counts);
+  for (DrivenSignal* signal : {&x_, &z_, &turning_}) {
+    if (signal->isFinite()) continue;
+    *signal = DrivenSignal(signal->settings());
+    forgetMotion();
+  }
   last_ = next;
   at_last_ = now;
   readings_ = std::min(readings_ + 1, 2);
@@ -111,8 +130,17 @@ std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcep
   const double step = seconds(stamp - last_.stamp);
   if (readings_ < 2 || !path_.known() || !(step >= 0.0 && step <= settings_.max_age)) return std::nullopt;
   const WrenchPath::Instant now = path_.at(stamp);
-  const DrivenSignal::Step since = stepTo(now, step);
-  const DrivenSignal::Value x = x_.foretell(since), z = z_.foretell(since), turns = turning_.foretell(since);
+  std::array<DrivenSignal::Future, 3> future{DrivenSignal::Future(x_), DrivenSignal::Future(z_),
+                                             DrivenSignal::Future(turning_)};
+  const auto swings = [&](double h, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) {
+    return std::array<DrivenSignal::Swing, 3>{future[0].swing(h, impulse, lasting),
+                                              future[1].swing(h, impulse, lasting),
+                                              future[2].swing(h, impulse, lasting)};
+  };
+  forEachStep(stamp, swings, [&](const DrivenSignal::Step& one) {
+    for (DrivenSignal::Future& signal : future) signal.advance(one);
+  });
+  const DrivenSignal::Value x = future[0].at(now.load), z = future[1].at(now.load), turns = future[2].at(now.load);
   Eigen::Vector3d rate = last_.reading.rate;
   rate.y() = turns.integral;
   const Eigen::Vector3d& r = settings_.position;
@@ -120,7 +148,8 @@ std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcep
                                 Eigen::Vector3d(0.0, turns.signal, 0.0).cross(r) - rate.cross(rate.cross(r));
   KnownHullMotion known;
   known.motion = {{-force.x(), -force.z()}, turns.integral, turns.signal};
-  Eigen::Vector4d by_turning(r.z(), -r.x(), 0.0, 1.0), by_rate(-2.0 * rate.y() * r.x(), -2.0 * rate.y() * r.z(), 1.0, 0.0);
+  Eigen::Vector4d by_turning(r.z(), -r.x(), 0.0, 1.0),
+      by_rate(-2.0 * rate.y() * r.x(), -2.0 * rate.y() * r.z(), 1.0, 0.0);
   HullMotionCovariance& P = known.covariance;
   P = turns.signal_variance * by_turning * by_turning.transpose() +
       (turns.integral_variance + square(kRateOffset)) * by_rate * by_rate.transpose() +

@@ -52,7 +52,8 @@ class HullMotionFilter {
   };
   static constexpr std::size_t kWaiting = 64;
 
-  DrivenSignal::Step stepTo(const WrenchPath::Instant& now, double length) const noexcept;
+  template <typename Signals, typename Each>
+  void forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept;
   void take(const Reading& reading) noexcept;
   void forgetMotion() noexcept;
   bool works(const Eigen::Vector3d& load) noexcept;

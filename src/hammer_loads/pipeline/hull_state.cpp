@@ -91,7 +91,9 @@ HullMotionCovariance HullState::usualMotion() const noexcept {
 void HullState::findByBoom() noexcept {
   const Gravity& weight = weight_.gravity();
   const HullMotion v = vibration_.value_or(HullMotion{});
-  now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration}, vibration_.has_value(), HullMotionCovariance::Zero()};
+  now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration},
+          vibration_.has_value(),
+          HullMotionCovariance::Zero()};
   if (source_ == HullMotionSource::kImu && !vibration_) now_.covariance = usualMotion();
 }
 

@@ -116,7 +116,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.links = linkState(links.here.links, motion);
   result_.wrench = hullWrench(model_, driveReaction(model_, crank_.tracker().driveInertia()), links.here.links, motion,
                               result_.hull.motion);
-  result_.pins = pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow);
+  result_.pins = pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow,
+                           std::sqrt(result_.crank_covariance(0, 0)));
   sampler_.sample(links, result_);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;

@@ -22,8 +22,15 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
     const Eigen::Vector3d mean = vectorOf(given.mean) + (passed + 0.5 * h) * per_length * change + first;
     const Eigen::Vector3d bump = 6.0 * (mean - 0.5 * (from + to));
     Piece& piece = pieces_[count_++ % kKept];
-    piece = {start, h, from, per_time * (to - from + bump), -2.0 * per_time * per_time * bump, begin.impulse, begin.blows,
-             begin.lasting, given.ends_in_blow ? vectorOf(given.blow) : none};
+    piece = {start,
+             h,
+             from,
+             per_time * (to - from + bump),
+             -2.0 * per_time * per_time * bump,
+             begin.impulse,
+             begin.blows,
+             begin.lasting,
+             given.ends_in_blow ? vectorOf(given.blow) : none};
     begin = after(piece);
     passed += h;
     start = end - static_cast<StampNs>(std::llround((length - passed) / kSecondsPerNs));
@@ -33,9 +40,8 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
 
 WrenchPath::Instant WrenchPath::within(const Piece& p, double t) noexcept {
   const double tt = t * t;
-  return {p.from + t * p.slope + 0.5 * tt * p.bend,
-          p.impulse + t * p.from + 0.5 * tt * p.slope + tt * t / 6.0 * p.bend, p.blows,
-          p.lasting + t * p.impulse + 0.5 * tt * p.from + tt * t / 6.0 * p.slope + tt * tt / 24.0 * p.bend};
+  return {p.from + t * p.slope + 0.5 * tt * p.bend, p.impulse + t * p.from + 0.5 * tt * p.slope + tt * t / 6.0 * p.bend,
+          p.blows, p.lasting + t * p.impulse + 0.5 * tt * p.from + tt * t / 6.0 * p.slope + tt * tt / 24.0 * p.bend};
 }
 
 /// With the blow at its end.

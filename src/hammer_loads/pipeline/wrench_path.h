@@ -36,8 +36,8 @@ class WrenchPath {
  private:
   struct Piece {
     StampNs start{};
-    double duration{};                 ///< [s]
-    Eigen::Vector3d from, slope, bend;  ///< load from + slope t + bend t^2/2
+    double duration{};                        ///< [s]
+    Eigen::Vector3d from, slope, bend;        ///< load from + slope t + bend t^2/2
     Eigen::Vector3d impulse, blows, lasting;  ///< at the start
     Eigen::Vector3d blow;                     ///< impulse at the end
   };

@@ -114,15 +114,15 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
 void WrenchSampler::addHullMotion(const LinksBeside& links, const HullState::Motion& hull,
                                   WrenchOutput& output) const noexcept {
   if (hull.covariance.isZero(0.0)) return;
-  const HullWrench variance = hullMotionVariance(*model_, drive_, links.here.links, output.crank.speed, hull.motion,
-                                                 hull.covariance);
+  const HullWrench variance =
+      hullMotionVariance(*model_, drive_, links.here.links, output.crank.speed, hull.motion, hull.covariance);
   HullWrench& d = output.deviation.wrench;
   d = {std::sqrt(square(d.force_x) + variance.force_x), std::sqrt(square(d.force_z) + variance.force_z),
        std::sqrt(square(d.torque_y) + variance.torque_y)};
 }
 
-void WrenchSampler::addDeviation(const LinksBeside& links, const HullState::Motion& hull, const Eigen::Matrix3d& covariance,
-                                 WrenchOutput& output) noexcept {
+void WrenchSampler::addDeviation(const LinksBeside& links, const HullState::Motion& hull,
+                                 const Eigen::Matrix3d& covariance, WrenchOutput& output) noexcept {
   output.deviation = hullDeviation(*model_, drive_, output.crank, links, hull.motion, covariance);
   addHullMotion(links, hull, output);
   if (kind_ != OutputKind::kMean) return;
