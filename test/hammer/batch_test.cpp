@@ -233,6 +233,23 @@ TEST(Batch, HasTheFinitePinForcesOfAnUnacceleratedCrankAtTheBlowItself) {
   }
 }
 
+TEST(Batch, HasNoPinForcesOfAnAcceleratedCrankAtTheBlowItself) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  for (BatchWidth width : kWidths) {
+    for (Level level : {Level::kRocker, Level::kLinkage}) {
+      Table table;
+      for (const double angle : {1e-9, 0.0, 1e-17, -1e-300}) table.add(angle, 30.0, 500.0);
+      table.out.assign(kColumns, std::vector<double>(4));
+      linkLoads(HullModel(mechanism, level), table.states(0, 4), {}, table.wrenches(0), table.pins(0), width);
+      EXPECT_TRUE(std::isfinite(table.out[7][0]));
+      for (std::size_t i = 1; i < 4; ++i) {
+        EXPECT_TRUE(std::isnan(table.out[7][i])) << i;
+        EXPECT_TRUE(std::isfinite(table.out[0][i] + table.out[11][i])) << i;
+      }
+    }
+  }
+}
+
 TEST(Batch, NeverAllocates) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   const HullModel model(mechanism, Level::kLinkage);

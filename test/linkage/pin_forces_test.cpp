@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
 #include "support/csv.h"
 #include "support/mo100.h"
 #include "support/newton_euler.h"
@@ -108,22 +112,59 @@ TEST(PinForces, AreFiniteAndContinuousAtTheBlowOfAnUnacceleratedCrank) {
   }
 }
 
-TEST(PinForces, GrowUnboundedAtTheBlowOfAnAcceleratedCrankButStayNumbers) {
+bool anyIsNaN(const PinReactions& pins) {
+  return std::any_of(std::begin(kPins), std::end(kPins), [&](const Named& named) {
+    return std::isnan((pins.*named.pin).x) || std::isnan((pins.*named.pin).z);
+  });
+}
+
+TEST(PinForces, GrowUnboundedTowardsTheBlowOfAnAcceleratedCrankAndAreNoNumberAtIt) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   for (Level level : {Level::kRocker, Level::kLinkage}) {
-    const auto size = [&](double offset) {
+    const auto at = [&](double offset) {
       const PinReactions pins = pinForces(mechanism, level, {{offset, Side::kAfterBlow}, 31.0, 500.0}, {}, kNearBlow);
       EXPECT_TRUE(pins.near_blow);
       EXPECT_TRUE(std::isfinite(pins.drive_torque));
-      for (const Named& named : kPins) {
-        EXPECT_FALSE(std::isnan((pins.*named.pin).x));
-        EXPECT_FALSE(std::isnan((pins.*named.pin).z));
-      }
+      return pins;
+    };
+    const auto size = [&](double offset) {
+      const PinReactions pins = at(offset);
+      EXPECT_FALSE(anyIsNaN(pins)) << offset;
       return std::hypot(pins.rod_on_rocker.x, pins.rod_on_rocker.z);
     };
     EXPECT_NEAR(size(1e-6) / size(1e-5), 10.0, 0.01);
     EXPECT_NEAR(size(1e-12) / size(1e-11), 10.0, 1e-6);
-    EXPECT_GT(size(0.0), 1e200);
+    // Two angles of a turn that no double tells apart: 2 pi less 4e-16 is 2 pi.
+    ASSERT_EQ(kTwoPi - 4e-16, kTwoPi);
+    for (const double offset : {0.0, 1e-300, 1e-18, 4e-16}) {
+      EXPECT_TRUE(anyIsNaN(at(offset))) << offset;
+      EXPECT_NEAR(at(offset).drive_torque, at(1e-12).drive_torque, 1e-6 * std::abs(at(1e-12).drive_torque));
+    }
+  }
+}
+
+/// The hull's own turning and its weight drive the rocker as the crank's acceleration does.
+TEST(PinForces, HaveNoLimitAtTheBlowWhateverTurnsTheRocker) {
+  HammerParameters p = test::mo100LinkageParameters();
+  p.rod_com_across = 0.0;
+  const Mechanism mechanism = test::mechanismOf(p);
+  const HullMotion still, heavy{{0.0, -9.8}, 0.0, 0.0}, turning{{0.0, 0.0}, 0.0, 2.0};
+  for (Level level : {Level::kRocker, Level::kLinkage}) {
+    const CrankMotion crank{{0.0, Side::kBeforeBlow}, 31.0, 0.0};
+    EXPECT_FALSE(anyIsNaN(pinForces(mechanism, level, crank, still, kNearBlow)));
+    EXPECT_TRUE(anyIsNaN(pinForces(mechanism, level, crank, heavy, kNearBlow)));
+    EXPECT_TRUE(anyIsNaN(pinForces(mechanism, level, crank, turning, kNearBlow)));
+  }
+}
+
+/// A crank whose angle is known to 1e-3 rad may as well stand at the blow 5e-4 rad beside it, where 1/s has no value.
+TEST(PinForces, AreNoNumberWithinTheAnglesErrorOfTheBlow) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  for (const double offset : {-2e-3, -5e-4, 5e-4, 2e-3}) {
+    const CrankMotion crank{CrankAngle::fromOffset(offset), 31.0, 500.0};
+    EXPECT_FALSE(anyIsNaN(pinForces(mechanism, Level::kLinkage, crank, {}, NearBlow(0.01)))) << offset;
+    EXPECT_EQ(anyIsNaN(pinForces(mechanism, Level::kLinkage, crank, {}, NearBlow(0.01, 1e-3))), std::abs(offset) < 1e-3)
+        << offset;
   }
 }
 

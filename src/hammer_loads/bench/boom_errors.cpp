@@ -63,9 +63,23 @@ void BoomErrors::addBlows(const simulation::Session& session, const SampleResult
   }
 }
 
+void BoomErrors::addWrench(const simulation::OnBoomTruth& truth, const SampleResult& result) {
+  largest_force = std::max(largest_force, std::hypot(truth.load.force_x, truth.load.force_z));
+  const double x = result.wrench.force_x - truth.load.force_x, z = result.wrench.force_z - truth.load.force_z;
+  const double torque_y = result.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y;
+  worst_force = std::max(worst_force, std::hypot(x, z));
+  if (result.outputs.empty()) return;
+  const HullWrench& deviation = result.outputs.back().deviation.wrench;
+  wrench_within[0] += std::abs(x) <= 2.0 * deviation.force_x;
+  wrench_within[1] += std::abs(z) <= 2.0 * deviation.force_z;
+  wrench_within[2] += std::abs(torque_y) <= 2.0 * deviation.torque_y;
+}
+
 void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleResult& result) {
   ++samples;
+  force_x.add(result.wrench.force_x, truth.load.force_x);
   force_z.add(result.wrench.force_z, truth.load.force_z);
+  addWrench(truth, result);
   moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
   const BoomState& boom = *result.boom;
   for (int j = 0; j < 3; ++j) {

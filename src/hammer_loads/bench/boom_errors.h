@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <string>
 
 #include "hammer_loads/bench/session_player.h"
@@ -12,10 +14,12 @@ namespace hammer_loads::accuracy {
 
 /// The torques are those of hammer, motion, vibration and rock, without weight; the sections those of the shipped file.
 struct BoomErrors {
-  SignalError force_z, moment, torque[3], section[3], contact;
+  SignalError force_x, force_z, moment, torque[3], section[3], contact;
   std::size_t samples{}, refused{}, within{}, blows{};
-  std::size_t sections_within{};  ///< bending moments within two deviations
-  std::size_t lost_as_shown{};    ///< the flag of a press force that is lost is right
+  std::size_t wrench_within[3]{};         ///< of force x, force z, moment within two deviations
+  double worst_force{}, largest_force{};  ///< as a vector [N]
+  std::size_t sections_within{};          ///< bending moments within two deviations
+  std::size_t lost_as_shown{};            ///< the flag of a press force that is lost is right
   bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_imu_stamps{};
   std::size_t unknown{};  ///< the rock's force is said not to be known
   double energy_sum{};    ///< of the blows, relative
@@ -28,6 +32,13 @@ struct BoomErrors {
   double leastCorrelation() const {
     return std::min({section[0].correlation(), section[1].correlation(), section[2].correlation()});
   }
+  double rmsForce() const {  ///< as a vector, of its largest size
+    return std::sqrt((force_x.square + force_z.square) / static_cast<double>(samples)) / largest_force;
+  }
+  double worstForce() const { return worst_force / largest_force; }
+  double leastWrenchCovered() const {
+    return part(*std::min_element(std::begin(wrench_within), std::end(wrench_within)));
+  }
   double part(std::size_t count) const { return static_cast<double>(count) / static_cast<double>(samples); }
   double sectionsCovered() const { return part(sections_within) / 3.0; }
   double covered() const { return part(within) / 3.0; }
@@ -35,6 +46,7 @@ struct BoomErrors {
   std::string text() const;                                                                            ///< one line
 
   void addBlows(const simulation::Session& session, const SampleResult& result);
+  void addWrench(const simulation::OnBoomTruth& truth, const SampleResult& result);
   void addSample(const simulation::OnBoomTruth& truth, const SampleResult& result);
 };
 

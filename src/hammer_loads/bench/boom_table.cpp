@@ -68,6 +68,10 @@ void takeWorst(const BoomErrors& e, BoomRow& row) {
   row.moment = std::max(row.moment, e.moment.rms());
   row.force_z = std::max(row.force_z, e.force_z.rmsOfLargest());
   row.worst_z = std::max(row.worst_z, e.force_z.worstOfLargest());
+  row.force_x = std::max(row.force_x, e.force_x.rmsOfLargest());
+  row.force = std::max(row.force, e.rmsForce());
+  row.worst_force = std::max(row.worst_force, e.worstForce());
+  row.covered_wrench = std::min(row.covered_wrench, e.leastWrenchCovered());
   row.energy = std::max(row.energy, std::abs(e.energy()));
   row.contact = std::max(row.contact, e.contact.rmsOfRange());
   row.covered = std::min(row.covered, e.covered());
@@ -101,14 +105,17 @@ std::vector<BoomRow> boomTable() {
 
 std::string markdown(const std::vector<BoomRow>& rows) {
   std::string text =
-      "| machine | sensors | joint torques | bending | hull moment | Fz | worst sample | energy | rock's force | "
-      "torques "
-      "within two deviations |\n|---|---|---|---|---|---|---|---|---|---|\n";
+      "| machine | sensors | joint torques | bending | hull moment | Fx | Fz | worst sample of Fz | force | worst "
+      "sample of "
+      "the force | energy | rock's force | torques within two deviations | least of Fx, Fz, moment within two "
+      "deviations "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const BoomRow& r : rows) {
     text += format("| %s | %s |", r.machine.c_str(), r.sensors.c_str());
-    for (const double part : {r.torque, r.section, r.moment, r.force_z, r.worst_z, r.energy, r.contact})
+    for (const double part :
+         {r.torque, r.section, r.moment, r.force_x, r.force_z, r.worst_z, r.force, r.worst_force, r.energy, r.contact})
       text += ' ' + percent(part) + " |";
-    text += format(" %.0f %% |\n", 100.0 * r.covered);
+    text += format(" %.0f %% | %.0f %% |\n", 100.0 * r.covered, 100.0 * r.covered_wrench);
   }
   return text;
 }
@@ -118,9 +125,10 @@ std::string json(const std::vector<BoomRow>& rows) {
   for (const BoomRow& r : rows)
     text += format(
         "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %.4g, \"section\": %.4g, \"moment\": %.4g, "
-        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g}",
+        "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g, "
+        "\"rms_x\": %.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g}",
         &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), r.torque, r.section, r.moment, r.force_z,
-        r.worst_z, r.energy, number(r.contact).c_str(), r.covered);
+        r.worst_z, r.energy, number(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force, r.covered_wrench);
   return text + "\n]";
 }
 

@@ -13,10 +13,12 @@ struct BoomRow {
   double torque{};   ///< of the joint that is worst, weight aside
   double section{};  ///< bending at the cut that is worst
   double moment{};   ///< torque about D
-  double force_z{}, worst_z{};
-  double energy{};      ///< mean of the blows
-  double contact{};     ///< of the rock's force; not-a-number without rock or pressures
-  double covered{1.0};  ///< torques within two deviations, the least
+  double force_x{}, force_z{}, worst_z{};
+  double force{}, worst_force{};  ///< as a vector: root mean square and worst sample, of its largest size
+  double covered_wrench{1.0};     ///< of force x, force z and moment within two deviations, the least
+  double energy{};                ///< mean of the blows
+  double contact{};               ///< of the rock's force; not-a-number without rock or pressures
+  double covered{1.0};            ///< torques within two deviations, the least
 };
 
 /// The simulated EO-2621 on its oil with the shipped boom file, which may be wrong of the oil; poses drawn, the same on

@@ -148,13 +148,19 @@ std::vector<MachineRow> machineTable(const Settings& settings) {
 
 std::string markdown(const std::vector<MachineRow>& rows) {
   std::string text =
-      "| machine | rate, Hz | speed | rms Fz | worst sample | within two deviations | blow instant | energy | blows | "
-      "missed | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "| machine | rate, Hz | speed | rms force, Fx, Fz, moment | worst sample of each | within two deviations: Fx, "
+      "Fz, "
+      "moment | blow instant | energy | blows | missed | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const MachineRow& row : rows) {
     const SessionErrors& e = row.errors;
-    text += format("| %s | %.0f | %s | %.2f %% | %.1f %% | %.0f %% | %.2f ms | %.1f %% | %d | %d | %d |\n",
-                   row.machine.c_str(), row.rate, row.speed ? "measured" : "none", 100 * e.rms_z, 100 * e.worst_z,
-                   100 * e.covered_z, 1e3 * e.blow_time, 100 * e.energy, e.blows, e.unseen_blows, e.false_blows);
+    text += format(
+        "| %s | %.0f | %s | %.2f, %.2f, %.2f, %.2f %% | %.1f, %.1f, %.1f, %.1f %% | %.0f, %.0f, %.0f %% | %.2f ms | "
+        "%.1f "
+        "%% | %d | %d | %d |\n",
+        row.machine.c_str(), row.rate, row.speed ? "measured" : "none", 100 * e.rms_force, 100 * e.rms_x, 100 * e.rms_z,
+        100 * e.rms_torque, 100 * e.worst_force, 100 * e.worst_x, 100 * e.worst_z, 100 * e.worst_torque,
+        100 * e.covered_x, 100 * e.covered_z, 100 * e.covered_torque, 1e3 * e.blow_time, 100 * e.energy, e.blows,
+        e.unseen_blows, e.false_blows);
   }
   return text;
 }
@@ -165,10 +171,13 @@ std::string json(const std::vector<MachineRow>& rows) {
     const SessionErrors& e = row.errors;
     text += format(
         "%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"rms_z\": %.6g, \"worst_z\": %.6g, "
-        "\"covered_z\": %.6g, \"blow_time_s\": %.6g, \"energy\": %.6g, \"blows\": %d, \"missed_blows\": %d, "
+        "\"covered_z\": %.6g, \"rms_force\": %.6g, \"worst_force\": %.6g, \"rms_x\": %.6g, \"worst_x\": %.6g, "
+        "\"covered_x\": %.6g, \"rms_torque\": %.6g, \"worst_torque\": %.6g, \"covered_torque\": %.6g, \"blow_time_s\": "
+        "%.6g, \"energy\": %.6g, \"blows\": %d, \"missed_blows\": %d, "
         "\"false_blows\": %d}",
         &row == rows.data() ? "" : ",", row.machine.c_str(), row.rate, row.speed ? "true" : "false", e.rms_z, e.worst_z,
-        e.covered_z, e.blow_time, e.energy, e.blows, e.unseen_blows, e.false_blows);
+        e.covered_z, e.rms_force, e.worst_force, e.rms_x, e.worst_x, e.covered_x, e.rms_torque, e.worst_torque,
+        e.covered_torque, e.blow_time, e.energy, e.blows, e.unseen_blows, e.false_blows);
   }
   return text + "\n]";
 }

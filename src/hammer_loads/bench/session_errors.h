@@ -11,7 +11,7 @@ namespace hammer_loads::accuracy {
 /// Wrench of a sample [N, N, N m], time since the session's start [s]; of an estimate with its deviation.
 struct WrenchAt {
   double time{}, force_x{}, force_z{}, torque_y{};
-  double force_z_deviation{};
+  double force_x_deviation{}, force_z_deviation{}, torque_y_deviation{};
 };
 
 /// A blow and the pulse of the turn before it, as estimated or true; turn_* are NaN without a pulse.
@@ -25,14 +25,15 @@ struct BlowAt {
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
 struct SessionErrors {
   double rms_x{}, rms_z{}, rms_torque{};
-  double worst_z{};                            ///< of one sample
-  double covered_z{};                          ///< part of the errors of force_z within two of their deviations
-  double turn_peak{};                          ///< relative, worst turn
-  double turn_impulse{};                       ///< of the blow's tool impulse, worst turn
-  double blow_time{};                          ///< [s], worst
-  double energy{};                             ///< relative, worst
-  int blows{}, missed_blows{}, extra_blows{};  ///< missed: without pulse as well
-  int unseen_blows{}, false_blows{};           ///< nothing near them; nothing there
+  double worst_x{}, worst_z{}, worst_torque{};        ///< of one sample
+  double covered_x{}, covered_z{}, covered_torque{};  ///< part of the errors within two of their deviations
+  double rms_force{}, worst_force{};                  ///< of the force as a vector, of its largest size
+  double turn_peak{};                                 ///< relative, worst turn
+  double turn_impulse{};                              ///< of the blow's tool impulse, worst turn
+  double blow_time{};                                 ///< [s], worst
+  double energy{};                                    ///< relative, worst
+  int blows{}, missed_blows{}, extra_blows{};         ///< missed: without pulse as well
+  int unseen_blows{}, false_blows{};                  ///< nothing near them; nothing there
 };
 
 /// What is judged: [from, to], without the two turns after each drop-out.
@@ -51,7 +52,7 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
                                    const std::vector<BlowAt>& blows, const std::vector<BlowAt>& true_blows,
                                    const Judged& judged) {
   SessionErrors e;
-  double peak_x = 0, peak_z = 0, peak_torque = 0, count = 0;
+  double peak_x = 0, peak_z = 0, peak_torque = 0, peak_force = 0, count = 0;
   std::size_t next = 0;
   for (const WrenchAt& t : truth) {
     while (next < estimate.size() && estimate[next].time < t.time - 1e-5) ++next;
@@ -59,20 +60,25 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
     peak_x = std::max(peak_x, std::abs(t.force_x));
     peak_z = std::max(peak_z, std::abs(t.force_z));
     peak_torque = std::max(peak_torque, std::abs(t.torque_y));
+    peak_force = std::max(peak_force, std::hypot(t.force_x, t.force_z));
     if (next == estimate.size() || std::abs(estimate[next].time - t.time) > 1e-5) continue;  // withheld
-    e.rms_x += std::pow(estimate[next].force_x - t.force_x, 2);
-    e.rms_z += std::pow(estimate[next].force_z - t.force_z, 2);
-    e.rms_torque += std::pow(estimate[next].torque_y - t.torque_y, 2);
-    const double error = std::abs(estimate[next].force_z - t.force_z);
-    e.worst_z = std::max(e.worst_z, error);
-    e.covered_z += error <= 2.0 * estimate[next].force_z_deviation;
+    const WrenchAt& w = estimate[next];
+    const double x = w.force_x - t.force_x, z = w.force_z - t.force_z, torque = w.torque_y - t.torque_y;
+    e.rms_x += x * x, e.rms_z += z * z, e.rms_torque += torque * torque;
+    e.worst_x = std::max(e.worst_x, std::abs(x)), e.worst_z = std::max(e.worst_z, std::abs(z));
+    e.worst_torque = std::max(e.worst_torque, std::abs(torque));
+    e.worst_force = std::max(e.worst_force, std::hypot(x, z));
+    e.covered_x += std::abs(x) <= 2.0 * w.force_x_deviation;
+    e.covered_z += std::abs(z) <= 2.0 * w.force_z_deviation;
+    e.covered_torque += std::abs(torque) <= 2.0 * w.torque_y_deviation;
     ++count;
   }
+  e.rms_force = std::sqrt((e.rms_x + e.rms_z) / count) / peak_force;
   e.rms_x = std::sqrt(e.rms_x / count) / peak_x;
   e.rms_z = std::sqrt(e.rms_z / count) / peak_z;
   e.rms_torque = std::sqrt(e.rms_torque / count) / peak_torque;
-  e.worst_z /= peak_z;
-  e.covered_z /= count;
+  e.worst_x /= peak_x, e.worst_z /= peak_z, e.worst_torque /= peak_torque, e.worst_force /= peak_force;
+  e.covered_x /= count, e.covered_z /= count, e.covered_torque /= count;
   for (const BlowAt& t : true_blows) {
     if (!judged(t.time)) continue;
     ++e.blows;

@@ -22,9 +22,9 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
       run.blows.push_back(blow);
     }
     if (loads.refusal || loads.beside_blow) return;
-    const double deviation = loads.outputs.empty() ? 0.0 : loads.outputs.front().deviation.wrench.force_z;
-    run.wrenches.push_back(
-        {seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y, deviation});
+    const HullWrench deviation = loads.outputs.empty() ? HullWrench{} : loads.outputs.front().deviation.wrench;
+    run.wrenches.push_back({seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y,
+                            deviation.force_x, deviation.force_z, deviation.torque_y});
   });
   run.counts = player.pipeline.counts();
   return run;

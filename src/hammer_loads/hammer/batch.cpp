@@ -116,7 +116,7 @@ struct Workspace {
 
 HAMMER_LOADS_INLINE Motion motionOf(const Workspace& work, std::size_t i) noexcept {
   Motion m;
-  m.sin_half = work.sine[i] + detail::kLeastSine;
+  m.sin_half = work.sine[i] < detail::kLeastSine ? detail::kNoSine : work.sine[i];
   m.cos_half = work.cosine[i];
   m.inv_r = work.inv_r[i];
   m.r = work.r[i];

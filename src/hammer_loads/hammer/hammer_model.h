@@ -36,10 +36,11 @@ inline LinkState linkState(const HullModel& model, const CrankMotion& crank) noe
   return linkState(linkMotion(model.mechanism().linkage(), crank.angle), crank);
 }
 
-/// Forces in the pins and drive torque at the model's level; links: at the crank's angle.
+/// Forces in the pins and drive torque at the model's level; links: at the crank's angle; near_blow: transmission angle
+/// below which they are flagged, angle_error: of the crank, within which of the blow they are NaN [rad].
 inline PinReactions pinForces(const HullModel& model, const LinkMotion& links, const CrankMotion& crank,
-                              const HullMotion& hull, double near_blow) noexcept {
-  return pinForces(model.mechanism(), model.level(), links, crank, hull, NearBlow(near_blow));
+                              const HullMotion& hull, double near_blow, double angle_error = 0.0) noexcept {
+  return pinForces(model.mechanism(), model.level(), links, crank, hull, NearBlow(near_blow, angle_error));
 }
 
 /// Blow by what the crank's speed did at it; where that is not known, of a crank that keeps its speed.

@@ -55,7 +55,8 @@ constexpr PinForce pinForce(Planar hull) noexcept { return {hull.re, hull.im}; }
 
 }  // namespace detail
 
-/// l with s > 0 (kLeastSine added to it) wherever pin forces are wanted; they are not flagged near the blow.
+/// l with s > 0 (kNoSine where it is below kLeastSine) wherever pin forces are wanted; they are not flagged near the
+/// blow.
 HAMMER_LOADS_INLINE LinkLoads linkageLoads(const LinkageConstants& k, const LinkMotion& l, double speed,
                                            double acceleration) noexcept {
   const LinkAccelerations q = linkAccelerations(l, speed, acceleration);
@@ -83,7 +84,7 @@ HAMMER_LOADS_INLINE LinkLoads linkageLoads(const LinkageConstants& k, const Link
   const double across = k.less_inv_rod_length * about_b;
   const double along_s =
       (about_d + k.rocker_over_rod * l.cos_mu * about_b) * (k.less_rod_force_factor * l.rocker.inv_r);
-  const double along = along_s / l.rocker.sin_half;
+  const double along = detail::overSine(along_s, l.rocker.sin_half);
   const Planar rod_axis = detail::onHull(k.along_rod, l.beta);
   const Planar on_rocker = detail::onHull(rod_axis, {along, across});
   const Planar less_rod_at_b = detail::onHull(k.less_rod_at_b, at_phi) + k.rod_weight;

@@ -6,10 +6,14 @@
 /// At the blow rod and rocker are in line. R23 along the rod has the divisor sin mu = s (sin mu/s), s = sin(phi/2). The
 /// terms with w^2 u', w^2 v' and sin(beta - phi) contain s too and are divided without it: exact at and near the blow.
 /// The rest (crank acceleration, weight, rod centre of mass off its line) grows as 1/s: a rigid in-line rod cannot turn
-/// the rocker. It is returned as it is, flagged near_blow; at the blow itself it is some 1e290, never NaN.
+/// the rocker. It is returned as it is, flagged near_blow, as long as the divisor is a number: within what the crank
+/// angle is rounded or known by (NearBlow) 1/s is none, and the forces are NaN there, unless nothing of the rest is
+/// left, to the last digit: then they have their finite limit. The drive torque has one always.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/hull_motion.h"
@@ -17,6 +21,7 @@
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads {
 
@@ -36,23 +41,41 @@ struct PinReactions {
   bool near_blow{};         ///< transmission angle below the limit of NearBlow
 };
 
-/// Transmission angle psi - beta below which pin forces are flagged [rad], in (0, pi/2).
+namespace detail {
+
+/// Least s = sin(phi/2) that divides: an angle of a turn is rounded by half as much, so that below it s is as wrong as
+/// it is large.
+constexpr double kLeastSine = kTwoPi * std::numeric_limits<double>::epsilon();
+/// Stands for s below that: too small to leave anything but a rest, large enough for the finite part.
+constexpr double kNoSine = 1e-290;
+constexpr double kNoRest = 1e-200;  ///< more than kNoSine leaves of a finite part, less than any rest
+
+/// What s divides, by s: the part with s in it and a rest. NaN where s is none and a rest is left.
+HAMMER_LOADS_INLINE double overSine(double divided, double s) noexcept {
+  const bool lost = s == kNoSine && std::abs(divided) > kNoRest;
+  return lost ? std::numeric_limits<double>::quiet_NaN() : divided / s;
+}
+
+}  // namespace detail
+
+/// Where pin forces are flagged: transmission angle psi - beta below a limit [rad], in (0, pi/2). And where they have
+/// none: within the error of the crank angle [rad] from the blow.
 class NearBlow {
  public:
-  explicit NearBlow(double transmission_angle) : sine_(std::sin(transmission_angle)) {}
+  explicit NearBlow(double transmission_angle, double angle_error = 0.0)
+      : sine_(std::sin(transmission_angle)), least_(std::max(detail::kLeastSine, 0.5 * angle_error)) {}
   bool operator()(const LinkMotion& l) const noexcept { return l.sin_mu < sine_ && l.cos_mu > 0.0; }
+  /// s as it divides.
+  double sine(double s) const noexcept { return s < least_ ? detail::kNoSine : s; }
 
  private:
-  double sine_;
+  double sine_, least_;
 };
 
 /// Transmission angle psi - beta [rad], in [0, pi]; 0 at the blow only.
 inline double transmissionAngle(const LinkMotion& l) noexcept { return std::atan2(l.sin_mu, l.cos_mu); }
 
 namespace detail {
-
-/// Added to s before it divides: too small to change any other s, it leaves a number at the blow itself.
-constexpr double kLeastSine = 1e-290;
 
 /// From the frame turned by a (LinkMoments) to hull axes.
 constexpr PinForce toHull(Planar f) noexcept { return {-f.re, f.im}; }
@@ -73,8 +96,8 @@ HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, con
 
   // Rod force along B->C times s, positive when the rod pushes the rocker away from B.
   const double with_s = inertia * m.du_over_s * ww, rest = inertia * m.u * c.acceleration - weight;
-  const double s = m.sin_half + detail::kLeastSine;
-  const double along = -(with_s * s + rest) * (mechanism.moments().rod_force_factor * m.inv_r) / s;
+  const double s = near_blow.sine(m.sin_half);
+  const double along = detail::overSine(-(with_s * s + rest) * (mechanism.moments().rod_force_factor * m.inv_r), s);
   const Planar rod = along * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
   PinReactions pins;
   pins.rod_on_rocker = detail::toHull(rod);
@@ -109,12 +132,12 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
   const double rod_rest = (k.rod_inertia * l.v + coupling.re) * e + k.coupling.im * l.delta.re * ww -
                           (rod.im * gravity.x + rod.re * gravity.z);
   // R23 = (along + i across) e^(i beta); along has the divisor sin mu.
-  const double s = m.sin_half + detail::kLeastSine;
+  const double s = near_blow.sine(m.sin_half);
   const double across = -(s * rod_s + rod_rest) * k.inv_rod_length;
   const double rod_part = k.rocker_over_rod * l.cos_mu;
   const double along_s =
       -((rocker_s + rod_part * rod_s) * s + (rocker_rest + rod_part * rod_rest)) * (k.rod_force_factor * m.inv_r);
-  const double along = along_s / s;
+  const double along = detail::overSine(along_s, s);
 
   const Planar weight{-gravity.x, gravity.z};  // per mass
   const Planar on_rocker = Planar{along, across} * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
@@ -135,11 +158,11 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
 
 /// Adds what the hull's turning does to level rocker.
 inline void addTurningRocker(const Mechanism& mechanism, const LinkMotion& l, double speed, const HullMotion& hull,
-                             PinReactions& pins) noexcept {
+                             const NearBlow& near_blow, PinReactions& pins) noexcept {
   const Planar q = turningAccelerations(l, speed, hull).links.rocker;
   const double moment = mechanism.parameters().rocker_inertia_about_pivot * hull.acceleration;
-  const double s = l.rocker.sin_half + detail::kLeastSine;
-  const double along = -moment * (mechanism.moments().rod_force_factor * l.rocker.inv_r) / s;
+  const double along = detail::overSine(-moment * (mechanism.moments().rod_force_factor * l.rocker.inv_r),
+                                        near_blow.sine(l.rocker.sin_half));
   const Planar rod = along * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
   for (PinForce* force : {&pins.rod_on_rocker, &pins.crank_on_rod, &pins.hull_on_crank}) {
     *force = *force + detail::toHull(rod);
@@ -150,7 +173,7 @@ inline void addTurningRocker(const Mechanism& mechanism, const LinkMotion& l, do
 
 /// The same for level linkage: the dyads of pinForcesLinkage with the added accelerations.
 inline void addTurningLinkage(const Mechanism& mechanism, const LinkMotion& l, double speed, const HullMotion& hull,
-                              PinReactions& pins) noexcept {
+                              const NearBlow& near_blow, PinReactions& pins) noexcept {
   const HammerParameters& p = mechanism.parameters();
   const LinkMoments& k = mechanism.moments();
   const TurningAccelerations t = turningAccelerations(l, speed, hull);
@@ -166,7 +189,7 @@ inline void addTurningLinkage(const Mechanism& mechanism, const LinkMotion& l, d
   const double across = -rod_moment * k.inv_rod_length;
   const double along_s =
       -(rocker_moment + k.rocker_over_rod * l.cos_mu * rod_moment) * (k.rod_force_factor * l.rocker.inv_r);
-  const double along = along_s / (l.rocker.sin_half + detail::kLeastSine);
+  const double along = detail::overSine(along_s, near_blow.sine(l.rocker.sin_half));
   const Planar on_rocker = Planar{along, across} * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
   const Planar above_crank = on_rocker + rod * q.rod;
   const Planar on_rod = above_crank + (k.rod_at_b * l.phi) * q.crank + p.rod_mass * at_a;
@@ -184,11 +207,11 @@ HAMMER_LOADS_INLINE PinReactions pinForces(const Mechanism& mechanism, Level lev
                                            const NearBlow& near_blow) noexcept {
   if (level != Level::kLinkage) {
     PinReactions pins = pinForcesRocker(mechanism, l, crank, hull.gravity, near_blow);
-    if (hull.turns()) addTurningRocker(mechanism, l, crank.speed, hull, pins);
+    if (hull.turns()) addTurningRocker(mechanism, l, crank.speed, hull, near_blow, pins);
     return pins;
   }
   PinReactions pins = pinForcesLinkage(mechanism, l, crank, hull.gravity, near_blow);
-  if (hull.turns()) addTurningLinkage(mechanism, l, crank.speed, hull, pins);
+  if (hull.turns()) addTurningLinkage(mechanism, l, crank.speed, hull, near_blow, pins);
   return pins;
 }
 

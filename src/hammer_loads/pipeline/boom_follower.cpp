@@ -1,5 +1,6 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -91,13 +92,18 @@ const BoomState& BoomFollower::sample(const BoomSample& sample, const WrenchHist
   if (follow_vibration_) {
     const bool swung = known_ && last_stamp_ == sample.stamp;  // up to here already
     const bool continued = swung || (known_ && step.count > 0);
-    if (!continued) boom_.vibration().rest(), spread_.rest(), beside_modes_.setZero();
+    if (!continued) boom_.vibration().rest(), spread_.rest(), bound_.rest(), beside_modes_.setZero();
     pose(since);
     spread_.follow(boom_.vibration());
     if (!continued) beginUnseen(sample.unseen_peak);
     followContact(sample.stamp);
     if (continued && !swung) vibrate(step, sample.displaced_links, spreadWithRock(sample.spread));
     observe(sample, since);
+    if (runsAway(since)) {
+      state_.fault = JointFault{JointFault::Kind::kRunAway, 0, withheld_for_};
+      last_stamp_ = sample.stamp;
+      return state_;
+    }
   } else {
     boom_.move(motion_, g_B_);
     held_.follow(motion_, since);
@@ -159,10 +165,26 @@ void BoomFollower::vibrate(const WrenchHistory& step, const HullWrench& displace
     take(piece.mean, 0.5 * (from + to), torque_.mean);
     from = to;
     boom_.vibration().advance(piece.duration, torque_);
+    bound_.advance(boom_.vibration(), piece.duration, torque_);
     spread_.advance(piece.duration, torque_, errors);
     if (piece.ends_in_blow) strike(piece.blow);
   }
   displaced_links_ = displaced_links;
+}
+
+/// Whether the vibration is not to be believed at this sample. Where it is too much it begins anew, sensors' findings
+/// and all, from the next sample on.
+bool BoomFollower::runsAway(double step) noexcept {
+  if (!bound_.holds(boom_.vibration())) {
+    withheld_for_ = VibrationBound::decayTime(boom_.vibration());
+    boom_.vibration().startAnew();
+    ++runaways_;
+    known_ = false;
+    return true;
+  }
+  withheld_for_ = std::max(0.0, withheld_for_ - std::max(0.0, step));
+  known_ = true;
+  return withheld_for_ > 0.0;
 }
 
 /// The boom may have been shaken all the while: as far as it was when it was last followed, else as far as the hammer's
@@ -183,6 +205,7 @@ void BoomFollower::strike(const HullWrench& impulse) noexcept {
   last_blow_ = last_stamp_;
   const JointVector before = boom_.vibration().velocity(), torque = hammerTorque(impulse);
   boom_.vibration().strike(torque);
+  bound_.strike(boom_.vibration(), torque);
   spread_.strike(torque);
   const Vector6 velocity = boom_.tipJacobian() * (0.5 * (before + boom_.vibration().velocity()));
   state_.at_blow = TipVelocity{velocity[2], velocity[4]};

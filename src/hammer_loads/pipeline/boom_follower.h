@@ -18,6 +18,7 @@
 #include "hammer_loads/pipeline/mode_observer.h"
 #include "hammer_loads/pipeline/pressure_trust.h"
 #include "hammer_loads/pipeline/tip_velocity.h"
+#include "hammer_loads/pipeline/vibration_bound.h"
 #include "hammer_loads/pipeline/wrench_history.h"
 
 namespace hammer_loads {
@@ -114,6 +115,9 @@ class BoomFollower {
   const CylinderPressures& pressures() const noexcept { return pressures_; }
   const PressureTrust& pressureTrust() const noexcept { return trust_; }
   std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
+  /// How often the vibration was more than anything makes it and began anew; its loads are withheld after that until
+  /// what was wrong would have gone.
+  std::uint64_t runaways() const noexcept { return runaways_; }
   /// What state().hold_down.least belongs to, such as "front edge" or a cylinder's name; empty when it is not known.
   const std::string& firstToGive() const noexcept;
 
@@ -124,6 +128,7 @@ class BoomFollower {
   bool takesCompliant() const noexcept;
   void vibrate(const WrenchHistory& step, const HullWrench& displaced_links, const WrenchSpread& spread) noexcept;
   void strike(const HullWrench& impulse) noexcept;
+  bool runsAway(double step) noexcept;
   void beginUnseen(double peak) noexcept;
   void pose(double since) noexcept;
   void findLoads(const BoomSample& sample, double step) noexcept;
@@ -166,7 +171,9 @@ class BoomFollower {
   std::optional<StampNs> last_blow_;
   StampNs last_stamp_{};  ///< of the last sample without a fault
   bool known_{};
-  std::uint64_t faults_{};
+  std::uint64_t faults_{}, runaways_{};
+  VibrationBound bound_;
+  double withheld_for_{};            ///< after the vibration began anew [s]
   std::vector<std::string> givers_;  ///< edges, then cylinders
   std::string no_giver_;
 };

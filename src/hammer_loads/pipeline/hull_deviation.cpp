@@ -12,8 +12,6 @@ constexpr double kAngleStep = 1e-6, kSpeedStep = 1e-5, kAccelerationStep = 1e-2;
 
 using Gradient = Eigen::Matrix3d;  // rows: force_x, force_z, torque_y
 
-Eigen::Vector3d vectorOf(const HullWrench& w) noexcept { return {w.force_x, w.force_z, w.torque_y}; }
-
 CrankAngle nudged(CrankAngle angle) noexcept {
   angle.offset += kAngleStep;  // the side stays: the branch's own continuation past the blow
   return angle;
@@ -69,6 +67,22 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
   return {deviationOf(g, covariance), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
           std::sqrt(covariance(2, 2))};
+}
+
+HullWrench hullMotionVariance(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
+                              double crank_speed, const HullMotion& hull,
+                              const HullMotionCovariance& covariance) noexcept {
+  const auto load = [&](const HullMotion& h) { return vectorOf(frameWrench(model, links, crank_speed, h)); };
+  const HullMotion still{{0.0, 0.0}, hull.rate, 0.0};
+  constexpr double kRateStep = 1e-5;  // [rad/s]
+  const Eigen::Vector3d here = load(still);
+  Eigen::Matrix<double, 3, 4> by;
+  by.col(0) = load({{1.0, 0.0}, hull.rate, 0.0}) - here, by.col(1) = load({{0.0, 1.0}, hull.rate, 0.0}) - here;
+  by.col(2) = (load({{0.0, 0.0}, hull.rate + kRateStep, 0.0}) - here) / kRateStep;
+  by.col(3) = load({{0.0, 0.0}, hull.rate, 1.0}) - here;
+  by(2, 3) -= drive.by_hull;
+  const Eigen::Vector3d variance = (by * covariance * by.transpose()).diagonal().cwiseMax(0.0);
+  return {variance[0], variance[1], variance[2]};
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,

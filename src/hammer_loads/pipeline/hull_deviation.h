@@ -6,6 +6,7 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/hull_motion_filter.h"
 
 namespace hammer_loads {
 
@@ -32,6 +33,12 @@ inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& 
                                    const HullMotion& hull, const Eigen::Matrix3d& covariance) noexcept {
   return hullDeviation(model, drive, crank, LinksBeside(model, linksAt(model, crank.position.angle)), hull, covariance);
 }
+
+/// What the hull's own motion adds to the variances of the load at the links' place, squares of [N, N, N m]: linear, as
+/// the load is in all but the rate.
+HullWrench hullMotionVariance(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
+                              double crank_speed, const HullMotion& hull,
+                              const HullMotionCovariance& covariance) noexcept;
 
 /// Standard deviation of the momentum, the drive's included: of an impulse's one end [N s, N s, N m s].
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,

@@ -1,6 +1,7 @@
 #include "hammer_loads/pipeline/hull_state.h"
 
 #include "hammer_loads/pipeline/overdue.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
@@ -14,14 +15,14 @@ HullMotion vibrationOf(const BoomState& boom) noexcept {
 
 }  // namespace
 
-HullState::HullState(const PipelineSettings& settings, const std::optional<Boom>& boom)
-    : source_(settings.hull_motion), weight_(settings, boom), imu_(settings.imu) {
+HullState::HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom)
+    : source_(settings.hull_motion), weight_(settings, boom), imu_(settings.imu), filter_(settings.imu, hammer) {
   weigh();
 }
 
 /// Of a fixed hull the weight is all its motion.
 void HullState::weigh() noexcept {
-  if (source_ == HullMotionSource::kFixed) now_ = {weight_.gravity(), false};
+  if (source_ == HullMotionSource::kFixed) now_ = {weight_.gravity(), false, HullMotionCovariance::Zero()};
 }
 
 bool HullState::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
@@ -36,6 +37,7 @@ std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& readin
   if (!refusal) {
     const ImuReading taken = imu_.newest();
     imu_trust_.follow(taken.specific_force, taken.rate, seconds(stamp - last));
+    if (followsLoad()) filter_.add(stamp, taken);
     if (weight_.pitch().known()) imu_trust_.judge(weight_.gravity());
   }
   ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
@@ -48,15 +50,26 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
   return now_.motion;
 }
 
+/// By the filter, unless a slow crank has left it behind: then by the newest readings alone.
+std::optional<KnownHullMotion> HullState::measured(StampNs stamp) const noexcept {
+  if (imu_trust_.isLost()) return std::nullopt;
+  constexpr std::size_t kLeftBehind = 3;  // readings
+  if (filter_.waiting() < kLeftBehind)
+    if (const std::optional<KnownHullMotion> known = filter_.at(stamp)) return known;
+  const std::optional<HullMotion> read = imu_.at(stamp);
+  if (!read) return std::nullopt;
+  return KnownHullMotion{*read, usualMotion()};
+}
+
 void HullState::find(StampNs stamp) noexcept {
   if (source_ == HullMotionSource::kModel) findByBoom();
   if (source_ != HullMotionSource::kImu) return;
-  const std::optional<HullMotion> measured = imu_trust_.isLost() ? std::nullopt : imu_.at(stamp);
+  const std::optional<KnownHullMotion> measured = this->measured(stamp);
   known_ = measured.has_value();
   const double overdue = imu_.overdue(stamp);
   by_imu_ = known_ && !(vibration_ && overdue > 0.0);
   if (!by_imu_) return findByBoom();
-  now_ = {*measured, true};
+  now_ = {measured->motion, true, measured->covariance};
   if (overdue > 0.0 && weight_.pitch().known()) forgetReading(1.0 - forgottenPart(overdue));
 }
 
@@ -67,16 +80,26 @@ void HullState::forgetReading(double part) noexcept {
   const Gravity& weight = weight_.gravity();
   m.gravity = {weight.x + part * (m.gravity.x - weight.x), weight.z + part * (m.gravity.z - weight.z)};
   m.rate *= part, m.acceleration *= part;
+  now_.covariance = square(part) * now_.covariance + square(1.0 - part) * usualMotion();
+}
+
+/// By which weight alone is off as a rule: what the hull has moved by.
+HullMotionCovariance HullState::usualMotion() const noexcept {
+  return imu_trust_.power(weight_.gravity()).asDiagonal();
 }
 
 void HullState::findByBoom() noexcept {
   const Gravity& weight = weight_.gravity();
   const HullMotion v = vibration_.value_or(HullMotion{});
-  now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration}, vibration_.has_value()};
+  now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration},
+          vibration_.has_value(),
+          HullMotionCovariance::Zero()};
+  if (source_ == HullMotionSource::kImu && !vibration_) now_.covariance = usualMotion();
 }
 
-void HullState::struck(StampNs blow, StampNs sample) noexcept {
-  imu_.struck(blow);
+void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
+  if (!followsLoad()) return;
+  filter_.follow(sample, step, beside);
   find(sample);
 }
 

@@ -10,6 +10,7 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/hull_gravity.h"
 #include "hammer_loads/pipeline/hull_imu.h"
+#include "hammer_loads/pipeline/hull_motion_filter.h"
 #include "hammer_loads/pipeline/imu_trust.h"
 #include "hammer_loads/settings/pipeline_settings.h"
 
@@ -29,9 +30,11 @@ class HullState {
   struct Motion {
     HullMotion motion;  ///< at the sample
     bool moves{};       ///< the hull's own motion is in it
+    /// How far an IMU's motion may be off. Zero where another source gives it.
+    HullMotionCovariance covariance = HullMotionCovariance::Zero();
   };
 
-  HullState(const PipelineSettings& settings, const std::optional<Boom>& boom);
+  HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom);
 
   /// Boom joint angles, any subset in any order. Whether a pitch joint was among them.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
@@ -40,8 +43,11 @@ class HullState {
   /// Before a sample is taken: its motion as far as it is known by then (of the boom's vibration: that of the sample
   /// before).
   const HullMotion& predict(StampNs stamp) noexcept;
-  /// A blow was struck within the step to the sample: its motion again, with that known.
-  void struck(StampNs blow, StampNs sample) noexcept;
+  /// A blow was struck within the step to a sample. Call before follow().
+  void struck(StampNs blow) noexcept { imu_.struck(blow); }
+  /// After a sample was taken: its motion again, with what the step's load shows. beside: DisplacedLinks at the sample.
+  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
+  bool followsLoad() const noexcept { return source_ == HullMotionSource::kImu; }  ///< follow() has an effect
   /// Of D at the last blow by the IMU, where that is known.
   std::optional<TipVelocity> speedAtBlow() const noexcept {
     return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
@@ -66,11 +72,14 @@ class HullState {
   void weigh() noexcept;
   void find(StampNs stamp) noexcept;
   void findByBoom() noexcept;
+  std::optional<KnownHullMotion> measured(StampNs stamp) const noexcept;
   void forgetReading(double part) noexcept;
+  HullMotionCovariance usualMotion() const noexcept;
 
   HullMotionSource source_;
   HullGravity weight_;
   HullImu imu_;
+  HullMotionFilter filter_;
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
   std::optional<HullMotion> vibration_;  ///< of the boom's tip at the last sample, without weight; none: not known

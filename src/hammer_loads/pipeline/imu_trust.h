@@ -27,6 +27,10 @@ class ImuTrust {
     time_ = std::min(time_ + lasts, kMemory);
     const double share = lasts / time_;
     mean_ += share * (force - mean_);
+    const Eigen::Vector3d off = force - mean_;
+    power_ += share * (Eigen::Vector3d(square(off.x()), square(off.z()), square(rate.y())) - power_);
+    turning_ += share * (square((rate.y() - last_rate_) / step) - turning_);
+    last_rate_ = rate.y();
     rate_square_ += share * (rate.squaredNorm() - rate_square_);
     off_for_ = is_off_ ? std::min(off_for_ + lasts, kOffFor) : 0.0;
   }
@@ -37,6 +41,11 @@ class ImuTrust {
     const double limit = (is_lost_ ? kBack : 1.0) * kMostPart;
     is_off_ = off_square > square(limit) * (square(weight.x) + square(weight.z)) || rate_square_ > square(kMostRate);
     is_lost_ = isFrozen() || (is_off_ && off_for_ == kOffFor);
+  }
+  /// Mean squares of what the hull has beside such a weight, its plane's, and of what it turns: along x and z [m2/s4],
+  /// rate [rad2/s2], its derivative [rad2/s4].
+  Eigen::Vector4d power(const Gravity& weight) const noexcept {
+    return {power_.x() + square(mean_.x() + weight.x), power_.y() + square(mean_.z() + weight.z), power_.z(), turning_};
   }
   bool isLost() const noexcept { return is_lost_; }
   bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
@@ -51,7 +60,8 @@ class ImuTrust {
   static constexpr double kOffFor = 0.3;                    // [s]: not because of one damaged joint angle
   static constexpr double kFrozen = 0.2;                    // of one reading again and again [s]
 
-  double time_{}, rate_square_{}, off_for_{}, same_for_{};
+  double time_{}, rate_square_{}, off_for_{}, same_for_{}, turning_{}, last_rate_{};
+  Eigen::Vector3d power_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d force_ = mean_, rate_ = mean_;  ///< of the last reading
   bool varies_{}, is_off_{}, is_lost_{};

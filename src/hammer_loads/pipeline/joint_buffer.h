@@ -15,9 +15,10 @@ namespace hammer_loads {
 
 /// Why the joints' motion is not known at an instant.
 struct JointFault {
-  enum class Kind { kMissing, kStale };
+  /// kRunAway: the boom's vibration was more than anything makes it, and begins anew
+  enum class Kind { kMissing, kStale, kRunAway };
   Kind kind{};
-  int joint{};   ///< the first one concerned, index in the chain
+  int joint{};   ///< the first one concerned, index in the chain; of kRunAway 0
   double age{};  ///< from its nearest state to the instant [s]; infinity for a missing one
 };
 

@@ -28,7 +28,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       model_(mechanism_, settings.level),
       displaced_links_(model_),
       crank_(model_, settings_, make),
-      hull_(settings_, boom),
+      hull_(mechanism_.parameters(), settings_, boom),
       turn_(model_, crank_.step(), crank_.tracker()),
       sampler_(model_, crank_.step(), crank_.tracker(), settings_),
       nominal_force_(
@@ -91,6 +91,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(stamp);
   if (taken == CrankFollower::Taken::kContinued) {
     passBlows();
+    followHull();
     turn_.follow(hull_.motion().motion, result_);
   } else {
     restart(taken == CrankFollower::Taken::kRevised);
@@ -115,7 +116,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.links = linkState(links.here.links, motion);
   result_.wrench = hullWrench(model_, driveReaction(model_, crank_.tracker().driveInertia()), links.here.links, motion,
                               result_.hull.motion);
-  result_.pins = pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow);
+  result_.pins = pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow,
+                           std::sqrt(result_.crank_covariance(0, 0)));
   sampler_.sample(links, result_);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;
@@ -155,7 +157,15 @@ void Pipeline::hullMovedAtBlow() noexcept {
 /// Measured accelerations of the hull jump at a blow.
 void Pipeline::passBlows() noexcept {
   for (const CrankStep::Passage& passage : crank_.step())
-    if (passage.strikes) hull_.struck(crank_.step().stampAt(passage.time), result_.stamp);
+    if (passage.strikes) hull_.struck(crank_.step().stampAt(passage.time));
+}
+
+/// The load of links and drive over the step drives the hull that its IMU sees.
+void Pipeline::followHull() noexcept {
+  if (!hull_.followsLoad()) return;
+  const CrankMotion crank = motionOf(result_.crank);
+  const HullWrench displaced = displaced_links_.wrench(crank_.step().links().links, crank.speed, hull_.motion().motion);
+  hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced);
 }
 
 double Pipeline::stampNoise() const noexcept {
@@ -212,6 +222,7 @@ void Pipeline::followMisuse() noexcept {
 void Pipeline::restart(bool revised) noexcept {
   if (!revised) turn_.finishBlow(result_);
   turn_.restart();
+  hull_.follow(result_.stamp, {}, {});
   sampler_.forget();
   if (revised) swingOn({});
   boom_follows_ = boom_follows_ && revised;

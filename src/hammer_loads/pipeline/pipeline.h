@@ -64,6 +64,7 @@ class Pipeline {
   void followBoom(const LinksBeside& links) noexcept;
   void followMisuse() noexcept;
   void passBlows() noexcept;
+  void followHull() noexcept;
   void swingOn(const WrenchHistory& step) noexcept;
 
   Mechanism mechanism_;

@@ -194,7 +194,15 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          "cylinder_pressures the rock's force is in no joint torque and in no section, and the boom's "
          "modes are those of the boom file",
          true});
-  if (result.boom == nullptr || !result.boom->fault) return;
+  if (pipeline.boom() && pipeline.boom()->runaways() > 0)
+    warnings.push_back(
+        {"boom vibration",
+         "boom: its vibration grew beyond all that the hammer, operator and rock can do and began anew, " +
+             count(pipeline.boom()->runaways()) +
+             " times; its loads are withheld after that: masses of the description, "
+             "mode_refresh_angle_rad, the boom file or sensors are wrong",
+         result.boom != nullptr && result.boom->fault && result.boom->fault->kind == JointFault::Kind::kRunAway});
+  if (result.boom == nullptr || !result.boom->fault || result.boom->fault->kind == JointFault::Kind::kRunAway) return;
   warnings.push_back({"boom joints",
                       "boom joints: no loads for " + count(pipeline.boom()->faults()) +
                           " samples: " + joined(pipeline.boom()->joints().complaints(result.stamp)),

@@ -4,6 +4,7 @@
 
 #include "hammer_loads/pipeline/beside_blow.h"
 #include "hammer_loads/pipeline/step_impulse.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -105,16 +106,29 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   output.near_blow = state.transmission_angle < near_blow_;
   const Eigen::Matrix3d covariance =
       at_sample ? result.crank_covariance : tracker_->covarianceBetween(time, torque_part_);
+  const HullState::Motion moving{hull, result.hull.moves, result.hull.covariance};
   if (at_sample)
-    addDeviation(links, hull, covariance, output);
+    addDeviation(links, moving, covariance, output);
   else
-    addDeviation(LinksBeside(*model_, linksAt(*model_, output.crank.position.angle)), hull, covariance, output);
+    addDeviation(LinksBeside(*model_, linksAt(*model_, output.crank.position.angle)), moving, covariance, output);
   return output;
 }
 
-void WrenchSampler::addDeviation(const LinksBeside& links, const HullMotion& hull, const Eigen::Matrix3d& covariance,
-                                 WrenchOutput& output) noexcept {
-  output.deviation = hullDeviation(*model_, drive_, output.crank, links, hull, covariance);
+/// Errors of crank and IMU are independent.
+void WrenchSampler::addHullMotion(const LinksBeside& links, const HullState::Motion& hull,
+                                  WrenchOutput& output) const noexcept {
+  if (hull.covariance.isZero(0.0)) return;
+  const HullWrench variance =
+      hullMotionVariance(*model_, drive_, links.here.links, output.crank.speed, hull.motion, hull.covariance);
+  HullWrench& d = output.deviation.wrench;
+  d = {std::sqrt(square(d.force_x) + variance.force_x), std::sqrt(square(d.force_z) + variance.force_z),
+       std::sqrt(square(d.torque_y) + variance.torque_y)};
+}
+
+void WrenchSampler::addDeviation(const LinksBeside& links, const HullState::Motion& hull,
+                                 const Eigen::Matrix3d& covariance, WrenchOutput& output) noexcept {
+  output.deviation = hullDeviation(*model_, drive_, output.crank, links, hull.motion, covariance);
+  addHullMotion(links, hull, output);
   if (kind_ != OutputKind::kMean) return;
   const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, links, covariance);
   const HullWrench allowed = (1.0 / output.interval) * (momentum_deviation_ + momentum);

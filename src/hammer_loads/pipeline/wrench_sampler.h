@@ -35,7 +35,8 @@ class WrenchSampler {
   WrenchOutput output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept;
   void addUpTo(double time) noexcept;
   void followHull(const HullMotion& hull) noexcept;
-  void addDeviation(const LinksBeside& links, const HullMotion& hull, const Eigen::Matrix3d& covariance,
+  void addHullMotion(const LinksBeside& links, const HullState::Motion& hull, WrenchOutput& output) const noexcept;
+  void addDeviation(const LinksBeside& links, const HullState::Motion& hull, const Eigen::Matrix3d& covariance,
                     WrenchOutput& output) noexcept;
 
   const HullModel* model_;

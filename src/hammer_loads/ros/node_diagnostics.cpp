@@ -202,12 +202,15 @@ void NodeDiagnostics::describeBoom(Status& status) {
     std::string text;
     for (const std::string& complaint : complaints) text += "; " + complaint;
     status.summary(DiagnosticStatus::WARN, "no joint loads" + text);
+  } else if (state.fault && state.fault->kind == JointFault::Kind::kRunAway) {
+    status.summary(DiagnosticStatus::WARN, "no joint loads: the vibration ran away and began anew");
   } else if (state.dead_centre) {
     status.summary(DiagnosticStatus::WARN, "a cylinder is at its dead centre: taken as rigid");
   } else {
     status.summary(DiagnosticStatus::OK, state.choice.compliant ? "compliant" : "rigid");
   }
   status.add("samples without known joints", boom.faults());
+  status.add("vibration ran away", boom.runaways());
   status.add("error of a rigid boom for the last pulse [-]", state.choice.rigid_error);
   status.add("tolerance for it [-]", state.choice.rigid_tolerance);
   status.add("pulse length [s]", state.choice.pulse_length);

@@ -1,0 +1,163 @@
+#include "hammer_loads/pipeline/driven_signal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 };
+// Of slopes' walk times interval^3 (of a signal) or interval^5 (of its integral) over the noise's variance: from a hull
+// that drifts to one whose readings leave no doubt.
+constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
+constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
+constexpr double kSteadyBegin = 0.2, kSteadyMemory = 2.0;  // [s]: a turn or less; of the signal's mean, which is weight
+constexpr double kBlowPart = 0.3;             // of a blow's impulse, which is known when the crank has turned on
+constexpr double kMemoryOfReadings = 1000.0;  // readings
+constexpr double kFarOff = 9.0;               // of variances: a reading that is farther off counts as this
+constexpr double kComplianceWalk = 0.02;      // of the first guess's deviation in a second: a pose that changes
+constexpr double kUnknownSlope = 1e3;         // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
+constexpr double kLeastNoise = 1e-3;          // of the first guess: a logarithm is taken of it
+constexpr double kUnknownSignal = 1e3;        // of the noise: smooth part at the start
+
+}  // namespace
+
+DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settings) {
+  Eigen::Matrix<double, 9, 1> guess;
+  guess << settings.compliance, settings.stiffness, settings.damping;
+  guess = (guess / settings.noise).cwiseAbs2();
+  walk_ = square(kComplianceWalk) * guess;
+  for (std::size_t i = 0; i < kCandidates; ++i) {
+    Candidate& c = candidates_[i];
+    c.walk = settings.reads == Reads::kItself ? kWalks[i] : kWalksOfIntegral[i];
+    c.x.setZero(), c.P.setZero();
+    c.variance = square(settings.noise);
+    c.P.diagonal().tail<9>() = guess;
+  }
+  best_ = kCandidates / 2;
+}
+
+double DrivenSignal::Candidate::score() const noexcept { return std::log(variance) + log_spread; }
+
+DrivenSignal::State DrivenSignal::rowOf(const Eigen::Vector3d& load) const noexcept {
+  State row = State::Zero();
+  if (settings_.reads == Reads::kIntegral) {
+    row[kIntegral] = 1.0;
+  } else {
+    row[kSmooth] = 1.0, row.segment<3>(kCompliance) = load;
+  }
+  return row;
+}
+
+double DrivenSignal::walkOf(const Candidate& c) const noexcept {
+  if (!(interval_ > 0.0)) return 0.0;  // the second reading is the first that shows it
+  const double cube = interval_ * interval_ * interval_;
+  return c.walk / (settings_.reads == Reads::kItself ? cube : cube * square(interval_));
+}
+
+void DrivenSignal::begin(double reading, const Eigen::Vector3d& load) noexcept {
+  const bool itself = settings_.reads == Reads::kItself;
+  for (Candidate& c : candidates_) {
+    c.x.head<3>().setZero();
+    c.P.topRows<3>().setZero(), c.P.leftCols<3>().setZero();
+    if (itself)
+      c.x[kSmooth] = reading - load.dot(c.x.segment<3>(kCompliance));
+    else
+      c.x[kIntegral] = reading;
+    // Of a rate that is read the acceleration is not.
+    const double smooth = itself ? square(kUnknownSignal) : square(kUnknownSignal * kUnknownSlope);
+    c.P(kIntegral, kIntegral) = 1.0, c.P(kSmooth, kSmooth) = smooth;
+    c.P(kSlope, kSlope) = smooth * square(kUnknownSlope);
+  }
+  if (itself && steady_time_ == 0.0) steady_ = reading, steady_time_ = kSteadyBegin;
+  begun_ = true;
+}
+
+void DrivenSignal::carry(const Step& step, double slope_step, double walk, double unit, State& x,
+                         Covariance& P) const noexcept {
+  const double h = step.length, hh = h * h, q = walk * h;
+  Eigen::Matrix<double, 3, kStates> F = Eigen::Matrix<double, 3, kStates>::Identity();
+  F(kIntegral, kSmooth) = h, F(kIntegral, kSlope) = slope_step * (h - 0.5 * slope_step);
+  F(kSmooth, kSlope) = slope_step;
+  F.block<1, 3>(kIntegral, kCompliance) = step.impulse.transpose();
+  F.block<1, 3>(kIntegral, kBending) = -h / 3.0 * step.way.transpose();
+  F.block<1, 3>(kSmooth, kBending) = -step.way.transpose();
+  F.block<1, 3>(kSlope, kBending) = -step.velocity.transpose();
+  F.block<1, 3>(kIntegral, kDamping) = -step.way.transpose();
+  F.block<1, 3>(kSmooth, kDamping) = -step.velocity.transpose();
+  const double struck = square(kBlowPart * step.blow.dot(x.segment<3>(kCompliance)));
+  x.head<3>() = (F * x).eval();
+  F(kIntegral, kSlope) = 0.5 * hh, F(kSmooth, kSlope) = h;
+  const Eigen::Matrix<double, 3, kStates> FP = F * P;
+  P.topRows<3>() = FP;
+  P.topLeftCorner<3, 3>() = FP * F.transpose();
+  P.leftCols<3>() = P.topRows<3>().transpose().eval();
+  P(kIntegral, kIntegral) += q * hh * hh / 20.0, P(kSmooth, kSmooth) += q * hh / 3.0, P(kSlope, kSlope) += q;
+  const auto both = [&](int i, int j, double value) { P(i, j) += value, P(j, i) += value; };
+  both(kIntegral, kSmooth, q * hh * h / 8.0), both(kIntegral, kSlope, q * hh / 6.0), both(kSmooth, kSlope, q * h / 2.0);
+  P(kIntegral, kIntegral) += struck / unit;
+  P.diagonal().tail<9>() += h * walk_;
+}
+
+void DrivenSignal::update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& c) noexcept {
+  const State row = rowOf(load);
+  const State PH = c.P * row;
+  const double S = row.dot(PH) + 1.0, off = reading - row.dot(c.x);
+  c.x += PH * (off / S);
+  c.P -= PH * PH.transpose() / S;
+  if (!counts) return;
+  const double share = 1.0 / std::min(counted_ + 10.0, kMemoryOfReadings);
+  const double size = std::min(square(off) / S, kFarOff * c.variance);
+  c.variance = std::max(c.variance + share * (size - c.variance), square(kLeastNoise * settings_.noise));
+  c.log_spread += share * (std::log(S) - c.log_spread);
+}
+
+void DrivenSignal::advance(const Step& step) noexcept {
+  for (Candidate& c : candidates_) carry(step, step.length, walkOf(c), c.variance, c.x, c.P);
+}
+
+void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load, bool counts) noexcept {
+  if (!begun_) return begin(reading, load);
+  interval_ = interval_ > 0.0 ? interval_ + 0.05 * (step - interval_) : step;
+  for (Candidate& c : candidates_) update(reading, load, counts, c);
+  const double value = rowOf(load).dot(best().x);
+  if (settings_.reads == Reads::kItself) steady_ += std::min(1.0, step / steady_time_) * (value - steady_);
+  steady_time_ = std::min(steady_time_ + step, kSteadyMemory);
+  if (!counts) return;
+  counted_ += 1.0;
+  const auto lower = [](const Candidate& a, const Candidate& b) { return a.score() < b.score(); };
+  best_ =
+      static_cast<std::size_t>(std::min_element(candidates_.begin(), candidates_.end(), lower) - candidates_.begin());
+}
+
+void DrivenSignal::Future::advance(const Step& step) noexcept {
+  const double slope_step = std::clamp(signal_.interval_ - since_, 0.0, step.length);
+  signal_.carry(step, slope_step, signal_.walkOf(signal_.best()), signal_.best().variance, x_, P_);
+  since_ += step.length;
+}
+
+DrivenSignal::Value DrivenSignal::Future::at(const Eigen::Vector3d& load) const noexcept {
+  State row = State::Zero();
+  row[kSmooth] = 1.0, row.segment<3>(kCompliance) = load;
+  const State PH = P_ * row;
+  const double unit = signal_.best().variance;
+  return {row.dot(x_), x_[kIntegral], unit * row.dot(PH), unit * PH[kIntegral], unit * P_(kIntegral, kIntegral)};
+}
+
+DrivenSignal::Swing DrivenSignal::swing(const State& x, double h, const Eigen::Vector3d& impulse,
+                                        const Eigen::Vector3d& lasting) const noexcept {
+  const Eigen::Vector3d compliance = x.segment<3>(kCompliance);
+  const double smooth = x[kSmooth] - steady_;
+  return {h * (smooth + 0.5 * h * x[kSlope]) + compliance.dot(impulse),
+          h * h * (0.5 * smooth + h / 6.0 * x[kSlope]) + compliance.dot(lasting)};
+}
+
+double DrivenSignal::noise() const noexcept { return std::sqrt(best().variance); }
+
+Eigen::Vector3d DrivenSignal::complianceDeviation() const noexcept {
+  return (best().variance * best().P.diagonal().segment<3>(kCompliance)).cwiseSqrt();
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,121 @@
+/// One direction of the hull's motion, followed from readings of it and the load that drives it.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+namespace hammer_loads {
+
+/// A hull that is free to move answers to a load at once: its acceleration is compliance times load beside what oil,
+/// weight and rock do, which changes no faster than boom and hull vibrate. So a jump of the load, as at a blow, is a
+/// jump of the acceleration, and what is interpolated and foretold between readings is the smooth rest.
+///
+/// Kalman filter: integral of the signal (a rate that is read), the smooth part, its slope, which walks at random, and
+/// three compliances, which are learned from all that the load does. The smooth part is what the oil pulls with, so
+/// that it is bent by the hull's own acceleration: three stiffnesses and three dampings over inertia are learned
+/// likewise. How strongly the slope walks against the noise of a reading is that of some candidates which foretells the
+/// readings best, and the noise is what these foretellings miss (maximum likelihood over some thousand readings), so
+/// that no sensor's noise need be given.
+class DrivenSignal {
+ public:
+  enum class Reads { kItself, kIntegral };
+
+  struct Settings {
+    Reads reads{};
+    double noise{};  ///< first guess, standard: of the signal's unit or its integral's
+    /// Standard deviations of first guesses, which are zero: signal over force x, force z, moment; second derivative
+    /// of the signal over acceleration x, z, turning; its first derivative over the same.
+    Eigen::Vector3d compliance, stiffness, damping;
+  };
+  /// A short piece of time.
+  struct Step {
+    double length{};           ///< [s]
+    Eigen::Vector3d impulse;   ///< of the load, blows included
+    Eigen::Vector3d blow;      ///< of the blows alone
+    Eigen::Vector3d velocity;  ///< by which the hull's vibration changes: x, z, turning
+    Eigen::Vector3d way;       ///< the integral of that from 0
+  };
+  struct Value {
+    double signal{}, integral{};  ///< the integral only where it is read
+    /// Of signal and integral.
+    double signal_variance{}, covariance{}, integral_variance{};
+  };
+
+  static constexpr int kStates = 12;
+  using State = Eigen::Matrix<double, kStates, 1>;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+
+  explicit DrivenSignal(const Settings& settings) noexcept;
+
+  /// Readings are not continuous with those before; what the hull is stays known.
+  void forgetMotion() noexcept { begun_ = false; }
+  /// All that is known is a number.
+  bool isFinite() const noexcept { return best().x.allFinite() && best().P.allFinite(); }
+  const Settings& settings() const noexcept { return settings_; }
+  /// On from the last reading.
+  void advance(const Step& step) noexcept;
+  /// At the load there is; step: all since the last reading [s]; counts: the readings show how the signal walks, as
+  /// they do while the hammer works.
+  void read(double reading, double step, const Eigen::Vector3d& load, bool counts) noexcept;
+
+  /// Change of the signal's integral over a step to come, and the integral of that from 0.
+  struct Swing {
+    double velocity{}, way{};
+  };
+  /// What is known, carried on from the last reading without another one.
+  class Future {
+   public:
+    explicit Future(const DrivenSignal& signal) noexcept : signal_(signal), x_(signal.best().x), P_(signal.best().P) {}
+    /// The smooth part's slope counts for one interval of the readings.
+    void advance(const Step& step) noexcept;
+    Value at(const Eigen::Vector3d& load) const noexcept;
+    Swing swing(double length, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) const noexcept {
+      return signal_.swing(x_, length, impulse, lasting);
+    }
+
+   private:
+    const DrivenSignal& signal_;
+    State x_;
+    Covariance P_;
+    double since_{};
+  };
+  /// By what is known best.
+  Swing swing(double length, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) const noexcept {
+    return swing(best().x, length, impulse, lasting);
+  }
+  double noise() const noexcept;  ///< of a reading, as learned
+  Eigen::Vector3d compliance() const noexcept { return best().x.segment<3>(3); }
+  Eigen::Vector3d complianceDeviation() const noexcept;
+
+ private:
+  /// The covariance is in units of the noise's variance.
+  struct Candidate {
+    double walk{};  ///< of the slope, intensity over the noise's variance, in units of the reading's interval
+    State x;
+    Covariance P;
+    double variance{}, log_spread{};  ///< of a reading; mean logarithm of what it was foretold with
+    double score() const noexcept;
+  };
+  static constexpr std::size_t kCandidates = 4;
+
+  void begin(double reading, const Eigen::Vector3d& load) noexcept;
+  void carry(const Step& step, double slope_step, double walk, double unit, State& x, Covariance& P) const noexcept;
+  Swing swing(const State& x, double length, const Eigen::Vector3d& impulse,
+              const Eigen::Vector3d& lasting) const noexcept;
+  void update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& candidate) noexcept;
+  State rowOf(const Eigen::Vector3d& load) const noexcept;
+  double walkOf(const Candidate& candidate) const noexcept;
+  const Candidate& best() const noexcept { return candidates_[best_]; }
+
+  Settings settings_;
+  std::array<Candidate, kCandidates> candidates_;
+  std::size_t best_{};
+  Eigen::Matrix<double, 9, 1> walk_;  ///< of compliances and stiffnesses, variance in a second
+  double interval_{};                 ///< mean, of the readings [s]
+  double counted_{};
+  double steady_{}, steady_time_{};  ///< mean of the signal that is read; over [s]
+  bool begun_{};
+};
+
+}  // namespace hammer_loads

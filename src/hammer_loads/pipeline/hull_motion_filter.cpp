@@ -1,0 +1,161 @@
+#include "hammer_loads/pipeline/hull_motion_filter.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+// First guesses of a reading's noise, a usual MEMS unit's; learned.
+constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
+// Standard deviation of what such a unit adds to all readings alike, which no filter shows.
+constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
+// A hull is some five times as heavy as its rocker at least.
+constexpr double kLightest = 0.2;
+constexpr double kLongestPiece = 2e-3;  // [s]: some 20 of a period of 25 Hz
+constexpr double kWorking = 0.05;       // of the greatest load: the hammer is at work
+
+constexpr double kStiffest = 4e3;  // [1/s2]: some 10 Hz
+constexpr double kDamped = 10.0;   // [1/s]: of that a twelfth of the critical
+constexpr double kArm = 0.5;       // [m] of a hull's turning: from D to where it hangs
+
+/// signal_arm: 1 of a force's signal; of turning over kArm.
+DrivenSignal::Settings signalOf(DrivenSignal::Reads reads, double noise, Eigen::Vector3d compliance,
+                                double signal_arm) {
+  const Eigen::Vector3d by = 1.0 / signal_arm * Eigen::Vector3d(1.0, 1.0, kArm);
+  return {reads, noise, kLightest * compliance, kStiffest * by, kDamped * by};
+}
+
+DrivenSignal::Settings forceSignal(const HammerParameters& p) {
+  const double by_force = 1.0 / p.rocker_mass, by_moment = by_force / p.rocker_com_distance;
+  return signalOf(DrivenSignal::Reads::kItself, kForceNoise, {by_force, by_force, by_moment}, 1.0);
+}
+
+DrivenSignal::Settings turningSignal(const HammerParameters& p) {
+  const double by_force = 1.0 / (p.rocker_mass * p.rocker_com_distance);
+  return signalOf(DrivenSignal::Reads::kIntegral, kRateNoise, {by_force, by_force, 1.0 / p.rocker_inertia_about_pivot},
+                  kArm);
+}
+
+}  // namespace
+
+HullMotionFilter::HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer)
+    : settings_(imu), x_(forceSignal(hammer)), z_(forceSignal(hammer)), turning_(turningSignal(hammer)) {}
+
+void HullMotionFilter::add(StampNs stamp, const ImuReading& reading) noexcept {
+  if (waits_ == kWaiting) std::move(waiting_.begin() + 1, waiting_.end(), waiting_.begin()), --waits_;
+  waiting_[waits_++] = {stamp, reading};
+}
+
+void HullMotionFilter::forgetMotion() noexcept {
+  x_.forgetMotion(), z_.forgetMotion(), turning_.forgetMotion();
+  readings_ = 0;
+}
+
+void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
+  if (step.count == 0) {
+    path_.forget();
+    forgetMotion();
+  } else {
+    path_.add(sample, step, path_.known() ? beside_ : beside, beside);
+  }
+  beside_ = beside;
+  std::size_t taken = 0;
+  while (taken < waits_ && waiting_[taken].stamp <= sample) {
+    if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken]);
+    ++taken;
+  }
+  std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
+            waiting_.begin() + static_cast<std::ptrdiff_t>(waits_), waiting_.begin());
+  waits_ -= taken;
+}
+
+/// At rest readings show noise alone.
+bool HullMotionFilter::works(const Eigen::Vector3d& load) noexcept {
+  const double size = load.head<2>().norm();
+  greatest_load_ = std::max(greatest_load_, size);
+  return size > kWorking * greatest_load_;
+}
+
+/// Calls each(step) for short pieces from the last reading to a stamp, with what all three signals do in it.
+template <typename Signals, typename Each>
+void HullMotionFilter::forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept {
+  const int count = std::max(1, static_cast<int>(std::ceil(seconds(to - last_.stamp) / kLongestPiece)));
+  WrenchPath::Instant before = at_last_;
+  StampNs from = last_.stamp;
+  for (int i = 1; i <= count; ++i) {
+    const StampNs next = last_.stamp + (to - last_.stamp) * i / count;
+    const WrenchPath::Instant now = path_.at(next);
+    const double h = seconds(next - from);
+    const Eigen::Vector3d impulse = now.impulse - before.impulse;
+    const Eigen::Vector3d lasting = now.lasting - before.lasting - h * before.impulse;
+    const auto [x, z, turns] = signals(h, impulse, lasting);
+    each(DrivenSignal::Step{
+        h, impulse, now.blows - before.blows, {x.velocity, z.velocity, turns.velocity}, {x.way, z.way, turns.way}});
+    before = now, from = next;
+  }
+}
+
+void HullMotionFilter::take(const Reading& next) noexcept {
+  const double step = seconds(next.stamp - last_.stamp);
+  if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();
+  const WrenchPath::Instant now = path_.at(next.stamp);
+  if (readings_ > 0) {
+    const auto swings = [&](double h, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) {
+      return std::array<DrivenSignal::Swing, 3>{x_.swing(h, impulse, lasting), z_.swing(h, impulse, lasting),
+                                                turning_.swing(h, impulse, lasting)};
+    };
+    forEachStep(next.stamp, swings,
+                [&](const DrivenSignal::Step& one) { x_.advance(one), z_.advance(one), turning_.advance(one); });
+  }
+  const bool counts = works(now.load);
+  const ImuReading& r = next.reading;
+  x_.read(r.specific_force.x(), step, now.load, counts);
+  z_.read(r.specific_force.z(), step, now.load, counts);
+  turning_.read(r.rate.y(), step, now.load, counts);
+  for (DrivenSignal* signal : {&x_, &z_, &turning_}) {
+    if (signal->isFinite()) continue;
+    *signal = DrivenSignal(signal->settings());
+    forgetMotion();
+  }
+  last_ = next;
+  at_last_ = now;
+  readings_ = std::min(readings_ + 1, 2);
+}
+
+std::optional<KnownHullMotion> HullMotionFilter::at(StampNs stamp) const noexcept {
+  const double step = seconds(stamp - last_.stamp);
+  if (readings_ < 2 || !path_.known() || !(step >= 0.0 && step <= settings_.max_age)) return std::nullopt;
+  const WrenchPath::Instant now = path_.at(stamp);
+  std::array<DrivenSignal::Future, 3> future{DrivenSignal::Future(x_), DrivenSignal::Future(z_),
+                                             DrivenSignal::Future(turning_)};
+  const auto swings = [&](double h, const Eigen::Vector3d& impulse, const Eigen::Vector3d& lasting) {
+    return std::array<DrivenSignal::Swing, 3>{future[0].swing(h, impulse, lasting),
+                                              future[1].swing(h, impulse, lasting),
+                                              future[2].swing(h, impulse, lasting)};
+  };
+  forEachStep(stamp, swings, [&](const DrivenSignal::Step& one) {
+    for (DrivenSignal::Future& signal : future) signal.advance(one);
+  });
+  const DrivenSignal::Value x = future[0].at(now.load), z = future[1].at(now.load), turns = future[2].at(now.load);
+  Eigen::Vector3d rate = last_.reading.rate;
+  rate.y() = turns.integral;
+  const Eigen::Vector3d& r = settings_.position;
+  const Eigen::Vector3d force = Eigen::Vector3d(x.signal, 0.0, z.signal) -
+                                Eigen::Vector3d(0.0, turns.signal, 0.0).cross(r) - rate.cross(rate.cross(r));
+  KnownHullMotion known;
+  known.motion = {{-force.x(), -force.z()}, turns.integral, turns.signal};
+  Eigen::Vector4d by_turning(r.z(), -r.x(), 0.0, 1.0),
+      by_rate(-2.0 * rate.y() * r.x(), -2.0 * rate.y() * r.z(), 1.0, 0.0);
+  HullMotionCovariance& P = known.covariance;
+  P = turns.signal_variance * by_turning * by_turning.transpose() +
+      (turns.integral_variance + square(kRateOffset)) * by_rate * by_rate.transpose() +
+      turns.covariance * (by_turning * by_rate.transpose() + by_rate * by_turning.transpose());
+  P(0, 0) += x.signal_variance + square(kForceOffset), P(1, 1) += z.signal_variance + square(kForceOffset);
+  return known;
+}
+
+}  // namespace hammer_loads

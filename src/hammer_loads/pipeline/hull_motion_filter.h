@@ -1,0 +1,73 @@
+/// The hull's motion from its IMU, with the load that drives it: jumps where the load jumps.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/driven_signal.h"
+#include "hammer_loads/pipeline/hull_imu.h"
+#include "hammer_loads/pipeline/wrench_path.h"
+
+namespace hammer_loads {
+
+/// Of effective gravity along x and z [m/s2], turning rate [rad/s], its derivative [rad/s2], in this order: what the
+/// hull's motion may be off, and independent of the crank's errors.
+using HullMotionCovariance = Eigen::Matrix4d;
+
+struct KnownHullMotion {
+  HullMotion motion;
+  HullMotionCovariance covariance = HullMotionCovariance::Zero();
+};
+
+/// Three signals at the unit, each driven by the load of links and drive: force along x, force along z, turning about y
+/// by its rate. Readings wait for the crank sample after them, which tells the load at their stamps; nothing is taken
+/// from the future. The effective inertia of the hull at D - on its boom and oil, on rock - is learned and needs no
+/// boom file.
+class HullMotionFilter {
+ public:
+  HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer);
+
+  /// A reading that was taken, axes of hammer_hull.
+  void add(StampNs stamp, const ImuReading& reading) noexcept;
+  /// A crank sample and the load of the step that it ends; beside: what acts on the hull beside that at the sample. A
+  /// step without pieces: what is known of motion is forgotten.
+  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
+  /// Known from the second reading with a known load on, until the last one is max_age old.
+  std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
+  std::size_t waiting() const noexcept { return waits_; }  ///< readings that no crank sample has followed yet
+  /// Of the last reading used [ns].
+  StampNs last() const noexcept { return last_.stamp; }
+
+  const DrivenSignal& alongX() const noexcept { return x_; }
+  const DrivenSignal& alongZ() const noexcept { return z_; }
+  const DrivenSignal& turning() const noexcept { return turning_; }
+
+ private:
+  struct Reading {
+    StampNs stamp{};
+    ImuReading reading;
+  };
+  static constexpr std::size_t kWaiting = 64;
+
+  template <typename Signals, typename Each>
+  void forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept;
+  void take(const Reading& reading) noexcept;
+  void forgetMotion() noexcept;
+  bool works(const Eigen::Vector3d& load) noexcept;
+
+  HullImuSettings settings_;
+  DrivenSignal x_, z_, turning_;
+  WrenchPath path_;
+  std::array<Reading, kWaiting> waiting_;
+  std::size_t waits_{};
+  Reading last_;
+  WrenchPath::Instant at_last_;
+  HullWrench beside_;
+  int readings_{};
+  double greatest_load_{};
+};
+
+}  // namespace hammer_loads

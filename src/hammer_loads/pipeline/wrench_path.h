@@ -1,0 +1,57 @@
+/// The load on the hull over the recent past: at any instant, and what it has given by then.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "hammer_loads/pipeline/wrench_history.h"
+#include "hammer_loads/util/stamp.h"
+
+namespace hammer_loads {
+
+/// Force along x and z, moment about D: [N, N, N m], their impulse [N s, N s, N m s].
+inline Eigen::Vector3d vectorOf(const HullWrench& w) noexcept { return {w.force_x, w.force_z, w.torque_y}; }
+
+class WrenchPath {
+ public:
+  struct Instant {
+    Eigen::Vector3d load;
+    Eigen::Vector3d impulse, blows;  ///< from the first step on: all, and that of the blows alone
+    Eigen::Vector3d lasting;         ///< the impulse's integral likewise [N s2, N s2, N m s2]
+  };
+
+  void forget() noexcept { count_ = 0; }
+  bool known() const noexcept { return count_ > 0; }
+  /// Steps in the order of time, each to `end`. beside_from, beside_to: what acts beside the step's own load at its
+  /// ends. A step that does not begin where the last one ended begins anew. No allocation.
+  void add(StampNs end, const WrenchHistory& step, const HullWrench& beside_from, const HullWrench& beside_to) noexcept;
+  /// Whether an instant lies within what is remembered.
+  bool covers(StampNs stamp) const noexcept { return known() && stamp >= oldest().start && stamp <= end_; }
+  StampNs end() const noexcept { return end_; }
+  /// After the end: the load stays. Before what is remembered: as at its beginning.
+  Instant at(StampNs stamp) const noexcept;
+
+ private:
+  struct Piece {
+    StampNs start{};
+    double duration{};                        ///< [s]
+    Eigen::Vector3d from, slope, bend;        ///< load from + slope t + bend t^2/2
+    Eigen::Vector3d impulse, blows, lasting;  ///< at the start
+    Eigen::Vector3d blow;                     ///< impulse at the end
+  };
+  static constexpr std::size_t kKept = 256;  ///< a quarter of a second of samples at 1 kHz
+
+  const Piece& back(std::size_t steps) const noexcept { return pieces_[(count_ - 1 - steps) % kKept]; }
+  std::size_t kept() const noexcept { return count_ < kKept ? static_cast<std::size_t>(count_) : kKept; }
+  const Piece& oldest() const noexcept { return back(kept() - 1); }
+  static Instant after(const Piece& piece) noexcept;
+  static Instant within(const Piece& piece, double time) noexcept;
+
+  std::array<Piece, kKept> pieces_;
+  std::uint64_t count_{};
+  StampNs end_{};
+};
+
+}  // namespace hammer_loads
