@@ -69,7 +69,7 @@ std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& st
   CrankBelief result = before;
   result.move(gain * change);
   result.boundFactor();
-  result.by_error += gain * (next.by_error - way->predicted.by_error);
+  result.by_constant += gain * (next.by_constant - way->predicted.by_constant);
   const ShaftMatrix covariance = before.covariance + gain * (next.covariance - predicted) * gain.transpose();
   result.covariance = 0.5 * (covariance + covariance.transpose());
   if (!result.isSound(step.most_speed) || isWidened(before, result)) return std::nullopt;

@@ -1,6 +1,5 @@
 #include "hammer_loads/crank/constant_errors.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
@@ -23,27 +22,17 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
 
-constexpr double kMostRatio = 9.0;  // innovation^2 over its variance; more counts as that
-
 }  // namespace
 
-void ConstantErrors::learn(double innovation, double variance, const Row& by_error) noexcept {
-  ++samples_;
-  const double ratio = innovation * innovation / variance;
-  const double weight = (ratio > kMostRatio ? kMostRatio / ratio : 1.0) / variance;
-  information_.noalias() += (weight * by_error.transpose()) * by_error;
-  score_ += (weight * innovation) * by_error.transpose();
-}
-
 void ConstantErrors::takeSupply(double change) noexcept {
-  score_ += information_.col(kSupply) * change;
+  fit_.take(kSupply, change);
   estimate_[kSupply] += change;
 }
 
 void ConstantErrors::forget() noexcept {
-  information_ = Matrix::Identity() / square(kPrior);
-  information_(kSupply, kSupply) = 1.0 / square(kPriorSupply);
-  score_.setZero();
+  Vector prior = Vector::Constant(kPrior);
+  prior[kSupply] = kPriorSupply;
+  fit_.begin(prior);
 }
 
 void ConstantErrors::endTurn(double growth, double count) noexcept {
@@ -51,9 +40,9 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   if (++turns_ == kFirstTurns) forget();
   if (turns_ < kTurnsToKnow) return;
   Matrix covariance = Matrix::Zero();
-  covariance.topLeftCorner<kPlace, kPlace>() = information_.topLeftCorner<kPlace, kPlace>().inverse();
-  covariance(kSupply, kSupply) = 1.0 / information_(kSupply, kSupply);
-  estimate_ = covariance * score_;
+  covariance.topLeftCorner<kPlace, kPlace>() = fit_.covarianceOfFirst<kPlace>();
+  covariance(kSupply, kSupply) = 1.0 / fit_.information()(kSupply, kSupply);
+  estimate_ = covariance * fit_.score();
   const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
   Vector doubt = Vector::Zero(), certain = Vector::Zero();  // variance of what is seen; what remains after it
   double share = 0.0;                                       // of b that is certain
@@ -67,8 +56,8 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   moment_ = square(kUnseenDeviations / unmodelled) * growth * covariance + certain * certain.transpose();
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
-  information_ *= 1.0 - 1.0 / kMemoryTurns;
-  score_ *= 1.0 - 1.0 / kMemoryTurns;
+  moment_(kShare, kShare) = share_variance_;
+  fit_.fade(1.0 - 1.0 / kMemoryTurns);
 }
 
 }  // namespace hammer_loads

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "hammer_loads/estimation/constant_fit.h"
 #include "hammer_loads/linkage/crank_angle.h"
 
 namespace hammer_loads {
@@ -19,24 +20,30 @@ namespace hammer_loads {
 /// as if the sensor's place were right: together they can hardly be separated.
 class ConstantErrors {
  public:
-  static constexpr int kPlace = 3, kSize = 4;      ///< the first kPlace are of the sensor's place
-  static constexpr int kSupply = 3;                ///< index of the supply's
-  using Row = Eigen::Matrix<double, 1, kSize>;     ///< derivative of a number by b
-  using Effect = Eigen::Matrix<double, 5, kSize>;  ///< of the filter's variables, in ShaftMatrix' order
+  static constexpr int kPlace = 3, kSize = 5;    ///< the first kPlace are of the sensor's place
+  static constexpr int kSupply = 3, kShare = 4;  ///< of the supply; of the motor, logarithm of the odds
+  using Row = Eigen::Matrix<double, 1, kSize>;   ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-  ConstantErrors() noexcept { forget(); }
+  /// share_deviation: standard, of the last one, which no innovation tells apart from the coupling's stiffness.
+  explicit ConstantErrors(double share_deviation = 0.0) noexcept : share_variance_(share_deviation * share_deviation) {
+    moment_(kShare, kShare) = share_variance_;
+    forget();
+  }
 
   /// d(reading)/db at a crank angle within half a turn of the blow [rad].
-  static Row ofAngle(double offset) noexcept { return {1.0, sine(offset), cosine(offset) - 1.0, 0.0}; }
+  static Row ofAngle(double offset) noexcept { return {1.0, sine(offset), cosine(offset) - 1.0, 0.0, 0.0}; }
   /// d(measured speed)/db there [1/s].
   static Row ofSpeed(double offset, double speed) noexcept {
-    return {0.0, speed * cosine(offset), -speed * sine(offset), 0.0};
+    return {0.0, speed * cosine(offset), -speed * sine(offset), 0.0, 0.0};
   }
 
   /// innovation of an angle, its variance and its derivative by b.
-  void learn(double innovation, double variance, const Row& by_error) noexcept;
+  void learn(double innovation, double variance, const Row& by_error) noexcept {
+    ++samples_;
+    fit_.learn(innovation, variance, by_error);
+  }
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 
@@ -58,8 +65,8 @@ class ConstantErrors {
   }
   static double cosine(double x) noexcept { return sine(0.25 * kTwoPi - std::abs(x)); }
 
-  Matrix information_;
-  Vector score_;
+  double share_variance_;
+  ConstantFit<kSize> fit_;
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()};
   int turns_{}, samples_{};  ///< samples: of this turn

@@ -40,6 +40,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       supply_(settings.initial_torque_deviation),
+      errors_(model.coupling() ? oddsDeviationOf(*model.coupling()) : 0.0),
       blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;
@@ -97,8 +98,8 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   // NaN-proof by min: never above the first guess
   p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
   p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
-  now_.by_error.setZero();
-  now_.by_error.row(Belief::kAngle) = ConstantErrors::ofAngle(s.position.angle.offset);
+  now_.by_constant.setZero();
+  now_.by_constant.row(Belief::kAngle) = ConstantErrors::ofAngle(s.position.angle.offset);
   if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 
@@ -141,7 +142,7 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   unlearn_after_ = kUnlearnEvery;
   doubt_load_ += 1.0;
   now_.state.drive_inertia = first_guess_;
-  now_.by_error.row(Belief::kInertia).setZero();
+  now_.by_constant.row(Belief::kInertia).setZero();
   now_.forgetInertiaCoupling();
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
   now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
@@ -168,13 +169,13 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   if (from.isMirrored() || to.isMirrored()) return;
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   learnSupply();
-  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_error.row(Belief::kFactor));
+  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_constant.row(Belief::kFactor));
 }
 
 /// (10) Other than the sensor's errors, that of the supply's stiffness is corrected.
 void CrankFilter::learnSupply() noexcept {
   const double change = supply_.learn(errors_.estimate()[ConstantErrors::kSupply]);
-  now_.move(now_.by_error.col(ConstantErrors::kSupply) * change);
+  now_.move(now_.by_constant.col(ConstantErrors::kSupply) * change);
   errors_.takeSupply(change);
 }
 

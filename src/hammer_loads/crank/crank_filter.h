@@ -110,7 +110,6 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
 
-  ShaftMatrix grown(const CrankBelief& belief) const noexcept;
   Eigen::Matrix3d covarianceOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
   /// At now_ with the latest motion of the hull.
   ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }

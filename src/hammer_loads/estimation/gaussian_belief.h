@@ -79,18 +79,19 @@ struct GaussianBelief {
     return gain;
   }
 
-  /// A variable is drawn anew: independent of the others, with a variance and what the constants make of it.
-  void draw(Eigen::Index i, double variance, const ConstantRow& effect = ConstantRow::Zero()) noexcept {
+  /// A variable's mean is worth this variance now, whatever the others are.
+  void forget(Eigen::Index i, double variance) noexcept {
     covariance.row(i).setZero();
     covariance.col(i).setZero();
     covariance(i, i) = variance;
+  }
+  /// The same of a mean that the owner has drawn anew; effect: what the constants made of that.
+  void draw(Eigen::Index i, double variance, const ConstantRow& effect = ConstantRow::Zero()) noexcept {
+    forget(i, variance);
     by_constant.row(i) = effect;
   }
   /// What is known of a variable stays; coming measurements of the others teach nothing of it, nor the other way round.
-  void decouple(Eigen::Index i) noexcept {
-    const ConstantRow effect = by_constant.row(i);
-    draw(i, covariance(i, i), effect);
-  }
+  void decouple(Eigen::Index i) noexcept { forget(i, covariance(i, i)); }
   /// Deviations are so much larger, variable by variable.
   void widen(const Vector& by) noexcept { covariance = (by.asDiagonal() * covariance * by.asDiagonal()).eval(); }
 
