@@ -11,7 +11,6 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kWiden = 25.0;            // innovation^2 over its variance from which on the model does not explain it
 constexpr double kDoubtfulAngle = 0.3;     // [rad] predicted deviation from which on the prediction is worth nothing
 constexpr double kJump = 0.5;              // [rad] innovation that no working machine makes between two samples
 constexpr double kKick = 0.35;             // of the speed: what no torque changes between two samples
@@ -117,12 +116,12 @@ int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noe
 
 /// (6)
 void CrankFilter::correctAngle(Innovation innovation) noexcept {
-  const double squared = square(innovation.value), ratio = innovation.ratio();
-  const int side = ratio > kWiden ? (innovation.value > 0.0 ? 1 : -1) : 0;
+  const double squared = square(innovation.value);
+  const int side = innovation.exceeds(gate::kImpossible) ? (innovation.value > 0.0 ? 1 : -1) : 0;
   if (side != 0) unexplained_ = side * unexplained_ < 0 ? side : unexplained_ + side;
   surprises_ += (side != 0 ? 1.0 : 0.0) - surprises_ / kSurpriseLength;
   if (side != 0 && ((std::abs(unexplained_) < 3 && surprises_ > kManySurprises) || isLost())) {
-    innovation.variance = squared / kWiden;  // with many like it on both sides: the stamps
+    innovation.variance = squared / square(gate::kImpossible);  // with many like it on both sides: the stamps
   } else if (side != 0) {
     const double factor = (0.25 * squared - innovation.variance) / now_.encoderVariance(Belief::kAngle);
     now_.widen(factor);
@@ -154,8 +153,9 @@ void CrankFilter::doubtInertia(double dt) noexcept {
 void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
   const Innovation innovation = sample.ofSpeed(now_, model_);
   fit_ += innovation.logLikelihood();
-  const double squared = std::min(square(innovation.value), kWiden * innovation.total);
-  if (square(innovation.value) <= squared) now_.correctSpeed(innovation.value, innovation.total, innovation.by_error);
+  const double squared = std::min(square(innovation.value), square(gate::kImpossible) * innovation.total);
+  if (!innovation.exceeds(gate::kImpossible))
+    now_.correctSpeed(innovation.value, innovation.total, innovation.by_error);
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
 }
@@ -184,7 +184,8 @@ void CrankFilter::learnSupply() noexcept {
 /// one may be stopped dead.
 bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const noexcept {
   const double most = std::max(kKick * std::abs(now_.state.speed), kLearnSpeed) * dt;
-  return std::abs(innovation.value) > kJump || (std::abs(innovation.value) > most && innovation.ratio() > kWiden);
+  return std::abs(innovation.value) > kJump ||
+         (std::abs(innovation.value) > most && innovation.exceeds(gate::kImpossible));
 }
 
 /// What lies before this sample is not known any more; a speed that was kept from there and is contradicted again is
@@ -259,7 +260,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
     sample.timing_variance = timing_.variance();
     if (isSpeedOfOtherSide(sample)) sample.speed.reset();
-    const bool without_contact = ratio > kToolSeen && rivalExplains(dt, sample);
+    const bool without_contact = ratio > square(kToolSeen) && rivalExplains(dt, sample);
     const bool unlike =
         !without_contact && (meetsTool(dt, innovation, sample) || meetsOtherBlow(dt, innovation, sample));
     if (unlike) innovation = sample.ofAngle(now_);                           // (4)
