@@ -86,10 +86,10 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
       blows += !tool_met;
       tool_met = false;
     }
-    double& torque_by_stiffness = by_constant(kTorque, ConstantErrors::kSupply);
-    torque_by_stiffness -= 0.5 * supply.unit * lead;
+    const ConstantErrors::Row torque_by_constant = 0.5 * ConstantErrors::ofTorque(supply, lead);
+    by_constant.row(kTorque) += torque_by_constant;
     Base::predict<kAngle, kSpeed>(step.transition);
-    torque_by_stiffness -= 0.5 * supply.unit * lead;
+    by_constant.row(kTorque) += torque_by_constant;
     addNoise(kAngle, kAngle, speed * h * h / 3.0);
     addNoise(kSpeed, kSpeed, speed + torque * square(b * h) / 3.0);
     addNoise(kTorque, kTorque, torque);

@@ -29,6 +29,13 @@ constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
 constexpr double kForgetDoubts = 30.0;     // [s]
 
+/// Those of the settings; that of the motor's share is the coupling's.
+ConstantErrors::Vector deviationsOf(const CrankFilterSettings& settings, const ShaftModel& model) noexcept {
+  ConstantErrors::Vector deviations = settings.constant_deviations;
+  if (model.coupling()) deviations[ConstantErrors::kShare] = oddsDeviationOf(*model.coupling());
+  return deviations;
+}
+
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
@@ -39,7 +46,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       supply_(settings.initial_torque_deviation),
-      errors_(model.coupling() ? oddsDeviationOf(*model.coupling()) : 0.0),
+      errors_(deviationsOf(settings, model)),
       blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;
@@ -98,7 +105,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
   p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
   now_.by_constant.setZero();
-  now_.by_constant.row(Belief::kAngle) = ConstantErrors::ofAngle(s.position.angle.offset);
+  now_.by_constant.row(Belief::kAngle) = ConstantErrors::ofAngle({s.position.angle.offset, s.speed, 0.0});
   if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 

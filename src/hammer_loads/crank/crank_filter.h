@@ -32,7 +32,8 @@ struct CrankFilterSettings {
   double initial_inertia_deviation{};  ///< relative [-], >= 0
   double max_speed{};                  ///< bound of an unknown speed [rad/s], > 0
   double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
-  double blow_deviation{0.25};         ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
+  ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
+  double blow_deviation{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
 };
 
 /// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's

@@ -16,9 +16,9 @@ class ConstantFit {
   using Vector = Eigen::Matrix<double, constants, 1>;
   using Matrix = Eigen::Matrix<double, constants, constants>;
 
-  /// Nothing is known but priors: standard deviation of each error, > 0.
+  /// Nothing is known but priors: standard deviation of each error, >= 0; 0: it has none, and is not asked.
   void begin(const Vector& prior) noexcept {
-    information_ = prior.cwiseAbs2().cwiseInverse().asDiagonal();
+    information_ = (prior.array() > 0.0).select(prior.cwiseAbs2().cwiseInverse(), 0.0).matrix().asDiagonal();
     score_.setZero();
   }
   /// The square of an innovation beyond the gate counts as the gate's. by_constant: dz/dp - H V.
