@@ -43,11 +43,11 @@ TEST(ConstantErrors, AreSeenInTheInnovations) {
 
 TEST(ConstantErrors, ReadingsDerivativeIsThatOfTheSensor) {
   for (double offset = -3.1; offset < 3.1; offset += 0.05) {
-    const ConstantErrors::Row by_error = ConstantErrors::ofAngle(offset);
+    const ConstantErrors::Row by_error = ConstantErrors::ofAngle({offset, 30.0, 0.0});
     EXPECT_EQ(by_error[0], 1.0);
     EXPECT_NEAR(by_error[1], std::sin(offset), 2e-3);
     EXPECT_NEAR(by_error[2], std::cos(offset) - 1.0, 2e-3);
-    const ConstantErrors::Row by_speed = ConstantErrors::ofSpeed(offset, 30.0);
+    const ConstantErrors::Row by_speed = ConstantErrors::ofSpeed({offset, 30.0, 0.0});
     EXPECT_NEAR(by_speed[1], 30.0 * std::cos(offset), 0.05);
     EXPECT_NEAR(by_speed[2], -30.0 * std::sin(offset), 0.05);
   }
@@ -56,7 +56,7 @@ TEST(ConstantErrors, ReadingsDerivativeIsThatOfTheSensor) {
 TEST(ConstantErrors, NothingIsConcludedBeforeSomeTurns) {
   ConstantErrors errors;
   for (int i = 0; i < 3; ++i) {
-    errors.learn(0.1, 1e-4, ConstantErrors::ofAngle(0.5));
+    errors.learn(0.1, 1e-4, ConstantErrors::ofAngle({0.5, 30.0, 0.0}));
     errors.endTurn(1.0, kTwoPi / 4096.0);
   }
   EXPECT_EQ(errors.estimate(), ConstantErrors::Vector::Zero());
@@ -68,7 +68,8 @@ TEST(ConstantErrors, WhatIsCertainCountsWithItsDeviation) {
   const auto momentOf = [](double b) {
     ConstantErrors errors;
     for (int turn = 0; turn < 12; ++turn) {
-      for (double offset = -3.1; offset < 3.1; offset += 0.2) errors.learn(b, 1e-6, ConstantErrors::ofAngle(offset));
+      for (double offset = -3.1; offset < 3.1; offset += 0.2)
+        errors.learn(b, 1e-6, ConstantErrors::ofAngle({offset, 30.0, 0.0}));
       errors.endTurn(1.0, 0.0);
     }
     EXPECT_NEAR(errors.estimate()[0], b, 0.05 * b);

@@ -1,7 +1,8 @@
 #include "hammer_loads/crank/belief_smoothing.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
+
+#include "hammer_loads/estimation/smoothing.h"
 
 namespace hammer_loads {
 namespace {
@@ -53,25 +54,15 @@ std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& st
   model.setHullMotion(step.hull);
   const std::optional<Joined> way = joined(model, step, before, now);
   if (!way || isWidened(way->predicted, now)) return std::nullopt;
-  const ShaftMatrix& predicted = way->predicted.covariance;
-  // Scaled to a correlation: torque and angle differ by ten powers of ten.
-  const Vector scale = predicted.diagonal().cwiseSqrt().cwiseInverse();
-  if (!scale.allFinite()) return std::nullopt;
-  const Eigen::LDLT<ShaftMatrix> factors(scale.asDiagonal() * predicted * scale.asDiagonal());
-  if (factors.info() != Eigen::Success || !(factors.vectorD().array() > 0.0).all()) return std::nullopt;
-  const ShaftMatrix scaled = scale.asDiagonal() * (way->transition * before.covariance);
-  const ShaftMatrix gain = factors.solve(scaled).transpose() * scale.asDiagonal();
-
-  const Vector change = between(next, way->predicted), scaled_change = scale.asDiagonal() * change;
+  const Vector change = between(next, way->predicted);
+  const auto smoothed = smooth(before, way->transition, way->predicted, next, change);
   const bool passes = before.state.position.blowsPassed() != now.state.position.blowsPassed();
-  if (passes && !(scaled_change.dot(factors.solve(scaled_change)) < kMostAtBlow)) return std::nullopt;
+  if (!smoothed || (passes && !(smoothed->distance < kMostAtBlow))) return std::nullopt;
 
   CrankBelief result = before;
-  result.move(gain * change);
+  result.move(smoothed->gain * change);
   result.boundFactor();
-  result.by_error += gain * (next.by_error - way->predicted.by_error);
-  const ShaftMatrix covariance = before.covariance + gain * (next.covariance - predicted) * gain.transpose();
-  result.covariance = 0.5 * (covariance + covariance.transpose());
+  static_cast<CrankBelief::Base&>(result) = smoothed->belief;
   if (!result.isSound(step.most_speed) || isWidened(before, result)) return std::nullopt;
   return result;
 }

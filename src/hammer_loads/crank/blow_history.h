@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_belief.h"
+#include "hammer_loads/estimation/running_mean.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -13,32 +15,32 @@ namespace hammer_loads {
 class BlowHistory {
  public:
   explicit BlowHistory(const BlowPrior& first) noexcept
-      : first_(first), mean_(first.mean), variance_(first.deviation * first.deviation) {}
+      : first_(first),
+        mean_(kLength, first.mean, kFirstCounts),
+        variance_(kLength, first.deviation * first.deviation, kFirstCounts),
+        by_error_(kLength, ConstantErrors::Row::Zero(), kFirstCounts) {}
 
   /// factor of a blow, its variance and its derivative by the sensor's errors, by all samples since.
   void add(double factor, double variance, const ConstantErrors::Row& by_error) noexcept {
-    if (!(variance < 0.25 * variance_ || variance < kLeast * kLeast)) return;  // nothing was learned of it
-    if (blows_ < kLength) ++blows_;
-    const double gain = 1.0 / (blows_ + kFirstCounts), off = factor - mean_;
-    mean_ += gain * off;
-    by_error_ += gain * (by_error - by_error_);
-    variance_ += gain * (off * off - variance_);
+    if (!(variance < 0.25 * variance_.mean() || variance < kLeast * kLeast)) return;  // nothing was learned of it
+    variance_.add(square(factor - mean_.mean()));
+    mean_.add(factor);
+    by_error_.add(by_error);
   }
 
   BlowPrior prior() const noexcept {
-    return {mean_, std::clamp(std::sqrt(variance_), std::min(kLeast, first_.deviation), kMost), by_error_};
+    return {mean_.mean(), std::clamp(std::sqrt(variance_.mean()), std::min(kLeast, first_.deviation), kMost),
+            by_error_.mean()};
   }
 
  private:
-  static constexpr int kLength = 10;
-  static constexpr double kFirstCounts =
-      0.1;                                // blows: the first guess; a wrong conclusion from the first few shows at once
+  /// Blows; a wrong conclusion from the first few shows at once where the first guess counts little.
+  static constexpr double kFirstCounts = 0.1, kLength = 10.0 + kFirstCounts;
   static constexpr double kLeast = 0.01;  // deviation
   static constexpr double kMost = 0.3;
   BlowPrior first_;
-  double mean_, variance_;
-  ConstantErrors::Row by_error_{ConstantErrors::Row::Zero()};
-  int blows_{};
+  RunningMean<> mean_, variance_;
+  RunningMean<ConstantErrors::Row> by_error_;
 };
 
 }  // namespace hammer_loads

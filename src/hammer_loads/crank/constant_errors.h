@@ -2,41 +2,55 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
+#include <utility>
 
-#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/crank/unknowns.h"
+#include "hammer_loads/estimation/constant_fit.h"
 
 namespace hammer_loads {
 
-/// Errors b that stay. Of the crank sensor's place: reading = angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1) [rad],
-/// so that b0 alone says where the blow is; b1 and b2 are an eccentricity. b3 is that of the supply's stiffness, as the
-/// filter has it, over SupplyLaw::unit. The filter knows beside its state what each of them does to it (Friedland's
-/// separate-bias filter). An innovation is then its derivative by b times b, and noise: weighted least squares over
-/// some minutes. b0 to b2 are seen, not corrected; b3 is taken up by the supply's law.
+/// Errors b of the constants of kUnknowns, in their order. The filter knows beside its state what each of them does to
+/// it. An innovation is then its derivative by b times b, and noise: weighted least squares over some minutes.
 ///
-/// What the law leaves of a supply's torque looks a little like b0 to b2: with the shipped machine by 0.1 to 0.2 deg,
-/// with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that. So b3 is estimated
-/// as if the sensor's place were right: together they can hardly be separated.
+/// What the law leaves of a supply's torque looks a little like the sensor's place: with the shipped machine by 0.1 to
+/// 0.2 deg, with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that. So the
+/// supply's error is estimated as if the sensor's place were right: together they can hardly be separated.
 class ConstantErrors {
  public:
-  static constexpr int kPlace = 3, kSize = 4;      ///< the first kPlace are of the sensor's place
-  static constexpr int kSupply = 3;                ///< index of the supply's
-  using Row = Eigen::Matrix<double, 1, kSize>;     ///< derivative of a number by b
-  using Effect = Eigen::Matrix<double, 5, kSize>;  ///< of the filter's variables, in ShaftMatrix' order
+  static constexpr int kSize = kUnknowns.size(), kPlace = countSeen();
+  static constexpr int kSupply = indexOfUnknown("supply"), kShare = indexOfUnknown("share"),
+                       kLatency = indexOfUnknown("latency");
+  using Row = Eigen::Matrix<double, 1, kSize>;  ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-  ConstantErrors() noexcept { forget(); }
+  /// As the table has them.
+  static Vector priors() noexcept {
+    Vector prior;
+    for (int i = 0; i < kSize; ++i) prior[i] = kUnknowns[static_cast<std::size_t>(i)].prior;
+    return prior;
+  }
+  /// prior: standard deviations, >= 0.
+  explicit ConstantErrors(const Vector& prior = priors()) noexcept;
 
-  /// d(reading)/db at a crank angle within half a turn of the blow [rad].
-  static Row ofAngle(double offset) noexcept { return {1.0, sine(offset), cosine(offset) - 1.0, 0.0}; }
-  /// d(measured speed)/db there [1/s].
-  static Row ofSpeed(double offset, double speed) noexcept {
-    return {0.0, speed * cosine(offset), -speed * sine(offset), 0.0};
+  /// d(reading)/db.
+  static Row ofAngle(const ReadingPlace& at) noexcept {
+    return row([&](const Unknown& u) { return u.of_angle(at); }, kIndices);
+  }
+  /// d(measured speed)/db.
+  static Row ofSpeed(const ReadingPlace& at) noexcept {
+    return row([&](const Unknown& u) { return u.of_speed(at); }, kIndices);
+  }
+  /// d(the filter's torque)/db by a step.
+  static Row ofTorque(const SupplyLaw& supply, double lead) noexcept {
+    return row([&](const Unknown& u) { return u.of_torque(supply, lead); }, kIndices);
   }
 
   /// innovation of an angle, its variance and its derivative by b.
-  void learn(double innovation, double variance, const Row& by_error) noexcept;
+  void learn(double innovation, double variance, const Row& by_error) noexcept {
+    ++samples_;
+    fit_.learn(innovation, variance, by_error);
+  }
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 
@@ -49,17 +63,18 @@ class ConstantErrors {
   const Matrix& moment() const noexcept { return moment_; }
 
  private:
-  void forget() noexcept;
-
-  /// Within 0.1 %, |x| <= 3/4 of a turn: two parabolas.
-  static double sine(double x) noexcept {
-    const double part = x * (2.0 / kTwoPi), y = 4.0 * part * (1.0 - std::abs(part));
-    return y * (0.775 + 0.225 * std::abs(y));
+  static constexpr auto kIndices = std::make_integer_sequence<std::size_t, kUnknowns.size()>{};
+  /// Unrolled, so that what does not enter costs nothing.
+  template <typename Function, std::size_t... i>
+  static Row row(const Function& of, std::integer_sequence<std::size_t, i...>) noexcept {
+    Row all;
+    ((all[i] = of(kUnknowns[i])), ...);
+    return all;
   }
-  static double cosine(double x) noexcept { return sine(0.25 * kTwoPi - std::abs(x)); }
+  void considerPriors() noexcept;
 
-  Matrix information_;
-  Vector score_;
+  Vector prior_;
+  ConstantFit<kSize> fit_;
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()};
   int turns_{}, samples_{};  ///< samples: of this turn

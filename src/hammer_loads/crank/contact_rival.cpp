@@ -4,13 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 namespace {
 
 constexpr double kDecided = 12.0;  // logarithm of odds at which the less likely belief is given up
 constexpr double kChange = 9.0;    // likewise at which the other one becomes the estimate
 constexpr double kMostFit = 8.0;   // likewise that one sample may add: it may be an outlier
-constexpr double kOutlier = 25.0;  // innovation^2 over its variance
 
 }  // namespace
 
@@ -24,12 +25,12 @@ void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, 
   CrankBelief& belief = *belief_;
   const Innovation angle = sample.ofAngle(belief);
   double own_fit = angle.logLikelihood();
-  const double jolt = angle.value * angle.value / kOutlier;
+  const double jolt = square(angle.value / gate::kImpossible);
   belief.correct(CrankBelief::kAngle, angle.value, std::max(angle.variance, jolt), angle.by_error);
   if (sample.speed) {
     const Innovation speed = sample.ofSpeed(belief, model);
     own_fit += speed.logLikelihood();
-    if (speed.ratio() < kOutlier) belief.correctSpeed(speed.value, speed.total, speed.by_error);
+    if (!speed.exceeds(gate::kImpossible)) belief.correctSpeed(speed.value, speed.total, speed.by_error);
   }
   evidence_ += std::clamp(own_fit - fit, -kMostFit, kMostFit) / growth;
   if (!belief.isSound(most_speed)) drop();

@@ -17,6 +17,11 @@ struct Coupling {
   double share_deviation{};      ///< likewise of the motor's share [-]
 };
 
+/// Of the logarithm of the odds, motor's over crank's inertia; standard [-].
+inline double oddsDeviationOf(const Coupling& c) noexcept {
+  return c.share_deviation / (c.motor_share * (1.0 - c.motor_share));
+}
+
 /// The same for a drive inertia and a stiffness in force.
 struct CouplingLaw {
   double motor_inertia, crank_inertia;  ///< [kg m2]

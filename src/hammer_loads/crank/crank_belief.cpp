@@ -28,17 +28,14 @@ void extend(const ShaftTransition& f, bool drawn, ShaftMatrix* transition) noexc
 }
 
 /// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].
-void doubtSpeedChange(double variance, double w, double since, double dt, ShaftMatrix& covariance) noexcept {
+void doubtSpeedChange(double variance, double w, double since, double dt, CrankBelief& b) noexcept {
   using B = CrankBelief;
   const double by_angle = w * since;
-  covariance(B::kAngle, B::kAngle) += (square(by_angle) + square(w * dt) / 12.0) * variance;
-  covariance(B::kAngle, B::kSpeed) += by_angle * w * variance;
-  covariance(B::kSpeed, B::kSpeed) += square(w) * variance;
-  covariance(B::kAngle, B::kFactor) += by_angle * variance;
-  covariance(B::kSpeed, B::kFactor) += w * variance;
-  covariance(B::kSpeed, B::kAngle) = covariance(B::kAngle, B::kSpeed);
-  covariance(B::kFactor, B::kAngle) = covariance(B::kAngle, B::kFactor);
-  covariance(B::kFactor, B::kSpeed) = covariance(B::kSpeed, B::kFactor);
+  b.addNoise(B::kAngle, B::kAngle, (square(by_angle) + square(w * dt) / 12.0) * variance);
+  b.addNoise(B::kAngle, B::kSpeed, by_angle * w * variance);
+  b.addNoise(B::kSpeed, B::kSpeed, square(w) * variance);
+  b.addNoise(B::kAngle, B::kFactor, by_angle * variance);
+  b.addNoise(B::kSpeed, B::kFactor, w * variance);
 }
 
 }  // namespace
@@ -46,13 +43,9 @@ void doubtSpeedChange(double variance, double w, double since, double dt, ShaftM
 void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
   factor = prior.mean;
   struck_early = false;
-  covariance.row(kFactor).setZero();
-  covariance.col(kFactor).setZero();
-  covariance(kFactor, kFactor) = square(prior.deviation);
-  by_error.row(kFactor) = prior.by_error;
-  if (!motor) return;
-  motor->covariance.row(kFactor).setZero();
-  motor->by_odds[kFactor] = 0.0;
+  draw(kFactor, square(prior.deviation), prior.by_error);
+  by_constant(kFactor, ConstantErrors::kShare) = 0.0;
+  if (motor) motor->covariance.row(kFactor).setZero();
 }
 
 BlowPrior CrankBelief::priorOf(const BlowPrior& drawn) const noexcept {
@@ -60,9 +53,12 @@ BlowPrior CrankBelief::priorOf(const BlowPrior& drawn) const noexcept {
 }
 
 void CrankBelief::widen(double by) noexcept {
-  if (motor) return widenFlexible(std::max(by, 1.0), *this);
-  if (by > 1.0) covariance.topLeftCorner<3, 3>() *= by, covariance.bottomLeftCorner<1, 3>() *= std::sqrt(by);
-  covariance.topRightCorner<3, 1>() = covariance.bottomLeftCorner<1, 3>().transpose();
+  if (!(by > 1.0)) return;
+  if (motor) return widenFlexible(by, *this);
+  const double root = std::sqrt(by);
+  Vector deviations;
+  deviations << root, root, root, 1.0, 1.0;
+  Base::widen(deviations);
 }
 
 int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
@@ -90,22 +86,16 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
       blows += !tool_met;
       tool_met = false;
     }
-    const ShaftTransition& f = step.transition;
-    double& torque_by_stiffness = by_error(kTorque, ConstantErrors::kSupply);
-    torque_by_stiffness -= 0.5 * supply.unit * lead;
-    by_error.topRows<2>() = (f * by_error).eval();
-    torque_by_stiffness -= 0.5 * supply.unit * lead;
-    const ShaftTransition moved = f * covariance;
-    covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
-    covariance.topRightCorner<2, 3>() = moved.rightCols<3>();
-    covariance(kAngle, kAngle) += speed * h * h / 3.0;
-    covariance(kSpeed, kSpeed) += speed + torque * square(b * h) / 3.0;
-    covariance(kTorque, kTorque) += torque;
-    covariance(kInertia, kInertia) += square(walks.inertia) * h;
-    covariance(kAngle, kSpeed) += 0.5 * speed * h;
-    covariance(kSpeed, kTorque) += 0.5 * torque * b * h;
-    covariance(kSpeed, kAngle) = covariance(kAngle, kSpeed);
-    covariance.bottomLeftCorner<3, 2>() = covariance.topRightCorner<2, 3>().transpose();
+    const ConstantErrors::Row torque_by_constant = 0.5 * ConstantErrors::ofTorque(supply, lead);
+    by_constant.row(kTorque) += torque_by_constant;
+    Base::predict<kAngle, kSpeed>(step.transition);
+    by_constant.row(kTorque) += torque_by_constant;
+    addNoise(kAngle, kAngle, speed * h * h / 3.0);
+    addNoise(kSpeed, kSpeed, speed + torque * square(b * h) / 3.0);
+    addNoise(kTorque, kTorque, torque);
+    addNoise(kInertia, kInertia, square(walks.inertia) * h);
+    addNoise(kAngle, kSpeed, 0.5 * speed * h);
+    addNoise(kSpeed, kTorque, 0.5 * torque * b * h);
   }
   return blows;
 }
@@ -124,41 +114,19 @@ void CrankBelief::correct(Row row, double innovation, double variance,
                           const ConstantErrors::Row& measured_by_error) noexcept {
   if (motor)
     return correctFlexible(row == kAngle ? kMotorAngle : kMotorSpeed, innovation, variance, measured_by_error, *this);
-  const double total = covariance(row, row) + variance;
-  const Vector column = covariance.col(row), gain = column / total;
-  Vector change = gain * innovation;
+  Vector change = Base::correct(row, variance, measured_by_error) * innovation;
   change[kInertia] = std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange);
   move(change);
-  for (Eigen::Index j = 0; j < by_error.cols(); ++j) {
-    const double difference = measured_by_error[j] - by_error(row, j);
-    by_error.col(j) += difference * gain;
-  }
-  // P - K H P with H one row of the identity, of which what was measured is K R without the difference.
-  for (Eigen::Index j = 0; j < column.size(); ++j) {
-    for (Eigen::Index i = j; i < column.size(); ++i)
-      covariance(i, j) = covariance(j, i) = covariance(i, j) - gain[i] * column[j];
-  }
-  covariance.row(row) = variance * gain.transpose();
-  covariance.col(row) = variance * gain;
 }
 
 void CrankBelief::forgetInertiaCoupling() noexcept {
-  const double variance = covariance(kInertia, kInertia);
-  covariance.row(kInertia).setZero();
-  covariance.col(kInertia).setZero();
-  covariance(kInertia, kInertia) = variance;
+  decouple(kInertia);
   if (motor) forgetCouplingsOf(*this);
 }
 
 void CrankBelief::forgetAngle(double variance) noexcept {
-  covariance.row(kAngle).setZero();
-  covariance.col(kAngle).setZero();
-  covariance(kAngle, kAngle) = variance;
-  if (!motor) return;
-  motor->covariance.row(kAngle).setZero();
-  motor->covariance.row(kMotorAngle).setZero();
-  motor->covariance.col(MotorSide::kAngle).setZero();
-  motor->covariance(kAngle, MotorSide::kAngle) = motor->covariance(kMotorAngle, MotorSide::kAngle) = variance;
+  forget(kAngle, variance);
+  if (motor) forgetAngleFlexible(variance, *this);
 }
 
 void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, ShaftMatrix* transition) noexcept {
@@ -171,16 +139,12 @@ void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, Shaf
   ShaftLoad load;
   passBlow(model, prior.mean, state, load, f);
   extend(f, draws, transition);
-  by_error.topRows<2>() = (f * by_error).eval();
-  const ShaftTransition moved = f * covariance;
-  covariance.topLeftCorner<2, 2>().noalias() = moved * f.transpose();
-  covariance.topRightCorner<2, 3>() = moved.rightCols<3>();
-  covariance.bottomLeftCorner<3, 2>() = covariance.topRightCorner<2, 3>().transpose();
+  Base::predict<kAngle, kSpeed>(f);
 }
 
 void CrankBelief::meetTool(double deviation, double dt) noexcept {
   drawFactor({1.0, deviation});
-  doubtSpeedChange(square(deviation), state.speed, 0.5 * dt, dt, covariance);
+  doubtSpeedChange(square(deviation), state.speed, 0.5 * dt, dt, *this);
 }
 
 bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt) noexcept {
@@ -190,19 +154,14 @@ bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt)
   if (motor || !(variance > 0.0 && variance < square(kMostDoubt))) return false;
   covariance(kFactor, kFactor) += variance;
   struck_early = struck_early && square(factor - 1.0) > variance;  // else what was taken for the tool was noise
-  doubtSpeedChange(variance, before, since, dt, covariance);
+  doubtSpeedChange(variance, before, since, dt, *this);
   return true;
-}
-
-ShaftMatrix CrankBelief::grown(double growth, const ConstantErrors::Matrix& moment) const noexcept {
-  return growth * covariance + (by_error * moment) * by_error.transpose();
 }
 
 bool CrankBelief::isSound(double most_speed) const noexcept {
   return std::abs(state.position.angle.offset) <= 0.5 * kTwoPi && std::abs(state.speed) < most_speed &&
          std::isfinite(state.torque) && std::isfinite(state.drive_inertia) && std::isfinite(factor) &&
-         covariance.allFinite() && (covariance.diagonal().array() >= 0.0).all() &&
-         (!motor || isSoundFlexible(most_speed, *this));
+         Base::isSound() && (!motor || isSoundFlexible(most_speed, *this));
 }
 
 /// Linear in the state's deviation; the acceleration's derivative by the angle by a difference.
@@ -222,9 +181,9 @@ Eigen::Matrix3d motionCovariance(const ShaftModel& model, const ShaftLoad& load,
   const Eigen::RowVector4d with = by.lazyProduct(P.topLeftCorner<4, 4>());  // covariances of the acceleration
   Eigen::Matrix3d own;
   own << P.topLeftCorner<2, 2>(), with.head<2>().transpose(), with.head<2>(), with.dot(by);
-  Eigen::Matrix<double, 3, ConstantErrors::kSize> by_error;
-  by_error << belief.by_error.topRows<2>(), by.lazyProduct(belief.by_error.topRows<4>());
-  return growth * own + (by_error * moment).lazyProduct(by_error.transpose());
+  Eigen::Matrix<double, 3, ConstantErrors::kSize> by_constant;
+  by_constant << belief.by_constant.topRows<2>(), by.lazyProduct(belief.by_constant.topRows<4>());
+  return growth * own + (by_constant * moment).lazyProduct(by_constant.transpose());
 }
 
 }  // namespace hammer_loads

@@ -9,6 +9,7 @@
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/motor_side.h"
 #include "hammer_loads/crank/supply_law.h"
+#include "hammer_loads/estimation/gaussian_belief.h"
 
 namespace hammer_loads {
 
@@ -29,16 +30,14 @@ struct BlowPrior {
 };
 
 /// Gaussian belief: angle, speed, torque, logarithm of drive inertia, factor of the last blow.
-struct CrankBelief {
+struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
+  using Base = GaussianBelief<5, ConstantErrors::kSize>;
   enum Row : Eigen::Index { kAngle, kSpeed, kTorque, kInertia, kFactor };
-  using Vector = Eigen::Matrix<double, 5, 1>;  ///< rows as above
 
   ShaftState state;
-  ShaftMatrix covariance{ShaftMatrix::Zero()};
-  ConstantErrors::Effect by_error{ConstantErrors::Effect::Zero()};  ///< d(this, rows as above)/d(sensor's errors)
-  double factor{1.0};                                               ///< of the last blow
-  double least_inertia{};                                           ///< bounds of the drive inertia [kg m2]
-  double most_inertia{};                                            ///< likewise
+  double factor{1.0};              ///< of the last blow
+  double least_inertia{};          ///< bounds of the drive inertia [kg m2]
+  double most_inertia{};           ///< likewise
   bool tool_met{};                 ///< before the dead centre: nothing strikes there any more
   bool struck_early{};             ///< the last blow's factor acted before the dead centre
   std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
@@ -93,11 +92,8 @@ struct CrankBelief {
     return motor ? motor->covariance(kMotorAngle + row, row) : covariance(row, row);
   }
   ConstantErrors::Row encoderByError(Row row) const noexcept {
-    return motor ? ConstantErrors::Row(motor->by_error.row(row)) : ConstantErrors::Row(by_error.row(row));
+    return motor ? ConstantErrors::Row(motor->by_constant.row(row)) : ConstantErrors::Row(by_constant.row(row));
   }
-  /// The covariance grown by what the innovations show beyond the model, and by a moment of the sensor's errors, which
-  /// are not corrected.
-  ShaftMatrix grown(double growth, const ConstantErrors::Matrix& moment) const noexcept;
   /// Factor of the last blow and drive inertia, with deviations by `grown`.
   BlowFactor blowFactor(const ShaftMatrix& grown) const noexcept {
     return {factor, std::sqrt(grown(kFactor, kFactor)), state.drive_inertia, std::sqrt(grown(kInertia, kInertia)),

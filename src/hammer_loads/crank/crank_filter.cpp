@@ -11,7 +11,6 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kWiden = 25.0;            // innovation^2 over its variance from which on the model does not explain it
 constexpr double kDoubtfulAngle = 0.3;     // [rad] predicted deviation from which on the prediction is worth nothing
 constexpr double kJump = 0.5;              // [rad] innovation that no working machine makes between two samples
 constexpr double kKick = 0.35;             // of the speed: what no torque changes between two samples
@@ -30,6 +29,13 @@ constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
 constexpr double kForgetDoubts = 30.0;     // [s]
 
+/// Those of the settings; that of the motor's share is the coupling's.
+ConstantErrors::Vector deviationsOf(const CrankFilterSettings& settings, const ShaftModel& model) noexcept {
+  ConstantErrors::Vector deviations = settings.constant_deviations;
+  if (model.coupling()) deviations[ConstantErrors::kShare] = oddsDeviationOf(*model.coupling());
+  return deviations;
+}
+
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
@@ -40,6 +46,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       supply_(settings.initial_torque_deviation),
+      errors_(deviationsOf(settings, model)),
       blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;
@@ -97,8 +104,8 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   // NaN-proof by min: never above the first guess
   p(Belief::kInertia, Belief::kInertia) = std::min(square(settings_.initial_inertia_deviation), inertia_variance);
   p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
-  now_.by_error.setZero();
-  now_.by_error.row(Belief::kAngle) = ConstantErrors::ofAngle(s.position.angle.offset);
+  now_.by_constant.setZero();
+  now_.by_constant.row(Belief::kAngle) = ConstantErrors::ofAngle({s.position.angle.offset, s.speed, 0.0});
   if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 
@@ -116,12 +123,12 @@ int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noe
 
 /// (6)
 void CrankFilter::correctAngle(Innovation innovation) noexcept {
-  const double squared = square(innovation.value), ratio = innovation.ratio();
-  const int side = ratio > kWiden ? (innovation.value > 0.0 ? 1 : -1) : 0;
+  const double squared = square(innovation.value);
+  const int side = innovation.exceeds(gate::kImpossible) ? (innovation.value > 0.0 ? 1 : -1) : 0;
   if (side != 0) unexplained_ = side * unexplained_ < 0 ? side : unexplained_ + side;
   surprises_ += (side != 0 ? 1.0 : 0.0) - surprises_ / kSurpriseLength;
   if (side != 0 && ((std::abs(unexplained_) < 3 && surprises_ > kManySurprises) || isLost())) {
-    innovation.variance = squared / kWiden;  // with many like it on both sides: the stamps
+    innovation.variance = squared / square(gate::kImpossible);  // with many like it on both sides: the stamps
   } else if (side != 0) {
     const double factor = (0.25 * squared - innovation.variance) / now_.encoderVariance(Belief::kAngle);
     now_.widen(factor);
@@ -141,7 +148,7 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   unlearn_after_ = kUnlearnEvery;
   doubt_load_ += 1.0;
   now_.state.drive_inertia = first_guess_;
-  now_.by_error.row(Belief::kInertia).setZero();
+  now_.by_constant.row(Belief::kInertia).setZero();
   now_.forgetInertiaCoupling();
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
   now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
@@ -153,8 +160,9 @@ void CrankFilter::doubtInertia(double dt) noexcept {
 void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
   const Innovation innovation = sample.ofSpeed(now_, model_);
   fit_ += innovation.logLikelihood();
-  const double squared = std::min(square(innovation.value), kWiden * innovation.total);
-  if (square(innovation.value) <= squared) now_.correctSpeed(innovation.value, innovation.total, innovation.by_error);
+  const double squared = std::min(square(innovation.value), square(gate::kImpossible) * innovation.total);
+  if (!innovation.exceeds(gate::kImpossible))
+    now_.correctSpeed(innovation.value, innovation.total, innovation.by_error);
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
 }
@@ -168,13 +176,13 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   if (from.isMirrored() || to.isMirrored()) return;
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   learnSupply();
-  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_error.row(Belief::kFactor));
+  blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_constant.row(Belief::kFactor));
 }
 
 /// (10) Other than the sensor's errors, that of the supply's stiffness is corrected.
 void CrankFilter::learnSupply() noexcept {
   const double change = supply_.learn(errors_.estimate()[ConstantErrors::kSupply]);
-  now_.move(now_.by_error.col(ConstantErrors::kSupply) * change);
+  now_.move(now_.by_constant.col(ConstantErrors::kSupply) * change);
   errors_.takeSupply(change);
 }
 
@@ -183,7 +191,8 @@ void CrankFilter::learnSupply() noexcept {
 /// one may be stopped dead.
 bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const noexcept {
   const double most = std::max(kKick * std::abs(now_.state.speed), kLearnSpeed) * dt;
-  return std::abs(innovation.value) > kJump || (std::abs(innovation.value) > most && innovation.ratio() > kWiden);
+  return std::abs(innovation.value) > kJump ||
+         (std::abs(innovation.value) > most && innovation.exceeds(gate::kImpossible));
 }
 
 /// What lies before this sample is not known any more; a speed that was kept from there and is contradicted again is
@@ -258,7 +267,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
     sample.timing_variance = timing_.variance();
     if (isSpeedOfOtherSide(sample)) sample.speed.reset();
-    const bool without_contact = ratio > kToolSeen && rivalExplains(dt, sample);
+    const bool without_contact = ratio > square(kToolSeen) && rivalExplains(dt, sample);
     const bool unlike =
         !without_contact && (meetsTool(dt, innovation, sample) || meetsOtherBlow(dt, innovation, sample));
     if (unlike) innovation = sample.ofAngle(now_);                           // (4)

@@ -32,7 +32,8 @@ struct CrankFilterSettings {
   double initial_inertia_deviation{};  ///< relative [-], >= 0
   double max_speed{};                  ///< bound of an unknown speed [rad/s], > 0
   double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
-  double blow_deviation{0.25};         ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
+  ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
+  double blow_deviation{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
 };
 
 /// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
@@ -107,7 +108,7 @@ class CrankFilter final : public CrankTracker {
 
  private:
   static constexpr double kLearnSpeed = 5.0;  ///< [rad/s]: a slower crank is moved by friction and stopped by the tool
-  static constexpr double kToolSeen = 16.0;   ///< innovation^2 over its variance that shows a tool
+  static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
 
@@ -115,7 +116,6 @@ class CrankFilter final : public CrankTracker {
   BetweenSamples lastStep() const noexcept {
     return {model_, step_model_, before_, now_, before_hull_, now_hull_, step_, mostSpeed()};
   }
-  ShaftMatrix grown(const CrankBelief& belief) const noexcept;
   Eigen::Matrix3d covarianceOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
   /// At now_ with the latest motion of the hull.
   ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }

@@ -10,13 +10,11 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kNearCounts = 4.0;         // counts from the blow within which the encoder decides its side
-constexpr double kCertain = 3.0;            // deviations of the stamp within which the encoder's edge decides nothing
-constexpr double kToolDeviation = 0.5;      // of the crank's speed: what a tool met there may take
-constexpr double kToolSeenByStamps = 25.0;  // innovation^2 over its variance that shows it where stamps jitter
-constexpr double kSpeedAgrees = 4.0;        // likewise of a measured speed, which a stamp does not move
-constexpr double kExplained = 9.0;          // innovation^2 over its variance that is nothing special
-constexpr double kAtBlow = 0.3;             // [rad] from the blow: no jitter takes a sample further to the other side
+constexpr double kNearCounts = 4.0;       // counts from the blow within which the encoder decides its side
+constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
+constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
+constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
+constexpr double kAtBlow = 0.3;  // [rad] from the blow: no jitter takes a sample further to the other side
 
 }  // namespace
 
@@ -28,7 +26,7 @@ bool CrankFilter::isSpeedOfOtherSide(const WeighedSample& sample) const noexcept
   if (stays || !sample.speed || !(sample.timing_variance > 0.0)) return false;
   if (angle.side == Side::kBeforeBlow) return sample.angle > 0.0;
   const double off = *sample.speed - now_.state.speed / now_.factor;
-  return sample.angle < 0.0 && square(off) < 2.0 * kExplained * sample.speed_variance;
+  return sample.angle < 0.0 && !exceeds(off, 2.0 * sample.speed_variance, gate::kRare);
 }
 
 bool CrankFilter::isAtTool(double dt) const noexcept {
@@ -40,11 +38,11 @@ bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSam
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
   if (!before || !(angle.value < 0.0) || !isAtTool(dt)) return false;
   const bool jitters = sample.timing_variance > 0.0;
-  bool seen = angle.ratio() > (jitters ? kToolSeenByStamps : kToolSeen);
+  bool seen = angle.exceeds(jitters ? kToolSeenByStamps : kToolSeen);
   if (sample.speed) {
     const Innovation speed = sample.ofSpeed(now_, model_);
-    const double ratio = speed.value < 0.0 ? speed.ratio() : 0.0;
-    seen = ratio > kToolSeen || (seen && (!jitters || ratio > kSpeedAgrees));
+    const bool slower = speed.value < 0.0;  // a stamp does not move it
+    seen = (slower && speed.exceeds(kToolSeen)) || (seen && (!jitters || (slower && speed.exceeds(gate::kUsual))));
   }
   if (!seen) return false;
   now_.meetTool(kToolDeviation, dt);
@@ -57,11 +55,11 @@ bool CrankFilter::meetsOtherBlow(double dt, const Innovation& angle, const Weigh
   const bool after = now_.state.position.angle.side == Side::kAfterBlow && sample.angle > 0.0;
   if (!after || !isAtTool(dt)) return false;
   const double least = sample.timing_variance > 0.0 ? kToolSeenByStamps : kToolSeen;
-  bool by_angle = angle.ratio() > least && !isContradiction(dt, angle);
+  bool by_angle = angle.exceeds(least) && !isContradiction(dt, angle);
   if (sample.speed) {
     const Innovation speed = sample.ofSpeed(now_, model_);
     const double ratio = speed.value * angle.value > 0.0 ? speed.ratio() : 0.0;
-    if (ratio > kToolSeen) return now_.doubtBlow(Belief::kSpeed, speed.value, speed.total, dt);
+    if (ratio > square(kToolSeen)) return now_.doubtBlow(Belief::kSpeed, speed.value, speed.total, dt);
     by_angle = by_angle && ratio > 1.0;  // the prior may explain the speed; where both go one way it is the blow
   }
   return by_angle && now_.doubtBlow(Belief::kAngle, angle.value, angle.total, dt);
@@ -146,7 +144,7 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
   if (!rival_.isThere()) return false;
   CrankBelief rival = rival_.belief();
   predict(dt, mirrored_, rival);
-  return sample.ofAngle(rival).ratio() < kExplained;
+  return !sample.ofAngle(rival).exceeds(gate::kRare);
 }
 
 }  // namespace hammer_loads

@@ -13,11 +13,13 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  BlowFactor factor = now_.blowFactor(grown(now_));
+  const ConstantErrors::Matrix& moment = errors_.moment();
+  BlowFactor factor = now_.blowFactor(now_.grown(growth(), moment));
   if (!now_.motor) return factor;
   const double share = 1.0 - struckInertia() / driveInertia();
   factor.drive_inertia = struckInertia();
-  factor.inertia_deviation = std::hypot(factor.inertia_deviation, share * std::sqrt(now_.motor->odds_variance));
+  factor.inertia_deviation =
+      std::hypot(factor.inertia_deviation, share * std::sqrt(moment(ConstantErrors::kShare, ConstantErrors::kShare)));
   return factor;
 }
 
@@ -53,11 +55,6 @@ Eigen::Matrix3d CrankFilter::covarianceOf(const CrankBelief& belief, const Shaft
   return belief.motor
              ? flexibleMotionCovariance(model_, belief, consistency_.growth(), errors_.moment(), part)
              : hammer_loads::motionCovariance(model_, load, belief, consistency_.growth(), errors_.moment(), part);
-}
-
-ShaftMatrix CrankFilter::grown(const CrankBelief& belief) const noexcept {
-  const ShaftMatrix own = belief.grown(consistency_.growth(), errors_.moment());
-  return belief.motor ? ShaftMatrix(own + effectOfShare(*belief.motor)) : own;
 }
 
 }  // namespace hammer_loads

@@ -9,8 +9,7 @@ namespace hammer_loads {
 namespace {
 
 using Belief = CrankBelief;
-using Effect = Eigen::Matrix<double, 9, ConstantErrors::kSize>;
-using FlexibleVector = Eigen::Matrix<double, 9, 1>;
+using Joint = GaussianBelief<kFlexibleVariables, ConstantErrors::kSize>;
 
 constexpr double kFlexibleNoiseStep = 2e-3;   // [s] step over which the process noise is spread
 constexpr double kMostInertiaChange = 0.3;    // of a logarithm by one sample
@@ -18,59 +17,46 @@ constexpr double kMostStiffnessChange = 0.1;  // likewise
 constexpr double kMostLogStiffness = 1.4;     // a factor of two of the frequency either way
 constexpr double kMostTwist = 1.0;            // [rad]: more is a diverged filter
 
-FlexibleMatrix joint(const Belief& b) noexcept {
-  FlexibleMatrix p;
-  p.topLeftCorner<5, 5>() = b.covariance;
-  p.rightCols<4>() = b.motor->covariance;
-  p.bottomLeftCorner<4, 5>() = b.motor->covariance.topRows<5>().transpose();
-  return p;
+Joint joint(const Belief& b) noexcept {
+  Joint all;
+  all.covariance.topLeftCorner<5, 5>() = b.covariance;
+  all.covariance.rightCols<3>() = b.motor->covariance;
+  all.covariance.bottomLeftCorner<3, 5>() = b.motor->covariance.topRows<5>().transpose();
+  all.by_constant << b.by_constant, b.motor->by_constant;
+  return all;
 }
 
-void setJoint(const FlexibleMatrix& p, Belief& b) noexcept {
-  b.covariance = p.topLeftCorner<5, 5>();
-  b.motor->covariance = p.rightCols<4>();
+void setJoint(const Joint& all, Belief& b) noexcept {
+  b.covariance = all.covariance.topLeftCorner<5, 5>();
+  b.motor->covariance = all.covariance.rightCols<3>();
+  b.by_constant = all.by_constant.topRows<5>();
+  b.motor->by_constant = all.by_constant.bottomRows<3>();
 }
 
-Effect jointEffect(const Belief& b) noexcept {
-  Effect effect;
-  effect << b.by_error, b.motor->by_error;
-  return effect;
-}
-
-void setEffect(const Effect& effect, Belief& b) noexcept {
-  b.by_error = effect.topRows<5>();
-  b.motor->by_error = effect.bottomRows<4>();
-}
-
-void apply(const FlexibleMatrix& f, Belief& b) noexcept {
-  setJoint(f * joint(b) * f.transpose(), b);
-  setEffect(f * jointEffect(b), b);
-  b.motor->by_odds = (f * b.motor->by_odds).eval();
+/// f: with a column for the odds, an error of which acts within the step.
+void apply(const FlexibleMatrix& f, Joint& all) noexcept {
+  Joint::Effect step = Joint::Effect::Zero();
+  step.col(ConstantErrors::kShare) = f.col(kOdds).head<kFlexibleVariables>();
+  all.predict(f.topLeftCorner<kFlexibleVariables, kFlexibleVariables>(), step);
 }
 
 /// speed: of crank and motor together; torque: of the motor.
-void addNoise(const CrankWalks& walks, const CouplingLaw& law, double h, Belief& b) noexcept {
+void addNoise(const CrankWalks& walks, const CouplingLaw& law, double h, Joint& all) noexcept {
   const double torque = square(walks.torque) * h, speed = square(walks.speed) * h, by_torque = h / law.motor_inertia;
-  FlexibleMatrix p = joint(b);
-  const auto add = [&p](Eigen::Index i, Eigen::Index k, double value) {
-    p(i, k) += value;
-    if (i != k) p(k, i) += value;
-  };
   for (const auto& [angle, rate] :
        {std::pair<Eigen::Index, Eigen::Index>{Belief::kAngle, Belief::kSpeed}, {kMotorAngle, kMotorSpeed}}) {
-    add(angle, angle, speed * h * h / 3.0);
-    add(rate, rate, speed);
-    add(angle, rate, 0.5 * speed * h);
+    all.addNoise(angle, angle, speed * h * h / 3.0);
+    all.addNoise(rate, rate, speed);
+    all.addNoise(angle, rate, 0.5 * speed * h);
   }
-  add(Belief::kAngle, kMotorAngle, speed * h * h / 3.0);
-  add(Belief::kSpeed, kMotorSpeed, speed);
-  add(Belief::kAngle, kMotorSpeed, 0.5 * speed * h);
-  add(Belief::kSpeed, kMotorAngle, 0.5 * speed * h);
-  add(kMotorSpeed, kMotorSpeed, torque * square(by_torque) / 3.0);
-  add(Belief::kTorque, kMotorSpeed, 0.5 * torque * by_torque);
-  add(Belief::kTorque, Belief::kTorque, torque);
-  add(Belief::kInertia, Belief::kInertia, square(walks.inertia) * h);
-  setJoint(p, b);
+  all.addNoise(Belief::kAngle, kMotorAngle, speed * h * h / 3.0);
+  all.addNoise(Belief::kSpeed, kMotorSpeed, speed);
+  all.addNoise(Belief::kAngle, kMotorSpeed, 0.5 * speed * h);
+  all.addNoise(Belief::kSpeed, kMotorAngle, 0.5 * speed * h);
+  all.addNoise(kMotorSpeed, kMotorSpeed, torque * square(by_torque) / 3.0);
+  all.addNoise(Belief::kTorque, kMotorSpeed, 0.5 * torque * by_torque);
+  all.addNoise(Belief::kTorque, Belief::kTorque, torque);
+  all.addNoise(Belief::kInertia, Belief::kInertia, square(walks.inertia) * h);
 }
 
 /// Derivatives of the crank's acceleration: by the coupling's moment times those of the moment, and all others.
@@ -105,15 +91,9 @@ AccelerationSlopes accelerationSlopes(const ShaftModel& model, const ShaftState&
 
 }  // namespace
 
-ShaftMatrix effectOfShare(const MotorSide& motor) noexcept {
-  const Eigen::Matrix<double, 5, 1> by_odds = motor.by_odds.head<5>();
-  return motor.odds_variance * by_odds * by_odds.transpose();
-}
-
 void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) noexcept {
-  const double share = coupling.motor_share,
-               stiffness_variance = b.motor ? b.motor->covariance(kStiffness, MotorSide::kStiffness)
-                                            : square(coupling.stiffness_deviation);
+  const double stiffness_variance =
+      b.motor ? b.motor->covariance(kStiffness, MotorSide::kStiffness) : square(coupling.stiffness_deviation);
   b.state.twist = 0.0;
   b.state.motor_speed = b.state.speed;
   b.motor.emplace();
@@ -123,8 +103,7 @@ void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) no
   m.covariance(Belief::kSpeed, MotorSide::kSpeed) = m.covariance(kMotorSpeed, MotorSide::kSpeed) =
       b.covariance(Belief::kSpeed, Belief::kSpeed);
   m.covariance(kStiffness, MotorSide::kStiffness) = stiffness_variance;
-  m.odds_variance = square(coupling.share_deviation / (share * (1.0 - share)));
-  m.by_error.row(MotorSide::kAngle) = b.by_error.row(Belief::kAngle);
+  m.by_constant.row(MotorSide::kAngle) = b.by_constant.row(Belief::kAngle);
   const CouplingLaw law = lawOf(coupling, b.state);
   const double twist = torque_deviation / law.stiffness;
   b.covariance(Belief::kAngle, Belief::kAngle) += square(twist);
@@ -135,33 +114,40 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
                     double most_speed, double dt, Belief& b) noexcept {
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kFlexibleNoiseStep)));
   const double h = dt / steps;
+  Joint all = joint(b);
   int blows = 0;
   for (int i = 0; i < steps && std::abs(b.state.speed) < most_speed; ++i) {
     const BlowPrior prior = b.priorOf(drawn);
     FlexibleMatrix f = FlexibleMatrix::Identity();
     const bool struck = advanceFlexible(model, h, {prior.mean, contact}, b.state, &f) > 0;
     if (struck) {
-      if (!b.tool_met) b.drawFactor(prior);
+      if (!b.tool_met) {
+        b.drawFactor(prior);
+        all.draw(Belief::kFactor, b.covariance(Belief::kFactor, Belief::kFactor), b.by_constant.row(Belief::kFactor));
+      }
       blows += !b.tool_met;
       b.tool_met = false;
     }
-    apply(f, b);
-    addNoise(walks, lawOf(*model.coupling(), b.state), h, b);
+    apply(f, all);
+    addNoise(walks, lawOf(*model.coupling(), b.state), h, all);
   }
+  setJoint(all, b);
   return blows;
 }
 
 void passLateFlexible(const ShaftModel& model, double factor, Belief& b) noexcept {
   FlexibleMatrix f = FlexibleMatrix::Identity();
   passBlowFlexible(model, factor, b.state, &f);
-  apply(f, b);
+  Joint all = joint(b);
+  apply(f, all);
+  setJoint(all, b);
 }
 
 void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& measured_by_error,
                      Belief& b) noexcept {
-  const FlexibleMatrix p = joint(b);
-  const FlexibleVector gain = p.col(row) / (p(row, row) + variance);
-  const FlexibleVector change = gain * innovation;
+  Joint all = joint(b);
+  const Joint::Vector change = all.correct(row, variance, measured_by_error) * innovation;
+  setJoint(all, b);
   Belief::Vector crank = change.head<5>();
   crank[Belief::kInertia] = std::clamp(crank[Belief::kInertia], -kMostInertiaChange, kMostInertiaChange);
   b.move(crank);
@@ -169,26 +155,28 @@ void correctFlexible(FlexibleRow row, double innovation, double variance, const 
   b.state.motor_speed += change[kMotorSpeed];
   b.state.log_stiffness += std::clamp(change[kStiffness], -kMostStiffnessChange, kMostStiffnessChange);
   b.state.log_stiffness = std::clamp(b.state.log_stiffness, -kMostLogStiffness, kMostLogStiffness);
-  const Effect effect = jointEffect(b);
-  setEffect(effect + gain * (measured_by_error - effect.row(row)), b);
-  b.motor->by_odds -= gain * b.motor->by_odds[row];
-  const FlexibleMatrix left = p - gain * p.row(row);  // Joseph form
-  setJoint(left - left.col(row) * gain.transpose() + gain * (variance * gain.transpose()), b);
 }
 
 void widenFlexible(double factor, Belief& b) noexcept {
-  FlexibleVector by = FlexibleVector::Constant(std::sqrt(factor));
-  by[Belief::kInertia] = by[Belief::kFactor] = by[kStiffness] = by[kOdds] = 1.0;
-  setJoint(by.asDiagonal() * joint(b) * by.asDiagonal(), b);
+  Joint::Vector by = Joint::Vector::Constant(std::sqrt(factor));
+  by[Belief::kInertia] = by[Belief::kFactor] = by[kStiffness] = 1.0;
+  Joint all = joint(b);
+  all.widen(by);
+  setJoint(all, b);
+}
+
+void forgetAngleFlexible(double variance, Belief& b) noexcept {
+  Joint all = joint(b);
+  all.forget(kMotorAngle, variance);
+  all.covariance(Belief::kAngle, kMotorAngle) = all.covariance(kMotorAngle, Belief::kAngle) = variance;
+  setJoint(all, b);
 }
 
 void forgetCouplingsOf(Belief& b) noexcept {
-  Eigen::Matrix<double, 9, 4>& p = b.motor->covariance;
-  const double variance = p(kStiffness, MotorSide::kStiffness);
-  p.row(Belief::kInertia).setZero();
-  p.row(kStiffness).setZero();
-  p.col(MotorSide::kStiffness).setZero();
-  p(kStiffness, MotorSide::kStiffness) = variance;
+  Joint all = joint(b);
+  all.decouple(Belief::kInertia);
+  all.decouple(kStiffness);
+  setJoint(all, b);
 }
 
 void doubtStiffness(const Coupling& coupling, Belief& b) noexcept {
@@ -197,21 +185,20 @@ void doubtStiffness(const Coupling& coupling, Belief& b) noexcept {
 }
 
 bool isSoundFlexible(double most_speed, const Belief& b) noexcept {
-  return std::abs(b.state.motor_speed) < most_speed && std::abs(b.state.twist) < kMostTwist &&
-         b.motor->covariance.allFinite() && (joint(b).diagonal().array() >= 0.0).all();
+  return std::abs(b.state.motor_speed) < most_speed && std::abs(b.state.twist) < kMostTwist && joint(b).isSound();
 }
 
 Eigen::Matrix3d flexibleMotionCovariance(const ShaftModel& model, const Belief& b, double growth,
                                          const ConstantErrors::Matrix& moment, double torque_part) noexcept {
   const AccelerationSlopes slopes = accelerationSlopes(model, b.state);
-  Eigen::Matrix<double, 3, 9> jacobian = Eigen::Matrix<double, 3, 9>::Zero();
+  const Joint all = joint(b);
+  Eigen::Matrix<double, 3, kFlexibleVariables> jacobian = Eigen::Matrix<double, 3, kFlexibleVariables>::Zero();
   jacobian(0, Belief::kAngle) = jacobian(1, Belief::kSpeed) = 1.0;
-  jacobian.row(2) = slopes.others + slopes.by_moment;
-  const Eigen::Matrix<double, 3, ConstantErrors::kSize> by_error = jacobian * jointEffect(b);
-  const Eigen::Vector3d by_odds = jacobian * b.motor->by_odds;
-  jacobian.row(2) = slopes.others + torque_part * slopes.by_moment;
-  return growth * jacobian * joint(b) * jacobian.transpose() + by_error * moment * by_error.transpose() +
-         b.motor->odds_variance * by_odds * by_odds.transpose();
+  jacobian.row(2) = (slopes.others + slopes.by_moment).head<kFlexibleVariables>();
+  Eigen::Matrix<double, 3, ConstantErrors::kSize> by_constant = jacobian * all.by_constant;
+  by_constant(2, ConstantErrors::kShare) += slopes.others[kOdds];
+  jacobian.row(2) = (slopes.others + torque_part * slopes.by_moment).head<kFlexibleVariables>();
+  return growth * jacobian * all.covariance * jacobian.transpose() + by_constant * moment * by_constant.transpose();
 }
 
 }  // namespace hammer_loads

@@ -19,7 +19,7 @@ void passLateFlexible(const ShaftModel& model, double factor, CrankBelief& belie
 void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& measured_by_error,
                      CrankBelief& belief) noexcept;
 void widenFlexible(double factor, CrankBelief& belief) noexcept;
-
+void forgetAngleFlexible(double variance, CrankBelief& belief) noexcept;
 void forgetCouplingsOf(CrankBelief& belief) noexcept;
 bool isSoundFlexible(double most_speed, const CrankBelief& belief) noexcept;
 

@@ -6,24 +6,14 @@
 
 namespace hammer_loads {
 
-/// Covariance of the last four variables of FlexibleMatrix with all of them, and what the sensor's errors make of
-/// these four.
+/// Covariance of angle and speed of the motor and of the coupling's stiffness with all variables, and what the
+/// constants make of these three. The motor's share is one of the constants.
 struct MotorSide {
-  enum : Eigen::Index { kAngle, kSpeed, kStiffness, kOdds };
-  using Covariance = Eigen::Matrix<double, 9, 4>;
-  using Effect = Eigen::Matrix<double, 4, ConstantErrors::kSize>;
+  enum : Eigen::Index { kAngle, kSpeed, kStiffness, kSize };
 
-  using Odds = Eigen::Matrix<double, 9, 1>;
-
-  Covariance covariance{Covariance::Zero()};
-  Effect by_error{Effect::Zero()};
-  /// d(all variables)/d(logarithm of the odds): a wrong share is not corrected; the filter runs as if it were right,
-  /// and knows beside its state what an error of it would do.
-  Odds by_odds{Odds::Unit(8)};
-  double odds_variance{};  ///< of that logarithm
+  Eigen::Matrix<double, kFlexibleVariables, kSize> covariance{Eigen::Matrix<double, kFlexibleVariables, kSize>::Zero()};
+  Eigen::Matrix<double, kSize, ConstantErrors::kSize> by_constant{
+      Eigen::Matrix<double, kSize, ConstantErrors::kSize>::Zero()};
 };
-
-/// What the doubt in the motor's share adds to the covariance of a CrankBelief's variables.
-ShaftMatrix effectOfShare(const MotorSide& motor) noexcept;
 
 }  // namespace hammer_loads

@@ -59,7 +59,7 @@ Eigen::Matrix3d SmoothedCrank::covarianceBetween(double dt, double torque_part) 
   if (dt >= now_.step) return at_end;
   CrankBelief belief = before_;
   const double deviation = std::sqrt(now_.belief.covariance(CrankBelief::kFactor, CrankBelief::kFactor));
-  const BlowPrior blow{now_.belief.factor, deviation, now_.belief.by_error.row(CrankBelief::kFactor)};
+  const BlowPrior blow{now_.belief.factor, deviation, now_.belief.by_constant.row(CrankBelief::kFactor)};
   belief.predict(step_model_, now_.walks, blow, true, track_->filter().mostSpeed(), dt);
   const double part = dt / now_.step;
   return (1.0 - part) * covarianceOf(belief, torque_part) + part * at_end;

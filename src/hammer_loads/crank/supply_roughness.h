@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
+
 namespace hammer_loads {
 
 /// The torque's random walk is given for rough supplies. Exact samples hardly ask for it. Stamps that jitter are
@@ -14,7 +16,7 @@ class SupplyRoughness {
  public:
   /// innovation of variance `total`, of which the stamp's jitter has the part `jitter`.
   void learn(double innovation, double total, double jitter) noexcept {
-    const double now = std::clamp(innovation / std::sqrt(total), -kMostDeviations, kMostDeviations);
+    const double now = std::clamp(innovation / std::sqrt(total), -gate::kRare, gate::kRare);
     factor_ = jitter > 0.0 ? std::clamp(factor_ * (1.0 + kGain * jitter * now * sum_), kLeast, kMost) : 1.0;
     sum_ = now + kFading * sum_;
   }
@@ -26,8 +28,7 @@ class SupplyRoughness {
 
  private:
   static constexpr double kGain = 0.005, kFading = 0.85;  // some 7 samples are looked at, some 300 learned from
-  static constexpr double kMostDeviations = 3.0;          // an outlier counts as so many
-  static constexpr double kLeast = 0.25, kMost = 3.0;      // a sudden supply is still followed within some samples
+  static constexpr double kLeast = 0.25, kMost = 3.0;     // a sudden supply is still followed within some samples
   double factor_{1.0}, sum_{};
 };
 

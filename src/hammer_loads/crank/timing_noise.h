@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -27,7 +28,8 @@ class TimingNoise {
     if (samples_++ == 0) information_ = lever * lever;
     const double gain = std::max(kGain, 1.0 / (samples_ + 50.0));
     information_ += gain * (lever * lever - information_);
-    const double clipped = std::min(0.5 * change * change / total, samples_ < kLearning ? kMostAtFirst : kMost);
+    const double clipped =
+        std::min(0.5 * change * change / total, square(samples_ < kLearning ? gate::kUsual : gate::kRare));
     const double before = variance_;
     variance_ = std::clamp(variance_ + gain * (clipped - 1.0) * lever / information_, 0.0, kLargest * kLargest);
     // Samples show the less of a stamp the more it jitters.
@@ -36,18 +38,16 @@ class TimingNoise {
 
   /// Variance of a stamp [s2]; exactly zero where no jitter is seen.
   double variance() const noexcept {
-    return square(variance_) * information_ > kSeen * kSeen * kGain ? variance_ : 0.0;
+    return square(variance_) * information_ > square(gate::kRare) * kGain ? variance_ : 0.0;
   }
   double deviation() const noexcept { return std::sqrt(variance()); }  ///< [s]
 
  private:
   static constexpr double kGain = 0.005;
-  static constexpr int kLearning = 60;         // samples: a wrong first guess of the inertia passes for jitter
-  static constexpr double kMostAtFirst = 4.0;  // so that a single surprise among them counts little
-  static constexpr double kMost = 9.0;         // of innovation^2 over its variance
-  static constexpr double kSeen = 3.0;         // standard deviations of the estimate above zero
-  static constexpr double kVisible = 9e-8;     // [s2]: a sample that could not see 0.3 ms is not asked
-  static constexpr double kLargest = 0.02;     // [s]: more is no jitter
+  static constexpr int kLearning =
+      60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
+  static constexpr double kVisible = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
+  static constexpr double kLargest = 0.02;  // [s]: more is no jitter
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};

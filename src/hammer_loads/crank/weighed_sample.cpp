@@ -1,24 +1,23 @@
 #include "hammer_loads/crank/weighed_sample.h"
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 
 Innovation WeighedSample::ofAngle(const CrankBelief& belief) const noexcept {
   const double offset = belief.encoderOffset(), variance = angleVariance(belief.encoderSpeed());
   return {CrankAngle::wrapToPi(angle - offset), belief.encoderVariance(CrankBelief::kAngle) + variance, variance,
-          ConstantErrors::ofAngle(offset)};
+          ConstantErrors::ofAngle({offset, belief.encoderSpeed(), 0.0})};
 }
 
-/// The stamp's jitter counts by the acceleration; it is not computed for nothing.
+/// What is wrong with the stamp counts by the acceleration.
 Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept {
   const ShaftState& state = belief.state;
-  double known = belief.encoderVariance(CrankBelief::kSpeed);
-  if (timing_variance > 0.0) {
-    const ShaftLoad load = model(state.position.angle);
-    const double change = belief.motor ? motorAcceleration(*model.coupling(), load, state) : acceleration(load, state);
-    known += change * change * timing_variance;
-  }
+  const ShaftLoad load = model(state.position.angle);
+  const double change = belief.motor ? motorAcceleration(*model.coupling(), load, state) : acceleration(load, state);
+  const double known = belief.encoderVariance(CrankBelief::kSpeed) + square(change) * timing_variance;
   return {*speed - belief.encoderSpeed(), known + speed_variance, speed_variance,
-          ConstantErrors::ofSpeed(belief.encoderOffset(), belief.encoderSpeed())};
+          ConstantErrors::ofSpeed({belief.encoderOffset(), belief.encoderSpeed(), change})};
 }
 
 }  // namespace hammer_loads

@@ -5,17 +5,19 @@
 #include <optional>
 
 #include "hammer_loads/crank/crank_belief.h"
+#include "hammer_loads/estimation/gates.h"
 
 namespace hammer_loads {
 
 /// What a measurement says beyond the prediction.
 struct Innovation {
-  double value{};                                         ///< measured less predicted
-  double total{};                                         ///< its variance
-  double variance{};                                      ///< the measurement's part of that
+  double value{};                                             ///< measured less predicted
+  double total{};                                             ///< its variance
+  double variance{};                                          ///< the measurement's part of that
   ConstantErrors::Row by_error{ConstantErrors::Row::Zero()};  ///< d(measured)/d(sensor's errors)
 
   double ratio() const noexcept { return value * value / total; }
+  bool exceeds(double deviations) const noexcept { return hammer_loads::exceeds(value, total, deviations); }
   /// But for a constant.
   double logLikelihood() const noexcept { return -0.5 * (ratio() + std::log(total)); }
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/util/square.h"
 
@@ -19,38 +20,39 @@ class ImuTrust {
   /// A reading in axes of hammer_hull: specific force [m/s2], turning rate [rad/s], step since the last one [s].
   void follow(const Eigen::Vector3d& force, const Eigen::Vector3d& rate, double step) noexcept {
     const bool same = force == force_ && rate == rate_;
-    varies_ = varies_ || (!same && time_ > 0.0);
+    varies_ = varies_ || (!same && mean_.count() > 0.0);
     force_ = force, rate_ = rate;
     if (!(step > 0.0)) return;
     const double lasts = std::min(step, kLongest);
     same_for_ = same ? std::min(same_for_ + lasts, kFrozen) : 0.0;
-    time_ = std::min(time_ + lasts, kMemory);
-    const double share = lasts / time_;
-    mean_ += share * (force - mean_);
-    const Eigen::Vector3d off = force - mean_;
-    power_ += share * (Eigen::Vector3d(square(off.x()), square(off.z()), square(rate.y())) - power_);
-    turning_ += share * (square((rate.y() - last_rate_) / step) - turning_);
+    mean_.add(force, lasts);
+    const Eigen::Vector3d off = force - mean();
+    power_.add(Eigen::Vector3d(square(off.x()), square(off.z()), square(rate.y())), lasts);
+    turning_.add(square((rate.y() - last_rate_) / step), lasts);
     last_rate_ = rate.y();
-    rate_square_ += share * (rate.squaredNorm() - rate_square_);
+    rate_square_.add(rate.squaredNorm(), lasts);
     off_for_ = is_off_ ? std::min(off_for_ + lasts, kOffFor) : 0.0;
   }
   /// weight: by the joint angles, in the plane of the hull.
   void judge(const Gravity& weight) noexcept {
-    if (time_ < kLeastTime) return;
-    const double off_square = square(mean_.x() + weight.x) + square(mean_.z() + weight.z);
+    if (mean_.count() < kLeastTime) return;
+    const double off_square = square(mean().x() + weight.x) + square(mean().z() + weight.z);
     const double limit = (is_lost_ ? kBack : 1.0) * kMostPart;
-    is_off_ = off_square > square(limit) * (square(weight.x) + square(weight.z)) || rate_square_ > square(kMostRate);
+    is_off_ =
+        off_square > square(limit) * (square(weight.x) + square(weight.z)) || rate_square_.mean() > square(kMostRate);
     is_lost_ = isFrozen() || (is_off_ && off_for_ == kOffFor);
   }
   /// Mean squares of what the hull has beside such a weight, its plane's, and of what it turns: along x and z [m2/s4],
   /// rate [rad2/s2], its derivative [rad2/s4].
   Eigen::Vector4d power(const Gravity& weight) const noexcept {
-    return {power_.x() + square(mean_.x() + weight.x), power_.y() + square(mean_.z() + weight.z), power_.z(), turning_};
+    const Eigen::Vector3d& power = power_.mean();
+    return {power.x() + square(mean().x() + weight.x), power.y() + square(mean().z() + weight.z), power.z(),
+            turning_.mean()};
   }
   bool isLost() const noexcept { return is_lost_; }
   bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
-  const Eigen::Vector3d& mean() const noexcept { return mean_; }              ///< specific force [m/s2]
-  double rate() const noexcept { return std::sqrt(rate_square_); }            ///< root mean square [rad/s]
+  const Eigen::Vector3d& mean() const noexcept { return mean_.mean(); }       ///< specific force [m/s2]
+  double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]
 
  private:
   static constexpr double kMemory = 2.0, kLeastTime = 0.5;  // [s]
@@ -60,10 +62,10 @@ class ImuTrust {
   static constexpr double kOffFor = 0.3;                    // [s]: not because of one damaged joint angle
   static constexpr double kFrozen = 0.2;                    // of one reading again and again [s]
 
-  double time_{}, rate_square_{}, off_for_{}, same_for_{}, turning_{}, last_rate_{};
-  Eigen::Vector3d power_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d force_ = mean_, rate_ = mean_;  ///< of the last reading
+  RunningMean<Eigen::Vector3d> mean_{kMemory, Eigen::Vector3d::Zero()}, power_{kMemory, Eigen::Vector3d::Zero()};
+  RunningMean<> rate_square_{kMemory}, turning_{kMemory};
+  double off_for_{}, same_for_{}, last_rate_{};
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), rate_ = force_;  ///< of the last reading
   bool varies_{}, is_off_{}, is_lost_{};
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/pipeline/overdue.h"
 #include "hammer_loads/util/square.h"
 
@@ -10,9 +11,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
-constexpr double kSwingTime = 1.0;     // of the torque's swing [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
-constexpr double kJump = 3.0;          // standard deviations that are no noise
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
 }  // namespace
@@ -20,16 +19,16 @@ constexpr double kGap = 0.1;           // between crank samples [s]: over it not
 /// As a random walk that readings with noise show (Kalman filter): a change over two readings has the walk twice and
 /// the noise once. A jump is the rock's.
 void MeasuredTorques::followRest(Track& track, double rest) noexcept {
-  const double of_mean = 1.0 / track.judged;
-  track.one_square += of_mean * (square(rest - track.last) - track.one_square);
-  track.two_square += of_mean * (square(rest - track.before) - track.two_square);
+  track.one_square.add(square(rest - track.last));
+  track.two_square.add(square(rest - track.before));
   track.before = track.last, track.last = rest;
-  const double walk = std::max(0.0, track.two_square - track.one_square);
-  const double noise = std::max(0.0, track.one_square - 0.5 * track.two_square);
+  const double one = track.one_square.mean(), two = track.two_square.mean();
+  const double walk = std::max(0.0, two - one), noise = std::max(0.0, one - 0.5 * two);
   const double known = 0.5 * walk + std::sqrt(0.25 * square(walk) + walk * noise);
   const double error = rest - track.rest;
-  const bool jumps = square(error) > square(kJump) * (known + noise);
-  track.gain = jumps || !(known + noise > 0.0) ? 1.0 : std::max(known / (known + noise), of_mean);
+  const bool jumps = exceeds(error, known + noise, gate::kRare);
+  track.gain =
+      jumps || !(known + noise > 0.0) ? 1.0 : std::max(known / (known + noise), 1.0 / track.one_square.count());
   track.rest += track.gain * error;
 }
 
@@ -38,18 +37,15 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
   const double step = seconds(stamp - track.stamp);
   if (track.readings > 0 && step > 0.0) {
     const double change = torque - track.torque;
-    track.judged = std::min(track.judged + 1, kMostJudged);
-    const double of_mean = 1.0 / track.judged;
-    track.oil_square += of_mean * (square(change - (model_before - track.model)) - track.oil_square);
-    track.line_square += of_mean * (square(change - step * track.slope) - track.line_square);
+    track.oil_square.add(square(change - (model_before - track.model)));
+    track.line_square.add(square(change - step * track.slope));
     followRest(track, torque - model);
     track.slope = change / step;
     track.interval = step;
-    const double share = std::min(1.0, step / kSwingTime);
-    track.mean += share * (torque - track.mean);
-    track.swing += share * (square(torque - track.mean) - track.swing);
+    track.mean.add(torque, step);
+    track.swing.add(square(torque - track.mean.mean()), step);
   }
-  if (track.readings == 0) track.mean = torque;
+  if (track.readings == 0) track.mean = RunningMean<>(kSwingTime, torque, kSwingTime);
   if (track.readings == 0 || !(step > 0.0)) track.rest = track.last = track.before = torque - model, track.gain = 1.0;
   track.stamp = stamp, track.torque = torque, track.model = model;
 }
@@ -93,14 +89,14 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       track.goes_on = true;
     }
     const double age = std::min(seconds(sample - stamp) + delay, kLongestLine);
-    const bool by_oil = track.oil_square <= track.line_square;
+    const bool by_oil = track.oil_square.mean() <= track.line_square.mean();
     const double value = by_oil ? track.rest + model.now[j] : track.torque + age * track.slope;
     const double lost = forgottenPart(overdue(seconds(sample - stamp), track.interval));
     // A change has the noise of two readings, what is smoothed that of one or less.
     const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
-    const double off =
-        std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square) + (lag + 2.0 * lost) * track.swing +
-                  (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
+    const double off = std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square).mean() +
+                                 (lag + 2.0 * lost) * track.swing.mean() +
+                                 (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
     torque_[i] = Torque{value, off, at};
   }
   model_ = model, sample_ = sample;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/util/constants.h"
 
@@ -36,24 +37,27 @@ class MeasuredTorques {
   const std::optional<Torque>& of(std::size_t cylinder) const noexcept { return torque_[cylinder]; }
 
  private:
+  static constexpr double kMostJudged = 200.0;  ///< readings
+  static constexpr double kSwingTime = 1.0;     ///< of the torque's swing [s]
   struct Track {
-    std::uint64_t readings{};            ///< taken
-    double position{kNaN};               ///< of the joint, as its sensor shows it
-    CylinderPosition at;                 ///< there
-    StampNs stamp{};                     ///< of the last one
-    double interval{};                   ///< since the one before [s]
-    int judged{};                        ///< readings in the means of squares, counted up to kMostJudged
-    bool goes_on{};                      ///< known at the last sample
-    double torque{};                     ///< by it [N m]
-    double model{};                      ///< of weight, motion and oil then, by the vibration that has taken it [N m]
-    double rest{}, last{}, before{};     ///< reading less model: as followed, of the last and the one before [N m]
-    double gain{1.0};                    ///< of the last reading in it
-    double one_square{}, two_square{};   ///< mean squares of its change over one reading and over two [N2 m2]
-    double slope{};                      ///< of the line through the last two [N m/s]
-    double mean{}, swing{};              ///< of the torque over some 1 s, and mean square about it [N m, N2 m2]
-    double oil_square{}, line_square{};  ///< mean of the squares by which each way was off at a reading [N2 m2]
+    std::uint64_t readings{};         ///< taken
+    double position{kNaN};            ///< of the joint, as its sensor shows it
+    CylinderPosition at;              ///< there
+    StampNs stamp{};                  ///< of the last one
+    double interval{};                ///< since the one before [s]
+    bool goes_on{};                   ///< known at the last sample
+    double torque{};                  ///< by it [N m]
+    double model{};                   ///< of weight, motion and oil then, by the vibration that has taken it [N m]
+    double rest{}, last{}, before{};  ///< reading less model: as followed, of the last and the one before [N m]
+    double gain{1.0};                 ///< of the last reading in it
+    RunningMean<> one_square{kMostJudged},
+        two_square{kMostJudged};  ///< mean squares of its change over one reading and over two [N2 m2]
+    double slope{};               ///< of the line through the last two [N m/s]
+    RunningMean<> mean{kSwingTime, 0.0, kSwingTime},
+        swing{mean};  ///< of the torque over some 1 s, and mean square about it [N m, N2 m2]
+    RunningMean<> oil_square{kMostJudged},
+        line_square{kMostJudged};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
-  static constexpr int kMostJudged = 200;
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
   static void followRest(Track& track, double rest) noexcept;
 

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "hammer_loads/boom/wrench.h"
+#include "hammer_loads/estimation/latch.h"
+#include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -19,26 +21,22 @@ class PressureTrust {
   /// step since the last call [s].
   void follow(const Wrench& beyond, const Wrench& weight, double arm, double step) noexcept {
     if (!(step > 0.0) || !std::isfinite(beyond.force.x() + beyond.force.z() + beyond.torque.y())) return;
-    const double lasts = std::min(step, kLongest);
-    time_ = std::min(time_ + lasts, kMemory);
-    const double share = lasts / time_;
-    across_ += share * (beyond.force.x() - across_);
-    along_ += share * (beyond.force.z() - along_);
-    turning_ += share * (beyond.torque.y() - arm * beyond.force.z() - turning_);
-    if (time_ < kLeastTime) return;
-    const double size = std::abs(along_) + std::sqrt(square(weight.force.x()) + square(weight.force.z()));
-    const double off = std::max(std::abs(across_) / kAcross, std::abs(turning_) / (kTurning * arm)) / size;
-    lost_ = off > (lost_ ? kBack : 1.0);
+    mean_.add({beyond.force.x(), beyond.force.z(), beyond.torque.y() - arm * beyond.force.z()},
+              std::min(step, kLongest));
+    if (mean_.count() < kLeastTime) return;
+    const double size = std::abs(along()) + std::sqrt(square(weight.force.x()) + square(weight.force.z()));
+    const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
+    lost_.follow(off);
   }
-  bool isLost() const noexcept { return lost_; }
+  bool isLost() const noexcept { return lost_.isEngaged(); }
   /// Mean load on the tip that no rock makes; along the tool it may, from least_force [N] on. Pressures, lengths or
   /// masses are otherwise than said.
   Wrench notOfRock(double arm, double least_force) const noexcept {
-    const double along = along_ < least_force ? along_ : 0.0;
-    return {{across_, 0.0, along}, {0.0, turning_ + arm * along, 0.0}};
+    const double not_rock = along() < least_force ? along() : 0.0;
+    return {{across(), 0.0, not_rock}, {0.0, turning() + arm * not_rock, 0.0}};
   }
-  double across() const noexcept { return across_; }  ///< mean [N]
-  double along() const noexcept { return along_; }    ///< [N]
+  double across() const noexcept { return mean_.mean()[0]; }  ///< mean [N]
+  double along() const noexcept { return mean_.mean()[1]; }   ///< [N]
 
  private:
   static constexpr double kMemory = 2.0, kLeastTime = 0.5;  // [s]
@@ -46,8 +44,10 @@ class PressureTrust {
   static constexpr double kAcross = 0.1, kTurning = 0.3;    // of the load along the tool and the weight; with its arm
   static constexpr double kBack = 0.5;                      // of that: trusted again
 
-  double time_{}, across_{}, along_{}, turning_{};
-  bool lost_{};
+  double turning() const noexcept { return mean_.mean()[2]; }
+
+  RunningMean<Eigen::Vector3d> mean_{kMemory, Eigen::Vector3d::Zero()};
+  Latch lost_{1.0, kBack};
 };
 
 }  // namespace hammer_loads

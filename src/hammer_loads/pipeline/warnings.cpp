@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/util/format.h"
@@ -64,27 +65,20 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, std::ve
                         true});
 }
 
-/// Where the encoder sits. An error that the innovations show is named with what else looks the same.
-void warnOfPlace(const ConstantErrors& errors, std::vector<Warning>& warnings) {
-  constexpr double kDegree = kTwoPi / 360.0;
-  constexpr double kZero = 0.3 * kDegree;          // from there on the wrench is some 0.9 % worse
-  constexpr double kEccentricity = 0.5 * kDegree;  // likewise
-  constexpr double kDeviations = 2.0;
-  const ConstantErrors::Vector &found = errors.estimate(), &deviation = errors.deviation();
-  if (std::abs(found[0]) > std::max(kZero, kDeviations * deviation[0]))
-    warnings.push_back({"zero",
-                        format("crank_zero_rad: the readings look as if the blow came at %.2g rad (%.2g deg, deviation "
-                               "%.1g deg) more than given; a tool met before the dead centre or a supply without oil "
-                               "compliance looks alike: run calibrate",
-                               found[0], found[0] / kDegree, deviation[0] / kDegree),
-                        true});
-  const double amount = std::hypot(found[1], found[2]), uncertain = std::max(deviation[1], deviation[2]);
-  if (amount > std::max(kEccentricity, kDeviations * uncertain))
-    warnings.push_back({"eccentricity",
-                        format("crank encoder: looks eccentric by %.2g deg (crank_eccentricity_1_rad: %.2g rad, "
-                               "deviation %.1g deg) more than given: run calibrate",
-                               amount / kDegree, amount, uncertain / kDegree),
-                        true});
+/// Constants whose error the innovations show, by their table.
+void warnOfConstants(const ConstantErrors& errors, std::vector<Warning>& warnings) {
+  for (std::size_t i = 0; i < kUnknowns.size();) {
+    const Unknown& first = kUnknowns[i];
+    double amount = 0.0, deviation = 0.0;
+    const auto begin = i;
+    for (; i < kUnknowns.size() && std::string_view(kUnknowns[i].name) == first.name; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      amount = i == begin ? errors.estimate()[at] : std::hypot(amount, errors.estimate()[at]);
+      deviation = std::max(deviation, errors.deviation()[at]);
+    }
+    if (first.warning != nullptr && std::abs(amount) > std::max(first.notable, gate::kUsual * deviation))
+      warnings.push_back({first.name, first.warning(amount, deviation), true});
+  }
 }
 
 /// What the filter's innovations look like.
@@ -104,7 +98,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          true});
   warnOfStamps(pipeline.crank(), *filter, warnings);
   const bool inconsistent = filter->consistency() > kInconsistent;
-  if (!inconsistent && !filter->isUnexplained()) return warnOfPlace(filter->constantErrors(), warnings);
+  if (!inconsistent && !filter->isUnexplained()) return warnOfConstants(filter->constantErrors(), warnings);
   warnings.push_back({"inconsistent",
                       format("crank: readings differ from the model by %s%.2g times the expected variance: a soft "
                              "coupling between crank and encoder (%s), a wrong hammer file or a zero far off",

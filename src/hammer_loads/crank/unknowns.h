@@ -1,0 +1,111 @@
+/// Constants of crank sensor and drive that are not known exactly: one row each, and a row is all that the filter
+/// needs.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "hammer_loads/crank/supply_law.h"
+#include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads {
+
+/// Where a reading is taken, on the shaft of the encoder.
+struct ReadingPlace {
+  double offset{};        ///< from the blow, within half a turn [rad]
+  double speed{};         ///< [rad/s]
+  double acceleration{};  ///< [rad/s2]
+};
+
+/// sin and cos within 0.1 %, |x| <= 3/4 of a turn: two parabolas.
+constexpr double roughSine(double x) noexcept {
+  const double part = x * (2.0 / kTwoPi), y = 4.0 * part * (1.0 - (part < 0.0 ? -part : part));
+  return y * (0.775 + 0.225 * (y < 0.0 ? -y : y));
+}
+constexpr double roughCosine(double x) noexcept { return roughSine(0.25 * kTwoPi - (x < 0.0 ? -x : x)); }
+
+/// The error p of one constant: what is known of it, and how it enters.
+struct Unknown {
+  enum class Use {
+    kSeen,        ///< shows in the innovations; not corrected, but named and counted in the deviations
+    kTakenUp,     ///< shows there as well, by itself; its owner corrects the constant
+    kConsidered,  ///< is as large as its prior says, whatever the innovations are
+  };
+  const char* name;  ///< of its warning; rows of one name in a row are parts of one amount, the root of their squares
+  const char* key;   ///< of the parameter file
+  Use use;
+  double prior;                                        ///< standard deviation where nothing else is said
+  double unmodelled;                                   ///< what a clean machine shows of it, standard: kSeen
+  double (*of_angle)(const ReadingPlace&);             ///< d(read angle)/dp
+  double (*of_speed)(const ReadingPlace&);             ///< d(read speed)/dp
+  double (*of_torque)(const SupplyLaw&, double lead);  ///< d(the filter's torque after a step less before it)/dp
+  double notable;                                      ///< from there on a warning names it
+  std::string (*warning)(double amount, double deviation);
+};
+
+namespace unknown {
+
+inline constexpr double kDegree = kTwoPi / 360.0;
+
+inline double notOfReading(const ReadingPlace&) { return 0.0; }
+inline double notOfTorque(const SupplyLaw&, double) { return 0.0; }
+
+inline std::string ofZero(double amount, double deviation) {
+  return format(
+      "crank_zero_rad: the readings look as if the blow came at %.2g rad (%.2g deg, deviation "
+      "%.1g deg) more than given; a tool met before the dead centre or a supply without oil "
+      "compliance looks alike: run calibrate",
+      amount, amount / kDegree, deviation / kDegree);
+}
+inline std::string ofEccentricity(double amount, double deviation) {
+  return format(
+      "crank encoder: looks eccentric by %.2g deg (crank_eccentricity_1_rad: %.2g rad, "
+      "deviation %.1g deg) more than given: run calibrate",
+      amount / kDegree, amount, deviation / kDegree);
+}
+
+}  // namespace unknown
+
+/// Those that are seen come first. Readings of the sensor's place: angle + b0 + b1 sin(angle) + b2 (cos(angle) - 1)
+/// [rad], so that b0 alone says where the blow is. Clean machines show 0.10, 0.11 and 0.23 deg of these; from 0.3 and
+/// 0.5 deg on the wrench is some 0.9 % worse. The motor's share is the logarithm of its odds, and enters by the
+/// coupling (flexible_belief.h); a prior of 0 is that of a machine without one.
+inline constexpr std::array<Unknown, 6> kUnknowns{{
+    {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
+     unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero},
+    {"eccentricity", "crank_eccentricity_1_rad", Unknown::Use::kSeen, 0.05, 2e-3,
+     [](const ReadingPlace& at) { return roughSine(at.offset); },
+     [](const ReadingPlace& at) { return at.speed * roughCosine(at.offset); }, unknown::notOfTorque,
+     0.5 * unknown::kDegree, unknown::ofEccentricity},
+    {"eccentricity", "crank_eccentricity_1_rad", Unknown::Use::kSeen, 0.05, 4e-3,
+     [](const ReadingPlace& at) { return roughCosine(at.offset) - 1.0; },
+     [](const ReadingPlace& at) { return -at.speed * roughSine(at.offset); }, unknown::notOfTorque,
+     0.5 * unknown::kDegree, unknown::ofEccentricity},
+    {"supply", nullptr, Unknown::Use::kTakenUp, 0.2, 0.0, unknown::notOfReading, unknown::notOfReading,
+     [](const SupplyLaw& supply, double lead) { return -supply.unit * lead; }, 0.0, nullptr},
+    {"share", "coupling_motor_share", Unknown::Use::kConsidered, 0.0, 0.0, unknown::notOfReading, unknown::notOfReading,
+     unknown::notOfTorque, 0.0, nullptr},
+    {"latency", "crank_latency_s", Unknown::Use::kConsidered, 0.0, 0.0,
+     [](const ReadingPlace& at) { return -at.speed; }, [](const ReadingPlace& at) { return -at.acceleration; },
+     unknown::notOfTorque, 0.0, nullptr},
+}};
+
+/// That are seen: the first of them.
+constexpr int countSeen() noexcept {
+  int count = 0;
+  for (const Unknown& u : kUnknowns) count += u.use == Unknown::Use::kSeen;
+  return count;
+}
+/// Its place in the table; a name that is not there does not compile where that is asked for at compile time.
+constexpr int indexOfUnknown(const char* name) {
+  for (std::size_t i = 0; i < kUnknowns.size(); ++i) {
+    const char *a = kUnknowns[i].name, *b = name;
+    while (*a != '\0' && *a == *b) ++a, ++b;
+    if (*a == *b) return static_cast<int>(i);
+  }
+  throw "no such unknown";
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,30 @@
+/// Gates by a number of standard deviations: one vocabulary for what noise makes and what it does not.
+#pragma once
+
+#include <cmath>
+
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+
+/// Deviations of a Gaussian, and how often one alone is beyond them. Measurements come a thousand times a second: what
+/// is to happen by noise once an hour at most needs five.
+namespace gate {
+constexpr double kUsual = 2.0;       ///< 5 in 100
+constexpr double kRare = 3.0;        ///< 3 in 1000: three times a second
+constexpr double kVeryRare = 4.0;    ///< 6 in 100 000: some four times a minute
+constexpr double kImpossible = 5.0;  ///< 6 in 10 million: twice an hour
+}  // namespace gate
+
+/// Whether an innovation of that variance is beyond so many deviations. One that is no number is not.
+constexpr bool exceeds(double innovation, double variance, double deviations) noexcept {
+  return square(innovation) > square(deviations) * variance;
+}
+
+/// Weight of an innovation: 1 within so many deviations; beyond, its square counts as that of the gate.
+inline double weightWithin(double deviations, double innovation, double variance) noexcept {
+  const double ratio = square(innovation) / variance, most = square(deviations);
+  return ratio > most ? most / ratio : 1.0;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,32 @@
+/// Mean of what came lately.
+#pragma once
+
+#include <algorithm>
+
+namespace hammer_loads {
+
+/// Of all that came at first, later with weights that fall by 1 - weight/length from one value to the next. Weights are
+/// a count or a time, length is in their unit.
+template <typename Value = double>
+class RunningMean {
+ public:
+  /// length > 0; first: counts as so many values, in [0, length].
+  explicit RunningMean(double length, const Value& first = Value(), double first_counts = 0.0) noexcept
+      : length_(length), count_(first_counts), mean_(first) {}
+
+  /// weight: > 0; nothing weighs more than all.
+  void add(const Value& value, double weight = 1.0) noexcept {
+    count_ = std::min(count_ + weight, length_);
+    mean_ += std::min(1.0, weight / count_) * (value - mean_);
+  }
+  const Value& mean() const noexcept { return mean_; }
+  double count() const noexcept { return count_; }  ///< of the weights in the mean, <= length
+  /// As many as there are to be.
+  bool isFull() const noexcept { return count_ == length_; }
+
+ private:
+  double length_, count_;
+  Value mean_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,218 @@
+// A belief with considered constants against filters that estimate the constants, batch least squares and machines
+// drawn from the prior.
+#include "hammer_loads/estimation/gaussian_belief.h"
+
+#include <gtest/gtest.h>
+
+#include "estimation/linear_machine.h"
+#include "hammer_loads/estimation/constant_fit.h"
+
+namespace hammer_loads::test {
+namespace {
+
+constexpr int kN = 4, kC = 3;
+using Machine = LinearMachine<kN, kC>;
+using Belief = Machine::Belief;
+
+/// Kalman's filter as in a textbook, the constants as states without noise.
+struct Textbook {
+  static constexpr int kAll = kN + kC;
+  Eigen::Matrix<double, kAll, 1> mean = Eigen::Matrix<double, kAll, 1>::Zero();
+  Eigen::Matrix<double, kAll, kAll> covariance = Eigen::Matrix<double, kAll, kAll>::Zero();
+
+  explicit Textbook(const Machine& m) {
+    covariance.topLeftCorner<kN, kN>() = m.first;
+    covariance.bottomRightCorner<kC, kC>() = m.prior.cwiseAbs2().asDiagonal();
+  }
+  void predict(const Machine& m) {
+    Eigen::Matrix<double, kAll, kAll> F = Eigen::Matrix<double, kAll, kAll>::Identity();
+    F.topLeftCorner<kN, kN>() = m.F;
+    F.topRightCorner<kN, kC>() = m.B;
+    mean = F * mean;
+    covariance = (F * covariance * F.transpose()).eval();
+    covariance.topLeftCorner<kN, kN>() += m.step_noise;
+  }
+  void correct(const Machine& m, double z) {
+    Eigen::Matrix<double, 1, kAll> H;
+    H << m.H, m.D;
+    const Eigen::Matrix<double, kAll, 1> gain = covariance * H.transpose() / (H * covariance * H.transpose() + m.noise);
+    mean += gain * (z - H.dot(mean));
+    covariance = ((Eigen::Matrix<double, kAll, kAll>::Identity() - gain * H) * covariance).eval();
+  }
+};
+
+/// Friedland: the belief and what the innovations say of the constants are together the filter that estimates both.
+TEST(GaussianBelief, WithGatheredConstantsEqualsTextbookFilterOfBoth) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Machine machine(seed);
+    const Machine::Run run = machine.run(seed + 100, 60);
+    Belief belief = machine.begin();
+    Machine::Vector mean = Machine::Vector::Zero();
+    Eigen::Matrix3d information = machine.prior.cwiseAbs2().cwiseInverse().asDiagonal();
+    Eigen::Vector3d score = Eigen::Vector3d::Zero();
+    Textbook textbook(machine);
+    for (const double z : run.z) {
+      machine.predict(belief, mean);
+      const Belief::ConstantRow by_constant = machine.D - machine.H * belief.by_constant;
+      const double variance = machine.innovationVariance(belief), innovation = machine.correct(belief, mean, z);
+      information += by_constant.transpose() * by_constant / variance;
+      score += by_constant.transpose() * innovation / variance;
+      textbook.predict(machine);
+      textbook.correct(machine, z);
+      const Eigen::Matrix3d of_constants = information.inverse();
+      const Eigen::Vector3d p = of_constants * score;
+      EXPECT_TRUE((mean - belief.by_constant * p).isApprox(textbook.mean.head<kN>(), 1e-10));
+      EXPECT_TRUE(p.isApprox(textbook.mean.tail<kC>(), 1e-10));
+      EXPECT_TRUE(belief.grown(1.0, of_constants).isApprox(textbook.covariance.topLeftCorner<kN, kN>(), 1e-10));
+    }
+  }
+}
+
+TEST(GaussianBelief, LastStateOfBatchLeastSquares) {
+  Machine machine(7);
+  machine.prior *= 0.1;
+  const Machine::Run run = machine.run(8, 25);
+  Belief belief = machine.begin();
+  Machine::Vector mean = Machine::Vector::Zero();
+  ConstantFit<kC> fit;
+  fit.begin(machine.prior);
+  for (const double z : run.z) {
+    machine.predict(belief, mean);
+    const Belief::ConstantRow by_constant = machine.D - machine.H * belief.by_constant;
+    const double variance = machine.innovationVariance(belief), innovation = machine.correct(belief, mean, z);
+    ASSERT_FALSE(exceeds(innovation, variance, gate::kRare));  // within it a fit is least squares
+    fit.learn(innovation, variance, by_constant);
+  }
+  const Machine::Batch batch = machine.batch(run.z, Eigen::Vector3d::Zero(), machine.prior);
+  const Eigen::Matrix3d of_constants = fit.covarianceOfFirst<kC>();
+  const Eigen::Vector3d p = of_constants * fit.score();
+  EXPECT_TRUE(p.isApprox(batch.p(), 1e-8)) << p << '\n' << batch.p();
+  EXPECT_TRUE(of_constants.isApprox(batch.ofConstants(), 1e-8));
+  EXPECT_TRUE((mean - belief.by_constant * p).isApprox(batch.x(25), 1e-8));
+  EXPECT_TRUE(belief.grown(1.0, of_constants).isApprox(batch.of(25), 1e-8));
+}
+
+/// Errors over their covariance (NEES): kN in the mean of machines whose constants are drawn from the prior, and not so
+/// where the constants are left out.
+TEST(GaussianBelief, ErrorsOfDrawnMachinesAreAsLargeAsSaid) {
+  const Machine machine(3);
+  const Eigen::Matrix3d of_constants = machine.prior.cwiseAbs2().asDiagonal();
+  constexpr int kRuns = 2000;
+  double considered = 0.0, left_out = 0.0;
+  for (unsigned r = 0; r < kRuns; ++r) {
+    const Machine::Run run = machine.run(1000 + r, 12);
+    Belief belief = machine.begin();
+    Machine::Vector mean = Machine::Vector::Zero();
+    for (const double z : run.z) machine.predict(belief, mean), machine.correct(belief, mean, z);
+    const Machine::Vector error = run.x.back() - mean;
+    considered += error.dot(belief.grown(1.0, of_constants).llt().solve(error)) / kRuns;
+    left_out += error.dot(belief.covariance.llt().solve(error)) / kRuns;
+  }
+  EXPECT_NEAR(considered, kN, 4.0 * std::sqrt(2.0 * kN / kRuns));  // four deviations of a mean of chi squares
+  EXPECT_GT(left_out, 2.0 * kN);
+}
+
+TEST(GaussianBelief, TransitionOfFewRowsIsTheDenseOne) {
+  const Machine machine(5);
+  Belief dense = machine.begin(), few = dense;
+  dense.by_constant = few.by_constant = machine.B;
+  Belief::Matrix f = Belief::Matrix::Identity();
+  f.row(0) = machine.F.row(0), f.row(2) = machine.F.row(2);
+  Eigen::Matrix<double, 2, kN> rows;
+  rows << f.row(0), f.row(2);
+  dense.predict(f);
+  few.predict<0, 2>(rows);
+  EXPECT_TRUE(few.covariance.isApprox(dense.covariance, 1e-14));
+  EXPECT_TRUE(few.by_constant.isApprox(dense.by_constant, 1e-14));
+  EXPECT_EQ(few.covariance, few.covariance.transpose());
+  EXPECT_EQ(dense.covariance, dense.covariance.transpose());
+}
+
+TEST(GaussianBelief, MeasurementOfOneVariableIsTheGeneralOne) {
+  const Machine machine(6);
+  Belief one = machine.begin(), general = one;
+  one.by_constant = general.by_constant = machine.B;
+  const Machine::Vector gain = one.correct(2, 0.3, machine.D);
+  EXPECT_TRUE(gain.isApprox(general.correct(Belief::Row::Unit(2), 0.3, machine.D), 1e-14));
+  EXPECT_TRUE(one.covariance.isApprox(general.covariance, 1e-13));
+  EXPECT_TRUE(one.by_constant.isApprox(general.by_constant, 1e-14));
+  EXPECT_EQ(one.covariance, one.covariance.transpose());
+}
+
+/// A count of 1e-12 rad2 beside a torque of 1e6 N m, known a million times better by each of many samples, and two
+/// variables that are one but for a part in 1e12: nothing turns negative, and what is known is that of all samples.
+TEST(GaussianBelief, SurvivesExactReadingsOfBadlyScaledVariables) {
+  GaussianBelief<3, 1> belief;
+  belief.covariance << 1e6, 1e6, 1e9, 1e6, 1e6 * (1.0 + 1e-12), 1e9, 1e9, 1e9, 1e12 + 1.0;
+  constexpr double kNoise = 1e-12;
+  for (int i = 1; i <= 1000; ++i) {
+    belief.correct(i % 2, kNoise, GaussianBelief<3, 1>::ConstantRow::Zero());
+    ASSERT_TRUE(belief.isSound()) << i;
+    ASSERT_LE(belief.covariance(i % 2, i % 2), kNoise);
+  }
+  // 500 readings of the first; its twin, off by a deviation of 1e-3, adds next to nothing of 1e-12
+  EXPECT_NEAR(belief.covariance(0, 0), kNoise / 500.0, 1e-3 * kNoise / 500.0);
+}
+
+TEST(GaussianBelief, ExactReadingLeavesNothingOfIt) {
+  Belief belief = Machine(4).begin();
+  belief.correct(1, 0.0, Belief::ConstantRow::Zero());
+  EXPECT_EQ(belief.covariance.row(1).norm(), 0.0);
+  EXPECT_TRUE(belief.isSound());
+}
+
+TEST(GaussianBelief, DrawsDecouplesAndWidens) {
+  const Machine machine(9);
+  Belief belief = machine.begin();
+  belief.by_constant = machine.B;
+  const Belief before = belief;
+
+  belief.decouple(1);
+  EXPECT_EQ(belief.covariance(1, 1), before.covariance(1, 1));
+  EXPECT_EQ(belief.covariance.row(1).norm(), before.covariance(1, 1));
+  EXPECT_EQ(belief.by_constant, before.by_constant);
+  const double of_one = belief.covariance(1, 1);
+  belief.correct(0, 0.1, Belief::ConstantRow::Zero());
+  EXPECT_EQ(belief.covariance(1, 1), of_one);
+
+  belief.draw(2, 5.0, machine.D);
+  EXPECT_EQ(belief.covariance(2, 2), 5.0);
+  EXPECT_EQ(belief.covariance.row(2).norm(), 5.0);
+  EXPECT_EQ(belief.by_constant.row(2), machine.D);
+
+  Belief wide = before;
+  wide.widen({2.0, 1.0, 1.0, 3.0});
+  EXPECT_EQ(wide.covariance(0, 0), 4.0 * before.covariance(0, 0));
+  EXPECT_DOUBLE_EQ(wide.covariance(0, 3), 6.0 * before.covariance(0, 3));
+  EXPECT_EQ(wide.covariance(1, 2), before.covariance(1, 2));
+}
+
+/// A filter without constants is the plain one.
+TEST(GaussianBelief, NeedsNoConstants) {
+  GaussianBelief<2, 0> belief;
+  belief.covariance << 2.0, 1.0, 1.0, 3.0;
+  belief.predict<0>(Eigen::RowVector2d(1.0, 0.1));
+  EXPECT_DOUBLE_EQ(belief.covariance(0, 0), 2.0 + 0.2 + 0.03);
+  const Eigen::Vector2d gain = belief.correct(0, 1.0, {});
+  EXPECT_DOUBLE_EQ(gain[0], 2.23 / 3.23);
+  EXPECT_DOUBLE_EQ(belief.covariance(0, 0), 2.23 / 3.23);
+}
+
+TEST(ConstantFit, FadesTakesAndBoundsWhatOneInnovationSays) {
+  ConstantFit<1> fit;
+  using Row = ConstantFit<1>::Row;
+  fit.begin(ConstantFit<1>::Vector(10.0));
+  fit.learn(2.0, 1.0, Row(1.0));
+  EXPECT_DOUBLE_EQ(fit.score()[0], 2.0);
+  fit.learn(300.0, 1.0, Row(1.0));  // a hundred times the gate: 9/90000 of a reading
+  EXPECT_DOUBLE_EQ(fit.score()[0], 2.0 + 0.03);
+  EXPECT_DOUBLE_EQ(fit.information()(0, 0), 0.01 + 1.0 + 1e-4);
+  fit.fade(0.5);
+  EXPECT_DOUBLE_EQ(fit.score()[0], 1.015);
+  const double before = fit.score()[0] / fit.information()(0, 0);
+  fit.take(0, -before);  // the constant is now given as it was found
+  EXPECT_NEAR(fit.score()[0], 0.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace hammer_loads::test

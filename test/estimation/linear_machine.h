@@ -1,0 +1,118 @@
+// A random linear machine, what it does, and everything known about it from one batch of least squares.
+#pragma once
+
+#include <Eigen/Dense>
+#include <random>
+#include <vector>
+
+#include "hammer_loads/estimation/gaussian_belief.h"
+
+namespace hammer_loads::test {
+
+/// x' = F x + B p + w, z = H x + D p + v.
+template <int N, int C>
+struct LinearMachine {
+  using Belief = GaussianBelief<N, C>;
+  using Vector = typename Belief::Vector;
+  using Constants = Eigen::Matrix<double, C, 1>;
+
+  typename Belief::Matrix F, step_noise, first;  ///< covariances of w and of the first x
+  typename Belief::Effect B;
+  typename Belief::Row H;
+  typename Belief::ConstantRow D;
+  double noise{};   ///< variance of v
+  Constants prior;  ///< deviations of p, whose mean is 0
+
+  explicit LinearMachine(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    const auto fill = [&](auto& m) {
+      for (Eigen::Index i = 0; i < m.size(); ++i) m.data()[i] = any(random);
+    };
+    fill(F), fill(B), fill(H), fill(D);
+    F *= 0.9 / F.norm(), F.diagonal().array() += 0.3;
+    Eigen::Matrix<double, N, N> root;
+    fill(root), step_noise = 0.1 * root * root.transpose();
+    fill(root), first = root * root.transpose() + Belief::Matrix::Identity();
+    noise = 0.3;
+    prior = Constants::LinSpaced(0.5, 1.5);
+  }
+
+  Belief begin() const {
+    Belief belief;
+    belief.covariance = first;
+    return belief;
+  }
+  void predict(Belief& belief, Vector& mean) const {
+    belief.predict(F, -B);  // the mean misses what p does
+    for (Eigen::Index i = 0; i < N; ++i)
+      for (Eigen::Index k = i; k < N; ++k) belief.addNoise(i, k, step_noise(i, k));
+    mean = (F * mean).eval();
+  }
+  /// The innovation.
+  double correct(Belief& belief, Vector& mean, double z) const {
+    const double innovation = z - H.dot(mean);
+    mean += belief.correct(H, noise, D) * innovation;
+    return innovation;
+  }
+  double innovationVariance(const Belief& belief) const { return H * belief.covariance * H.transpose() + noise; }
+
+  struct Run {
+    Constants p;
+    std::vector<Vector> x;  ///< [0] before the first step
+    std::vector<double> z;  ///< [k] of x[k + 1]
+  };
+  Run run(unsigned seed, int steps) const {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    const auto draw = [&](const auto& covariance) {
+      Vector white;
+      for (double& w : white) w = normal(random);
+      return Vector(covariance.llt().matrixL() * white);
+    };
+    Run run;
+    for (double& p : run.p) p = normal(random);
+    run.p = run.p.cwiseProduct(prior);
+    run.x.push_back(draw(first));
+    for (int k = 0; k < steps; ++k) {
+      run.x.push_back(F * run.x.back() + B * run.p + draw(step_noise));
+      run.z.push_back(H.dot(run.x.back()) + D.dot(run.p) + std::sqrt(noise) * normal(random));
+    }
+    return run;
+  }
+
+  struct Batch {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    Vector x(int k) const { return mean.segment<N>(N * k); }
+    typename Belief::Matrix of(int k) const { return covariance.block<N, N>(N * k, N * k); }
+    Constants p() const { return mean.tail<C>(); }
+    typename Belief::ConstantMatrix ofConstants() const { return covariance.bottomRightCorner<C, C>(); }
+  };
+  /// All x and p by all z at once, normal equations. deviations of p: their prior; where it is `known`, next to none.
+  Batch batch(const std::vector<double>& z, const Constants& known, const Constants& deviations) const {
+    const Eigen::Index n = N * static_cast<Eigen::Index>(z.size() + 1) + C;
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
+    information.topLeftCorner(N, N) = first.inverse();
+    const Constants weight = deviations.cwiseAbs2().cwiseInverse();
+    information.bottomRightCorner(C, C) = weight.asDiagonal();
+    score.tail(C) = weight.cwiseProduct(known);
+    for (std::size_t k = 0; k < z.size(); ++k) {
+      const Eigen::Index at = N * static_cast<Eigen::Index>(k);
+      Eigen::MatrixXd off = Eigen::MatrixXd::Zero(N, n), seen = Eigen::MatrixXd::Zero(1, n);
+      off.block(0, at + N, N, N).setIdentity();
+      off.block(0, at, N, N) = -F;
+      off.rightCols(C) = -B;
+      information += off.transpose() * step_noise.inverse() * off;
+      seen.block(0, at + N, 1, N) = H;
+      seen.rightCols(C) = D;
+      information += seen.transpose() * seen / noise;
+      score += seen.transpose() * z[k] / noise;
+    }
+    const Eigen::MatrixXd covariance = information.inverse();
+    return {covariance * score, covariance};
+  }
+};
+
+}  // namespace hammer_loads::test
