@@ -55,7 +55,7 @@ TEST_F(Tables, SayWhatTheOutputBagSays) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   Database database(path("out.sqlite"), Database::Use::kRead, 0);
   Database::Statement turns(database, "SELECT stamp_ns, amplitude_N, turn, half_sine_rms_error FROM turns");
-  Database::Statement blows(database, "SELECT stamp_ns, energy_J, turn, mean_press_force_N FROM blows");
+  Database::Statement blows(database, "SELECT stamp_ns, energy_J, turn, mean_press_force_N, flags FROM blows");
   const auto expect_row = [](Database::Statement& row, const ros::Time& stamp, double value, std::uint64_t turn,
                              double last) {
     ASSERT_TRUE(row.step());
@@ -71,6 +71,7 @@ TEST_F(Tables, SayWhatTheOutputBagSays) {
       expect_row(turns, p->header.stamp, p->amplitude_N, p->turn, p->half_sine_rms_error);
     if (const auto b = item.instantiate<Blow>()) {
       expect_row(blows, b->header.stamp, b->energy_J, b->turn, b->mean_press_force_N);
+      EXPECT_EQ(blows.integer(4), b->flags);
       not_known += std::isnan(b->mean_press_force_N);
     }
     samples += item.isType<HullLoads>();

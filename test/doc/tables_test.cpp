@@ -68,6 +68,7 @@ TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {
   blow.turn = 7;
   blow.crank_speed_before_rad_s = 11.5;
   blow.mean_press_force_N = -2.25;
+  blow.flags = Blow::FLAG_IMPOSSIBLE;
   NumberFields fields = numberFieldsOf<Blow>();
   const std::vector<TableColumn> columns = fields.columns();
   const std::vector<double> values = fields.valuesOf(blow);
@@ -78,10 +79,15 @@ TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {
   EXPECT_EQ(columns[1].name, "crank_speed_before_rad_s");
   EXPECT_FALSE(columns[1].is_integer);
   EXPECT_EQ(values[1], 11.5);
-  EXPECT_EQ(columns.back().name, "mean_press_force_N");
-  EXPECT_EQ(values.back(), -2.25);
+  const std::size_t last = columns.size() - 1;
+  EXPECT_EQ(columns[last - 1].name, "mean_press_force_N");
+  EXPECT_FALSE(columns[last - 1].is_integer);
+  EXPECT_EQ(values[last - 1], -2.25);
+  EXPECT_EQ(columns[last].name, "flags") << "a constant is no column";
+  EXPECT_TRUE(columns[last].is_integer);
+  EXPECT_EQ(values[last], 1.0);
   blow.header.frame_id = "another, longer name";
-  EXPECT_EQ(fields.valuesOf(blow).back(), -2.25);
+  EXPECT_EQ(fields.valuesOf(blow)[last - 1], -2.25);
 }
 
 TEST(NumberFields, KnowEveryNumberAndRefuseTheRest) {

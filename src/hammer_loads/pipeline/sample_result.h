@@ -46,6 +46,7 @@ struct SampleResult {
   CrankEstimate crank;
   Eigen::Matrix3d crank_covariance;  ///< of angle, speed and acceleration; zero where the estimator has none
   double consistency{};              ///< CrankTracker::consistency()
+  bool inconsistent{};               ///< readings contradict the model, not yet so that samples are withheld
   LinkState links;
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad

@@ -43,6 +43,7 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
   if (!result.pitch_known) message.flags |= HullLoads::FLAG_PITCH_UNKNOWN;
   if (result.hull.moves) message.flags |= HullLoads::FLAG_HULL_MOTION;
   if (output.near_blow) message.flags |= HullLoads::FLAG_NEAR_BLOW;
+  if (result.inconsistent) message.flags |= HullLoads::FLAG_INCONSISTENT;
 }
 
 void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message) {
@@ -90,6 +91,8 @@ void fillBlow(const TurnEnd& end, Blow& message) {
   message.support_impulse_y_Nms = blow.support_impulse_y;
   message.drive_impulse_y_Nms = blow.drive_impulse_y;
   message.mean_press_force_N = end.mean_press_force;
+  message.flags = 0;
+  if (blow.impossible) message.flags |= Blow::FLAG_IMPOSSIBLE;
 }
 
 void fillPulse(const TurnEnd& end, Pulse& message) {
