@@ -17,14 +17,16 @@ from sensor_msgs.msg import JointState
 
 DATA = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'data')
 RULES = os.path.join(DATA, '..', '..', 'migration', 'hammer_loads.bmr')
+# As test/data/old_messages has them: before deviations and flags, and before the flags of Blow.
+OLD = {'first': ('Blow', 'BoomVibration', 'HullLoads', 'JointLoads'), 'second': ('Blow', 'HullLoads')}
 RULE = '=' * 80
 PARTS = (RULE + '\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n' +
          RULE + '\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n')
 
 
-def old_class(name):
-    """A message as version 0.1.0 had it."""
-    with open(os.path.join(DATA, 'old_messages', name + '.msg')) as definition:
+def old_class(version, name):
+    """A message as it was before."""
+    with open(os.path.join(DATA, 'old_messages', version, name + '.msg')) as definition:
         return genpy.dynamic.generate_dynamic('hammer_loads/' + name, definition.read() + PARTS)['hammer_loads/' + name]
 
 
@@ -37,8 +39,12 @@ def number_all(message, start):
             setattr(message, name, [start + i, start + i + 0.5])
         elif kind == 'string[]':
             setattr(message, name, [name + '_a', name + '_b'])
-        elif kind in ('uint8', 'uint64'):
+        elif kind in ('uint8', 'uint16', 'uint64'):
             setattr(message, name, 5)
+        elif kind == 'string':
+            setattr(message, name, name)
+        elif kind == 'time':
+            setattr(message, name, rospy.Time(99, i))
         elif kind == 'geometry_msgs/Vector3':
             getattr(message, name).y = start + i
     message.header.stamp = rospy.Time(100, 7)
@@ -58,10 +64,10 @@ class Migration(unittest.TestCase):
         self.old = self.path('old.bag')
         self.messages = {}
         with rosbag.Bag(self.old, 'w') as bag:
-            for i, name in enumerate(('Blow', 'BoomVibration', 'HullLoads', 'JointLoads')):
-                message = number_all(old_class(name)(), 1000.0 * (i + 1))
-                self.messages[name] = message
-                bag.write('/hammer_loads/' + name, message, rospy.Time(100 + i))
+            for i, (version, name) in enumerate((v, n) for v, names in OLD.items() for n in names):
+                message = number_all(old_class(version, name)(), 1000.0 * (i + 1))
+                self.messages[version, name] = message
+                bag.write('/%s/%s' % (version, name), message, rospy.Time(100 + i))
 
     def path(self, name):
         return os.path.join(self.directory, name)
@@ -71,26 +77,34 @@ class Migration(unittest.TestCase):
         return done.returncode, done.stdout
 
     def fix(self):
-        """Messages of the new bag by the last part of their topic."""
+        """Messages of the new bag by version and name."""
         code, text = self.run_command('rosbag', 'fix', '-n', self.old, self.path('new.bag'), RULES)
         self.assertEqual(code, 0, text)
         found = {}
         with rosbag.Bag(self.path('new.bag')) as bag:
             for topic, message, time in bag.read_messages():
-                found[topic.split('/')[-1]] = message
+                found[tuple(topic.split('/')[1:])] = message
                 self.assertEqual(time, rospy.Time(100 + len(found) - 1))
         return found
 
     def test_fix_keeps_what_was_recorded(self):
         found = self.fix()
-        for kind in (Blow, BoomVibration, HullLoads, JointLoads):
-            name = kind._type.split('/')[1]
-            self.assertEqual(found[name]._md5sum, kind._md5sum)
-            for field in self.messages[name].__slots__:
-                self.assertEqual(text_of(found[name], field), text_of(self.messages[name], field), field)
+        self.assertEqual(set(found), set(self.messages))
+        kinds = {kind._type.split('/')[1]: kind for kind in (Blow, BoomVibration, HullLoads, JointLoads)}
+        for key, message in self.messages.items():
+            self.assertEqual(found[key]._md5sum, kinds[key[1]]._md5sum)
+            self.assertNotEqual(message._md5sum, found[key]._md5sum, key)
+            for field in message.__slots__:
+                self.assertEqual(text_of(found[key], field), text_of(message, field), (key, field))
+
+    def test_flags_that_did_not_exist_do_not_hold(self):
+        found = self.fix()
+        for version in OLD:
+            self.assertEqual(found[version, 'Blow'].flags, 0, version)
+            self.assertFalse(found[version, 'HullLoads'].flags & HullLoads.FLAG_INCONSISTENT, version)
 
     def test_what_was_not_recorded_is_not_a_number(self):
-        found = self.fix()
+        found = {name: message for (version, name), message in self.fix().items() if version == 'first'}
         self.assertEqual(str(found['Blow'].restitution_deviation), 'nan')
         self.assertEqual(str(found['HullLoads'].consistency), 'nan')
         self.assertEqual(found['HullLoads'].drive_reaction_y_Nm, 0.0)
@@ -108,8 +122,8 @@ class Migration(unittest.TestCase):
         self.assertEqual(code, 0, text)
         warning = [line for line in text.splitlines() if 'another version' in line]
         self.assertEqual(len(warning), 1, text)
-        for name in self.messages:
-            self.assertIn('/hammer_loads/%s (hammer_loads/%s)' % (name, name), warning[0])
+        for version, name in self.messages:
+            self.assertIn('/%s/%s (hammer_loads/%s)' % (version, name, name), warning[0])
         # The command that it names is the one that helps.
         fix = warning[0].split('`')[1].replace('NEW.bag', self.path('new.bag'))
         code, text = self.run_command(*fix.split())
