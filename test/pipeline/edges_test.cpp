@@ -93,7 +93,7 @@ TEST_P(CrankInDegrees, IsWithheldNamedAndGivesNothingAbsurdBefore) {
     const SampleResult& result = pipeline.crankSample(r.stamp, {r.angle * units.angle, speed});
     if (result.refusal) continue;
     largest = std::max(largest, std::hypot(result.wrench.force_x, result.wrench.force_z));
-    after += pipeline.crank().looksLikeDegrees();
+    after += (pipeline.crank().unit() == CrankUnit::kDegrees);
   }
   EXPECT_EQ(after, 0U);
   EXPECT_LE(largest, 0.5 * 40558.1) << "half the peak of the nameplate's turn at constant speed";

@@ -99,6 +99,7 @@ class CrankFilter final : public CrankTracker {
   bool isProven() const noexcept override { return consistency() < kAgrees; }
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
   double consistency() const noexcept override { return consistency_.mean(); }
+  double strikeConsistency() const noexcept override { return strike_consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
   const ConstantErrors& constantErrors() const noexcept { return errors_; }
   /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
@@ -159,7 +160,7 @@ class CrankFilter final : public CrankTracker {
   TimingNoise timing_;
   SupplyRoughness roughness_;
   LearnedSupply supply_;
-  Consistency consistency_;
+  Consistency consistency_, strike_consistency_;
   ConstantErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;                ///< at the last sample, corrected by it

@@ -42,6 +42,7 @@ void CrankTrack::add(TrackedSample sample) {
   sample.growth = filter_.growth();
   sample.moment = kUnseenGrowth * filter_.constantErrors().moment();
   sample.consistency = filter_.consistency();
+  sample.strike_consistency = filter_.strikeConsistency();
   sample.resolution = filter_.angleResolution();
   sample.has_speed = filter_.hasSpeed();
   sample.is_plausible = filter_.isPlausible();

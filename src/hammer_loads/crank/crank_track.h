@@ -17,9 +17,9 @@ struct TrackedSample {
   CrankWalks walks;     ///< over it
   BlowPrior prior;      ///< for a blow within it
   CrankBelief belief;
-  double growth{1.0};                                         ///< of variances
+  double growth{1.0};                                             ///< of variances
   ConstantErrors::Matrix moment{ConstantErrors::Matrix::Zero()};  ///< of the sensor's errors
-  double consistency{};
+  double consistency{}, strike_consistency{};
   double resolution{};  ///< of the angle sensor [rad]
   bool has_speed{}, is_plausible{}, is_proven{}, is_doubtful{};
   bool reading_shows_side{};

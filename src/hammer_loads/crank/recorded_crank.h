@@ -37,6 +37,7 @@ class RecordedCrank final : public CrankTracker {
   bool readingShowsSide() const noexcept override { return filter_.readingShowsSide(); }
   bool isProven() const noexcept override { return filter_.isProven(); }
   double consistency() const noexcept override { return filter_.consistency(); }
+  double strikeConsistency() const noexcept override { return filter_.strikeConsistency(); }
   const CrankFilter* filter() const noexcept override { return &filter_; }
   double angleResolution() const noexcept override { return filter_.angleResolution(); }
 

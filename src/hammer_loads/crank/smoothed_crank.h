@@ -32,6 +32,7 @@ class SmoothedCrank final : public CrankTracker {
   bool readingShowsSide() const noexcept override { return now_.reading_shows_side; }
   bool isProven() const noexcept override { return now_.is_proven; }
   double consistency() const noexcept override { return now_.consistency; }
+  double strikeConsistency() const noexcept override { return now_.strike_consistency; }
   /// As it is after the last sample that came into the track.
   const CrankFilter* filter() const noexcept override { return &track_->filter(); }
   double angleResolution() const noexcept override { return now_.resolution; }

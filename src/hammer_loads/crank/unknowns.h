@@ -43,6 +43,7 @@ struct Unknown {
   double (*of_torque)(const SupplyLaw&, double lead);  ///< d(the filter's torque after a step less before it)/dp
   double notable;                                      ///< from there on a warning names it
   std::string (*warning)(double amount, double deviation);
+  bool of_reading{};  ///< its key is a reading's: the amount there is that of the crank's angle over the sensor's gain
 };
 
 namespace unknown {
@@ -74,7 +75,7 @@ inline std::string ofEccentricity(double amount, double deviation) {
 /// coupling (flexible_belief.h); a prior of 0 is that of a machine without one.
 inline constexpr std::array<Unknown, 6> kUnknowns{{
     {"zero", "crank_zero_rad", Unknown::Use::kSeen, 0.05, 1.7e-3, [](const ReadingPlace&) { return 1.0; },
-     unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero},
+     unknown::notOfReading, unknown::notOfTorque, 0.3 * unknown::kDegree, unknown::ofZero, true},
     {"eccentricity", "crank_eccentricity_1_rad", Unknown::Use::kSeen, 0.05, 2e-3,
      [](const ReadingPlace& at) { return roughSine(at.offset); },
      [](const ReadingPlace& at) { return at.speed * roughCosine(at.offset); }, unknown::notOfTorque,

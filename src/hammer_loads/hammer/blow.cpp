@@ -1,6 +1,7 @@
 #include "hammer_loads/hammer/blow.h"
 
 #include <cmath>
+#include <limits>
 
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
@@ -102,6 +103,20 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
                                    blowOf(crank.speed, restitution - blow.restitution_deviation).energy;
   blow.energy_deviation = std::hypot(energy_by_speed, 0.5 * energy_by_rebound);
   return blow;
+}
+
+void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) noexcept {
+  constexpr double kDeviations = 2.0;  // contract of the message Blow
+  const StrikingRocker rocker = strikingRocker(mechanism, level == Level::kLinkage ? level : Level::kRocker);
+  const HullPoint& n = rocker.rod_joint;
+  const double inertia = rocker.inertia_about_pivot + rocker.reduced_rod_mass * (n.x * n.x + n.z * n.z);
+  const double most = 0.5 * inertia * blow.rocker_speed_before * blow.rocker_speed_before;
+  const auto isOutside = [](double value, double deviation, double limit) {
+    return value < -kDeviations * deviation || value > limit + kDeviations * deviation;
+  };
+  blow.impossible = isOutside(blow.restitution, blow.restitution_deviation, 1.0) ||
+                    isOutside(blow.energy, blow.energy_deviation, most);
+  if (blow.impossible) blow.restitution = blow.energy = std::numeric_limits<double>::quiet_NaN();
 }
 
 RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept {

@@ -83,6 +83,11 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
 /// Blow of a crank that does not keep its speed: [rad/s] before, > 0, and after.
 RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept;
 
+/// What no blow has, by more than two deviations: a restitution outside [0, 1], or an energy outside [0, what the
+/// rocker had]. Restitution and energy of such a one are NaN, and it is impossible. Does nothing to one without
+/// deviations.
+void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) noexcept;
+
 /// The same at level rocker: massless rod.
 inline RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, double crank_speed) noexcept {
   return blowAtCrankSpeed(mechanism, Level::kRocker, crank_speed);

@@ -69,7 +69,8 @@ std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& m
   checkUnit(header, measured);
   verdict_ = gate_.judge(stamp_, measured);
   if (verdict_.refusal) return verdict_.refusal;
-  if (unit_check_.looksLikeDegrees()) return Refusal::kDegrees;
+  if (unit_check_.unit() == CrankUnit::kDegrees) return Refusal::kDegrees;
+  if (unit_check_.looksWrong()) return Refusal::kSpeedUnit;
   return std::nullopt;
 }
 
@@ -109,7 +110,7 @@ void CrankFollower::restart() noexcept {
 
 /// Before the first whole turn there is no peak to compare with: then only the speed must be known.
 bool CrankFollower::isSettled(const HullMotion& hull, double peak_force) noexcept {
-  if (!tracker_->isPlausible() || suspectsDegrees()) return false;
+  if (!tracker_->isPlausible() || suspectsUnit()) return false;
   if (!unsettled_) return true;
   if (!tracker_->hasSpeed()) return false;
   if (peak_force > 0.0 && ++samples_since_restart_ < kSettlingSamples && !speed_measured_) return false;

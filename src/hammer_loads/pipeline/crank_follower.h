@@ -40,8 +40,9 @@ class CrankFollower {
   /// Ends a step: later steps begin at this sample.
   void accept() noexcept;
 
-  /// Whether angle or speed may be in degrees: not recognised yet.
-  bool suspectsDegrees() const noexcept { return unit_check_.suspectsDegrees(); }
+  double reading() const noexcept { return measured_.angle; }  ///< of the judged sample [rad]
+  /// Whether angle or speed may be in another unit: not recognised yet.
+  bool suspectsUnit() const noexcept { return unit_check_.suspects(); }
   /// Whether the estimate may be published; peak_force: of the last whole turn [N], 0 before it.
   bool isSettled(const HullMotion& hull, double peak_force) noexcept;
 
@@ -49,7 +50,7 @@ class CrankFollower {
   const CrankStep& step() const noexcept { return step_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }
   const StampSequence& stamps() const noexcept { return sequence_; }
-  bool looksLikeDegrees() const noexcept { return unit_check_.looksLikeDegrees(); }
+  CrankUnit unit() const noexcept { return unit_check_.unit(); }
   bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
 
  private:

@@ -127,7 +127,7 @@ void LifeFollower::endTurn(StampNs stamp) noexcept {
 /// A turn that began with what turned out to be no blow is not whole.
 void LifeFollower::confirmTurns(const SampleResult& result) noexcept {
   for (std::size_t i = 0; i < result.turn_ends; ++i) {
-    recorder_.turn();
+    if (!result.ends[i].blow.impossible) recorder_.turn();
     for (life::TurnLoads& turn : turns_) {
       if (turn.end == result.ends[i].stamp) turn.whole = turn.whole && last_blow_ == turn.start;
     }

@@ -21,6 +21,7 @@ class PendingBlow {
     blow_ = {};
     hull_speed_ = 0.0;
     early_ = false;
+    published_ = withheld_ = 0;
     blow_.speed = speed;
     blow_.speed_deviation = speed_deviation;
   }
@@ -35,6 +36,10 @@ class PendingBlow {
     blow_.inertia_deviation = factor.inertia_deviation;
     early_ = factor.early;
   }
+  /// A sample after it, whose loads were published or withheld: a crank whose readings are not known to agree with the
+  /// model, in degrees for instance, has struck none where most of them were withheld.
+  void count(bool published) noexcept { ++(published ? published_ : withheld_); }
+  bool isWithheld() const noexcept { return withheld_ > published_; }
   /// The crank has gone on far enough, or long enough.
   bool isMeasured(double time, const CrankPosition& now) const noexcept {
     return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > kLongEnough);
@@ -42,7 +47,7 @@ class PendingBlow {
   /// The hull's own velocity at the striking point along z, at the blow [m/s].
   void setHullSpeed(double speed) noexcept { hull_speed_ = speed; }
   double hullSpeed() const noexcept { return hull_speed_; }
-  double time() const noexcept { return time_; }                                  ///< of the blow [s]
+  double time() const noexcept { return time_; }                                                   ///< of the blow [s]
   double crankSpeedAfter() const noexcept { return (early_ ? 1.0 : blow_.factor) * blow_.speed; }  ///< [rad/s]
   CrankBlow take() noexcept {
     waiting_ = false;
@@ -61,6 +66,7 @@ class PendingBlow {
   CrankPosition position_;
   CrankBlow blow_;
   double hull_speed_{};
+  int published_{}, withheld_{};
   bool early_{};  ///< the tool was met before the dead centre
 };
 

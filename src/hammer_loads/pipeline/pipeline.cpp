@@ -14,8 +14,9 @@ namespace {
 // Beyond these, in units of the nominal turn at constant speed, nothing is published. Its peak is some four times that
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
-constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
-constexpr double kAtWork = 0.3;                               // of the nominal speed: blows are struck
+constexpr double kInconsistent = 3.0;       // CrankTracker::consistency(); a clean machine has 0.9, a zero 2 deg off 2
+constexpr double kMostSpeedUnproven = 2.0;  // then the crank may be in degrees
+constexpr double kAtWork = 0.3;             // of the nominal speed: blows are struck
 constexpr double kLeadOfZero = 0.8;  // of the time that the crank needs at the blow: what a zero makes of the vibration
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
@@ -28,6 +29,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       model_(mechanism_, settings.level),
       displaced_links_(model_),
       crank_(model_, settings_, make),
+      trust_(settings_.crank_sensor),
       hull_(mechanism_.parameters(), settings_, boom),
       turn_(model_, crank_.step(), crank_.tracker()),
       sampler_(model_, crank_.step(), crank_.tracker(), settings_),
@@ -73,6 +75,7 @@ const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
   const bool believed = refusal == Refusal::kUnsettled && crank_.step().known();
   swingOn(believed ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
   sampler_.forget();
+  turn_.published(false);
   return refuse(refusal);
 }
 
@@ -89,14 +92,19 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.crank = crank_.estimate();
   result_.consistency = crank_.tracker().consistency();
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(stamp);
+  followTrust(taken);
+  const std::optional<Refusal> distrust = trust_.refusal();
+  const bool counts = !distrust && trust_.hasRunUp() && !crank_.suspectsUnit();
+  if (!counts) turn_.discard();
   if (taken == CrankFollower::Taken::kContinued) {
     passBlows();
     followHull();
-    turn_.follow(hull_.motion().motion, result_);
+    if (counts) turn_.follow(hull_.motion().motion, result_);
   } else {
     restart(taken == CrankFollower::Taken::kRevised);
   }
   crank_.accept();
+  if (distrust) return withhold(*distrust);
   if (hull_.pitch().looksLikeDegrees()) return withhold(Refusal::kDegrees);
   if (crank_.tracker().isDoubtful()) return withhold(Refusal::kUnsettled);
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
@@ -119,10 +127,18 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.pins = pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow,
                            std::sqrt(result_.crank_covariance(0, 0)));
   sampler_.sample(links, result_);
+  turn_.published(true);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;
   followMisuse();
   return result_;
+}
+
+void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
+  const double step = taken == CrankFollower::Taken::kContinued ? crank_.step().length() : 0.0;
+  if (taken == CrankFollower::Taken::kBegan) trust_.begin();
+  trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
+  result_.inconsistent = result_.consistency > kInconsistent;
 }
 
 bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
@@ -239,6 +255,7 @@ const SampleResult& Pipeline::end() noexcept {
 SampleCounts Pipeline::counts() const noexcept {
   SampleCounts counts = counts_;
   counts.blows += turn_.blows();
+  counts.impossible_blows += turn_.impossibleBlows();
   counts.backward_passes += turn_.backwardPasses();
   counts.misuse.add(misuse_.counts());
   counts.misuse.blank_strokes += turn_.blankStrokes();

@@ -8,6 +8,7 @@
 #include "hammer_loads/hammer/displaced_links.h"
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/crank_follower.h"
+#include "hammer_loads/pipeline/crank_trust.h"
 #include "hammer_loads/pipeline/hull_state.h"
 #include "hammer_loads/pipeline/misuse.h"
 #include "hammer_loads/pipeline/sample_result.h"
@@ -49,6 +50,7 @@ class Pipeline {
   SampleCounts counts() const noexcept;
   const HullModel& model() const noexcept { return model_; }
   const CrankFollower& crank() const noexcept { return crank_; }
+  const CrankTrust& crankTrust() const noexcept { return trust_; }
   const HullState& hull() const noexcept { return hull_; }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }
   const PipelineSettings& settings() const noexcept { return settings_; }
@@ -58,6 +60,7 @@ class Pipeline {
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
+  void followTrust(CrankFollower::Taken taken) noexcept;
   void hullMovedAtBlow() noexcept;
   double stampNoise() const noexcept;
   CrankLead crankLead(double speed) const noexcept;
@@ -72,6 +75,7 @@ class Pipeline {
   HullModel model_;
   DisplacedLinks displaced_links_;
   CrankFollower crank_;
+  CrankTrust trust_;
   HullState hull_;
   TurnFollower turn_;
   MisuseFollower misuse_;

@@ -20,24 +20,33 @@ enum class Refusal : std::size_t {
   kDuplicate,     ///< as old as the last accepted sample
   kBadStamp,      ///< beyond the last time that a message can carry
   kDegrees,       ///< crank or boom are recognised to send degrees: withheld until that is over
+  kSpeedUnit,     ///< likewise, the crank's speed in rpm or in turns a second
+  kBackward,      ///< the crank turns backward: withheld until it has made a turn forward
+  kInconsistent,  ///< readings contradict the model, and have for some time: withheld until they agree
   kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)
   kCount
 };
 
 constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRefusalNames{
-    "missing joint", "short array", "not finite", "implausible", "out of order",
-    "duplicate",     "bad stamp",   "degrees",    "unsettled"};
+    "missing joint", "short array", "not finite", "implausible", "out of order", "duplicate",
+    "bad stamp",     "degrees",     "speed unit", "backward",    "inconsistent", "unsettled"};
 
 /// Crank samples since the start.
 struct SampleCounts {
   std::uint64_t accepted{};
   std::array<std::uint64_t, static_cast<std::size_t>(Refusal::kCount)> refused{};
-  std::uint64_t beside_blow{};      ///< of the accepted ones: not published, see SampleResult
-  std::uint64_t restarts{};         ///< drop-outs, jumps and time running back
-  std::uint64_t blows{};            ///< forward, for the first time, not creeping
-  std::uint64_t backward_passes{};  ///< passages of the blow backward, less those forward again
+  std::uint64_t beside_blow{};       ///< of the accepted ones: not published, see SampleResult
+  std::uint64_t restarts{};          ///< drop-outs, jumps and time running back
+  std::uint64_t blows{};             ///< forward, for the first time, not creeping
+  std::uint64_t impossible_blows{};  ///< not among them: RockerBlow::impossible
+  std::uint64_t backward_passes{};   ///< passages of the blow backward, less those forward again
   MisuseCounts misuse;
 
+  /// Withheld because the readings are not those of such a machine.
+  std::uint64_t contradicting() const noexcept {
+    return refusedFor(Refusal::kDegrees) + refusedFor(Refusal::kSpeedUnit) + refusedFor(Refusal::kBackward) +
+           refusedFor(Refusal::kInconsistent);
+  }
   std::uint64_t refusedFor(Refusal reason) const noexcept { return refused[static_cast<std::size_t>(reason)]; }
   std::uint64_t refusedTotal() const noexcept {
     return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/pipeline/crank_trust.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -15,6 +17,12 @@ constexpr double kSideOfBlow = 1e-7;    // [s] before and after the blow where i
 void TurnFollower::restart() noexcept {
   turn_.abandon();
   last_blow_.reset();
+}
+
+void TurnFollower::discard() noexcept {
+  if (pending_.isWaiting()) --turns_;
+  pending_.drop();
+  restart();
 }
 
 TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const noexcept {
@@ -84,6 +92,7 @@ void TurnFollower::hullMovedAtBlow(const TipVelocity& hull) noexcept {
 
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!pending_.isWaiting()) return;
+  if (pending_.isWithheld() && !(tracker_->strikeConsistency() <= CrankTrust::kMost)) return discard();
   if (tracker_->estimate().position.isMirrored()) {  // there was no tool
     pending_.drop();
     restart();
@@ -94,6 +103,8 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   turn_.correctBegin(linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
   RockerBlow& blow = pending_end_.blow;
   blow = measuredBlow(*model_, pending_.take());
+  voidImpossible(model_->mechanism(), model_->level(), blow);
+  impossible_ += blow.impossible;
   blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull
   pending_end_.mean_press_force *= blow.tool_impulse_z;
   if (result.turn_ends < result.ends.size()) result.ends[result.turn_ends++] = pending_end_;

@@ -22,18 +22,25 @@ class TurnFollower {
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
   /// What came before does not belong to the coming turn.
   void restart() noexcept;
+  /// Neither the present turn nor the blow that is being measured count.
+  void discard() noexcept;
   /// The blow that is being measured, as it is known by now, is one of the `ends`.
   void finishBlow(SampleResult& result) noexcept;
   /// Follows the step up to the sample of `result`. Turns whose blow is measured by now are its `ends`: some 50 ms
   /// after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
 
+  /// The last sample's loads were published, or withheld.
+  void published(bool were) noexcept {
+    if (pending_.isWaiting()) pending_.count(were);
+  }
   bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
   /// Velocity of the hull at that blow; zero until it is given.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
 
-  double peakForce() const noexcept { return peak_force_; }            ///< of the last whole turn [N], 0 before it
-  std::uint64_t blows() const noexcept { return turns_; }              ///< since the start
+  double peakForce() const noexcept { return peak_force_; }               ///< of the last whole turn [N], 0 before it
+  std::uint64_t blows() const noexcept { return turns_ - impossible_; }   ///< since the start
+  std::uint64_t impossibleBlows() const noexcept { return impossible_; }  ///< RockerBlow::impossible, not among them
   std::uint64_t blankStrokes() const noexcept { return blank_; }       ///< onto the mirrored branch: no tool was there
   std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again
 
@@ -52,7 +59,7 @@ class TurnFollower {
   HullMotion hull_;
   StampNs epoch_{};                   ///< first sample since the last restart by time
   std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole
-  std::uint64_t turns_{}, backward_{}, blank_{};
+  std::uint64_t turns_{}, impossible_{}, backward_{}, blank_{};
   double peak_force_{};
 };
 

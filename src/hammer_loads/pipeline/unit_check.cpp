@@ -7,6 +7,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kDegrees = 360.0 / kTwoPi;  // in a radian
+constexpr double kRpm = 60.0 / kTwoPi;       // in a radian a second
 constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
 constexpr double kLeastStretch = 0.01;       // [rad] of the shorter one: of the speed's noise as well
 constexpr double kStretch = 1.0;             // [rad]: shorter than a turn, so that most stretches see no jump back
@@ -15,11 +16,15 @@ constexpr double kRepeats = 0.2;             // relative change between steps th
 constexpr double kMoves = 1.0;               // [rad/s]: a slower angle says nothing of its unit
 constexpr double kSlowTime = 2.0;            // [s] of motion within the bound that calms who was too fast
 constexpr double kLeastTime = 0.2;           // [s] of suspicion: some bad samples are no unit
-constexpr int kEnough = 8;                   // votes more for degrees than against
+constexpr int kEnough = 8;                   // votes more for another unit than against
 
-bool isDegrees(double ratio) noexcept {
-  return (ratio > kDegrees / kTolerance && ratio < kDegrees * kTolerance) ||
-         (ratio * kDegrees > 1.0 / kTolerance && ratio * kDegrees < kTolerance);
+bool isNear(double ratio, double factor) noexcept { return ratio > factor / kTolerance && ratio < factor * kTolerance; }
+
+/// turned over predicted.
+CrankUnit unitOf(double ratio) noexcept {
+  if (isNear(ratio, kDegrees) || isNear(ratio, 1.0 / kDegrees)) return CrankUnit::kDegrees;
+  if (isNear(ratio, 1.0 / kRpm)) return CrankUnit::kSpeedInRpm;
+  return isNear(ratio, kTwoPi) ? CrankUnit::kSpeedInTurns : CrankUnit::kRadians;
 }
 
 }  // namespace
@@ -39,7 +44,7 @@ void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexce
   last_angle_ = angle;
   compareWithBound(dt, step / dt);
   if (speed) compareWithSpeed(step, *speed * dt);
-  suspected_for_ = suspectsDegrees() ? suspected_for_ + dt : 0.0;
+  suspected_for_ = suspects() ? suspected_for_ + dt : 0.0;
 }
 
 void UnitCheck::compareWithSpeed(double step, double predicted) noexcept {
@@ -47,7 +52,7 @@ void UnitCheck::compareWithSpeed(double step, double predicted) noexcept {
   predicted_ += predicted;
   // In degrees the one of the two turns much further than the other; counts need some ten to be a ratio.
   if (std::abs(predicted_) < kStretch && (std::abs(turned_) < kStretch || std::abs(predicted_) < kLeastStretch)) return;
-  vote(speed_votes_, isDegrees(turned_ / predicted_));
+  vote(speed_votes_, unitOf(turned_ / predicted_));
   turned_ = predicted_ = 0.0;
 }
 
@@ -58,15 +63,16 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
   const bool too_fast = std::abs(rate) > max_speed_;
   if (too_fast && std::abs(rate) > kDegrees * max_speed_) return;  // no crank in degrees either
   slow_time_ = too_fast ? 0.0 : slow_time_ + dt;
-  if (recognised_ && !too_fast && slow_time_ < kSlowTime) return;  // a hammer that stops is slow, too
-  vote(bound_votes_, too_fast);
+  if (looksWrong() && !too_fast && slow_time_ < kSlowTime) return;  // a hammer that stops is slow, too
+  vote(bound_votes_, too_fast ? CrankUnit::kDegrees : CrankUnit::kRadians);
 }
 
-/// One judge suffices to recognise degrees; both must agree that it is over.
-void UnitCheck::vote(int& votes, bool degrees) noexcept {
-  votes = std::clamp(votes + (degrees ? 1 : -1), 0, kEnough);
-  if (votes == kEnough && suspected_for_ >= kLeastTime) recognised_ = true;
-  if (speed_votes_ == 0 && bound_votes_ == 0) recognised_ = false;
+/// One judge suffices to recognise a unit; both must agree that it is over.
+void UnitCheck::vote(int& votes, CrankUnit unit) noexcept {
+  const bool wrong = unit != CrankUnit::kRadians;
+  votes = std::clamp(votes + (wrong ? 1 : -1), 0, kEnough);
+  if (wrong && votes == kEnough && suspected_for_ >= kLeastTime) recognised_ = unit;
+  if (speed_votes_ == 0 && bound_votes_ == 0) recognised_ = CrankUnit::kRadians;
 }
 
 }  // namespace hammer_loads

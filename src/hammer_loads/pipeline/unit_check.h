@@ -1,4 +1,4 @@
-/// Recognises a crank or a boom that sends degrees where radians are required.
+/// Recognises a crank or a boom that sends another unit where radians and radians per second are required.
 #pragma once
 
 #include <optional>
@@ -7,11 +7,35 @@
 
 namespace hammer_loads {
 
+/// What a crank sends.
+enum class CrankUnit {
+  kRadians,
+  kDegrees,       ///< angle, speed or both
+  kSpeedInRpm,    ///< turns a minute
+  kSpeedInTurns,  ///< turns a second
+};
+
+/// What to say of it.
+constexpr const char* textOf(CrankUnit unit) noexcept {
+  switch (unit) {
+    case CrankUnit::kDegrees:
+      return "angle or speed is in degrees, must be in radians";
+    case CrankUnit::kSpeedInRpm:
+      return "speed is in rpm, must be in rad/s";
+    case CrankUnit::kSpeedInTurns:
+      return "speed is in turns per second, must be in rad/s";
+    case CrankUnit::kRadians:
+      break;
+  }
+  return "angle and speed are in radians";
+}
+
 /// Compares what the crank's angle turns with what its speed says, over stretches of a radian or more: a factor of 57.3
-/// either way is degrees in one of them. Where both would be in degrees, or no speed is measured, it looks for steps
-/// that repeat themselves, each faster than any crank, but not so if they were degrees. Needs the raw samples, those
-/// that are refused as well; judges within some 2 turns and takes nothing back before the samples contradict it.
-/// Degrees of both angle and speed below `max_speed` [deg/s] look like radians.
+/// either way is degrees in one of them, 9.55 a speed in rpm, 1/6.28 one in turns a second. Where both would be in
+/// degrees, or no speed is measured, it looks for steps that repeat themselves, each faster than any crank, but not so
+/// if they were degrees. Needs the raw samples, those that are refused as well; judges within some 2 turns and takes
+/// nothing back before the samples contradict it. Degrees of both angle and speed below `max_speed` [deg/s] look like
+/// radians.
 class UnitCheck {
  public:
   /// No crank is faster [rad/s].
@@ -19,17 +43,18 @@ class UnitCheck {
 
   /// Sample dt after the one before it [s]; dt <= 0, a long pause and values that are not finite begin a new stretch.
   void add(double dt, double angle, std::optional<double> speed) noexcept;
-  bool looksLikeDegrees() const noexcept { return recognised_; }
-  /// The last stretches speak for degrees, but not enough of them yet.
-  bool suspectsDegrees() const noexcept { return speed_votes_ >= kSuspicious || bound_votes_ >= kSuspicious; }
+  CrankUnit unit() const noexcept { return recognised_; }
+  bool looksWrong() const noexcept { return recognised_ != CrankUnit::kRadians; }
+  /// The last stretches speak for another unit, but not enough of them yet.
+  bool suspects() const noexcept { return speed_votes_ >= kSuspicious || bound_votes_ >= kSuspicious; }
 
  private:
-  static constexpr int kSuspicious = 2;  ///< votes more for degrees than against
+  static constexpr int kSuspicious = 2;  ///< votes more for another unit than against
 
   void begin(double angle) noexcept;
   void compareWithSpeed(double step, double predicted) noexcept;
   void compareWithBound(double dt, double rate) noexcept;
-  void vote(int& votes, bool degrees) noexcept;
+  void vote(int& votes, CrankUnit unit) noexcept;
 
   double max_speed_;
   std::optional<double> last_angle_;
@@ -38,7 +63,7 @@ class UnitCheck {
   double suspected_for_{};         ///< time since the votes became suspicious [s]
   double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
   int speed_votes_{}, bound_votes_{};
-  bool recognised_{};
+  CrankUnit recognised_{CrankUnit::kRadians};
 };
 
 /// A pitch joint beyond a whole turn [rad]: a boom that speaks in degrees, for it cannot reach there.

@@ -5,12 +5,11 @@
 #include <string_view>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/crank/unknowns.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr std::uint64_t kBackward = 3;  // passages of the blow: fewer are a crank that falls back after its stop
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -20,15 +19,23 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::string count(std::uint64_t n) { return std::to_string(n); }
 
-void warnOfDegrees(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
-  const bool crank = pipeline.crank().looksLikeDegrees(), boom = pipeline.hull().pitch().looksLikeDegrees();
-  const std::uint64_t withheld = counts.refusedFor(Refusal::kDegrees);
-  if (withheld == 0 && !crank && !boom) return;
-  const char* what = boom ? "boom joints" : "crank";
-  warnings.push_back({"degrees",
-                      std::string(what) + ": angle or speed is in degrees, must be in radians; " + count(withheld) +
-                          " samples withheld",
-                      crank || boom});
+void warnOfUnits(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
+  const CrankUnit unit = pipeline.crank().unit();
+  const bool boom = pipeline.hull().pitch().looksLikeDegrees();
+  const std::uint64_t degrees = counts.refusedFor(Refusal::kDegrees), speed = counts.refusedFor(Refusal::kSpeedUnit);
+  const auto withheld = [](std::uint64_t samples) { return "; " + count(samples) + " samples withheld"; };
+  if (degrees > 0 || unit == CrankUnit::kDegrees || boom)
+    warnings.push_back({"degrees",
+                        std::string(boom ? "boom joints" : "crank") +
+                            ": angle or speed is in degrees, must be in radians" + withheld(degrees),
+                        boom || unit == CrankUnit::kDegrees});
+  if (speed == 0 && (unit == CrankUnit::kRadians || unit == CrankUnit::kDegrees)) return;
+  const bool now = unit == CrankUnit::kSpeedInRpm || unit == CrankUnit::kSpeedInTurns;
+  warnings.push_back({"speed unit",
+                      std::string("crank: ") +
+                          (now ? textOf(unit) : "speed was in rpm or turns per second, must be in rad/s") +
+                          withheld(speed),
+                      now});
 }
 
 void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
@@ -40,11 +47,12 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
                         true});
   if (pipeline.crank().angleIsFrozen())
     warnings.push_back({"frozen", "crank: the angle stands still while the speed goes on", true});
-  if (counts.backward_passes >= kBackward && counts.backward_passes > counts.blows)
-    warnings.push_back({"backward",
-                        "crank: turns backward, " + count(counts.backward_passes) + " passages of the blow backward, " +
-                            count(counts.blows) + " blows; crank_direction must have the other sign",
-                        true});
+  const std::uint64_t backward = counts.refusedFor(Refusal::kBackward);
+  if (pipeline.crankTrust().turnsBackward() || backward > counts.accepted)
+    warnings.push_back(
+        {"backward",
+         "crank: turns backward, " + count(backward) + " samples withheld; crank_direction must have the other sign",
+         true});
 }
 
 /// Instants: jitter of header stamps as it is learned, or stamps refitted by sequence.
@@ -66,7 +74,7 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, std::ve
 }
 
 /// Constants whose error the innovations show, by their table.
-void warnOfConstants(const ConstantErrors& errors, std::vector<Warning>& warnings) {
+void warnOfConstants(const ConstantErrors& errors, const CrankSensor& sensor, std::vector<Warning>& warnings) {
   for (std::size_t i = 0; i < kUnknowns.size();) {
     const Unknown& first = kUnknowns[i];
     double amount = 0.0, deviation = 0.0;
@@ -76,9 +84,45 @@ void warnOfConstants(const ConstantErrors& errors, std::vector<Warning>& warning
       amount = i == begin ? errors.estimate()[at] : std::hypot(amount, errors.estimate()[at]);
       deviation = std::max(deviation, errors.deviation()[at]);
     }
-    if (first.warning != nullptr && std::abs(amount) > std::max(first.notable, gate::kUsual * deviation))
+    if (first.of_reading) amount /= sensor.gain(), deviation /= std::abs(sensor.gain());
+    const double notable = first.of_reading ? first.notable / std::abs(sensor.gain()) : first.notable;
+    if (first.warning != nullptr && std::abs(amount) > std::max(notable, gate::kUsual * deviation))
       warnings.push_back({first.name, first.warning(amount, deviation), true});
   }
+}
+
+/// A zero that is off by more than such a crank's slowest place is known; in which unit it was given.
+std::string zeroFarOff(const CrankSensor& sensor, double behind) {
+  constexpr double kDegree = kTwoPi / 360.0;
+  const double zero = sensor.place().zero, found = zero + behind / sensor.gain();
+  const auto misses = [&](double other) { return std::abs(CrankAngle::wrapToPi((found - other) * sensor.gain())); };
+  std::string text = format(
+      "the crank is slowest %.2g rad behind where it must be: crank_zero_rad, %.4g rad, is off by "
+      "some %.2g rad",
+      behind, zero, behind / sensor.gain());
+  if (std::abs(zero) >= 1.0 && misses(zero * kDegree) < CrankTrust::kSlowestKnown)
+    text += format("; %.4g degrees, %.4g rad, would fit", zero, zero * kDegree);
+  return text;
+}
+
+/// What contradicts the model, by where in the turn it does. strike: before the blow as well.
+std::string contradictionOf(const Pipeline& pipeline, bool strike) {
+  const CrankFilter& filter = *pipeline.crank().tracker().filter();
+  const std::string how_much = format(
+      "crank: readings differ from the model by %.2g times the expected variance, before "
+      "the blow by %.2g: ",
+      filter.consistency(), filter.strikeConsistency());
+  if (!strike)
+    return how_much +
+           "what follows the blow is not in the model, a rod or a coupling that gives (shaft: flexible) or "
+           "a tool that is met again; the deviations there are too small";
+  const std::optional<double> behind = pipeline.crankTrust().slowBehind();
+  if (behind && std::abs(*behind) > CrankTrust::kSlowestKnown)
+    return how_much + zeroFarOff(pipeline.settings().crank_sensor, *behind);
+  return how_much + format(
+                        "the crank is slowest where it must be, so the zero is right; masses and lengths of the hammer "
+                        "file, or a coupling between crank and encoder (%s), do not fit",
+                        pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible");
 }
 
 /// What the filter's innovations look like.
@@ -86,7 +130,9 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr double kInconsistent = 3.0;   // times the variance; a clean machine has 0.9
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   const CrankFilter* filter = pipeline.crank().tracker().filter();
-  if (filter == nullptr || pipeline.counts().blows < kLearned) return;
+  const bool withheld = pipeline.counts().refusedFor(Refusal::kInconsistent) > 0;
+  if (filter == nullptr || pipeline.crankTrust().turnsBackward()) return;
+  if (pipeline.counts().blows < kLearned && !withheld) return;
   if (filter->isLost())
     warnings.push_back(
         {"lost", "crank: the estimate restarts again and again; readings and hammer file contradict each other", true});
@@ -98,13 +144,10 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          true});
   warnOfStamps(pipeline.crank(), *filter, warnings);
   const bool inconsistent = filter->consistency() > kInconsistent;
-  if (!inconsistent && !filter->isUnexplained()) return warnOfConstants(filter->constantErrors(), warnings);
-  warnings.push_back({"inconsistent",
-                      format("crank: readings differ from the model by %s%.2g times the expected variance: a soft "
-                             "coupling between crank and encoder (%s), a wrong hammer file or a zero far off",
-                             inconsistent ? "" : "at times ", inconsistent ? filter->consistency() : kInconsistent,
-                             pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible"),
-                      true});
+  const bool strike = filter->strikeConsistency() > kInconsistent;
+  if (!inconsistent && !strike && !withheld && !filter->isUnexplained())
+    return warnOfConstants(filter->constantErrors(), pipeline.settings().crank_sensor, warnings);
+  warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld), true});
 }
 
 void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
@@ -208,7 +251,7 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
 std::vector<Warning> warningsOf(const Pipeline& pipeline) {
   std::vector<Warning> warnings;
   const SampleCounts counts = pipeline.counts();
-  warnOfDegrees(pipeline, counts, warnings);
+  warnOfUnits(pipeline, counts, warnings);
   warnOfCrank(pipeline, counts, warnings);
   warnOfSensor(pipeline, warnings);
   warnOfHull(pipeline, counts, warnings);

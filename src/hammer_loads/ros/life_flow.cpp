@@ -78,8 +78,8 @@ LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOut
       pieces_(pieces),
       machine_(life::ledgerMachine(settings.life, sha256Of({settings.machine}))),
       parameters_(sensorParameters(settings.yaml)),
-      backward_before_(pipeline.counts().backward_passes),
-      blows_before_(pipeline.counts().blows),
+      contradicting_before_(pipeline.counts().contradicting()),
+      accepted_before_(pipeline.counts().accepted),
       scale_keys_(scaleKeys(settings.life)),
       period_(settings.life.period) {
   prepareTurnLoads(follower_.channels(), outputs_.turn_loads.message);
@@ -129,16 +129,16 @@ void LifeFlow::keep(life::LifePiece piece) {
   pieces_->add(piece);
 }
 
-/// Why the readings cannot be those of this machine with these parameters; empty: they can.
+/// Why most of the readings cannot be those of this machine with these parameters; empty: they can.
 std::string LifeFlow::contradiction() const {
   const SampleCounts& counts = pipeline_.counts();
-  const std::uint64_t backward = counts.backward_passes - backward_before_, blows = counts.blows - blows_before_;
+  if (counts.contradicting() - contradicting_before_ <= counts.accepted - accepted_before_) return {};
   for (const Warning& warning : warningsOf(pipeline_)) {
     const std::string key = warning.key;
-    const bool so = (key == "degrees" && warning.now) || (key == "backward" && backward > blows) || key == "lost";
-    if (so) return warning.text;
+    for (const char* such : {"degrees", "speed unit", "backward", "inconsistent", "lost"})
+      if (key == such) return warning.text;
   }
-  return {};
+  return "crank: most readings contradict the model";
 }
 
 void LifeFlow::sendTurn(const TurnEnd& end, const ros::Time& record_time) {

@@ -88,15 +88,21 @@ void NodeDiagnostics::describeCrank(Status& status) {
   const std::uint64_t refused = counts.refusedTotal() - last_counts_.refusedTotal();
   if (!heard) {
     status.summary(DiagnosticStatus::WARN, "no crank sample yet");
-  } else if (pipeline.crank().looksLikeDegrees()) {
+  } else if (pipeline.crank().unit() != CrankUnit::kRadians) {
     status.summary(DiagnosticStatus::ERROR,
-                   "implausible: angle or speed seems to be in degrees, must be in radians; nothing is published");
+                   std::string("implausible: ") + textOf(pipeline.crank().unit()) + "; nothing is published");
+  } else if (pipeline.crankTrust().turnsBackward()) {
+    status.summary(DiagnosticStatus::ERROR,
+                   "turns backward: crank_direction must have the other sign; nothing is published");
+  } else if (pipeline.crankTrust().isInconsistent()) {
+    status.summaryf(DiagnosticStatus::ERROR,
+                    "readings contradict the model by %.1f times the expected variance before the blow; nothing is "
+                    "published",
+                    pipeline.crank().tracker().strikeConsistency());
   } else if (pipeline.crank().angleIsFrozen()) {
     status.summary(DiagnosticStatus::ERROR, "implausible: the angle stands still while the speed goes on");
   } else if (age > pipeline.settings().stale_after) {
     status.summaryf(DiagnosticStatus::ERROR, "stale: no crank sample for %.1f s, nothing is published", age);
-  } else if (counts.backward_passes > last_counts_.backward_passes + (counts.blows - last_counts_.blows)) {
-    status.summary(DiagnosticStatus::ERROR, "turns backward: crank_direction must have the other sign");
   } else if (refused > 0) {
     status.summaryf(DiagnosticStatus::WARN, "%llu of %llu crank samples gave no wrench",
                     static_cast<unsigned long long>(refused), static_cast<unsigned long long>(refused + accepted));
@@ -112,6 +118,7 @@ void NodeDiagnostics::describeCrank(Status& status) {
   status.add("not published, closer to the blow than the angle is known", counts.beside_blow);
   status.add("restarts", counts.restarts);
   status.add("blows", counts.blows);
+  status.add("blows with an impossible restitution or energy, not counted", counts.impossible_blows);
   status.add("passages of the blow backward", counts.backward_passes);
   if (const CrankFilter* filter = pipeline.crank().tracker().filter()) {
     status.add("drive inertia, identified [kg m2]", filter->state().drive_inertia);
