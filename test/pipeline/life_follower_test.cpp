@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <tuple>
 
 #include "hammer_loads/pipeline/step_wrenches.h"
 #include "support/counting_new.h"
@@ -121,6 +123,54 @@ TEST(StepWrenches, NoInstantOfAStepIsBeyondThem) {
     });
     EXPECT_GT(blows, 8U);
     EXPECT_LT(beyond, 3e-4 * kPeak) << rate;  // the cubic's extreme is some 1 % of 1.25 ms off
+  }
+}
+
+/// Speeds through a low-pass, stamps that jitter but keep their order: a filter that trusts both is led astray, and
+/// what lies between two of its samples may be of neither.
+simulation::Session disturbed(double lag, double jitter, unsigned seed) {
+  simulation::Session session = sessionAt(1000.0);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, jitter);
+  std::vector<StampNs> stamps;
+  double filtered = 0.0;
+  StampNs last = session.crank.front().stamp;
+  for (simulation::CrankReading& r : session.crank) {
+    if (r.speed) {
+      filtered += (1.0 - std::exp(-seconds(r.stamp - last) / lag)) * (*r.speed - filtered);
+      r.speed = filtered;
+    }
+    last = r.stamp;
+    stamps.push_back(r.stamp + static_cast<StampNs>(std::llround(1e9 * noise(random))));
+  }
+  std::sort(stamps.begin(), stamps.end());
+  for (std::size_t i = 0; i < stamps.size(); ++i) session.crank[i].stamp = stamps[i];
+  return session;
+}
+
+TEST(LoadCycles, NothingIsCountedFarBeyondWhatIsPublished) {
+  for (const auto& [lag, jitter, seed] : {std::tuple{0.01, 1e-3, 1U}, {0.01, 1e-3, 2U}, {5e-3, 3e-4, 3U}}) {
+    std::array<double, kHullChannels> least, greatest, values;
+    least.fill(0.0);
+    greatest.fill(0.0);
+    std::size_t published = 0;
+    const life::LifePiece piece = run(test::settingsWith("{}"), disturbed(lag, jitter, seed),
+                                      [&](const SampleResult& result, const LifeFollower&) {
+                                        if (result.refusal) return;
+                                        for (const WrenchOutput& output : result.outputs) {
+                                          ++published;
+                                          wrenchValues(output.wrench, values.data());
+                                          for (std::size_t i = 0; i < kHullChannels; ++i) {
+                                            least[i] = std::min(least[i], values[i]);
+                                            greatest[i] = std::max(greatest[i], values[i]);
+                                          }
+                                        }
+                                      });
+    EXPECT_GT(published, 2000U) << seed;
+    for (std::size_t i = 0; i < kHullChannels; ++i) {
+      EXPECT_LE(piece.counts[i].extremes.greatest, 1.02 * greatest[i]) << seed << ", channel " << i;
+      EXPECT_GE(piece.counts[i].extremes.least, 1.02 * least[i]) << seed << ", channel " << i;
+    }
   }
 }
 

@@ -248,6 +248,11 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
 
 }  // namespace
 
+bool isContradiction(std::string_view key) noexcept {
+  constexpr std::string_view kKeys[] = {"degrees", "speed unit", "backward", "inconsistent", "lost"};
+  return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+}
+
 std::vector<Warning> warningsOf(const Pipeline& pipeline) {
   std::vector<Warning> warnings;
   const SampleCounts counts = pipeline.counts();

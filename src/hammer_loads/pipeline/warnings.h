@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hammer_loads/pipeline/pipeline.h"
@@ -13,6 +14,9 @@ struct Warning {
   std::string text;  ///< one line: what, how much, what to do
   bool now{};        ///< still so; else it was so since the start
 };
+
+/// A warning of this key says that the crank's readings are not those of such a machine.
+bool isContradiction(std::string_view key) noexcept;
 
 /// Most important first; empty when all is well. Not for the hot path.
 std::vector<Warning> warningsOf(const Pipeline& pipeline);

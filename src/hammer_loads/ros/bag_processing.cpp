@@ -303,11 +303,12 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     if (!problem.empty()) return {names + ": " + problem};
     const std::string failure = write(work, progress, report);
     if (!failure.empty()) return {failure};
-    if (report.wrenches == 0 && (report.jaw_edges == 0 || hammer_required))
+    const bool useless = isUseless(report);
+    if (useless && (report.jaw_edges == 0 || hammer_required))
       return {names + ": " +
               (work.hammer ? noWrench(*inputs.value, runs.value->back(), report)
                            : "no jaw edge; " + onOneLine(report.grapple))};
-    if (work.hammer && report.wrenches == 0)
+    if (work.hammer && useless)
       addOnce(report.warnings, {"no wrench", noWrench(*inputs.value, runs.value->back(), report)});
     return {};
   } catch (const std::exception& error) {

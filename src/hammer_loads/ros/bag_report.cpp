@@ -26,6 +26,7 @@ void add(const SampleCounts& counts, SampleCounts& sum) {
   sum.beside_blow += counts.beside_blow;
   sum.restarts += counts.restarts;
   sum.blows += counts.blows;
+  sum.impossible_blows += counts.impossible_blows;
   sum.backward_passes += counts.backward_passes;
   sum.misuse.add(counts.misuse);
   for (std::size_t i = 0; i < counts.refused.size(); ++i) sum.refused[i] += counts.refused[i];

@@ -115,15 +115,23 @@ void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, con
   }
 }
 
-/// Why there is no wrench at all.
+bool isUseless(const BagReport& report) {
+  return report.wrenches == 0 || report.crank.contradicting() > report.crank.accepted ||
+         (report.crank.accepted <= 1 && report.samples > 1);  // one sample has no motion
+}
+
 std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report) {
   const std::string& topic = run.settings.input_topics.crank;
   if (report.samples == 0) return "no message on " + topic;
-  std::string text = "no wrench from " + std::to_string(report.samples) + " messages on " + topic + ": ";
+  std::string text = (report.wrenches == 0 ? "no wrench from " : "no wrench of use from ") +
+                     std::to_string(report.samples) + " messages on " + topic + ": ";
   if (report.crank.refused[static_cast<std::size_t>(Refusal::kMissingJoint)] > 0)
     text += "joint " + run.settings.pipeline.crank_joint +
             " (crank_joint) is required, joints there: " + jointsOn(inputs, topic) + "; ";
-  if (report.crank.refusedFor(Refusal::kDegrees) > 0) text += "angles or speeds are in degrees, must be in radians; ";
+  for (const BagWarning& warning : report.warnings)
+    if (isContradiction(warning.key)) text += warning.text + "; ";
+  if (report.crank.refusedFor(Refusal::kDuplicate) + 1 >= report.samples)
+    text += "header stamps do not advance, must be the instants of the samples; ";
   std::string counts;
   for (std::size_t i = 0; i < report.crank.refused.size(); ++i) {
     if (report.crank.refused[i] == 0) continue;

@@ -15,12 +15,10 @@ class HammerBridge;
 
 /// What the pipeline's state says at the end of a run: wrong units, joints that never came.
 /// joints_came: there were messages on their topic. run: its number.
-void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run,
-               std::vector<BagWarning>& warnings);
+void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, std::vector<BagWarning>& warnings);
 
 /// Several nodes on one of these topics. Transforms come from several as a rule.
-void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics,
-                      std::vector<BagWarning>& warnings);
+void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings);
 
 /// What the log that made the bags could not keep.
 void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings);
@@ -32,7 +30,10 @@ void warnOfDefinitions(const BagInputs& inputs, std::vector<BagWarning>& warning
 void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, const std::set<std::string>& heard,
                    std::vector<BagWarning>& warnings);
 
-/// Why a run gave no wrench at all, in one line.
+/// No wrench came out, or most samples contradict what the parameters say.
+bool isUseless(const BagReport& report);
+
+/// Why a run gave no wrench of use, in one line.
 std::string noWrench(const BagInputs& inputs, const BagRun& run, const BagReport& report);
 
 }  // namespace hammer_loads

@@ -133,11 +133,8 @@ void LifeFlow::keep(life::LifePiece piece) {
 std::string LifeFlow::contradiction() const {
   const SampleCounts& counts = pipeline_.counts();
   if (counts.contradicting() - contradicting_before_ <= counts.accepted - accepted_before_) return {};
-  for (const Warning& warning : warningsOf(pipeline_)) {
-    const std::string key = warning.key;
-    for (const char* such : {"degrees", "speed unit", "backward", "inconsistent", "lost"})
-      if (key == such) return warning.text;
-  }
+  for (const Warning& warning : warningsOf(pipeline_))
+    if (isContradiction(warning.key)) return warning.text;
   return "crank: most readings contradict the model";
 }
 

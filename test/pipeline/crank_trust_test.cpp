@@ -1,0 +1,174 @@
+/// What is withheld and named of cranks that are not what the parameters say, on simulated machines and by hand.
+#include "hammer_loads/pipeline/crank_trust.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "hammer_loads/pipeline/warnings.h"
+#include "support/session_player.h"
+
+namespace hammer_loads {
+namespace {
+
+using simulation::CrankReading;
+
+simulation::Session workingSession(double rate = 1000.0) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 8.0;
+  machine.drive.stop_time = 7.5;
+  machine.crank.rate = rate;
+  machine.crank.drop_outs.clear();
+  return simulation::recordSession(machine);
+}
+
+struct Played {
+  std::size_t wrenches{}, at_rest{}, blows{}, samples{};
+  std::vector<Warning> warnings;
+  SampleCounts counts;
+  std::optional<double> slow_behind;
+};
+
+/// change: of each reading. At rest: published before the drive starts, where only weight acts.
+Played play(const simulation::Session& session, const std::string& parameters,
+            const std::function<void(CrankReading&)>& change) {
+  simulation::Session changed = session;
+  for (CrankReading& r : changed.crank) change(r);
+  test::Player player(test::settingsWith(parameters), false, changed);
+  Played played;
+  player.playTo(1e9, [&](double time, const SampleResult& result) {
+    ++played.samples;
+    played.wrenches += !result.refusal;
+    played.at_rest += !result.refusal && time < test::kSessionWorks;
+    played.blows += result.turn_ends;
+  });
+  played.blows += player.pipeline.end().turn_ends;
+  played.warnings = warningsOf(player.pipeline);
+  played.counts = player.pipeline.counts();
+  played.slow_behind = player.pipeline.crankTrust().slowBehind();
+  return played;
+}
+
+std::string textOfWarning(const Played& played, const std::string& key) {
+  for (const Warning& w : played.warnings)
+    if (w.key == key) return w.text;
+  return {};
+}
+
+TEST(CrankTrust, ASoundCrankIsPublishedAndSlowWhereSuchAre) {
+  for (const double rate : {100.0, 1000.0}) {
+    const Played played = play(workingSession(rate), "{}", [](CrankReading&) {});
+    EXPECT_GT(static_cast<double>(played.wrenches), 0.99 * static_cast<double>(played.samples)) << rate;
+    EXPECT_GT(played.blows, 15U) << rate;
+    EXPECT_EQ(played.counts.contradicting(), 0U) << rate;
+    EXPECT_EQ(played.counts.impossible_blows, 0U) << rate;
+    ASSERT_TRUE(played.slow_behind) << rate;
+    EXPECT_LT(std::abs(*played.slow_behind), CrankTrust::kSlowestKnown) << rate;
+    for (const Warning& w : played.warnings) EXPECT_FALSE(isContradiction(w.key)) << w.text;
+  }
+}
+
+/// Nothing that moves is published but the quarter of a second in which it is recognised; no blow at all.
+void expectWithheld(const Played& played, const std::string& key) {
+  EXPECT_LT(static_cast<double>(played.wrenches - played.at_rest), 0.01 * static_cast<double>(played.samples)) << key;
+  EXPECT_EQ(played.blows, 0U) << key;
+  EXPECT_EQ(played.counts.blows, 0U) << key;
+  ASSERT_NE(textOfWarning(played, key), "") << key;
+}
+
+TEST(CrankTrust, BackwardIsWithheldWithAndWithoutSpeeds) {
+  const simulation::Session session = workingSession();
+  expectWithheld(play(session, "{}",
+                      [](CrankReading& r) {
+                        r.angle = -r.angle;
+                        if (r.speed) r.speed = -*r.speed;
+                      }),
+                 "backward");
+  expectWithheld(play(session, "{}",
+                      [](CrankReading& r) {
+                        r.angle = -r.angle;
+                        r.speed.reset();
+                      }),
+                 "backward");
+  const Played right = play(session, "crank_direction: -1\n", [](CrankReading& r) {
+    r.angle = -r.angle;
+    if (r.speed) r.speed = -*r.speed;
+  });
+  EXPECT_GT(right.blows, 15U) << "with its direction it is a sound one";
+}
+
+TEST(CrankTrust, AnotherUnitIsWithheldAndNamed) {
+  const simulation::Session session = workingSession();
+  const double degrees = 360.0 / kTwoPi;
+  const auto units = [](double angle, double speed) {
+    return [=](CrankReading& r) {
+      r.angle *= angle;
+      if (r.speed) *r.speed *= speed;
+    };
+  };
+  const Played rpm = play(session, "{}", units(1.0, 60.0 / kTwoPi));
+  expectWithheld(rpm, "speed unit");
+  EXPECT_NE(textOfWarning(rpm, "speed unit").find("rpm"), std::string::npos);
+  const Played turns = play(session, "{}", units(1.0, 1.0 / kTwoPi));
+  expectWithheld(turns, "speed unit");
+  EXPECT_NE(textOfWarning(turns, "speed unit").find("turns per second"), std::string::npos);
+  expectWithheld(play(session, "{}", units(degrees, degrees)), "degrees");
+  expectWithheld(play(session, "{}", units(degrees, 1.0)), "degrees");
+}
+
+TEST(CrankTrust, AZeroFarOffIsWithheldAndNamedBySize) {
+  const simulation::Session session = workingSession();
+  for (const double off : {-0.5, 0.5}) {
+    const Played played = play(session, "{}", [off](CrankReading& r) { r.angle += off; });
+    EXPECT_LT(2 * (played.wrenches - played.at_rest), played.samples) << off;
+    ASSERT_TRUE(played.slow_behind);
+    EXPECT_NEAR(*played.slow_behind, off, CrankTrust::kSlowestKnown);
+    EXPECT_NE(textOfWarning(played, "inconsistent").find("crank_zero_rad"), std::string::npos);
+  }
+}
+
+TEST(CrankTrust, AZeroGivenInDegreesIsNamed) {
+  const simulation::Session session = workingSession();
+  const double degrees = 140.0;
+  const Played played =
+      play(session, "crank_zero_rad: 140.0\n", [=](CrankReading& r) { r.angle += degrees * kTwoPi / 360.0; });
+  const std::string text = textOfWarning(played, "inconsistent");
+  EXPECT_NE(text.find("140 degrees"), std::string::npos) << text;
+}
+
+TEST(CrankTrust, ACrankThatFallsBackOnItsToolIsNotBackward) {
+  CrankTrust trust{CrankSensor{}};
+  double angle = 0.0;
+  const auto turn = [&](double by) {
+    for (int i = 0; i < 100; ++i) trust.follow(angle += 0.01 * by, 1.0, 1e-3);
+  };
+  turn(20.0);
+  EXPECT_TRUE(trust.hasRunUp());
+  turn(-3.0);
+  EXPECT_FALSE(trust.turnsBackward());
+  turn(-0.5);
+  EXPECT_TRUE(trust.turnsBackward());
+  turn(6.0);
+  EXPECT_TRUE(trust.turnsBackward()) << "until a whole turn forward";
+  turn(0.5);
+  EXPECT_FALSE(trust.turnsBackward());
+}
+
+TEST(CrankTrust, ContradictionsCountAfterTheirTime) {
+  CrankTrust trust{CrankSensor{}};
+  const auto follow = [&](double consistency, double seconds) {
+    for (double t = 0.0; t < seconds; t += 0.01) trust.follow(0.0, consistency, 0.01);
+    return trust.isInconsistent();
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(follow(nan, 5.0));
+  EXPECT_FALSE(follow(0.9 * CrankTrust::kMost, 5.0));
+  EXPECT_FALSE(follow(1.1 * CrankTrust::kMost, 0.5 * CrankTrust::kFor));
+  EXPECT_FALSE(follow(1.0, 1.0)) << "the time begins anew";
+  EXPECT_TRUE(follow(1.1 * CrankTrust::kMost, 1.1 * CrankTrust::kFor));
+  EXPECT_TRUE(follow(nan, 5.0)) << "not known is no agreement";
+  EXPECT_FALSE(follow(1.0, 1.1 * CrankTrust::kFor));
+}
+
+}  // namespace
+}  // namespace hammer_loads
