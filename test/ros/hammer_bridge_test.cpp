@@ -120,14 +120,17 @@ TEST(WhoListens, AndComesBackGetsWhatTheOthersGot) {
 /// Says which pieces came.
 class Notes final : public life::PieceSink {
  public:
-  void begin(const life::LedgerMachine&, const life::RunId& run) override { runs.push_back(run.name); }
+  void begin(const life::LedgerMachine&, const life::RunId& run) override {
+    runs.push_back(run.name);
+    parameters.push_back(run.parameters);
+  }
   void refuse(const std::string&) override {}
   void add(const life::LifePiece& piece) override { pieces.push_back(piece); }
   void end(const life::LifePiece& last) override {
     pieces.push_back(last);
     ++ended;
   }
-  std::vector<std::string> runs;
+  std::vector<std::string> runs, parameters;
   std::vector<life::LifePiece> pieces;
   std::size_t ended{};
 };
@@ -159,7 +162,7 @@ TEST(LoadCycles, ComeEachPeriodOfStampsAndAtTheEnd) {
 }
 
 TEST(LoadCycles, ARunsNameIsThatOfItsInputs) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, parameters;
   for (const char* with : {"{}", "life_period_s: 1.0\ncrank_zero_rad: 0.001\n", "bulk_modulus_Pa: 1.1e+9\n"}) {
     HammerBridge bridge(test::settingsWith(with));
     Notes notes;
@@ -170,10 +173,43 @@ TEST(LoadCycles, ARunsNameIsThatOfItsInputs) {
     ASSERT_EQ(notes.runs.size(), 2U);
     EXPECT_EQ(notes.runs[0], notes.runs[1]) << "the same messages";
     EXPECT_EQ(notes.ended, 1U);
+    EXPECT_EQ(notes.parameters[0], notes.parameters[1]);
     names.push_back(notes.runs[0]);
+    parameters.push_back(notes.parameters[0]);
   }
   EXPECT_EQ(names[0], names[1]) << "the same machine";
+  EXPECT_NE(parameters[0], parameters[1]) << "of its sensors";
   EXPECT_NE(names[0], names[2]);
+  EXPECT_EQ(parameters[0], parameters[2]);
+}
+
+/// Name of a run of so many messages, one of them with another reading; empty while it has none.
+std::string nameOfRun(std::uint32_t messages, std::uint32_t other, bool ends) {
+  HammerBridge bridge(test::settingsWith("{}"));
+  Notes notes;
+  bridge.keepPieces(notes);
+  SentMessages m;
+  for (std::uint32_t i = 0; i < messages; ++i) {
+    m.crank.header.stamp = ros::Time(1000, i * 1000000U);
+    m.crank.position[0] = 0.5 + 0.02 * i + (i == other ? 1e-9 : 0.0);
+    bridge.crank(m.crank, m.crank.header.stamp);
+  }
+  if (ends) bridge.finishRun();
+  EXPECT_LE(notes.runs.size(), 1U);
+  return notes.runs.empty() ? "" : notes.runs[0];
+}
+
+TEST(LoadCycles, TheFirst64MessagesNameARunAsSoonAsTheyAreThere) {
+  constexpr std::uint32_t kNone = 1000;
+  const std::string name = nameOfRun(64, kNone, false);
+  ASSERT_NE(name, "") << "long before the first piece: who waits for the ledger can say so";
+  EXPECT_EQ(name.rfind("1000000000000-", 0), 0U) << name << " begins with the first stamp";
+  EXPECT_EQ(nameOfRun(63, kNone, false), "");
+  const std::string of_short = nameOfRun(63, kNone, true);
+  EXPECT_NE(of_short, "") << "a short run has its name at the end";
+  EXPECT_NE(of_short, name);
+  for (const std::uint32_t other : {0U, 10U, 63U}) EXPECT_NE(nameOfRun(200, other, true), name) << other;
+  for (const std::uint32_t other : {64U, 150U, kNone}) EXPECT_EQ(nameOfRun(200, other, true), name) << other;
 }
 
 TEST(LoadCycles, BeyondTheFullScaleNameTheirKey) {

@@ -20,8 +20,8 @@ from sensor_msgs.msg import JointState
 from process_rostest import DATA, NodeProcess, command, eventually
 
 # Commits are counted in runs.pieces: one for each period live, one for a run from its bags.
-TABLES = {'epochs': '*', 'channels': '*', 'runs': 'run, name, epoch, ended', 'days': '*', 'tallies': '*',
-          'cycles': '*', 'residues': '*'}
+TABLES = {'epochs': '*', 'channels': '*', 'runs': 'run, name, epoch, apart, parameters, messages, ended', 'days': '*',
+          'tallies': '*', 'cycles': '*', 'residues': '*', 'marks': '*'}
 
 
 def contents(path):
@@ -63,21 +63,33 @@ class LedgerTest(unittest.TestCase):
         return texts[0] if texts else ''
 
     def node(self, name, ledger, log=False):
+        directory = os.path.join(self.directory, name)
+        os.mkdir(directory)
         return NodeProcess(name, {'life_ledger': ledger, 'life_period_s': 1.0, 'log_enabled': log,
-                                  'log_directory': self.directory, 'log_min_free_mb': 0})
+                                  'log_directory': directory, 'log_min_free_mb': 0})
+
+    def count_bag_of(self, name, ledger):
+        """Counts the node's recording."""
+        bag, = glob.glob(os.path.join(self.directory, name, '*.bag'))
+        return subprocess.run([command('process_bag'), '--no-bag', bag, '--ledger', ledger], check=True,
+                              stderr=subprocess.PIPE, universal_newlines=True).stderr
+
+    def send(self, name, begin, end):
+        """Stamp of the last message."""
+        crank = rospy.Publisher('/%s/crank' % name, JointState, queue_size=100000)
+        joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=100000)
+        self.assertTrue(eventually(lambda: crank.get_num_connections() > 0 and joints.get_num_connections() > 0))
+        messages = session(begin, end)
+        for topic, message in messages:
+            (crank if topic == '/hammer/crank' else joints).publish(message)
+        return messages[-1][1].header.stamp
 
     def feed(self, name, begin, end):
         """Until the count has seen the last of it, in periods of a second."""
         counts = []
         subscriber = rospy.Subscriber('/%s/load_cycles' % name, LoadCycles, counts.append)
-        crank = rospy.Publisher('/%s/crank' % name, JointState, queue_size=100000)
-        joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=100000)
-        self.assertTrue(eventually(lambda: crank.get_num_connections() > 0 and joints.get_num_connections() > 0 and
-                                   subscriber.get_num_connections() > 0))
-        messages = session(begin, end)
-        for topic, message in messages:
-            (crank if topic == '/hammer/crank' else joints).publish(message)
-        last = messages[-1][1].header.stamp
+        self.assertTrue(eventually(lambda: subscriber.get_num_connections() > 0))
+        last = self.send(name, begin, end)
         self.assertTrue(eventually(lambda: counts and (last - counts[-1].header.stamp).to_sec() < 1.1))
         subscriber.unregister()
         return counts
@@ -94,30 +106,40 @@ class LedgerTest(unittest.TestCase):
         live = contents(self.ledger)
         self.assertGreater(sum(row[-1] for row in live['cycles']), 20)
         self.assertEqual([row[-1] for row in live['runs']], [1], 'ended')
-        bag, = glob.glob(self.directory + '/*.bag')
         again = os.path.join(self.directory, 'again.sqlite')
-        subprocess.run([command('process_bag'), '--no-bag', bag, '--ledger', again], check=True)
+        self.count_bag_of('counted', again)
         self.assertEqual(contents(again), live)
-        known = subprocess.run([command('process_bag'), '--no-bag', bag, '--ledger', self.ledger], check=True,
-                               stderr=subprocess.PIPE, universal_newlines=True)
-        self.assertIn('is in it already, not counted again', known.stderr)
+        self.assertIn('is in it already, not counted again', self.count_bag_of('counted', self.ledger))
         self.assertEqual(contents(self.ledger), live)
 
     def test_a_second_node_waits_says_so_and_loses_nothing(self):
-        first = self.node('first', self.ledger)
+        def waits():
+            return 'another run is writing it' in self.life_of('second')
+
+        first = self.node('first', self.ledger, log=True)
         self.feed('first', 0.0, 5.0)
         self.assertTrue(eventually(lambda: os.path.exists(self.ledger)))
-        second = self.node('second', self.ledger)
-        counts = self.feed('second', 5.0, 9.0)
-        self.assertTrue(eventually(lambda: 'another run is writing it' in self.life_of('second')),
-                        self.life_of('second'))
+        second = self.node('second', self.ledger, log=True)
+        self.send('second', 5.0, 5.5)
+        self.assertTrue(eventually(waits), 'before its first period is over: ' + self.life_of('second'))
+        counts = self.feed('second', 5.5, 9.0)
+        self.statuses.clear()
+        self.assertTrue(eventually(waits), 'as long as it lasts: ' + self.life_of('second'))
         self.assertEqual(first.end()[0], 0)
         self.assertTrue(eventually(lambda: self.life_of('second') == 'counting'), self.life_of('second'))
         code, _, err = second.end()
         self.assertEqual(code, 0, err)
         ledger = contents(self.ledger)
-        self.assertEqual([row[-1] for row in ledger['runs']], [1, 1])
-        self.assertGreater(ledger['days'][0][-1], counts[-1].turns)
+        self.assertEqual([row[-1] for row in ledger['runs']], [1, 1], 'ended')
+        with sqlite3.connect('file:%s?mode=ro' % self.ledger, uri=True) as database:
+            turns = database.execute('SELECT sum(turns) FROM days GROUP BY run ORDER BY run').fetchall()
+        self.assertEqual(len(turns), 2, 'runs stay apart')
+        self.assertGreater(turns[0][0], 10)
+        self.assertGreaterEqual(turns[1][0], counts[-1].turns)
+        one_after_another = os.path.join(self.directory, 'again.sqlite')
+        for name in 'first', 'second':
+            self.count_bag_of(name, one_after_another)
+        self.assertEqual(contents(one_after_another), ledger)
 
     def test_a_ledger_that_cannot_be_costs_the_ledger_alone(self):
         os.mkdir(self.ledger)

@@ -198,7 +198,7 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
       {"output_rate_Hz: 50", "output_rate_Hz: -1", "output_rate_Hz: -1 Hz, must be 0 or a number in [0.001, 100000.0]"},
       {"output_rate_Hz: 0.001", "output_rate_Hz: 1e-12",
        "output_rate_Hz: 1e-12 Hz, must be 0 or a number in [0.001, 100000.0]"},
-      {"output_rate_Hz: 1e5", "stale_after_s: 9\noutput_rate_Hz: 1e5",
+      {"output_rate_Hz: 1e5", "output_rate_Hz: 1e5\nstale_after_s: 9",
        "output_rate_Hz: 100000 Hz, must be at most 100000 outputs over stale_after_s = 9 s"},
       {"torque_deviation_part: 1", "torque_deviation_part: 2",
        "torque_deviation_part: 2, must be a number in [0.0, 1.0]"},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace hammer_loads {
 
@@ -25,6 +26,33 @@ class Consistency {
   static constexpr double kMost = 100.0;  // of one sample: a single outlier is no alarm
   int samples_{};
   double mean_{};
+};
+
+/// The same of the half turns before the blow: the lesser of the last two, so that one disturbance is no contradiction,
+/// and one half turn that agrees ends it.
+class StrikeConsistency {
+ public:
+  void add(double squared_over_variance) noexcept {
+    if (!std::isfinite(squared_over_variance)) return;
+    sum_ += std::min(squared_over_variance, kMost);
+    ++samples_;
+  }
+  /// The blow was passed.
+  void endHalfTurn() noexcept {
+    if (samples_ == 0) return;
+    before_ = std::exchange(last_, sum_ / samples_);
+    abandon();
+  }
+  /// Of a half turn that was not seen whole.
+  void abandon() noexcept { sum_ = 0.0, samples_ = 0; }
+  /// NaN before two half turns.
+  double mean() const noexcept { return before_ < last_ ? before_ : (before_ >= last_ ? last_ : before_); }
+
+ private:
+  static constexpr double kMost = 100.0;  // of one sample, as above
+  double sum_{};
+  int samples_{};
+  double before_{std::numeric_limits<double>::quiet_NaN()}, last_{before_};
 };
 
 }  // namespace hammer_loads

@@ -95,6 +95,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   now_.tool_met = false;
   mirrored_ = false;
   rival_.drop();
+  strike_consistency_.abandon();
   now_.factor = settings_.blow_factor;
   ShaftMatrix& p = now_.covariance;
   p.setZero();
@@ -300,7 +301,10 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
 void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept {
   if (std::abs(now_.state.speed) <= kLearnSpeed) return;
   consistency_.add(ratio);
-  if (now_.state.position.angle.side == Side::kBeforeBlow) strike_consistency_.add(ratio);
+  if (now_.state.position.angle.side == Side::kBeforeBlow)
+    strike_consistency_.add(ratio);
+  else
+    strike_consistency_.endHalfTurn();
   const double jitter = square(now_.state.speed) * timing_.variance();
   roughness_.learn(innovation.value, innovation.total, jitter / innovation.total);
   errors_.learn(innovation.value, innovation.total, innovation.by_error - now_.encoderByError(Belief::kAngle));

@@ -160,7 +160,8 @@ class CrankFilter final : public CrankTracker {
   TimingNoise timing_;
   SupplyRoughness roughness_;
   LearnedSupply supply_;
-  Consistency consistency_, strike_consistency_;
+  Consistency consistency_;
+  StrikeConsistency strike_consistency_;
   ConstantErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;                ///< at the last sample, corrected by it

@@ -94,7 +94,7 @@ class CrankTracker {
   /// Mean of innovation^2 over its variance: near 1 where readings and model agree; NaN before enough samples and of no
   /// model.
   virtual double consistency() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
-  /// The same of the half turn before the blow alone: there a rod that gives or a blow that lasts changes little, so
+  /// The same of the half turns before the blow alone, the lesser of the last two: there a rod that gives or a blow that lasts changes little, so
   /// that what contradicts the model is another machine or another sensor.
   virtual double strikeConsistency() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
   /// The filter that learns of sensor and machine behind the estimates; null: none.

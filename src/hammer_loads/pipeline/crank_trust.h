@@ -22,18 +22,17 @@ class CrankTrust {
   /// (crank_trust_test).
   static constexpr double kMost = 4.0;
   static constexpr double kSlowestKnown = 0.2;  ///< slowBehind() of a right zero is less [rad] (crank_trust_test)
-  static constexpr double kFor = 0.5;           ///< so long beyond it, or within it again [s]: two turns and more
 
   explicit CrankTrust(const CrankSensor& sensor) noexcept : sensor_(sensor) {}
 
   /// reading: of the angle [rad]; strike_consistency: CrankTracker's, NaN where it is not known; step: since the sample
-  /// before [s].
+  /// before [s]; 0 after a restart, over which it is not known how far the crank has turned.
   void follow(double reading, double strike_consistency, double step) noexcept {
-    const double turned = reading_ ? sensor_.gain() * CrankAngle::wrapToPi(reading - *reading_) : 0.0;
+    const double turned = reading_ && step > 0.0 ? sensor_.gain() * CrankAngle::wrapToPi(reading - *reading_) : 0.0;
     reading_ = reading;
     followTurning(turned);
     followSpeed(sensor_.angle(reading), turned, step);
-    followAgreement(strike_consistency, step);
+    if (std::isfinite(strike_consistency)) inconsistent_ = strike_consistency > kMost;
   }
   /// Time ran back, or a gap: what the crank did meanwhile is not known.
   void begin() noexcept { reading_.reset(); }
@@ -69,7 +68,7 @@ class CrankTrust {
     if (!backward_ && back_ > 0.5 * kTwoPi) {
       backward_ = true;
       forward_ = 0.0;
-    } else if (backward_ && forward_ > kTwoPi) {
+    } else if (backward_ && forward_ > 0.5 * kTwoPi) {
       backward_ = false;
       back_ = 0.0;
     }
@@ -85,20 +84,12 @@ class CrankTrust {
     }
     window_turned_ = window_time_ = 0.0;
   }
-  void followAgreement(double strike_consistency, double step) noexcept {
-    const bool disagrees = inconsistent_ ? !(strike_consistency <= kMost) : strike_consistency > kMost;
-    changing_for_ = disagrees != inconsistent_ ? changing_for_ + step : 0.0;
-    if (changing_for_ < kFor) return;
-    inconsistent_ = disagrees;
-    changing_for_ = 0.0;
-  }
 
   CrankSensor sensor_;
   std::optional<double> reading_;                                   ///< the last one [rad]
   RunningMean<> along_{kTurns * kTwoPi}, across_{kTurns * kTwoPi};  ///< speed times cosine, sine of the angle
   double window_turned_{}, window_time_{};
   double forward_{}, back_{};  ///< since it was furthest back, forward [rad]
-  double changing_for_{};      ///< the consistency has been on the other side of its limit [s]
   bool backward_{}, inconsistent_{};
 };
 

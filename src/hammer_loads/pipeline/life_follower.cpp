@@ -94,8 +94,8 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
       [&](double time) { endTurn(step.stampAt(time)); });
 }
 
-/// A load beyond those at both ends counts up to twice what the step's path has beyond them from either end: where a
-/// sample corrects the path, what lies between is of neither.
+/// A load beyond those at both ends counts where the step's path has it from either end, within the deviations
+/// published there; else as far as both have it: where a sample corrects the path, what lies between is of neither.
 void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place,
                                        const std::array<double, kHullChannels>& end) noexcept {
   const auto isWithin = [&](std::size_t i) {
@@ -104,7 +104,8 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   bool all_within = true;
   for (std::size_t i = 0; i < end.size(); ++i) all_within = all_within && isWithin(i);
   if (all_within) return;
-  std::array<double, kHullChannels> forward, back;
+  std::array<double, kHullChannels> forward, back, end_deviation;
+  wrenchValues(deviationAtSample(*pipeline_), end_deviation.data());
   const std::optional<CrankWays> ways = place.ways(pipeline_->crank().step());
   if (ways) {
     wrenchValues(load.at(ways->forward), forward.data());
@@ -112,9 +113,10 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   }
   for (std::size_t i = 0; i < end.size(); ++i) {
     const double least = std::min(values_[i], end[i]), greatest = std::max(values_[i], end[i]);
+    if (ways && std::abs(forward[i] - back[i]) <= deviations_[i] + end_deviation[i]) continue;
     const double above = ways ? std::max(0.0, std::min(forward[i], back[i]) - greatest) : 0.0;
     const double below = ways ? std::max(0.0, least - std::max(forward[i], back[i])) : 0.0;
-    between_[i] = std::clamp(between_[i], least - 2.0 * below, greatest + 2.0 * above);
+    between_[i] = std::clamp(between_[i], least - below, greatest + above);
   }
 }
 

@@ -84,7 +84,10 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.turn_ends = 0;
   result_.outputs.clear();
   result_.refusal.reset();
-  if (const auto refusal = crank_.judge(header, measured)) return refuse(*refusal);
+  if (const auto refusal = crank_.judge(header, measured)) {
+    if (*refusal == Refusal::kDegrees || *refusal == Refusal::kSpeedUnit) turn_.discard();
+    return refuse(*refusal);
+  }
 
   const StampNs stamp = result_.stamp = crank_.stamp();
   const CrankFollower::Taken taken = crank_.take(hull_.predict(stamp));

@@ -99,9 +99,10 @@ void LifeFlow::follow(const sensor_msgs::JointState& message, const ros::Time& r
 }
 
 /// One message of each stretch of time, the first after the one before: wherever a part of the recording begins, it has
-/// the same ones.
+/// the same ones. The run begins as soon as it has its name: trouble with its ledger shows before the first piece.
 void LifeFlow::mark(const sensor_msgs::JointState& message) {
-  if (messages_++ < kNamingMessages) digest_ = digestOf(message, digest_);
+  if (messages_ < kNamingMessages) digest_ = digestOf(message, digest_);
+  if (++messages_ == kNamingMessages) name();
   const StampNs slot = stampOf(message.header.stamp) / kMarkEvery;
   if (slot_ && slot > *slot_) marks_.push_back(static_cast<std::int64_t>(digestOf(message, kDigestStart)));
   slot_ = slot;
@@ -124,8 +125,7 @@ void LifeFlow::keep(life::LifePiece piece) {
   piece.messages = messages_ - std::exchange(messages_kept_, messages_);
   piece.marks.assign(marks_.begin(), marks_.end());
   marks_.clear();
-  if (messages_ < kNamingMessages) return unnamed_.push_back(std::move(piece));
-  name();
+  if (!named_) return unnamed_.push_back(std::move(piece));
   pieces_->add(piece);
 }
 
