@@ -95,6 +95,11 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   return Taken::kContinued;
 }
 
+void CrankFollower::hullMoved(const HullMotion& hull) noexcept {
+  tracker_->setHullMotion(hull);
+  estimate_ = tracker_->estimate();
+}
+
 void CrankFollower::accept() noexcept {
   gate_.accept(stamp_, measured_);
   gate_.setFrozenTurn(frozenTurn(settings_, tracker_->angleResolution()));

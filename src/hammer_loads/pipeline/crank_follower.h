@@ -47,6 +47,8 @@ class CrankFollower {
   bool isSettled(const HullMotion& hull, double peak_force) noexcept;
 
   const CrankEstimate& estimate() const noexcept { return estimate_; }
+  /// The hull's motion at the sample taken, known better since: the acceleration is that within this motion.
+  void hullMoved(const HullMotion& hull) noexcept;
   const CrankStep& step() const noexcept { return step_; }
   const CrankTracker& tracker() const noexcept { return *tracker_; }
   const StampSequence& stamps() const noexcept { return sequence_; }

@@ -185,6 +185,8 @@ void Pipeline::followHull() noexcept {
   const CrankMotion crank = motionOf(result_.crank);
   const HullWrench displaced = displaced_links_.wrench(crank_.step().links().links, crank.speed, hull_.motion().motion);
   hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced);
+  crank_.hullMoved(hull_.motion().motion);
+  result_.crank = crank_.estimate();
 }
 
 double Pipeline::stampNoise() const noexcept {
