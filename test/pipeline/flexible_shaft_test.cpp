@@ -59,7 +59,8 @@ TEST(FlexibleShaftSession, IsAsGoodAsARigidOne) {
       expectGood(e, 0.004);
       EXPECT_LT(e.energy, 0.03);
       EXPECT_LT(e.blow_time, 5e-4);
-      EXPECT_GT(errorsOf(machine, {}).rms_z, 4.0 * e.rms_z);
+      // A rigid shaft's model is far off, or so far that its readings contradict it and nothing is published.
+      EXPECT_FALSE(errorsOf(machine, {}).rms_z <= 4.0 * e.rms_z);
     }
   }
 }

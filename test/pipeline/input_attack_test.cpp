@@ -282,7 +282,8 @@ void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   victim.forgetErrors();
   victim.work(kSoundFrom + kOneTurn, kUntil);
   EXPECT_TRUE(victim.finite());
-  EXPECT_GT(victim.accepted(), accepted + 600u);
+  // 900 samples; what contradicted the model is withheld until a whole half turn before the blow agrees (CrankTrust).
+  EXPECT_GT(victim.accepted(), accepted + 500u);
   if (judged) {
     EXPECT_LE(victim.worst(), kUndisturbedError);
   }
