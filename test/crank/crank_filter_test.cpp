@@ -93,7 +93,7 @@ TEST_F(CrankFilterTest, ErrorsLieWithinTwoDeviationsAsOftenAsTheyShould) {
   double samples = 0, angle = 0, speed = 0, acceleration = 0;
   run(f, shortSession(true, 1000.0, 0.6), [&](const CrankFilter& at, const simulation::CrankTruth& truth) {
     if (truth.time < 3.0) return;
-    const Eigen::Vector3d deviation = at.motionCovariance(1.0).diagonal().cwiseSqrt();
+    const Eigen::Vector3d deviation = at.uncertainty(1.0).covariance().diagonal().cwiseSqrt();
     const CrankEstimate e = at.estimate();
     ++samples;
     angle += std::abs(CrankAngle::wrapToPi(e.position.angle.offset - truth.angle)) < 2 * deviation[0];
@@ -129,7 +129,7 @@ TEST_F(CrankFilterTest, TellsTheMotionBetweenSamples) {
     last = i;
   }
   EXPECT_LT(worst, 4e-3);
-  EXPECT_GT(f.covarianceBetween(0.005, 1.0)(0, 0), 0.0);
+  EXPECT_GT(f.uncertaintyBetween(0.005, 1.0).own(0, 0), 0.0);
 }
 
 TEST_F(CrankFilterTest, StandsStill) {

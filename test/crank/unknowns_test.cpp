@@ -88,8 +88,8 @@ TEST(Unknowns, ConsideredLatencyIsInTheDeviation) {
   Filtered said(kLate), exact;
   for (int i = 0; i < 900; ++i) said.sample(i, kLate, angleOf), exact.sample(i, kLate, angleOf);
   const double error = kLate * said.crank.speed();
-  const double of_said = std::sqrt(said.filter.motionCovariance(1.0)(0, 0)),
-               of_exact = std::sqrt(exact.filter.motionCovariance(1.0)(0, 0));
+  const double of_said = std::sqrt(said.filter.uncertainty(1.0).covariance()(0, 0)),
+               of_exact = std::sqrt(exact.filter.uncertainty(1.0).covariance()(0, 0));
   EXPECT_NEAR(of_said, error, 0.1 * error);
   EXPECT_LT(of_exact, 0.1 * error);
   EXPECT_EQ(said.filter.state().speed, exact.filter.state().speed);  // considered, not corrected

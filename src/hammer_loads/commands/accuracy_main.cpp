@@ -4,6 +4,7 @@
 
 #include "hammer_loads/bench/boom_table.h"
 #include "hammer_loads/bench/cost_table.h"
+#include "hammer_loads/bench/drawing_table.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_table.h"
 #include "hammer_loads/commands/command_line.h"
@@ -14,6 +15,8 @@ namespace {
 
 constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
                kBoom[] = "\"boom\": ";
+
+constexpr int kDrawings = 20;
 
 /// Why an existing file must stay; empty: this command wrote it.
 std::string whyFileMustStay(const std::string& name) {
@@ -50,6 +53,10 @@ class JsonFile {
 /// Prints the tables; the same as the members of a JSON object.
 std::string printTables(const Settings& settings, const std::string& only) {
   std::string json;
+  if (only == "drawings") {
+    std::cout << accuracy::markdown(accuracy::drawingTable(settings, kDrawings));
+    return "";
+  }
   if (only != "sessions") {
     const std::vector<accuracy::CostRow> costs = accuracy::costTable(settings);
     std::cout << accuracy::markdown(costs) << std::flush;
@@ -77,7 +84,7 @@ int run(int argc, const char* const* argv) {
   addParamsOption(line, files);
   line.option("--json", json_file, "also write the figures to this file, which must not exist");
   line.flag("--force", force, "replace that file if this command wrote it");
-  line.option("--only", only, "one of the two parts").oneOf({"costs", "sessions"});
+  line.option("--only", only, "one of the two parts").oneOf({"costs", "sessions", "drawings"});
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   const std::optional<Settings> settings = loadOrReport(files);

@@ -1,6 +1,7 @@
 #include "hammer_loads/crank/constant_errors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hammer_loads/util/square.h"
@@ -20,6 +21,19 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
 
+/// Also where some error is certain to be zero.
+ConstantErrors::Matrix rootOf(const ConstantErrors::Matrix& moment) noexcept {
+  ConstantErrors::Matrix root = ConstantErrors::Matrix::Zero();
+  for (Eigen::Index j = 0; j < moment.cols(); ++j) {
+    const double pivot = moment(j, j) - root.row(j).head(j).squaredNorm();
+    if (!(pivot > 1e-12 * moment(j, j))) continue;
+    root(j, j) = std::sqrt(pivot);
+    for (Eigen::Index i = j + 1; i < moment.rows(); ++i)
+      root(i, j) = (moment(i, j) - root.row(i).head(j).dot(root.row(j).head(j))) / root(j, j);
+  }
+  return root;
+}
+
 }  // namespace
 
 void ConstantErrors::takeSupply(double change) noexcept {
@@ -30,29 +44,35 @@ void ConstantErrors::takeSupply(double change) noexcept {
 ConstantErrors::ConstantErrors(const Vector& prior) noexcept : prior_(prior) {
   fit_.begin(prior_);
   considerPriors();
+  root_ = rootOf(moment_);
 }
 
 void ConstantErrors::considerPriors() noexcept {
-  for (int i = 0; i < kSize; ++i)
+  for (int i = 0; i < kTable; ++i)
     if (kUnknowns[static_cast<std::size_t>(i)].use == Unknown::Use::kConsidered) moment_(i, i) = square(prior_[i]);
 }
 
 void ConstantErrors::endTurn(double growth, double count) noexcept {
   const int samples = std::exchange(samples_, 0);
-  if (++turns_ == kFirstTurns) fit_.begin(prior_);
+  if (++turns_ == kFirstTurns) {
+    fit_.begin(prior_);
+    beside_.setZero();
+  }
   if (turns_ < kTurnsToKnow) return;
   Matrix covariance = Matrix::Zero();
   covariance.topLeftCorner<kPlace, kPlace>() = fit_.covarianceOfFirst<kPlace>();
-  for (int i = 0; i < kSize; ++i)
+  for (int i = 0; i < kTable; ++i)
     if (kUnknowns[static_cast<std::size_t>(i)].use == Unknown::Use::kTakenUp)
       covariance(i, i) = 1.0 / fit_.information()(i, i);
   estimate_ = covariance * fit_.score();
+  const Eigen::Matrix<double, kPlace, 1> by_hammer =
+      (covariance.topLeftCorner<kPlace, kPlace>() * beside_).rowwise().squaredNorm();
   const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
   Vector doubt = Vector::Zero(), certain = Vector::Zero();  // variance of what is seen; what remains after it
   double share = 0.0;                                       // of b that is certain
   for (int i = 0; i < kPlace; ++i) {
     doubt[i] = square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) +
-               square(kUnmodelledDeviations) * growth * covariance(i, i);
+               square(kUnmodelledDeviations) * growth * covariance(i, i) + by_hammer[i];
     deviation_[i] = std::sqrt(doubt[i] + square(kUnmodelledCounts * count));
     const double excess = square(estimate_[i]) - doubt[i];
     certain[i] = excess > 0.0 ? std::copysign(std::sqrt(excess), estimate_[i]) : 0.0;
@@ -62,7 +82,9 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
   considerPriors();
+  root_ = rootOf(moment_);
   fit_.fade(1.0 - 1.0 / kMemoryTurns);
+  beside_ *= 1.0 - 1.0 / kMemoryTurns;
 }
 
 }  // namespace hammer_loads

@@ -1,4 +1,4 @@
-/// What of the innovations looks like a sensor that is not where it is said to be, or another supply.
+/// Constants that are not known exactly: what they do to the filter, and what its innovations say of the sensor's.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,28 +6,31 @@
 
 #include "hammer_loads/crank/unknowns.h"
 #include "hammer_loads/estimation/constant_fit.h"
+#include "hammer_loads/linkage/machine_columns.h"
 
 namespace hammer_loads {
 
-/// Errors b of the constants of kUnknowns, in their order. The filter knows beside its state what each of them does to
-/// it. An innovation is then its derivative by b times b, and noise: weighted least squares over some minutes.
+/// Errors b of the constants of kUnknowns, in their order, and behind them those of the hammer, each in units of its
+/// standard deviation (MachineColumn): these are considered, not looked for. The filter knows beside its state what
+/// each of them does to it. An innovation is then its derivative by b times b, and noise: weighted least squares over
+/// some minutes.
 ///
 /// What the law leaves of a supply's torque looks a little like the sensor's place: with the shipped machine by 0.1 to
 /// 0.2 deg, with jitter or 1024 counts by 0.4 deg, some three standard deviations. deviation() contains that. So the
 /// supply's error is estimated as if the sensor's place were right: together they can hardly be separated.
 class ConstantErrors {
  public:
-  static constexpr int kSize = kUnknowns.size(), kPlace = countSeen();
+  static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();
   static constexpr int kSupply = indexOfUnknown("supply"), kShare = indexOfUnknown("share"),
                        kLatency = indexOfUnknown("latency");
-  using Row = Eigen::Matrix<double, 1, kSize>;  ///< derivative of a number by b
-  using Vector = Eigen::Matrix<double, kSize, 1>;
-  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
+  using Vector = Eigen::Matrix<double, kTable, 1>;  ///< of the table's alone
+  using Matrix = Eigen::Matrix<double, kTable, kTable>;
 
   /// As the table has them.
   static Vector priors() noexcept {
     Vector prior;
-    for (int i = 0; i < kSize; ++i) prior[i] = kUnknowns[static_cast<std::size_t>(i)].prior;
+    for (int i = 0; i < kTable; ++i) prior[i] = kUnknowns[static_cast<std::size_t>(i)].prior;
     return prior;
   }
   /// prior: standard deviations, >= 0.
@@ -49,7 +52,8 @@ class ConstantErrors {
   /// innovation of an angle, its variance and its derivative by b.
   void learn(double innovation, double variance, const Row& by_error) noexcept {
     ++samples_;
-    fit_.learn(innovation, variance, by_error);
+    const double weight = fit_.learn(innovation, variance, by_error.head<kTable>());
+    beside_ += (weight * by_error.head<kPlace>().transpose()).lazyProduct(by_error.tail<kMachineColumns>());
   }
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
@@ -61,22 +65,34 @@ class ConstantErrors {
   const Vector& deviation() const noexcept { return deviation_; }
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }
+  /// L with L L^T = moment(): its columns are errors that are independent of each other.
+  const Matrix& root() const noexcept { return root_; }
+  /// Derivatives by the constants, as columns of independent errors of one standard deviation each.
+  template <typename Derived>
+  static Eigen::Matrix<double, Derived::RowsAtCompileTime, kSize> columns(const Eigen::MatrixBase<Derived>& by,
+                                                                          const Matrix& root) noexcept {
+    Eigen::Matrix<double, Derived::RowsAtCompileTime, kSize> result = by;
+    result.template leftCols<kTable>() = by.template leftCols<kTable>().lazyProduct(root);
+    return result;
+  }
 
  private:
   static constexpr auto kIndices = std::make_integer_sequence<std::size_t, kUnknowns.size()>{};
   /// Unrolled, so that what does not enter costs nothing.
   template <typename Function, std::size_t... i>
   static Row row(const Function& of, std::integer_sequence<std::size_t, i...>) noexcept {
-    Row all;
+    Row all = Row::Zero();
     ((all[i] = of(kUnknowns[i])), ...);
     return all;
   }
   void considerPriors() noexcept;
 
   Vector prior_;
-  ConstantFit<kSize> fit_;
+  ConstantFit<kTable> fit_;
+  Eigen::Matrix<double, kPlace, kMachineColumns> beside_{
+      Eigen::Matrix<double, kPlace, kMachineColumns>::Zero()};  ///< what the hammer's errors make of fit_'s score
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
-  Matrix moment_{Matrix::Zero()};
+  Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
   int turns_{}, samples_{};  ///< samples: of this turn
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/column_step.h"
 #include "hammer_loads/crank/flexible_belief.h"
 #include "hammer_loads/util/growth.h"
 #include "hammer_loads/util/square.h"
@@ -75,6 +76,8 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     const BlowPrior prior = priorOf(drawn);
     const double torque_before = state.torque;
     const CrankPosition from = state.position;
+    std::optional<ColumnStep> columns;
+    if (!model.isExact()) columns.emplace(model, state, state.drive_inertia, load);
     state.torque -= 0.5 * supply.stiffness * supply.lead(state.speed * h, h);  // mean of the step
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
     const double lead = supply.lead(difference(state.position, from), h);
@@ -88,8 +91,14 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     }
     const ConstantErrors::Row torque_by_constant = 0.5 * ConstantErrors::ofTorque(supply, lead);
     by_constant.row(kTorque) += torque_by_constant;
+    if (columns) by_constant.row(kSpeed).tail<kMachineColumns>() += columns->atStart();
     Base::predict<kAngle, kSpeed>(step.transition);
     by_constant.row(kTorque) += torque_by_constant;
+    if (columns) {
+      columns->end(state, state.drive_inertia, load, state.torque - state.drive_inertia * load.hull_acceleration, h);
+      by_constant.row(kSpeed).tail<kMachineColumns>() += columns->speed();
+      by_constant.row(kAngle).tail<kMachineColumns>() += columns->angle();
+    }
     addNoise(kAngle, kAngle, speed * h * h / 3.0);
     addNoise(kSpeed, kSpeed, speed + torque * square(b * h) / 3.0);
     addNoise(kTorque, kTorque, torque);
@@ -164,9 +173,17 @@ bool CrankBelief::isSound(double most_speed) const noexcept {
          Base::isSound() && (!motor || isSoundFlexible(most_speed, *this));
 }
 
+void addAcceleration(const ShaftModel& model, const ShaftState& state, double acceleration, double inverse_inertia,
+                     CrankUncertainty& result) noexcept {
+  if (model.isExact()) return;
+  const MachineColumns::OnShaft on_shaft = model.columns(state.position.angle);
+  result.by_constant.row(CrankUncertainty::kAcceleration).tail<kMachineColumns>() +=
+      inverse_inertia * (on_shaft.row(2) - square(state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));
+}
+
 /// Linear in the state's deviation; the acceleration's derivative by the angle by a difference.
-Eigen::Matrix3d motionCovariance(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
-                                 double growth, const ConstantErrors::Matrix& moment, double torque_part) noexcept {
+CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
+                                   double growth, const ConstantErrors::Matrix& root, double torque_part) noexcept {
   const ShaftState& state = belief.state;
   const double inv = 1.0 / (state.drive_inertia + load.inertia), here = acceleration(load, state);
   constexpr double kStep = 1e-6;  // [rad]: error 1e-6 by curvature, 1e-9 by rounding, both relative
@@ -179,11 +196,15 @@ Eigen::Matrix3d motionCovariance(const ShaftModel& model, const ShaftLoad& load,
   by[CrankBelief::kInertia] = -(here + load.hull_acceleration) * state.drive_inertia * inv;
   const ShaftMatrix& P = belief.covariance;
   const Eigen::RowVector4d with = by.lazyProduct(P.topLeftCorner<4, 4>());  // covariances of the acceleration
-  Eigen::Matrix3d own;
-  own << P.topLeftCorner<2, 2>(), with.head<2>().transpose(), with.head<2>(), with.dot(by);
-  Eigen::Matrix<double, 3, ConstantErrors::kSize> by_constant;
-  by_constant << belief.by_constant.topRows<2>(), by.lazyProduct(belief.by_constant.topRows<4>());
-  return growth * own + (by_constant * moment).lazyProduct(by_constant.transpose());
+  CrankUncertainty result;
+  result.own << P.topLeftCorner<2, 2>(), with.head<2>().transpose(), with.head<2>(), with.dot(by);
+  result.own *= growth;
+  result.by_constant << belief.by_constant.topRows<2>(), by.lazyProduct(belief.by_constant.topRows<4>()),
+      belief.by_constant.row(CrankBelief::kInertia);
+  result.by_constant = ConstantErrors::columns(result.by_constant, root);
+  addAcceleration(model, state, here, inv, result);
+  result.inertia = std::sqrt(growth * P(CrankBelief::kInertia, CrankBelief::kInertia));
+  return result;
 }
 
 }  // namespace hammer_loads

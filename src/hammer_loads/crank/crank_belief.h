@@ -94,16 +94,20 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   ConstantErrors::Row encoderByError(Row row) const noexcept {
     return motor ? ConstantErrors::Row(motor->by_constant.row(row)) : ConstantErrors::Row(by_constant.row(row));
   }
-  /// Factor of the last blow and drive inertia, with deviations by `grown`.
-  BlowFactor blowFactor(const ShaftMatrix& grown) const noexcept {
-    return {factor, std::sqrt(grown(kFactor, kFactor)), state.drive_inertia, std::sqrt(grown(kInertia, kInertia)),
-            struck_early};
+  /// Factor of the last blow and drive inertia. growth: what noise is to be multiplied with; root:
+  /// ConstantErrors::root().
+  BlowFactor blowFactor(double growth, const ConstantErrors::Matrix& root) const noexcept {
+    const double of_factor = std::sqrt(growth * covariance(kFactor, kFactor)),
+                 of_inertia = std::sqrt(growth * covariance(kInertia, kInertia));
+    Eigen::Matrix<double, 2, ConstantErrors::kSize> by;
+    by << by_constant.row(kFactor), by_constant.row(kInertia);
+    return {factor, of_factor, state.drive_inertia, of_inertia, struck_early, ConstantErrors::columns(by, root)};
   }
 };
 
-/// Covariance of (angle, speed, acceleration), grown as in CrankBelief::grown(); load: the model's at the belief's
-/// angle; torque_part of the torque's deviation counts.
-Eigen::Matrix3d motionCovariance(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
-                                 double growth, const ConstantErrors::Matrix& moment, double torque_part) noexcept;
+/// load: the model's at the belief's angle; growth, root: as in CrankBelief::blowFactor(); torque_part of the torque's
+/// deviation counts.
+CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
+                                   double growth, const ConstantErrors::Matrix& root, double torque_part) noexcept;
 
 }  // namespace hammer_loads

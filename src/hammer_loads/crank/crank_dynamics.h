@@ -4,11 +4,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "hammer_loads/crank/coupling.h"
 #include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/linkage/drive_reaction.h"
+#include "hammer_loads/linkage/machine_columns.h"
 #include "hammer_loads/linkage/shaft_load.h"
 
 namespace hammer_loads {
@@ -17,12 +19,22 @@ namespace hammer_loads {
 class ShaftModel {
  public:
   ShaftModel(const Mechanism& mechanism, Level level, const std::optional<Coupling>& coupling = {})
-      : mechanism_(&mechanism), level_(level), own_(crankWithinDrive(mechanism, level)), coupling_(coupling) {}
+      : mechanism_(&mechanism),
+        level_(level),
+        own_(crankWithinDrive(mechanism, level)),
+        coupling_(coupling),
+        columns_(machineColumns(mechanism, level)) {}
   void setHullMotion(const HullMotion& hull) noexcept { hull_ = hull; }
   const HullMotion& hullMotion() const noexcept { return hull_; }
   /// Nothing: the motor turns with the crank.
   const std::optional<Coupling>& coupling() const noexcept { return coupling_; }
   ShaftLoad operator()(CrankAngle angle) const noexcept { return at(angle); }
+  /// Nothing of it is uncertain: no columns.
+  bool isExact() const noexcept { return columns_ == nullptr; }
+  MachineColumns::OnShaft columns(CrankAngle angle) const noexcept {
+    return isExact() ? MachineColumns::OnShaft(MachineColumns::OnShaft::Zero())
+                     : columns_->onShaft(angle, hull_.gravity);
+  }
   /// The same with zero for the slopes, whose arithmetic the compiler then leaves out: a flexible path needs none.
   ShaftLoad withoutSlopes(CrankAngle angle) const noexcept {
     ShaftLoad load = at(angle);
@@ -43,6 +55,7 @@ class ShaftModel {
   Level level_;
   double own_;  ///< crankWithinDrive()
   std::optional<Coupling> coupling_;
+  std::shared_ptr<const MachineColumns> columns_;
   HullMotion hull_;
 };
 

@@ -61,9 +61,9 @@ class CrankFilter final : public CrankTracker {
   CrankEstimate estimate() const noexcept override { return estimateOf(model_, load(), now_.state); }
   CrankEstimate between(double dt) const noexcept override;
   std::optional<CrankWays> waysBetween(double dt) const noexcept override;
-  Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
-  Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
-    return covarianceOf(now_, load(), torque_part);
+  CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept override;
+  CrankUncertainty uncertainty(double torque_part) const noexcept override {
+    return uncertaintyOf(now_, load(), torque_part);
   }
   bool hasSpeed() const noexcept override { return has_speed_; }
   bool isPlausible() const noexcept override;
@@ -117,7 +117,7 @@ class CrankFilter final : public CrankTracker {
   BetweenSamples lastStep() const noexcept {
     return {model_, step_model_, before_, now_, before_hull_, now_hull_, step_, mostSpeed()};
   }
-  Eigen::Matrix3d covarianceOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
+  CrankUncertainty uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
   /// At now_ with the latest motion of the hull.
   ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }
   WeighedSample weighed(const CrankSample& reading) noexcept;

@@ -13,13 +13,12 @@ void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  const ConstantErrors::Matrix& moment = errors_.moment();
-  BlowFactor factor = now_.blowFactor(now_.grown(growth(), moment));
+  BlowFactor factor = now_.blowFactor(growth(), errors_.root());
   if (!now_.motor) return factor;
   const double share = 1.0 - struckInertia() / driveInertia();
   factor.drive_inertia = struckInertia();
-  factor.inertia_deviation =
-      std::hypot(factor.inertia_deviation, share * std::sqrt(moment(ConstantErrors::kShare, ConstantErrors::kShare)));
+  factor.by_constant(1, ConstantErrors::kShare) +=
+      share * errors_.root()(ConstantErrors::kShare, ConstantErrors::kShare);
   return factor;
 }
 
@@ -40,21 +39,20 @@ std::optional<CrankWays> CrankFilter::waysBetween(double dt) const noexcept {
 }
 
 /// The way forward from the sample before may strike earlier than the way between both, with a blow not yet known.
-Eigen::Matrix3d CrankFilter::covarianceBetween(double dt, double torque_part) const noexcept {
-  if (dt >= step_) return motionCovariance(torque_part);
+CrankUncertainty CrankFilter::uncertaintyBetween(double dt, double torque_part) const noexcept {
+  if (dt >= step_) return uncertainty(torque_part);
   CrankBelief belief = before_;
   const bool comes_to_blow = before_.state.position.angle.side == Side::kBeforeBlow && isNearTool(before_.state, step_);
   const bool is_before = comes_to_blow && between(dt).position.angle.side == Side::kBeforeBlow;
   predict(dt, !is_before, belief);
-  return covarianceOf(belief, model_(belief.state.position.angle), torque_part);
+  return uncertaintyOf(belief, model_(belief.state.position.angle), torque_part);
 }
 
-Eigen::Matrix3d CrankFilter::covarianceOf(const CrankBelief& belief, const ShaftLoad& load,
-                                          double torque_part) const noexcept {
+CrankUncertainty CrankFilter::uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load,
+                                            double torque_part) const noexcept {
   const double part = std::min(1.0, torque_part * roughness_.deviationFactor());
-  return belief.motor
-             ? flexibleMotionCovariance(model_, belief, consistency_.growth(), errors_.moment(), part)
-             : hammer_loads::motionCovariance(model_, load, belief, consistency_.growth(), errors_.moment(), part);
+  return belief.motor ? flexibleUncertainty(model_, belief, consistency_.growth(), errors_.root(), part)
+                      : motionUncertainty(model_, load, belief, consistency_.growth(), errors_.root(), part);
 }
 
 }  // namespace hammer_loads

@@ -40,7 +40,7 @@ void CrankTrack::add(TrackedSample sample) {
   if (sample.tracking == Tracking::kRevised) revise();
   sample.belief = filter_.belief();
   sample.growth = filter_.growth();
-  sample.moment = kUnseenGrowth * filter_.constantErrors().moment();
+  sample.root = std::sqrt(kUnseenGrowth) * filter_.constantErrors().root();
   sample.consistency = filter_.consistency();
   sample.strike_consistency = filter_.strikeConsistency();
   sample.resolution = filter_.angleResolution();

@@ -17,8 +17,8 @@ struct TrackedSample {
   CrankWalks walks;     ///< over it
   BlowPrior prior;      ///< for a blow within it
   CrankBelief belief;
-  double growth{1.0};                                             ///< of variances
-  ConstantErrors::Matrix moment{ConstantErrors::Matrix::Zero()};  ///< of the sensor's errors
+  double growth{1.0};                                           ///< of variances
+  ConstantErrors::Matrix root{ConstantErrors::Matrix::Zero()};  ///< of the sensor's errors
   double consistency{}, strike_consistency{};
   double resolution{};  ///< of the angle sensor [rad]
   bool has_speed{}, is_plausible{}, is_proven{}, is_doubtful{};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/linkage/hull_motion.h"
 
@@ -28,18 +29,36 @@ struct CrankEstimate {
   double drive_lead_speed{}, drive_lead_acceleration{};
 };
 
+/// How far an estimate may be off: by what is drawn anew at each sample, and by constants, which are off alike at all.
+struct CrankUncertainty {
+  enum Row : Eigen::Index { kAngle, kSpeed, kAcceleration, kInertia };
+
+  Eigen::Matrix3d own{Eigen::Matrix3d::Zero()};  ///< covariance of angle [rad], speed [rad/s], acceleration [rad/s2]
+  /// One standard deviation each of errors that are independent of each other; by rows as above, the last relative to
+  /// the drive's inertia.
+  Eigen::Matrix<double, 4, ConstantErrors::kSize> by_constant{Eigen::Matrix<double, 4, ConstantErrors::kSize>::Zero()};
+  double inertia{};  ///< of the drive's inertia, relative, beside the constants
+
+  Eigen::Matrix3d covariance() const noexcept {
+    return own + by_constant.topRows<3>() * by_constant.topRows<3>().transpose();
+  }
+};
+
 /// The crank at one place between two samples: by the way forward from the earlier one, by the way back from the later.
 struct CrankWays {
   CrankEstimate forward, back;
 };
 
-/// What a blow did to the crank: its speed after over its speed before.
+/// What a blow did to the crank: its speed after over its speed before. Deviations are beside the constants.
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]
   double drive_inertia{};      ///< of Jc what the blow acts on; gives the restitution [kg m2]; 0: not known
   double inertia_deviation{};  ///< relative [-]
   bool early{};                ///< it acted before the dead centre, where the crank passed with its speed after
+  /// What independent errors of constants make of the factor [-] and, relatively, of the inertia, a standard deviation
+  /// each.
+  Eigen::Matrix<double, 2, ConstantErrors::kSize> by_constant{Eigen::Matrix<double, 2, ConstantErrors::kSize>::Zero()};
 };
 
 /// How a sample was taken.
@@ -71,14 +90,11 @@ class CrankTracker {
   virtual bool hasSpeed() const noexcept = 0;
   /// False where no drive gives what the estimate needs: degrees instead of radians, for instance.
   virtual bool isPlausible() const noexcept { return true; }
-  /// Covariance of (angle [rad], speed [rad/s], acceleration [rad/s2]) at the same instant as between(dt); zero where
-  /// none is estimated. torque_part: how much of the torque's deviation counts, see
-  /// PipelineSettings::torque_deviation_part.
-  virtual Eigen::Matrix3d covarianceBetween(double /*dt*/, double /*torque_part*/) const noexcept {
-    return Eigen::Matrix3d::Zero();
-  }
+  /// At the same instant as between(dt); zero where none is estimated. torque_part: how much of the torque's deviation
+  /// counts, see PipelineSettings::torque_deviation_part.
+  virtual CrankUncertainty uncertaintyBetween(double /*dt*/, double /*torque_part*/) const noexcept { return {}; }
   /// The same at the last accepted sample.
-  virtual Eigen::Matrix3d motionCovariance(double /*torque_part*/) const noexcept { return Eigen::Matrix3d::Zero(); }
+  virtual CrankUncertainty uncertainty(double /*torque_part*/) const noexcept { return {}; }
   /// Factor that the last blow put on the crank's speed, by all samples since; of no model: 1, not known.
   virtual BlowFactor blowFactor() const noexcept { return {}; }
   /// Jc: what turns with the crank beside the links, as far as known [kg m2].
@@ -94,8 +110,8 @@ class CrankTracker {
   /// Mean of innovation^2 over its variance: near 1 where readings and model agree; NaN before enough samples and of no
   /// model.
   virtual double consistency() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
-  /// The same of the half turns before the blow alone, the lesser of the last two: there a rod that gives or a blow that lasts changes little, so
-  /// that what contradicts the model is another machine or another sensor.
+  /// The same of the half turns before the blow alone, the lesser of the last two: there a rod that gives or a blow
+  /// that lasts changes little, so that what contradicts the model is another machine or another sensor.
   virtual double strikeConsistency() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
   /// The filter that learns of sensor and machine behind the estimates; null: none.
   virtual const CrankFilter* filter() const noexcept { return nullptr; }

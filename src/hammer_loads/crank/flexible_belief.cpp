@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "hammer_loads/crank/column_step.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -38,6 +40,16 @@ void apply(const FlexibleMatrix& f, Joint& all) noexcept {
   Joint::Effect step = Joint::Effect::Zero();
   step.col(ConstantErrors::kShare) = f.col(kOdds).head<kFlexibleVariables>();
   all.predict(f.topLeftCorner<kFlexibleVariables, kFlexibleVariables>(), step);
+}
+
+/// On the crank acts the coupling's moment.
+void endColumns(const ShaftModel& model, const ShaftState& to, double h, ColumnStep& columns, Joint& all) noexcept {
+  const CouplingLaw law = lawOf(*model.coupling(), to);
+  const ShaftLoad load = model(to.position.angle);
+  const double moment = law.moment(to.twist, to.motor_speed, to.speed) - law.crank_inertia * load.hull_acceleration;
+  columns.end(to, law.crank_inertia, load, moment, h);
+  all.by_constant.row(Belief::kSpeed).tail<kMachineColumns>() += columns.speed();
+  all.by_constant.row(Belief::kAngle).tail<kMachineColumns>() += columns.angle();
 }
 
 /// speed: of crank and motor together; torque: of the motor.
@@ -118,6 +130,9 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
   int blows = 0;
   for (int i = 0; i < steps && std::abs(b.state.speed) < most_speed; ++i) {
     const BlowPrior prior = b.priorOf(drawn);
+    std::optional<ColumnStep> columns;
+    if (!model.isExact())
+      columns.emplace(model, b.state, lawOf(*model.coupling(), b.state).crank_inertia, model(b.state.position.angle));
     FlexibleMatrix f = FlexibleMatrix::Identity();
     const bool struck = advanceFlexible(model, h, {prior.mean, contact}, b.state, &f) > 0;
     if (struck) {
@@ -128,7 +143,9 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
       blows += !b.tool_met;
       b.tool_met = false;
     }
+    if (columns) all.by_constant.row(Belief::kSpeed).tail<kMachineColumns>() += columns->atStart();
     apply(f, all);
+    if (columns) endColumns(model, b.state, h, *columns, all);
     addNoise(walks, lawOf(*model.coupling(), b.state), h, all);
   }
   setJoint(all, b);
@@ -188,17 +205,24 @@ bool isSoundFlexible(double most_speed, const Belief& b) noexcept {
   return std::abs(b.state.motor_speed) < most_speed && std::abs(b.state.twist) < kMostTwist && joint(b).isSound();
 }
 
-Eigen::Matrix3d flexibleMotionCovariance(const ShaftModel& model, const Belief& b, double growth,
-                                         const ConstantErrors::Matrix& moment, double torque_part) noexcept {
+CrankUncertainty flexibleUncertainty(const ShaftModel& model, const Belief& b, double growth,
+                                     const ConstantErrors::Matrix& root, double torque_part) noexcept {
   const AccelerationSlopes slopes = accelerationSlopes(model, b.state);
   const Joint all = joint(b);
-  Eigen::Matrix<double, 3, kFlexibleVariables> jacobian = Eigen::Matrix<double, 3, kFlexibleVariables>::Zero();
-  jacobian(0, Belief::kAngle) = jacobian(1, Belief::kSpeed) = 1.0;
+  Eigen::Matrix<double, 4, kFlexibleVariables> jacobian = Eigen::Matrix<double, 4, kFlexibleVariables>::Zero();
+  jacobian(0, Belief::kAngle) = jacobian(1, Belief::kSpeed) = jacobian(3, Belief::kInertia) = 1.0;
   jacobian.row(2) = (slopes.others + slopes.by_moment).head<kFlexibleVariables>();
-  Eigen::Matrix<double, 3, ConstantErrors::kSize> by_constant = jacobian * all.by_constant;
-  by_constant(2, ConstantErrors::kShare) += slopes.others[kOdds];
+  CrankUncertainty result;
+  result.by_constant = jacobian * all.by_constant;
+  result.by_constant(2, ConstantErrors::kShare) += slopes.others[kOdds];
+  result.by_constant = ConstantErrors::columns(result.by_constant, root);
+  const ShaftLoad load = model(b.state.position.angle);
+  const double inv = 1.0 / (lawOf(*model.coupling(), b.state).crank_inertia + load.inertia);
+  addAcceleration(model, b.state, acceleration(model, load, b.state), inv, result);
   jacobian.row(2) = (slopes.others + torque_part * slopes.by_moment).head<kFlexibleVariables>();
-  return growth * jacobian * all.covariance * jacobian.transpose() + by_constant * moment * by_constant.transpose();
+  result.own = growth * jacobian.topRows<3>() * all.covariance * jacobian.topRows<3>().transpose();
+  result.inertia = std::sqrt(growth * all.covariance(Belief::kInertia, Belief::kInertia));
+  return result;
 }
 
 }  // namespace hammer_loads

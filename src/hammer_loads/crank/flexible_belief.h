@@ -5,6 +5,10 @@
 
 namespace hammer_loads {
 
+/// What the hammer's constants make of the acceleration [rad/s2] at the state itself.
+void addAcceleration(const ShaftModel& model, const ShaftState& state, double acceleration, double inverse_inertia,
+                     CrankUncertainty& result) noexcept;
+
 /// The motor, on which the encoder sits, is where the crank is but for a twist of standard deviation
 /// torque_deviation [N m] over the stiffness.
 void beginMotor(const Coupling& coupling, double torque_deviation, CrankBelief& belief) noexcept;
@@ -23,8 +27,8 @@ void forgetAngleFlexible(double variance, CrankBelief& belief) noexcept;
 void forgetCouplingsOf(CrankBelief& belief) noexcept;
 bool isSoundFlexible(double most_speed, const CrankBelief& belief) noexcept;
 
-/// Covariance of the crank's (angle, speed, acceleration), grown as CrankBelief::grown().
-Eigen::Matrix3d flexibleMotionCovariance(const ShaftModel& model, const CrankBelief& belief, double growth,
-                                         const ConstantErrors::Matrix& moment, double torque_part) noexcept;
+/// As motionUncertainty() of the crank, at a rigid one's place.
+CrankUncertainty flexibleUncertainty(const ShaftModel& model, const CrankBelief& belief, double growth,
+                                     const ConstantErrors::Matrix& root, double torque_part) noexcept;
 
 }  // namespace hammer_loads

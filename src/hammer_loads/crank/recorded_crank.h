@@ -25,12 +25,10 @@ class RecordedCrank final : public CrankTracker {
   CrankEstimate between(double dt) const noexcept override { return filter_.between(dt); }
   bool hasSpeed() const noexcept override { return filter_.hasSpeed(); }
   bool isPlausible() const noexcept override { return filter_.isPlausible(); }
-  Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override {
-    return filter_.covarianceBetween(dt, torque_part);
+  CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept override {
+    return filter_.uncertaintyBetween(dt, torque_part);
   }
-  Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override {
-    return filter_.motionCovariance(torque_part);
-  }
+  CrankUncertainty uncertainty(double torque_part) const noexcept override { return filter_.uncertainty(torque_part); }
   BlowFactor blowFactor() const noexcept override { return filter_.blowFactor(); }
   double driveInertia() const noexcept override { return filter_.driveInertia(); }
   bool isDoubtful() const noexcept override { return filter_.isDoubtful(); }

@@ -54,30 +54,28 @@ BetweenSamples SmoothedCrank::lastStep() const noexcept {
 }
 
 /// Between those at both ends: forward from the earlier one, with the blow as it is known by now.
-Eigen::Matrix3d SmoothedCrank::covarianceBetween(double dt, double torque_part) const noexcept {
-  const Eigen::Matrix3d at_end = motionCovariance(torque_part);
+CrankUncertainty SmoothedCrank::uncertaintyBetween(double dt, double torque_part) const noexcept {
+  const CrankUncertainty at_end = uncertainty(torque_part);
   if (dt >= now_.step) return at_end;
   CrankBelief belief = before_;
   const double deviation = std::sqrt(now_.belief.covariance(CrankBelief::kFactor, CrankBelief::kFactor));
   const BlowPrior blow{now_.belief.factor, deviation, now_.belief.by_constant.row(CrankBelief::kFactor)};
   belief.predict(step_model_, now_.walks, blow, true, track_->filter().mostSpeed(), dt);
   const double part = dt / now_.step;
-  return (1.0 - part) * covarianceOf(belief, torque_part) + part * at_end;
+  const CrankUncertainty forward = uncertaintyOf(belief, torque_part);
+  return {(1.0 - part) * forward.own + part * at_end.own,
+          (1.0 - part) * forward.by_constant + part * at_end.by_constant, at_end.inertia};
 }
 
-Eigen::Matrix3d SmoothedCrank::motionCovariance(double torque_part) const noexcept {
-  return covarianceOf(now_.belief, torque_part);
+CrankUncertainty SmoothedCrank::uncertainty(double torque_part) const noexcept {
+  return uncertaintyOf(now_.belief, torque_part);
 }
 
-Eigen::Matrix3d SmoothedCrank::covarianceOf(const CrankBelief& belief, double torque_part) const noexcept {
+CrankUncertainty SmoothedCrank::uncertaintyOf(const CrankBelief& belief, double torque_part) const noexcept {
   const ShaftLoad load = model_(belief.state.position.angle);
-  return hammer_loads::motionCovariance(model_, load, belief, now_.growth, now_.moment, kTorquePart * torque_part);
+  return motionUncertainty(model_, load, belief, now_.growth, now_.root, kTorquePart * torque_part);
 }
 
-BlowFactor SmoothedCrank::blowFactor() const noexcept { return now_.belief.blowFactor(grown(now_.belief)); }
-
-ShaftMatrix SmoothedCrank::grown(const CrankBelief& belief) const noexcept {
-  return belief.grown(now_.growth, now_.moment);
-}
+BlowFactor SmoothedCrank::blowFactor() const noexcept { return now_.belief.blowFactor(now_.growth, now_.root); }
 
 }  // namespace hammer_loads

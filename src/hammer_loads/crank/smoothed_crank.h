@@ -24,8 +24,8 @@ class SmoothedCrank final : public CrankTracker {
   std::optional<CrankWays> waysBetween(double dt) const noexcept override;
   bool hasSpeed() const noexcept override { return now_.has_speed; }
   bool isPlausible() const noexcept override { return now_.is_plausible; }
-  Eigen::Matrix3d covarianceBetween(double dt, double torque_part) const noexcept override;
-  Eigen::Matrix3d motionCovariance(double torque_part) const noexcept override;
+  CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept override;
+  CrankUncertainty uncertainty(double torque_part) const noexcept override;
   BlowFactor blowFactor() const noexcept override;
   double driveInertia() const noexcept override { return now_.belief.state.drive_inertia; }
   bool isDoubtful() const noexcept override { return now_.is_doubtful; }
@@ -40,8 +40,7 @@ class SmoothedCrank final : public CrankTracker {
  private:
   Tracking next() noexcept;
   BetweenSamples lastStep() const noexcept;
-  Eigen::Matrix3d covarianceOf(const CrankBelief& belief, double torque_part) const noexcept;
-  ShaftMatrix grown(const CrankBelief& belief) const noexcept;
+  CrankUncertainty uncertaintyOf(const CrankBelief& belief, double torque_part) const noexcept;
 
   std::shared_ptr<CrankTrack> track_;
   ShaftModel model_;       ///< with the latest motion of the hull

@@ -19,8 +19,8 @@ class SteadyClockFit {
   /// Of stamps about the line, root of mean square [ns].
   double scatter() const noexcept { return std::sqrt(end_square_); }
   int runs() const noexcept { return runs_; }  ///< stamps after the first one
-  bool isKnown() const noexcept;   ///< stamps enough for a line and for how many samples have one stamp
-  bool inBursts() const noexcept;  ///< several samples come with each stamp
+  bool isKnown() const noexcept;               ///< stamps enough for a line and for how many samples have one stamp
+  bool inBursts() const noexcept;              ///< several samples come with each stamp
   /// Equal intervals explain the stamps: their scatter about the line does not grow beyond that of their steps, or is
   /// small beside the time from burst to burst.
   bool explains() const noexcept;

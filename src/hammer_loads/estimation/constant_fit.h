@@ -21,11 +21,12 @@ class ConstantFit {
     information_ = (prior.array() > 0.0).select(prior.cwiseAbs2().cwiseInverse(), 0.0).matrix().asDiagonal();
     score_.setZero();
   }
-  /// The square of an innovation beyond the gate counts as the gate's. by_constant: dz/dp - H V.
-  void learn(double innovation, double variance, const Row& by_constant) noexcept {
+  /// The square of an innovation beyond the gate counts as the gate's. by_constant: dz/dp - H V. What it weighs.
+  double learn(double innovation, double variance, const Row& by_constant) noexcept {
     const double weight = weightWithin(gate::kRare, innovation, variance) / variance;
     information_.noalias() += (weight * by_constant.transpose()) * by_constant;
     score_ += (weight * innovation) * by_constant.transpose();
+    return weight;
   }
   /// One of the given constants has been changed by so much.
   void take(int constant, double change) noexcept { score_ += information_.col(constant) * change; }

@@ -1,6 +1,8 @@
 /// Load of the mechanism's moving links on the hull, which may move itself (model.md 3).
 #pragma once
 
+#include <Eigen/Core>
+
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/crank_motion.h"
 #include "hammer_loads/linkage/hull_motion.h"
@@ -25,6 +27,9 @@ inline HullWrench operator+(const HullWrench& a, const HullWrench& b) noexcept {
 inline HullWrench operator*(double factor, const HullWrench& a) noexcept {
   return {factor * a.force_x, factor * a.force_z, factor * a.torque_y};
 }
+
+inline Eigen::Vector3d vectorOf(const HullWrench& w) noexcept { return {w.force_x, w.force_z, w.torque_y}; }
+inline HullWrench wrenchOf(const Eigen::Vector3d& w) noexcept { return {w[0], w[1], w[2]}; }
 
 /// Momentum of the moving links relative to the hull, axes of hammer_hull, angular momentum about D.
 /// The impulse of the wrench without weight over any interval between blows is minus its change (model.md 3); in a

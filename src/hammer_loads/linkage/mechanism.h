@@ -1,10 +1,15 @@
 /// A hammer's striking mechanism as its drawing and its weighing give it: lengths, masses, inertias.
 #pragma once
 
+#include <array>
+
 #include "hammer_loads/linkage/crank_rocker.h"
 #include "hammer_loads/linkage/planar.h"
 
 namespace hammer_loads {
+
+/// Standard deviations of the constants of a hammer, in the order and the units of kHammerConstants; 0: exact.
+using HammerDeviations = std::array<double, 20>;
 
 /// The hammer file (contract): keys of the same names with the unit appended.
 struct HammerParameters {
@@ -25,6 +30,7 @@ struct HammerParameters {
   double rod_inertia_about_com{};       ///< [kg m2], >= 0
   double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
   double drive_reaction_ratio{1.0};     ///< r of DriveReaction [-], finite
+  HammerDeviations deviations{};        ///< what is known of the above; all exact where nothing is said
 };
 
 /// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/pipeline/crank_step.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -39,6 +41,12 @@ HullWrench deviationOf(const Gradient& g, const Eigen::Matrix3d& covariance) noe
   return {deviation(0), deviation(1), deviation(2)};
 }
 
+HullDeviation unknownDeviation() noexcept {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr HullWrench kWrench{kUnknown, kUnknown, kUnknown};
+  return {kWrench, kWrench, kUnknown, kUnknown, kUnknown};
+}
+
 /// L with L L^T = covariance, also where some variance is zero.
 Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) noexcept {
   Eigen::Matrix3d l = Eigen::Matrix3d::Zero();
@@ -59,19 +67,43 @@ LinksBeside::LinksBeside(const HullModel& model, const LinksAtAngle& at) noexcep
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                             const LinksBeside& links, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept {
-  if (!(covariance(1, 1) > 0.0)) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    return {{kUnknown, kUnknown, kUnknown}, kUnknown, kUnknown, kUnknown};
-  }
+  if (!(covariance(1, 1) > 0.0)) return unknownDeviation();
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
-  return {deviationOf(g, covariance), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
+  return {deviationOf(g, covariance),
+          {},
+          std::sqrt(covariance(0, 0)),
+          std::sqrt(covariance(1, 1)),
           std::sqrt(covariance(2, 2))};
 }
 
-HullWrench hullMotionVariance(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
-                              double crank_speed, const HullMotion& hull,
-                              const HullMotionCovariance& covariance) noexcept {
+HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
+                            const CrankEstimate& crank, const LinksBeside& links, const HullMotion& hull,
+                            const CrankUncertainty& uncertainty, LoadColumns& columns) noexcept {
+  columns.setZero();
+  if (!(uncertainty.own(1, 1) > 0.0)) return unknownDeviation();
+  const DriveReaction drive = driveReaction(model, drive_inertia), none = driveReaction(model, 0.0);
+  const Gradient g =
+      gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, hull, at); });
+  columns.leftCols<ConstantErrors::kSize>() = g.lazyProduct(uncertainty.by_constant.topRows<3>());
+  columns.middleCols<kMachineColumns>(ConstantErrors::kTable) +=
+      hammer.wrench(drive_inertia, links.here, motionOf(crank), hull);
+  const double acceleration = crank.acceleration + crank.drive_lead_acceleration;
+  const double by_inertia =
+      drive.torque(acceleration, hull.acceleration) - none.torque(acceleration, hull.acceleration);
+  columns.row(2).head<ConstantErrors::kSize>() += by_inertia * uncertainty.by_constant.row(CrankUncertainty::kInertia);
+  columns(2, ConstantErrors::kSize) = by_inertia * uncertainty.inertia;
+  const Eigen::Vector3d common = columns.rowwise().squaredNorm();
+  const Eigen::Vector3d own = vectorOf(deviationOf(g, uncertainty.own));
+  const auto of = [&](Eigen::Index i) {
+    return std::sqrt(uncertainty.own(i, i) + uncertainty.by_constant.row(i).squaredNorm());
+  };
+  return {wrenchOf((own.cwiseAbs2() + common).cwiseSqrt()), wrenchOf(common.cwiseSqrt()), of(0), of(1), of(2)};
+}
+
+void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,
+                   const HullMotion& hull, const HullMotionCovariance& covariance, HullWrench& deviation) noexcept {
+  if (covariance.isZero(0.0)) return;
   const auto load = [&](const HullMotion& h) { return vectorOf(frameWrench(model, links, crank_speed, h)); };
   const HullMotion still{{0.0, 0.0}, hull.rate, 0.0};
   constexpr double kRateStep = 1e-5;  // [rad/s]
@@ -82,7 +114,7 @@ HullWrench hullMotionVariance(const HullModel& model, const DriveReaction& drive
   by.col(3) = load({{0.0, 0.0}, hull.rate, 1.0}) - here;
   by(2, 3) -= drive.by_hull;
   const Eigen::Vector3d variance = (by * covariance * by.transpose()).diagonal().cwiseMax(0.0);
-  return {variance[0], variance[1], variance[2]};
+  deviation = wrenchOf((vectorOf(deviation).cwiseAbs2() + variance).cwiseSqrt());
 }
 
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
@@ -97,13 +129,13 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 }
 
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                          const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept {
+                          const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept {
   WrenchSpread spread;
-  if (!(covariance(1, 1) > 0.0)) return spread;
+  if (!(own(1, 1) > 0.0)) return spread;
   const HullMotion at_rest;
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, at_rest, at); });
-  const Eigen::Matrix3d errors = g * root(covariance);
+  const Eigen::Matrix3d errors = root(g * own * g.transpose() + columns * columns.transpose());
   spread.count = 3;
   for (int i = 0; i < 3; ++i) {
     Wrench& part = spread.part[static_cast<std::size_t>(i)];

@@ -6,6 +6,7 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/wrench_columns.h"
 #include "hammer_loads/pipeline/hull_motion_filter.h"
 
 namespace hammer_loads {
@@ -13,6 +14,7 @@ namespace hammer_loads {
 /// Standard deviations; NaN where the estimator has no covariance.
 struct HullDeviation {
   HullWrench wrench;      ///< of force_x [N], force_z [N], torque_y [N m]
+  HullWrench common;      ///< the part of it that is the same in all samples: of constants
   double angle{};         ///< of the crank [rad]
   double speed{};         ///< [rad/s]
   double acceleration{};  ///< [rad/s2]
@@ -34,19 +36,29 @@ inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& 
   return hullDeviation(model, drive, crank, LinksBeside(model, linksAt(model, crank.position.angle)), hull, covariance);
 }
 
-/// What the hull's own motion adds to the variances of the load at the links' place, squares of [N, N, N m]: linear, as
-/// the load is in all but the rate.
-HullWrench hullMotionVariance(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
-                              double crank_speed, const HullMotion& hull,
-                              const HullMotionCovariance& covariance) noexcept;
+/// Errors of a wrench that are independent of each other, one standard deviation each, and the same in all samples: of
+/// the sensor's constants, of the hammer's (their order: ConstantErrors), of the learned drive inertia. Rows: force_x
+/// [N], force_z [N], torque_y [N m].
+constexpr int kLoadColumns = ConstantErrors::kSize + 1;
+using LoadColumns = Eigen::Matrix<double, 3, kLoadColumns>;
+
+/// By samples and constants together, J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).
+HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
+                            const CrankEstimate& crank, const LinksBeside& links, const HullMotion& hull,
+                            const CrankUncertainty& uncertainty, LoadColumns& columns) noexcept;
+
+/// Adds what the hull's own motion adds to the deviation of the load at the links' place: linear, as the load is in all
+/// but the rate. Errors of crank and IMU are independent.
+void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,
+                   const HullMotion& hull, const HullMotionCovariance& covariance, HullWrench& deviation) noexcept;
 
 /// Standard deviation of the momentum, the drive's included: of an impulse's one end [N s, N s, N m s].
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                              const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
 
-/// The covariance as three errors of the load that are independent of each other, from motion of the links relative to
-/// the hull; none where there is no covariance.
+/// Samples and constants as three errors of the load that are independent of each other, from motion of the links
+/// relative to the hull; none where there is no covariance.
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
-                          const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
+                          const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept;
 
 }  // namespace hammer_loads

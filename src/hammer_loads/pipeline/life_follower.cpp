@@ -9,20 +9,7 @@
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {
-namespace {
-
-/// Of the wrench at the sample, whatever is published of it.
-HullWrench deviationAtSample(const Pipeline& pipeline) noexcept {
-  const SampleResult& result = pipeline.result();
-  if (!result.outputs.empty()) {
-    const WrenchOutput& last = result.outputs.back();
-    if (last.stamp == result.stamp && last.interval == 0.0) return last.deviation.wrench;
-  }
-  const DriveReaction drive = driveReaction(pipeline.model(), pipeline.crank().tracker().driveInertia());
-  return hullDeviation(pipeline.model(), drive, result.crank, result.hull.motion, result.crank_covariance).wrench;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& settings)
     : pipeline_(&pipeline),
@@ -70,7 +57,7 @@ void LifeFollower::follow() noexcept {
 }
 
 void LifeFollower::count(const SampleResult& result) noexcept {
-  channelValues(result, deviationAtSample(*pipeline_), boom_, values_.data(), deviations_.data());
+  channelValues(result, result.deviation.wrench, boom_, values_.data(), deviations_.data());
   recorder_.sample(result.stamp, values_.data(), deviations_.data());
   turn_.add(result.stamp, values_.data());
 }
@@ -105,7 +92,7 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   for (std::size_t i = 0; i < end.size(); ++i) all_within = all_within && isWithin(i);
   if (all_within) return;
   std::array<double, kHullChannels> forward, back, end_deviation;
-  wrenchValues(deviationAtSample(*pipeline_), end_deviation.data());
+  wrenchValues(pipeline_->result().deviation.wrench, end_deviation.data());
   const std::optional<CrankWays> ways = place.ways(pipeline_->crank().step());
   if (ways) {
     wrenchValues(load.at(ways->forward), forward.data());

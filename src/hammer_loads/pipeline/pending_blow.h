@@ -6,6 +6,7 @@
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/blow_deviation.h"
 
 namespace hammer_loads {
 
@@ -13,8 +14,8 @@ namespace hammer_loads {
 /// radian, or what is known of it when the crank stops before, restarts or strikes again.
 class PendingBlow {
  public:
-  /// time: of the blow [s]; speed of the crank when it reaches the dead centre and its standard deviation [rad/s].
-  void begin(double time, const CrankPosition& at, double speed, double speed_deviation) noexcept {
+  /// time: of the blow [s]; speed of the crank when it reaches the dead centre [rad/s] and how far it may be off.
+  void begin(double time, const CrankPosition& at, double speed, const CrankUncertainty& doubt) noexcept {
     waiting_ = true;
     time_ = time;
     position_ = at;
@@ -23,7 +24,8 @@ class PendingBlow {
     early_ = false;
     published_ = withheld_ = 0;
     blow_.speed = speed;
-    blow_.speed_deviation = speed_deviation;
+    blow_.speed_deviation = std::sqrt(doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed));
+    columns_.row(0) = doubt.by_constant.row(CrankUncertainty::kSpeed);
   }
   bool isWaiting() const noexcept { return waiting_; }
   /// It was none.
@@ -35,6 +37,13 @@ class PendingBlow {
     blow_.drive_inertia = factor.drive_inertia;
     blow_.inertia_deviation = factor.inertia_deviation;
     early_ = factor.early;
+    columns_.bottomRows<2>() = factor.by_constant;
+  }
+  /// What independent errors of constants make of take(): speed [rad/s], factor [-], inertia (relative).
+  BlowColumns columns() const noexcept {
+    BlowColumns columns = columns_;
+    if (early_) columns.row(0) = (columns_.row(0) - (blow_.speed / blow_.factor) * columns_.row(1)) / blow_.factor;
+    return columns;
   }
   /// A sample after it, whose loads were published or withheld: a crank whose readings are not known to agree with the
   /// model, in degrees for instance, has struck none where most of them were withheld.
@@ -65,6 +74,7 @@ class PendingBlow {
   double time_{};
   CrankPosition position_;
   CrankBlow blow_;
+  BlowColumns columns_{BlowColumns::Zero()};
   double hull_speed_{};
   int published_{}, withheld_{};
   bool early_{};  ///< the tool was met before the dead centre

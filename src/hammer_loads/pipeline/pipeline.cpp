@@ -27,12 +27,13 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
     : mechanism_(mechanism),
       settings_(settings),
       model_(mechanism_, settings.level),
+      columns_(model_),
       displaced_links_(model_),
       crank_(model_, settings_, make),
       trust_(settings_.crank_sensor),
       hull_(mechanism_.parameters(), settings_, boom),
-      turn_(model_, crank_.step(), crank_.tracker()),
-      sampler_(model_, crank_.step(), crank_.tracker(), settings_),
+      turn_(model_, columns_, crank_.step(), crank_.tracker()),
+      sampler_(model_, columns_, crank_.step(), crank_.tracker(), settings_),
       nominal_force_(
           pulseAtConstantSpeed(mechanism_, settings_.level, kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
       counts_(counts) {
@@ -116,19 +117,22 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   const LinksBeside links(model_, crank_.step().links());
   if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion)))
     return withhold(Refusal::kImplausible);
-  result_.crank_covariance = crank_.tracker().motionCovariance(settings_.torque_deviation_part);
-  result_.beside_blow =
-      !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, std::sqrt(result_.crank_covariance(0, 0)));
+  result_.doubt = crank_.tracker().uncertainty(settings_.torque_deviation_part);
+  result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
+                                    hull_.motion().motion, result_.doubt, result_.load_columns);
+  result_.beside_blow = !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, result_.deviation.angle);
   followBoom(links);
   hullMovedAtBlow();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
   result_.links = linkState(links.here.links, motion);
-  result_.wrench = hullWrench(model_, driveReaction(model_, crank_.tracker().driveInertia()), links.here.links, motion,
-                              result_.hull.motion);
-  result_.pins = pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow,
-                           std::sqrt(result_.crank_covariance(0, 0)));
+  const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
+  result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion);
+  result_.pins =
+      pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow, result_.deviation.angle);
+  addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
+                result_.deviation.wrench);
   sampler_.sample(links, result_);
   turn_.published(true);
   ++counts_.accepted;
@@ -211,7 +215,8 @@ void Pipeline::followBoom(const LinksBeside& links) noexcept {
   const HullWrench motion = hullWrench(model_, drive, links.here.links, crank, Gravity{});
   const HullWrench displaced = displaced_links_.wrench(links.here.links, crank.speed, hull_.motion().motion);
   const WrenchHistory step = boom_follows_ ? wrenchHistory(model_, crank_.step()) : WrenchHistory{};
-  const WrenchSpread spread = wrenchSpread(model_, drive, result_.crank, links, result_.crank_covariance);
+  const WrenchSpread spread =
+      wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
   result_.boom = &boom_->sample({result_.stamp, motion, spread, hull_.newImuReading(result_.stamp), imu_lost, displaced,

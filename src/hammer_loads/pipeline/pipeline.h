@@ -73,6 +73,7 @@ class Pipeline {
   Mechanism mechanism_;
   PipelineSettings settings_;
   HullModel model_;
+  WrenchColumns columns_;
   DisplacedLinks displaced_links_;
   CrankFollower crank_;
   CrankTrust trust_;

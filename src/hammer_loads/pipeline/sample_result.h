@@ -32,8 +32,9 @@ struct WrenchOutput {
   CrankEstimate crank;        ///< at the stamp
   HullWrench wrench;          ///< of links and drive
   double drive_reaction_y{};  ///< part of its moment [N m]
-  HullDeviation deviation;    ///< for a mean that of its end or, if less, what the momentum's at both ends allows
-  bool near_blow{};           ///< transmission angle below near_blow_deg
+  HullDeviation deviation;  ///< for a mean: of its end or, if less, what the momentum's at both ends allows; its common
+                            ///< part is that of the mean
+  bool near_blow{};         ///< transmission angle below near_blow_deg
 };
 
 struct SampleResult {
@@ -44,9 +45,11 @@ struct SampleResult {
   /// published. What adds up over steps goes on.
   bool beside_blow{};
   CrankEstimate crank;
-  Eigen::Matrix3d crank_covariance;  ///< of angle, speed and acceleration; zero where the estimator has none
-  double consistency{};              ///< CrankTracker::consistency()
-  bool inconsistent{};               ///< readings contradict the model, not yet so that samples are withheld
+  CrankUncertainty doubt;    ///< of the crank's motion; zero where the estimator has none
+  LoadColumns load_columns;  ///< of the wrench
+  HullDeviation deviation;   ///< at the sample, with what the hull's motion adds
+  double consistency{};      ///< CrankTracker::consistency()
+  bool inconsistent{};       ///< readings contradict the model, not yet so that samples are withheld
   LinkState links;
   HullState::Motion hull;
   bool pitch_known{};  ///< every pitch joint has come: else the weight is by the parameter hull_pitch_rad

@@ -79,8 +79,8 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   if (end.pulse) peak_force_ = end.pulse->amplitude;
   end.mean_press_force =  // times the impulse, once that is known
       last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
-  const double deviation = std::sqrt(tracker_->covarianceBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0)(1, 1));
-  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, deviation);
+  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before,
+                 tracker_->uncertaintyBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0));
   pending_.follow(tracker_->blowFactor());
   last_blow_ = end.stamp;
   turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
@@ -102,7 +102,9 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   }
   turn_.correctBegin(linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
   RockerBlow& blow = pending_end_.blow;
-  blow = measuredBlow(*model_, pending_.take());
+  const CrankBlow crank = pending_.take();
+  blow = measuredBlow(*model_, crank);
+  addConstants(*columns_, *model_, crank, pending_.columns(), blow);
   voidImpossible(model_->mechanism(), model_->level(), blow);
   impossible_ += blow.impossible;
   blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull

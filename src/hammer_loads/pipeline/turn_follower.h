@@ -15,8 +15,8 @@ namespace hammer_loads {
 class TurnFollower {
  public:
   /// Refers to them, which must outlive it.
-  TurnFollower(const HullModel& model, const CrankStep& step, const CrankTracker& tracker)
-      : model_(&model), step_(&step), tracker_(&tracker) {}
+  TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankTracker& tracker)
+      : model_(&model), columns_(&columns), step_(&step), tracker_(&tracker) {}
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
@@ -51,6 +51,7 @@ class TurnFollower {
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
 
   const HullModel* model_;
+  const WrenchColumns* columns_;
   const CrankStep* step_;
   const CrankTracker* tracker_;
   TurnRecorder turn_;

@@ -12,7 +12,6 @@
 namespace hammer_loads {
 
 /// Force along x and z, moment about D: [N, N, N m], their impulse [N s, N s, N m s].
-inline Eigen::Vector3d vectorOf(const HullWrench& w) noexcept { return {w.force_x, w.force_z, w.torque_y}; }
 
 class WrenchPath {
  public:

@@ -8,9 +8,10 @@
 
 namespace hammer_loads {
 
-WrenchSampler::WrenchSampler(const HullModel& model, const CrankStep& step, const CrankTracker& tracker,
-                             const PipelineSettings& settings)
+WrenchSampler::WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step,
+                             const CrankTracker& tracker, const PipelineSettings& settings)
     : model_(&model),
+      hammer_(&columns),
       step_(&step),
       tracker_(&tracker),
       kind_(settings.output),
@@ -30,6 +31,8 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
   index_ = kind_ == OutputKind::kMean ? 1 : 0;
   impulse_ = {};
   momentum_deviation_ = {};
+  column_impulse_.setZero();
+  columns_ = result.load_columns;
   return kind_ != OutputKind::kMean;
 }
 
@@ -44,7 +47,7 @@ void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexc
     if (isKnown(made, result)) result.outputs.push_back(made);
     if (stamp == result.stamp) return;
   }
-  if (kind_ == OutputKind::kMean) addUpTo(step_->length());
+  if (kind_ == OutputKind::kMean) addUpTo(step_->length(), result);
 }
 
 /// Whether it is clear on which side of the blow the output is; a mean does not depend on it.
@@ -64,8 +67,12 @@ bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
   return stamp <= sample;
 }
 
-void WrenchSampler::addUpTo(double time) noexcept {
+void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
   if (!(time > added_up_to_)) return;
+  const double part = (time - added_up_to_) / (step_->length() - added_up_to_);  // of the rest of the step
+  const LoadColumns there = columns_ + part * (result.load_columns - columns_);
+  column_impulse_ += 0.5 * (time - added_up_to_) * (columns_ + there);
+  columns_ = there;
   const LoadImpulse motion = motionImpulse(*model_, drive_, *step_, added_up_to_, time);
   const LoadImpulse added = addedImpulse(*model_, drive_, *step_, hull_, added_up_to_, time);
   impulse_ = {impulse_.all + motion.all + added.all, impulse_.drive_y + motion.drive_y + added.drive_y};
@@ -91,7 +98,7 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   output.stamp = stamp;
   output.crank = at_sample ? result.crank : step_->at(time);
   if (kind_ == OutputKind::kMean) {
-    addUpTo(time);
+    addUpTo(time, result);
     output.interval = seconds(stamp - last_output_);
     output.wrench = (1.0 / output.interval) * impulse_.all;
     output.drive_reaction_y = impulse_.drive_y / output.interval;
@@ -104,38 +111,34 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   last_output_ = stamp;
   const LinkState state = at_sample ? result.links : linkState(*model_, motionOf(output.crank));
   output.near_blow = state.transmission_angle < near_blow_;
-  const Eigen::Matrix3d covariance =
-      at_sample ? result.crank_covariance : tracker_->covarianceBetween(time, torque_part_);
-  const HullState::Motion moving{hull, result.hull.moves, result.hull.covariance};
-  if (at_sample)
-    addDeviation(links, moving, covariance, output);
-  else
-    addDeviation(LinksBeside(*model_, linksAt(*model_, output.crank.position.angle)), moving, covariance, output);
+  if (at_sample) {
+    output.deviation = result.deviation;
+    boundMean(links, result.doubt.own, output);
+    return output;
+  }
+  const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
+  const CrankUncertainty doubt = tracker_->uncertaintyBetween(time, torque_part_);
+  LoadColumns unused;
+  output.deviation = hullDeviation(*hammer_, *model_, step_->driveInertia(), output.crank, there, hull, doubt, unused);
+  addHullMotion(*model_, drive_, there.here.links, output.crank.speed, hull, result.hull.covariance,
+                output.deviation.wrench);
+  boundMean(there, doubt.own, output);
   return output;
 }
 
-/// Errors of crank and IMU are independent.
-void WrenchSampler::addHullMotion(const LinksBeside& links, const HullState::Motion& hull,
-                                  WrenchOutput& output) const noexcept {
-  if (hull.covariance.isZero(0.0)) return;
-  const HullWrench variance =
-      hullMotionVariance(*model_, drive_, links.here.links, output.crank.speed, hull.motion, hull.covariance);
-  HullWrench& d = output.deviation.wrench;
-  d = {std::sqrt(square(d.force_x) + variance.force_x), std::sqrt(square(d.force_z) + variance.force_z),
-       std::sqrt(square(d.torque_y) + variance.torque_y)};
-}
-
-void WrenchSampler::addDeviation(const LinksBeside& links, const HullState::Motion& hull,
-                                 const Eigen::Matrix3d& covariance, WrenchOutput& output) noexcept {
-  output.deviation = hullDeviation(*model_, drive_, output.crank, links, hull.motion, covariance);
-  addHullMotion(links, hull, output);
+/// What a sample's error is of, the momenta at both ends bound; a constant's is the mean of its own.
+void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, WrenchOutput& output) noexcept {
   if (kind_ != OutputKind::kMean) return;
-  const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, links, covariance);
-  const HullWrench allowed = (1.0 / output.interval) * (momentum_deviation_ + momentum);
+  HullDeviation& deviation = output.deviation;
+  const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, links, own);
+  const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_deviation_ + momentum);
   momentum_deviation_ = momentum;
-  HullWrench& wrench = output.deviation.wrench;
-  wrench = {std::fmin(wrench.force_x, allowed.force_x), std::fmin(wrench.force_z, allowed.force_z),
-            std::fmin(wrench.torque_y, allowed.torque_y)};
+  const Eigen::Vector3d of_end =
+      (vectorOf(deviation.wrench).cwiseAbs2() - vectorOf(deviation.common).cwiseAbs2()).cwiseMax(0.0);
+  const Eigen::Vector3d common = (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm();
+  column_impulse_.setZero();
+  deviation.common = wrenchOf(common.cwiseSqrt());
+  deviation.wrench = wrenchOf((of_end.cwiseMin(allowed.cwiseAbs2()) + common).cwiseSqrt());
 }
 
 }  // namespace hammer_loads

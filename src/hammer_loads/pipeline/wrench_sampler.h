@@ -17,8 +17,8 @@ namespace hammer_loads {
 /// are in RockerBlow, not here). Refers to its arguments, which must outlive it.
 class WrenchSampler {
  public:
-  WrenchSampler(const HullModel& model, const CrankStep& step, const CrankTracker& tracker,
-                const PipelineSettings& settings);
+  WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step,
+                const CrankTracker& tracker, const PipelineSettings& settings);
 
   /// Outputs restart with the next sample.
   void forget() noexcept { begun_ = false; }
@@ -33,13 +33,12 @@ class WrenchSampler {
   bool isDue(StampNs sample, StampNs& stamp) const noexcept;
   bool isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept;
   WrenchOutput output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept;
-  void addUpTo(double time) noexcept;
+  void addUpTo(double time, const SampleResult& result) noexcept;
   void followHull(const HullMotion& hull) noexcept;
-  void addHullMotion(const LinksBeside& links, const HullState::Motion& hull, WrenchOutput& output) const noexcept;
-  void addDeviation(const LinksBeside& links, const HullState::Motion& hull, const Eigen::Matrix3d& covariance,
-                    WrenchOutput& output) noexcept;
+  void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, WrenchOutput& output) noexcept;
 
   const HullModel* model_;
+  const WrenchColumns* hammer_;
   const CrankStep* step_;
   const CrankTracker* tracker_;
   OutputKind kind_;
@@ -51,11 +50,13 @@ class WrenchSampler {
   StampNs origin_{};       ///< of the grid
   std::uint64_t index_{};  ///< of the next output on the grid
   StampNs last_output_{};
-  double added_up_to_{};           ///< part of the step whose impulse is in impulse_ [s]
-  HullPath hull_;                  ///< over the step to the sample
-  DriveReaction drive_;            ///< at the sample
-  LoadImpulse impulse_;            ///< since the last output
-  HullWrench momentum_deviation_;  ///< at the last output
+  double added_up_to_{};                             ///< part of the step whose impulse is in impulse_ [s]
+  HullPath hull_;                                    ///< over the step to the sample
+  DriveReaction drive_;                              ///< at the sample
+  LoadImpulse impulse_;                              ///< since the last output
+  LoadColumns columns_{LoadColumns::Zero()};         ///< at the last sample
+  LoadColumns column_impulse_{LoadColumns::Zero()};  ///< since the last output, of a mean
+  HullWrench momentum_deviation_;                    ///< at the last output
 };
 
 }  // namespace hammer_loads

@@ -1,0 +1,31 @@
+/// Errors and deviations where the machine is not the one of its drawing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads::accuracy {
+
+/// One machine whose constants were drawn from the deviations of the hammer file; the file is what the pipeline has.
+struct DrawingRow {
+  static constexpr int kQuantities = 3;  ///< force_x, force_z, torque_y
+  std::uint64_t seed{};
+  double rms[kQuantities]{};      ///< of the peak of each
+  double covered[kQuantities]{};  ///< part of the samples within two deviations
+  double said[kQuantities]{};     ///< root of the mean squared deviation, of the peak
+  double energy{};                ///< root of the mean squared relative error
+  double energy_covered{};        ///< part of the blows
+  double restitution_covered{};
+};
+
+/// off: times the deviations that the machine is drawn with; the pipeline is told the file's. counts: of the encoder.
+DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off);
+
+std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings);
+
+std::string markdown(const std::vector<DrawingRow>& rows);
+
+}  // namespace hammer_loads::accuracy

@@ -1,0 +1,27 @@
+#include "hammer_loads/hammer/wrench_columns.h"
+
+namespace hammer_loads {
+
+WrenchColumns::WrenchColumns(const HullModel& model)
+    : model_(&model), columns_(machineColumns(model.mechanism(), model.level())) {
+  if (!columns_) return;
+  for (const MachineColumn& column : columns_->columns()) models_.emplace_back(column.mechanism, column.level);
+}
+
+WrenchColumns::Matrix WrenchColumns::wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
+                                            const HullMotion& hull) const noexcept {
+  Matrix columns = Matrix::Zero();
+  const auto load = [&](const HullModel& model, const LinkMotion& links) {
+    return vectorOf(hullWrench(model, driveReaction(model, drive_inertia), links, crank, hull));
+  };
+  if (isExact()) return columns;
+  const Eigen::Vector3d here = load(*model_, at.links);
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    const bool alike = columns_->columns()[i].links_move_alike;
+    columns.col(static_cast<Eigen::Index>(i)) =
+        load(models_[i], alike ? at.links : linksAt(models_[i], at.angle).links) - here;
+  }
+  return columns;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,38 @@
+/// What is not known of a hammer, on its loads.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/linkage/machine_columns.h"
+
+namespace hammer_loads {
+
+/// Models of the other hammers of MachineColumns; in their order.
+class WrenchColumns {
+ public:
+  using Matrix = Eigen::Matrix<double, 3, kMachineColumns>;  ///< rows: force_x [N], force_z [N], torque_y [N m]
+
+  explicit WrenchColumns(const HullModel& model);
+  WrenchColumns(const WrenchColumns&) = delete;
+  WrenchColumns& operator=(const WrenchColumns&) = delete;
+
+  bool isExact() const noexcept { return models_.empty(); }
+  /// Change of the hull wrench at a given motion of the crank, by one standard deviation each; drive_inertia: Jc
+  /// [kg m2]. No allocation.
+  Matrix wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
+                const HullMotion& hull) const noexcept;
+  /// Hammers in the columns' order.
+  const std::vector<HullModel>& models() const noexcept { return models_; }
+  /// Keys of their constants, likewise.
+  const char* key(std::size_t column) const noexcept { return columns_->columns()[column].key; }
+
+ private:
+  const HullModel* model_;
+  std::shared_ptr<const MachineColumns> columns_;
+  std::vector<HullModel> models_;
+};
+
+}  // namespace hammer_loads

@@ -1,0 +1,109 @@
+/// Constants of a hammer's drawing: one row each, and a row is all that file, deviation and columns need.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/util/constants.h"
+
+namespace hammer_loads {
+
+struct HammerConstant {
+  const char* key;                           ///< of the hammer file
+  const char* unit;                          ///< as the key ends
+  double& (*field)(HammerParameters&);       ///< in SI, an angle in rad
+  double (*usual)(const HammerParameters&);  ///< standard deviation where the file says nothing, in the field's unit
+  double away;                               ///< 1 or -1: where a deviation leads to a hammer that can exist
+  enum class Enters {
+    kLoads,
+    kBlow,
+    kLearned,
+    kFollows
+  } enters;  ///< kBlow: the blow alone; kLearned: the crank's
+             ///< filter knows it better; kFollows: of the others
+};
+
+namespace usual {
+
+inline double exact(const HammerParameters&) { return 0.0; }
+inline double length(const HammerParameters&) { return 3e-4; }
+constexpr double kCentre = 1e-3;   // [m]
+constexpr double kWeighed = 0.02;  // of the rocker's mass and inertia
+constexpr double kGuessed = 0.5;   // of the crank's and the rod's: drawings of them are rare
+
+}  // namespace usual
+
+inline constexpr std::size_t kHammerConstantCount = 20;
+
+/// In the order of the file. Absent deviations: contract.
+inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstants{{
+    {"crank_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.crank; }, usual::length, -1.0,
+     HammerConstant::Enters::kLoads},
+    {"rod_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rod; }, usual::exact, 1.0,
+     HammerConstant::Enters::kFollows},
+    {"rocker_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rocker; }, usual::length, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"pivot_distance_m", "m", [](HammerParameters& p) -> double& { return p.lengths.pivot_distance; }, usual::length,
+     1.0, HammerConstant::Enters::kLoads},
+    {"rocker_com_distance_m", "m", [](HammerParameters& p) -> double& { return p.rocker_com_distance; },
+     [](const HammerParameters&) { return usual::kCentre; }, -1.0, HammerConstant::Enters::kLoads},
+    {"rocker_com_angle_deg", "deg", [](HammerParameters& p) -> double& { return p.rocker_com_angle; },
+     [](const HammerParameters& p) { return usual::kCentre / p.rocker_com_distance; }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"rocker_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.rocker_mass; },
+     [](const HammerParameters& p) { return usual::kWeighed * p.rocker_mass; }, -1.0, HammerConstant::Enters::kLoads},
+    {"rocker_inertia_about_pivot_kg_m2", "kg m2",
+     [](HammerParameters& p) -> double& { return p.rocker_inertia_about_pivot; },
+     [](const HammerParameters& p) { return usual::kWeighed * p.rocker_inertia_about_pivot; }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"striking_distance_m", "m", [](HammerParameters& p) -> double& { return p.striking_distance; }, usual::length, 1.0,
+     HammerConstant::Enters::kBlow},
+    {"striking_friction", "", [](HammerParameters& p) -> double& { return p.striking_friction; }, usual::exact, 1.0,
+     HammerConstant::Enters::kBlow},
+    {"crank_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.crank_mass; },
+     [](const HammerParameters& p) { return usual::kGuessed * p.crank_mass; }, 1.0, HammerConstant::Enters::kLoads},
+    {"crank_com_along_m", "m", [](HammerParameters& p) -> double& { return p.crank_com_along; },
+     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.crank_com_along); }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"crank_com_across_m", "m", [](HammerParameters& p) -> double& { return p.crank_com_across; },
+     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.crank_com_across); }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"crank_inertia_about_com_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.crank_inertia_about_com; },
+     [](const HammerParameters& p) { return usual::kGuessed * p.crank_inertia_about_com; }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"rod_mass_kg", "kg", [](HammerParameters& p) -> double& { return p.rod_mass; },
+     [](const HammerParameters& p) { return usual::kGuessed * p.rod_mass; }, 1.0, HammerConstant::Enters::kLoads},
+    {"rod_com_along_m", "m", [](HammerParameters& p) -> double& { return p.rod_com_along; },
+     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.rod_com_along); }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"rod_com_across_m", "m", [](HammerParameters& p) -> double& { return p.rod_com_across; },
+     [](const HammerParameters& p) { return usual::kGuessed * std::abs(p.rod_com_across); }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"rod_inertia_about_com_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.rod_inertia_about_com; },
+     [](const HammerParameters& p) { return usual::kGuessed * p.rod_inertia_about_com; }, 1.0,
+     HammerConstant::Enters::kLoads},
+    {"drive_inertia_kg_m2", "kg m2", [](HammerParameters& p) -> double& { return p.drive_inertia; }, usual::exact, 1.0,
+     HammerConstant::Enters::kLearned},
+    {"drive_reaction_ratio", "", [](HammerParameters& p) -> double& { return p.drive_reaction_ratio; }, usual::exact,
+     1.0, HammerConstant::Enters::kLoads},
+}};
+
+/// Key of the constant's standard deviation: `_deviation` before the unit.
+inline std::string deviationKey(const HammerConstant& constant) {
+  std::string key = constant.key, unit = constant.unit;
+  for (char& c : unit)
+    if (c == ' ') c = '_';
+  const std::string end = unit.empty() ? "" : "_" + unit;
+  return key.substr(0, key.size() - end.size()) + "_deviation" + end;
+}
+
+/// Those that the contract names for a file that gives none.
+inline HammerDeviations usualDeviations(const HammerParameters& parameters) {
+  HammerDeviations deviations{};
+  for (std::size_t i = 0; i < kHammerConstants.size(); ++i) deviations[i] = kHammerConstants[i].usual(parameters);
+  return deviations;
+}
+
+}  // namespace hammer_loads

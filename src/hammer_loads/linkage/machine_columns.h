@@ -1,0 +1,48 @@
+/// What is not known of a hammer, as hammers: the same with one constant a standard deviation off.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "hammer_loads/linkage/shaft_load.h"
+
+namespace hammer_loads {
+
+/// Most columns of a machine; those that it does not have are zero.
+constexpr int kMachineColumns = 20;
+
+/// A column is the change of a load, a state or a number by one standard deviation of a constant: columns of one
+/// hammer are independent, and the sum of their squares is a variance (JCGM 100, 5.1.2, with the difference at the
+/// deviation's own size in the place of the derivative). Lengths keep the change point: the rod follows.
+struct MachineColumn {
+  const char* key;      ///< of the hammer file; "level" of what the level leaves out, which level linkage has
+  Mechanism mechanism;  ///< of the other hammer
+  Level level;
+  bool links_move_alike;  ///< as those of the hammer
+};
+
+class MachineColumns {
+ public:
+  /// One standard deviation of each column on the shaft's load: of inertia, half its slope, torque.
+  using OnShaft = Eigen::Matrix<double, 3, kMachineColumns>;
+
+  MachineColumns(const Mechanism& mechanism, Level level);
+
+  const std::vector<MachineColumn>& columns() const noexcept { return columns_; }
+  /// load: at the angle, without what the hull's own motion adds.
+  OnShaft onShaft(CrankAngle angle, Gravity gravity) const noexcept;
+
+ private:
+  Mechanism mechanism_;
+  Level level_;
+  std::vector<MachineColumn> columns_;
+};
+
+/// Whether a hammer can exist whose constant, of kHammerConstants, is off by its deviation.
+bool isPossible(const HammerParameters& parameters, std::size_t constant);
+
+/// Null: the hammer is exact, and its level has all of it.
+std::shared_ptr<const MachineColumns> machineColumns(const Mechanism& mechanism, Level level);
+
+}  // namespace hammer_loads
