@@ -32,6 +32,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       crank_(model_, settings_, make),
       trust_(settings_.crank_sensor),
       hull_(mechanism_.parameters(), settings_, boom),
+      rod_(model_),
       turn_(model_, columns_, crank_.step(), crank_.tracker()),
       sampler_(model_, columns_, crank_.step(), crank_.tracker(), settings_),
       nominal_force_(
@@ -103,9 +104,11 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (taken == CrankFollower::Taken::kContinued) {
     passBlows();
     followHull();
+    rod_.follow(crank_.step(), crank_.tracker().blowFactor());
     if (counts) turn_.follow(hull_.motion().motion, result_);
   } else {
     restart(taken == CrankFollower::Taken::kRevised);
+    rod_.rest();
   }
   crank_.accept();
   if (distrust) return withhold(*distrust);
@@ -120,6 +123,9 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_deviation_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
+  const HullWrench ring = rod_.wrench(links.here.links);
+  result_.deviation.wrench =
+      wrenchOf((vectorOf(result_.deviation.wrench).cwiseAbs2() + vectorOf(ring).cwiseAbs2()).cwiseSqrt());
   result_.beside_blow = !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, result_.deviation.angle);
   followBoom(links);
   hullMovedAtBlow();

@@ -11,6 +11,7 @@
 #include "hammer_loads/pipeline/crank_trust.h"
 #include "hammer_loads/pipeline/hull_state.h"
 #include "hammer_loads/pipeline/misuse.h"
+#include "hammer_loads/pipeline/rod_ring.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_follower.h"
 #include "hammer_loads/pipeline/wrench_sampler.h"
@@ -78,6 +79,7 @@ class Pipeline {
   CrankFollower crank_;
   CrankTrust trust_;
   HullState hull_;
+  RodRing rod_;
   TurnFollower turn_;
   MisuseFollower misuse_;
   WrenchSampler sampler_;

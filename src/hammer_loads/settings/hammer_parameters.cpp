@@ -83,9 +83,9 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
                   NumberRule::within(kLeastLever * gyration, kMostLever * gyration));
     notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
     parameters = mechanism.value->parameters();
-    readDeviations(reader, parameters, notes);
-    mechanism = Mechanism::make(parameters);
   }
+  readDeviations(reader, parameters, notes);  // known keys, whatever else is wrong
+  if (mechanism.value) mechanism = Mechanism::make(parameters);
   if (!reader.given(ratio))
     notes.push_back(std::string(ratio) +
                     ": not given, counts as 1: the hull feels the drive's reaction as of a flywheel on the crank's "

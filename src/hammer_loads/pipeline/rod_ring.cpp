@@ -1,0 +1,109 @@
+#include "hammer_loads/pipeline/rod_ring.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/linkage/blow_inertia.h"
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kLongest = 1e-3;              // [s] in which the lever counts as constant
+constexpr double kReference = kTwoPi * 200.0;  // [rad/s] of the damping ratio
+constexpr double kRestitutionDoubt = 0.05;     // what a rod that gives adds to a measured restitution
+constexpr double kBallistic = 1e-2;            // [rad]: below, the spring does nothing within a part
+
+/// y'' = -square y - 2 decay y' over a time.
+struct Oscillator {
+  double square{};  ///< of its free frequency [rad2/s2]
+  double decay{};   ///< [1/s]
+
+  void move(double time, double& y, double& speed) const noexcept {
+    const double rest = square - decay * decay, from = y, v = speed;
+    double cosine, sine;  // sine over the frequency, both with the decay
+    if (rest > 0.0) {
+      const double frequency = std::sqrt(rest), e = std::exp(-decay * time);
+      cosine = e * std::cos(frequency * time), sine = e * std::sin(frequency * time) / frequency;
+    } else {
+      const double s = std::sqrt(-rest);
+      const double slow = std::exp((s - decay) * time), fast = std::exp(-(s + decay) * time);
+      cosine = 0.5 * (slow + fast), sine = s > 0.0 ? 0.5 * (slow - fast) / s : time * slow;
+    }
+    y = from * cosine + (v + decay * from) * sine;
+    speed = v * cosine - (square * from + decay * v) * sine;
+  }
+  /// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
+  double acceleration(double y, double speed) const noexcept {
+    const double now = hammer_loads::square(square * y + 2.0 * decay * speed), rest = square - decay * decay;
+    const double size = rest > 0.0 ? hammer_loads::square(y) + hammer_loads::square(speed + decay * y) / rest : 0.0;
+    return std::sqrt(0.5 * now + std::max(0.5 * now, 0.5 * hammer_loads::square(square) * size));
+  }
+};
+
+/// Over a time, by a lever^2 over I; the acceleration after it.
+double moved(const RodSpring& spring, double by_lever, double rigid, double time, double& x, double& speed) noexcept {
+  const Oscillator rod{spring.stiffness * by_lever, spring.damping_ratio * spring.stiffness / kReference * by_lever};
+  if (rod.square * square(time) < square(kBallistic)) {
+    x += time * (speed - 0.5 * time * rigid);
+    speed -= time * rigid;
+    return std::abs(rigid);
+  }
+  const double rest_at = -rigid / rod.square;
+  double y = x - rest_at;
+  rod.move(time, y, speed);
+  x = y + rest_at;
+  return rod.acceleration(y, speed);
+}
+
+}  // namespace
+
+void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {
+  if (!(blow.drive_inertia > 0.0) || !(passage.speed_before > 0.0)) return rest();
+  const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
+  const double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0);
+  const double rocker = -restitution * at.u_before * passage.speed_before;  // as it leaves the tool
+  const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
+  const double doubt = std::hypot(measured, kRestitutionDoubt) * at.u_before * passage.speed_before;
+  const double missing = rocker - at.u_after * blow.mean * passage.speed_before;
+  rings_ = true;
+  rods_.fill({0.0, std::copysign(std::hypot(missing, doubt), missing)});
+}
+
+void RodRing::move(const CrankStep& step, double from, double to) noexcept {
+  if (!rings_ || !(to > from)) return;
+  const HammerParameters& p = model_->mechanism().parameters();
+  const int parts = static_cast<int>(std::ceil((to - from) / kLongest));
+  const double time = (to - from) / parts;
+  for (int i = 0; i < parts; ++i) {
+    const CrankEstimate crank = step.at(from + (i + 0.5) * time);
+    if (crank.position.angle.side == Side::kBeforeBlow || !(crank.speed > 0.0)) return rest();
+    const LinkMotion links = linkMotion(model_->mechanism().linkage(), crank.position.angle);
+    const double lever = p.lengths.rocker * links.sin_mu, by_lever = square(lever) / p.rocker_inertia_about_pivot;
+    const double rigid = links.rocker.du * square(crank.speed) + links.rocker.u * crank.acceleration;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < kRods.size(); ++k)
+      sum += square(moved(kRods[k], by_lever, rigid, time, rods_[k].x, rods_[k].speed));
+    acceleration_ = std::sqrt(sum / kRods.size());
+  }
+}
+
+void RodRing::follow(const CrankStep& step, const BlowFactor& blow) noexcept {
+  double from = 0.0;
+  for (const CrankStep::Passage& passage : step) {
+    if (!passage.strikes) continue;
+    strike(passage, blow);
+    from = passage.time;
+  }
+  move(step, from, step.length());
+}
+
+HullWrench RodRing::wrench(const LinkMotion& links) const noexcept {
+  const Mechanism& mechanism = model_->mechanism();
+  const double a = acceleration(), force = mechanism.rockerFirstMoment() * a;
+  return {-force * links.rocker.sin_psi, -force * links.rocker.cos_psi,
+          -mechanism.parameters().rocker_inertia_about_pivot * a};
+}
+
+}  // namespace hammer_loads

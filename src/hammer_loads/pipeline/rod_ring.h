@@ -1,0 +1,54 @@
+/// How far the links are from those of a rigid rod after a blow: what the levels below `elastic` leave out.
+#pragma once
+
+#include <array>
+
+#include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/crank_step.h"
+
+namespace hammer_loads {
+
+/// Rod, pins and bearings as one spring, and its damping.
+struct RodSpring {
+  double stiffness{};      ///< k along the rod [N/m]
+  double damping_ratio{};  ///< at 200 Hz [-]: damping is 2 ratio k/(2 pi 200 Hz) [N s/m]
+};
+
+/// What rods may be: no source gives any. Those with little damping ring longest, those with much are first.
+inline constexpr std::array<RodSpring, 3> kRods{{{8e8, 0.15}, {8e8, 0.6}}};
+
+/// The rocker leaves the tool with its own speed, not with that which the linkage has there, and at the dead centre the
+/// rod has no lever h = l3 sin(psi - beta) on it. With x = psi - psi of the rigid linkage,
+///
+///     I x'' = -h^2 (k x + c x') - I psi_rigid'',  x(0) = 0,  x'(0) = R |u- w-| - u+ w+
+///
+/// the rocker picks up as the lever opens, and rings. x'' is missing in a wrench of rigid links; its phase hangs on a
+/// stiffness that is hardly known, its size does not: the mean square over kRods counts. Each step is
+/// that of the oscillator with the lever at its middle.
+class RodRing {
+ public:
+  explicit RodRing(const HullModel& model) noexcept : model_(&model) {}
+
+  /// Nothing rings.
+  void rest() noexcept { rings_ = false; }
+  /// Over the step to the crank's last sample. blow: of the passage that the step has, if it has one.
+  void follow(const CrankStep& step, const BlowFactor& blow) noexcept;
+  /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
+  double acceleration() const noexcept { return rings_ ? acceleration_ : 0.0; }
+  /// What that is on the hull; its direction is the sample's.
+  HullWrench wrench(const LinkMotion& links) const noexcept;
+
+ private:
+  void strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
+  void move(const CrankStep& step, double from, double to) noexcept;
+
+  const HullModel* model_;
+  bool rings_{};
+  struct State {
+    double x{}, speed{};  ///< [rad], [rad/s]
+  };
+  std::array<State, kRods.size()> rods_;
+  double acceleration_{};
+};
+
+}  // namespace hammer_loads
