@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "hammer_loads/simulation/hammer_on_boom.h"
 #include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::simulation {
@@ -104,6 +106,97 @@ TEST(ElasticMachine, ImpulseOfTheHullIsTheChangeOfMomentum) {
     EXPECT_NEAR(hull[1], before[1] - after[1] + tool[1], 0.2) << named.name;
     EXPECT_GT(tool[1], 50.0) << named.name;
   }
+}
+
+/// Away from the dead centre, where a rigid rod in line with the crank would carry any force, the difference to the
+/// independent rigid machine falls as one over the stiffness.
+TEST(ElasticMachine, BecomesTheRigidOneWithAStiffRod) {
+  for (const bool masses : {false, true}) {
+    double last = 0.0;
+    for (const double stiffness : {1e9, 4e9}) {
+      MachineSettings settings = masses ? heavy(elastic(stiffness, 0.3)) : elastic(stiffness, 0.3);
+      settings.start_angle = 2.5, settings.drive.start_time = 0.01, settings.drive.start_ramp = 0.02;
+      MachineSettings rigid_settings = settings;
+      rigid_settings.rod = {};
+      WorkingMachine rigid(rigid_settings);
+      ElasticMachine machine(settings);
+      double worst = 0.0, peak = 0.0;
+      for (double time = 0.02; rigid.truth().angle < 5.9; time += 5e-4) {
+        rigid.advanceTo(time);
+        machine.advanceTo(time);
+        const CrankTruth a = rigid.truth(), b = machine.truth();
+        worst = std::max(worst, std::abs(a.load.force_z - b.load.force_z));
+        peak = std::max(peak, std::abs(a.load.force_z));
+      }
+      EXPECT_LT(worst, 1e-3 * peak);
+      if (last > 0.0) {
+        EXPECT_NEAR(worst / last, 0.25, 0.05);
+      }
+      last = worst;
+    }
+  }
+}
+
+/// With the crank held by a large inertia the rocker, which its weight sets swinging, swings on the rod at the
+/// frequency of k (dl/dpsi)^2 over I.
+TEST(ElasticMachine, RingsAtTheFrequencyOfMassAndStiffness) {
+  MachineSettings settings = elastic(1e9, 0.01);
+  settings.drive.inertia = 1e6, settings.start_angle = 0.5, settings.drive.start_time = 1.0;
+  const ElasticLinks links(settings.hammer, Level::kRocker);
+  const double psi = links.rockerAngle(0.5);
+  const double slope = (links.rod({0.5, psi + 1e-5}).stretch - links.rod({0.5, psi - 1e-5}).stretch) / 2e-5;
+  ElasticMachine machine(settings);
+  std::vector<double> rises;
+  double before = 0.0;
+  for (int i = 1; i <= 20000; ++i) {
+    machine.advanceTo(2e-6 * i);
+    const double speed = machine.truth().rocker_speed;
+    if (before < 0.0 && speed >= 0.0) rises.push_back(2e-6 * i);
+    before = speed;
+  }
+  ASSERT_GT(rises.size(), 3U);
+  const double period = (rises.back() - rises.front()) / static_cast<double>(rises.size() - 1);
+  EXPECT_NEAR(1.0 / period, std::abs(slope) * std::sqrt(1e9 / settings.hammer.rocker_inertia_about_pivot) / (2.0 * kPi),
+              0.01 / period);
+}
+
+/// Without a tool the retainer, which is of the hull, takes the blow: nothing of it is booked to the tool.
+TEST(ElasticMachine, RetainerTakesTheBlowWithoutATool) {
+  MachineSettings settings = elastic(1e9, 0.4);
+  settings.strike.retainer_stiffness = 3e8, settings.strike.no_tool_from = 3.0, settings.strike.no_tool_to = 4.0;
+  ElasticMachine machine(settings);
+  machine.advanceTo(5.0);
+  int on_tool = 0, on_retainer = 0;
+  for (const BlowTruth& blow : machine.takeBlows()) {
+    if (blow.time < 2.6) continue;
+    const bool retained = blow.retainer_impulse > 50.0;
+    EXPECT_EQ(retained, blow.time > 3.1 && blow.time < 4.1) << blow.time;
+    if (retained) {
+      EXPECT_EQ(blow.strike.tool_impulse, 0.0);
+    } else {
+      EXPECT_GT(blow.strike.tool_impulse, 150.0);
+    }
+    (retained ? on_retainer : on_tool) += 1;
+  }
+  EXPECT_GT(on_tool, 4);
+  EXPECT_GT(on_retainer, 2);
+}
+
+/// The hull's motion is slow against a blow: the same contact on a boom and on a hull that is held.
+TEST(ElasticMachine, StrikesOnItsBoomAsHeld) {
+  MachineSettings settings = elastic(7e8, 0.4, 1e-4);
+  ElasticMachine held(settings);
+  settings.on_boom.on = true;
+  HammerOnBoom on_boom(settings);
+  held.advanceTo(3.5);
+  on_boom.advanceTo(3.5);
+  const std::vector<BlowTruth> a = held.takeBlows(), b = on_boom.takeBlows();
+  ASSERT_GT(b.size(), 5U);
+  const Strike x = a.back().strike, y = b.back().strike;
+  EXPECT_NEAR(y.rocker_speed_after / y.rocker_speed_before, x.rocker_speed_after / x.rocker_speed_before, 0.02);
+  EXPECT_NEAR(y.tool_impulse / y.rocker_speed_before, x.tool_impulse / x.rocker_speed_before, 0.05);
+  EXPECT_NEAR(b.back().contact, a.back().contact, 1e-5);
+  EXPECT_TRUE(b.back().whole_turn);
 }
 
 }  // namespace

@@ -136,13 +136,12 @@ void ElasticMachine::accept(const State& next, const State& slope, double dt, in
     current_.lobe = now_[kImpulseZ] + 0.5 * force_before * part;
   }
   const bool put_back = now_[kRocker] <= 1.0 && next[kRocker] > 1.0;  // rocker far from the tool, on its way up
-  const int before = contacts_;
   now_ = next, slope_ = slope, contacts_ = contacts;
   time_ += dt;
   current_.peak = std::max(current_.peak, force);
   if (now_[kCrankSpeed] < 0.0) current_.whole = false;
   passDeadCentre();
-  followBlow(before);
+  followBlow();
   if (put_back) putToolBack();
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
+#include "hammer_loads/simulation/blow_follower.h"
 #include "hammer_loads/simulation/elastic_links.h"
 #include "hammer_loads/simulation/struck_tool.h"
 #include "hammer_loads/simulation/working_machine.h"
@@ -44,7 +44,7 @@ class ElasticMachine {
   CrankTruth truth() const noexcept;
   ElasticEnergy energy() const noexcept;
   /// Hands over the blows that ended since the last call.
-  std::vector<BlowTruth> takeBlows();
+  std::vector<BlowTruth> takeBlows() { return follower_.take(); }
 
  private:
   enum Index {
@@ -90,9 +90,7 @@ class ElasticMachine {
   double step(double longest);
   void accept(const State& next, const State& slope, double dt, int contacts);
   void passDeadCentre() noexcept;
-  void followBlow(int before);
-  void beginBlow();
-  void endBlow();
+  void followBlow();
   void putToolBack();
 
   MachineSettings settings_;
@@ -104,7 +102,6 @@ class ElasticMachine {
   int contacts_{};
   std::int64_t turn_{};
   double put_back_{};  ///< energy of tools that were [J]
-  std::vector<BlowTruth> blows_;
 
   struct Turn {
     double start{}, impulse_x{}, impulse_z{};  ///< [s], [N s]
@@ -112,12 +109,7 @@ class ElasticMachine {
     double peak{};                             ///< [N]
     bool whole{};
   } current_;
-  struct Meeting {
-    BlowTruth truth;
-    double impulse{}, energy{}, retainer{};  ///< at its beginning
-    double touched{}, parted{};              ///< last time of each [s]
-  };
-  std::optional<Meeting> meeting_;
+  BlowFollower follower_;
 };
 
 }  // namespace hammer_loads::simulation
