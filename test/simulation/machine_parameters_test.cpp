@@ -134,9 +134,10 @@ TEST(MachineParameters, EveryProblemIsReportedAtOnce) {
 
 TEST(MachineParameters, FlawsAreRead) {
   const Checked<SimulatorSettings> loaded = loadSimulator(
-      configDirectory(), given("{restitution_drawn: true, restitution_low: 0.1, restitution_high: 0.25, stamp_burst: 4,"
-                               " encoder_direction: -1, encoder_eccentricity_2_rad: 0.01, coupling_frequency_Hz: 50,"
-                               " stamp_step_s: 0.001, stamps_only_late: true, blank_share: 0.1}"));
+      configDirectory(),
+      given("{rod: rigid, restitution_drawn: true, restitution_low: 0.1, restitution_high: 0.25, stamp_burst: 4,"
+            " encoder_direction: -1, encoder_eccentricity_2_rad: 0.01, coupling_frequency_Hz: 50,"
+            " stamp_step_s: 0.001, stamps_only_late: true, blank_share: 0.1}"));
   ASSERT_TRUE(loaded.value) << loaded.problems.front();
   const MachineSettings& machine = loaded.value->machine;
   EXPECT_TRUE(machine.blow.restitution_drawn);
@@ -157,11 +158,11 @@ TEST(MachineParameters, FlawsAreRead) {
 TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith) {
   EXPECT_FALSE(loadSimulator(configDirectory(), {}).value->machine.on_boom.on);
   EXPECT_EQ(loadSimulator(configDirectory(), {}).value->machine.on_boom.rock.stiffness, 0.0) << "it hangs free";
-  const Checked<SimulatorSettings> loaded =
-      loadSimulator(configDirectory(),
-                    given("{hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
-                          " imu_x_m: 0.1, pressure_rate_Hz: 0, joint_noise_rad: 0.0001, restitution_drawn: true,"
-                          " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, press_force_N: 700}"));
+  const Checked<SimulatorSettings> loaded = loadSimulator(
+      configDirectory(),
+      given("{rod: rigid, hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
+            " imu_x_m: 0.1, pressure_rate_Hz: 0, joint_noise_rad: 0.0001, restitution_drawn: true,"
+            " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, press_force_N: 700}"));
   ASSERT_TRUE(loaded.value) << loaded.problems.front();
   const MachineSettings& machine = loaded.value->machine;
   EXPECT_TRUE(machine.on_boom.on);
@@ -176,12 +177,33 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   EXPECT_EQ(machine.joint_noise, 1e-4);
   EXPECT_EQ(machine.hammer.drive_reaction_ratio, 1.0);
   const Checked<SimulatorSettings> wrong = loadSimulator(
-      configDirectory(), given("{hull_on_boom: true, level: linkage, blank_share: 0.1, tool_early_rad: 0.1,"
+      configDirectory(), given("{rod: rigid, hull_on_boom: true, level: linkage, blank_share: 0.1, tool_early_rad: 0.1,"
                                " blow_crank_loss: 0.1, coupling_frequency_Hz: 50, oil_stiffness_factor: 0}"));
   EXPECT_FALSE(wrong.value);
   for (const char* key : {"level", "blank_share", "tool_early_rad", "blow_crank_loss", "coupling_frequency_Hz"})
     EXPECT_TRUE(mentions(wrong.problems, std::string(key))) << key;
   EXPECT_EQ(wrong.problems.size(), 6U);
+}
+
+TEST(MachineParameters, ShippedRodGivesAndRefusesTheRulesOfARigidBlow) {
+  const MachineSettings shipped = loadSimulator(configDirectory(), {}).value->machine;
+  EXPECT_EQ(shipped.rod.stiffness, 7e8);
+  EXPECT_EQ(shipped.rod.damping_ratio, 0.4);
+  EXPECT_EQ(shipped.rod.play, 1e-4);
+  const StrikeSettings code;
+  EXPECT_EQ(shipped.strike.tool_mass, code.tool_mass);
+  EXPECT_EQ(shipped.strike.contact_stiffness, code.contact_stiffness);
+  EXPECT_EQ(shipped.strike.contact_damping, code.contact_damping);
+  EXPECT_EQ(shipped.strike.rock_stiffness, code.rock_stiffness);
+  EXPECT_EQ(shipped.strike.rock_strength, code.rock_strength);
+  EXPECT_EQ(loadSimulator(configDirectory(), given("rod: rigid")).value->machine.rod.stiffness, 0.0);
+  const Checked<SimulatorSettings> wrong =
+      loadSimulator(configDirectory(), given("{restitution_drawn: true, tool_early_rad: 0.1, blow_crank_loss: 0.1,"
+                                             " coupling_frequency_Hz: 50}"));
+  EXPECT_FALSE(wrong.value);
+  for (const char* key : {"restitution_drawn", "tool_early_rad", "blow_crank_loss", "coupling_frequency_Hz"})
+    EXPECT_TRUE(mentions(wrong.problems, std::string(key))) << key;
+  EXPECT_EQ(wrong.problems.size(), 4U);
 }
 
 TEST(MachineParameters, OneHammerKeyNeedsThemAll) {

@@ -24,7 +24,7 @@ const ros::WallDuration kDeadline(40.0);  // the machine needs 3 s
 const Session& expected() {
   static const Session kSession = [] {
     std::vector<std::string> problems;
-    const ParameterMap given = *parameterMap(YAML::Load("{duration_s: 6.0, seed: 9}"), "test", problems);
+    const ParameterMap given = *parameterMap(YAML::Load("{duration_s: 6.0, seed: 9, rod: rigid}"), "test", problems);
     MachineSettings machine = loadSimulator(configDirectory(), given).value.value().machine;
     machine.start_stamp = 1700000000000000000;
     return recordSession(machine);

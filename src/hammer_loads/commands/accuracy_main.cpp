@@ -5,6 +5,7 @@
 #include "hammer_loads/bench/boom_table.h"
 #include "hammer_loads/bench/cost_table.h"
 #include "hammer_loads/bench/drawing_table.h"
+#include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_table.h"
 #include "hammer_loads/commands/command_line.h"
@@ -14,7 +15,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
-               kBoom[] = "\"boom\": ";
+               kBoom[] = "\"boom\": ", kElastic[] = "\"elastic\": ";
 
 constexpr int kDrawings = 20;
 
@@ -22,8 +23,8 @@ constexpr int kDrawings = 20;
 std::string whyFileMustStay(const std::string& name) {
   std::string line;
   std::getline(std::ifstream(name), line);
-  const bool ours = line.rfind(std::string("{") + kCosts, 0) == 0 || line.rfind(std::string("{") + kSessions, 0) == 0;
-  return ours ? "" : "it holds no figures of this command";
+  const auto begins = [&](const char* part) { return line.rfind(std::string("{") + part, 0) == 0; };
+  return begins(kCosts) || begins(kSessions) || begins(kElastic) ? "" : "it holds no figures of this command";
 }
 
 /// The file for the figures, taken before the computing, which takes a minute.
@@ -57,6 +58,11 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << accuracy::markdown(accuracy::drawingTable(settings, kDrawings));
     return "";
   }
+  if (only == "elastic") {
+    const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
+    std::cout << accuracy::markdown(elastic);
+    return kElastic + accuracy::json(elastic);
+  }
   if (only != "sessions") {
     const std::vector<accuracy::CostRow> costs = accuracy::costTable(settings);
     std::cout << accuracy::markdown(costs) << std::flush;
@@ -66,11 +72,14 @@ std::string printTables(const Settings& settings, const std::string& only) {
     const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
     const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
     std::cout << "\n### Machines as they are\n\n" << accuracy::markdown(machines);
+    const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
+    std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
     const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
     std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
     std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
     json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
-            (kMachines + accuracy::json(machines)) + ",\n" + (kBoom + accuracy::json(boom));
+            (kMachines + accuracy::json(machines)) + ",\n" + (kBoom + accuracy::json(boom)) + ",\n" +
+            (kElastic + accuracy::json(elastic));
   }
   return json;
 }
@@ -84,7 +93,8 @@ int run(int argc, const char* const* argv) {
   addParamsOption(line, files);
   line.option("--json", json_file, "also write the figures to this file, which must not exist");
   line.flag("--force", force, "replace that file if this command wrote it");
-  line.option("--only", only, "one of the two parts").oneOf({"costs", "sessions", "drawings"});
+  line.option("--only", only, "one of the two parts, or drawings or elastic machines alone")
+      .oneOf({"costs", "sessions", "drawings", "elastic"});
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   const std::optional<Settings> settings = loadOrReport(files);

@@ -31,13 +31,16 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
       rotor_(machine.drive.inertia),
       ratio_(machine.hammer.drive_reaction_ratio),
       draws_(machine.seed ^ kBlowSeed) {
+  if (machine.rod.stiffness > 0.0)
+    elastic_.emplace(Elastic{{machine.hammer, Level::kRocker}, RodSpring(machine.rod), {machine}, 0.0});
   boom_.bulk_modulus *= machine.on_boom.oil_stiffness;
   takeMovingPartsOffTheHull();
   now_ = heldAt(0.0);
   held_rocker_ = rockerAt(now_);
-  now_.v[3] = 0.0;
+  now_.v[3] = now_.v[4] = 0.0;
   now_.before_blow = machine.start_angle > kPi;
   now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
+  now_.x[4] = rockerOf(machine.start_angle);
   step_ = machine_.on_boom.step;
   followOperator();
   standOnRock();
@@ -55,6 +58,7 @@ void HammerOnBoom::takeMovingPartsOffTheHull() {
   for (int i = 0; i < kPlaces; ++i) {
     held.x[3] = (i + 0.5) * kTwoPi / kPlaces - kPi;
     held.before_blow = held.x[3] < 0.0;
+    held.x[4] = rockerOf(held.before_blow ? held.x[3] + kTwoPi : held.x[3]);
     const Body rocker = bodies(held).body[3];
     const PlanePoint place = (rocker.place - joint) * to_hull;
     mass = rocker.mass, inertia = rocker.inertia;
@@ -94,6 +98,7 @@ HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
     s.x[k] = positionOf(joint, time), s.v[k] = velocityOf(joint, time);
   }
   s.x[3] = 0.5 * kPi, s.v[3] = 0.0;
+  s.x[4] = rockerOf(s.x[3]), s.v[4] = 0.0;
   return s;
 }
 
@@ -134,9 +139,11 @@ HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, co
   r.mass = rocker.mass, r.inertia = rocker.inertia_about_com;
   r.place = all.joint[3] +
             all.hull_turned * inHull(rocker.xi.value - p.lengths.pivot_distance, rocker.eta.value, p.rocker_com_angle);
+  r.x.setZero(), r.z.setZero(), r.turn.setZero();
   turnAbout(all, r, 3);
   const PlanePoint by_crank = all.hull_turned * inHull(rocker.xi.first, rocker.eta.first, p.rocker_com_angle);
-  r.x[3] = by_crank.real(), r.z[3] = by_crank.imag(), r.turn[3] = rocker.angle.first;
+  const int k = rockerIndex();
+  r.x[k] = by_crank.real(), r.z[k] = by_crank.imag(), r.turn[k] = rocker.angle.first;
   return all;
 }
 
@@ -149,16 +156,18 @@ void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) 
   }
 }
 
-HammerOnBoom::Matrix4 HammerOnBoom::massMatrix(const Bodies& all) const {
-  const Vector4 rotor(ratio_, ratio_, ratio_, 1.0);
-  Matrix4 M = rotor_ * rotor * rotor.transpose();
+HammerOnBoom::Inertia HammerOnBoom::massMatrix(const Bodies& all) const {
+  Coordinates rotor;
+  rotor << ratio_, ratio_, ratio_, 1.0, 0.0;
+  Inertia M = rotor_ * rotor * rotor.transpose();
   for (const Body& b : all.body)
     M += b.mass * (b.x * b.x.transpose() + b.z * b.z.transpose()) + b.inertia * b.turn * b.turn.transpose();
+  if (!elastic_) M(4, 4) = 1.0;
   return M;
 }
 
-HammerOnBoom::Vector4 HammerOnBoom::weight(const Bodies& all) const {
-  Vector4 Q = Vector4::Zero();
+HammerOnBoom::Coordinates HammerOnBoom::weight(const Bodies& all) const {
+  Coordinates Q = Coordinates::Zero();
   for (const Body& b : all.body) Q -= b.mass * machine_.gravity * b.z;
   return Q;
 }
@@ -175,25 +184,26 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held) const {
 }
 
 Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
-  const Vector4 off = s.x - hold.state.x, rate = s.v - hold.state.v;
+  const Coordinates off = s.x - hold.state.x, rate = s.v - hold.state.v;
   return -hold.weight - hold.stiffness.cwiseProduct(off.head<3>()) - damping_ * rate.head<3>();
 }
 
 /// All that is not inertia: weight, oil, motor.
-HammerOnBoom::Vector4 HammerOnBoom::force(const State& s, const Bodies& all, const Hold& hold) const {
-  Vector4 Q = weight(all);
+HammerOnBoom::Coordinates HammerOnBoom::force(const State& s, const Bodies& all, const Hold& hold) const {
+  Coordinates Q = weight(all);
   Q.head<3>() += holding(s, hold);
   if (machine_.on_boom.rock.stiffness > 0.0) {
     const Foot at = foot(s, hold.state);
     Q.head<3>() += rockForce(at) * at.lift;
   }
   Q[3] += netTorque(machine_.drive, s.pressure, s.v[3]);
+  if (elastic_) Q += elasticForce(s);
   return Q;
 }
 
 /// Of the bodies by the coordinates' speeds alone: towards the joints, and of the rocker within a hull that turns.
-HammerOnBoom::Vector4 HammerOnBoom::inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const {
-  Vector4 Q = Vector4::Zero();
+HammerOnBoom::Coordinates HammerOnBoom::inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const {
+  Coordinates Q = Coordinates::Zero();
   PlanePoint of_joint = 0.0;  // acceleration
   double rate = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -204,46 +214,67 @@ HammerOnBoom::Vector4 HammerOnBoom::inertiaOfSpeeds(const State& s, const Bodies
     of_joint -= rate * rate * (all.joint[k + 1] - all.joint[k]);
   }
   const Body& r = all.body[3];
-  const double w = s.v[3];
-  const PlanePoint by_crank(r.x[3], r.z[3]),
+  const int k = rockerIndex();
+  const double w = s.v[k];
+  const PlanePoint by_crank(r.x[k], r.z[k]),
       bend = all.hull_turned * inHull(rocker.xi.second, rocker.eta.second, machine_.hammer.rocker_com_angle);
   const PlanePoint a =
       of_joint - rate * rate * (r.place - all.joint[3]) - 2.0 * rate * w * kI * by_crank + w * w * bend;
   return Q + r.mass * (a.real() * r.x + a.imag() * r.z) + r.inertia * rocker.angle.second * w * w * r.turn;
 }
 
-HammerOnBoom::Vector4 HammerOnBoom::acceleration(const State& s, const Hold& hold) const {
+HammerOnBoom::Coordinates HammerOnBoom::acceleration(const State& s, const Hold& hold) const {
   const Rocker rocker = rockerAt(s);
   const Bodies all = bodies(s, boom_.links, rocker);
-  const Matrix4 M = massMatrix(all);
-  const Vector4 Q = force(s, all, hold) - inertiaOfSpeeds(s, all, rocker);
+  const Inertia M = massMatrix(all);
+  const Coordinates Q = force(s, all, hold) - inertiaOfSpeeds(s, all, rocker);
   if (!s.resting) return M.ldlt().solve(Q);
-  Vector4 a = Vector4::Zero();
+  Coordinates a = Coordinates::Zero();
   a.head<3>() = M.topLeftCorner<3, 3>().ldlt().solve(Q.head<3>());
   return a;
 }
 
 HammerOnBoom::State HammerOnBoom::stepped(const State& s, double dt) const {
   struct Rate {
-    Vector4 x, v;
+    Coordinates x, v;
     double p;
+    ToolState tool;
+    double impulse, energy, retainer;
   };
   const DriveSettings& d = machine_.drive;
-  const Hold middle = holdAt(s.time + 0.5 * dt), end = holdAt(s.time + dt);
+  const Hold middle = elastic_ ? holdBetween(s.time + 0.5 * dt) : holdAt(s.time + 0.5 * dt),
+             end = elastic_ ? holdBetween(s.time + dt) : holdAt(s.time + dt),
+             begin = elastic_ ? holdBetween(s.time) : hold_;
   const auto rate = [&](const State& at, const Hold& hold) {
     const double flow = supplyFlow(d, at.time), valves = valveFlow(d, at.time, at.pressure);
-    return Rate{at.v, acceleration(at, hold), (flow - d.motor_displacement * at.v[3] - valves) / d.compliance};
+    const double pressing = (flow - d.motor_displacement * at.v[3] - valves) / d.compliance;
+    Rate r{at.v, acceleration(at, hold), pressing, {}, 0.0, 0.0, 0.0};
+    if (!elastic_) return r;
+    const StruckTool::Answer answer = struck(at);
+    r.tool = answer.rate;
+    r.impulse = answer.tool, r.energy = answer.tool * striker(at).speed, r.retainer = answer.retainer;
+    return r;
   };
   const auto moved = [&](const Rate& r, double by) {
     State to = s;
     to.time += by, to.x += by * r.x, to.v += by * r.v, to.pressure += by * r.p;
+    to.tool.way += by * r.tool.way, to.tool.speed += by * r.tool.speed, to.tool.yielded += by * r.tool.yielded;
+    to.tool_impulse += by * r.impulse, to.tool_energy += by * r.energy, to.retainer_impulse += by * r.retainer;
     return to;
   };
-  const Rate k1 = rate(s, hold_), k2 = rate(moved(k1, 0.5 * dt), middle), k3 = rate(moved(k2, 0.5 * dt), middle),
+  const Rate k1 = rate(s, begin), k2 = rate(moved(k1, 0.5 * dt), middle), k3 = rate(moved(k2, 0.5 * dt), middle),
              k4 = rate(moved(k3, dt), end);
-  return moved({(k1.x + 2.0 * (k2.x + k3.x) + k4.x) / 6.0, (k1.v + 2.0 * (k2.v + k3.v) + k4.v) / 6.0,
-                (k1.p + 2.0 * (k2.p + k3.p) + k4.p) / 6.0},
-               dt);
+  const auto mean = [](double a, double b, double c, double e) { return (a + 2.0 * (b + c) + e) / 6.0; };
+  Rate all;
+  all.x = (k1.x + 2.0 * (k2.x + k3.x) + k4.x) / 6.0, all.v = (k1.v + 2.0 * (k2.v + k3.v) + k4.v) / 6.0;
+  all.p = mean(k1.p, k2.p, k3.p, k4.p);
+  all.tool = {mean(k1.tool.way, k2.tool.way, k3.tool.way, k4.tool.way),
+              mean(k1.tool.speed, k2.tool.speed, k3.tool.speed, k4.tool.speed),
+              mean(k1.tool.yielded, k2.tool.yielded, k3.tool.yielded, k4.tool.yielded)};
+  all.impulse = mean(k1.impulse, k2.impulse, k3.impulse, k4.impulse);
+  all.energy = mean(k1.energy, k2.energy, k3.energy, k4.energy);
+  all.retainer = mean(k1.retainer, k2.retainer, k3.retainer, k4.retainer);
+  return moved(all, dt);
 }
 
 /// Part of the step dt, which passes the dead centre, until it is there: Newton.
@@ -258,6 +289,10 @@ double HammerOnBoom::timeToDeadCentre(double dt) const {
 }
 
 void HammerOnBoom::advanceTo(double time) {
+  if (elastic_) {
+    advanceElastic(time);
+    return;
+  }
   while (now_.time < time) {
     letGo();
     followOperator();
@@ -299,13 +334,13 @@ void HammerOnBoom::passDeadCentre() {
     blow();
     return;
   }
-  const Vector4 by_brake = massMatrix(bodies(now_)).ldlt().solve(Vector4::Unit(3));
+  const Coordinates by_brake = massMatrix(bodies(now_)).ldlt().solve(Coordinates::Unit(3));
   now_.v -= by_brake * (now_.v[3] / by_brake[3]);
   now_.v[3] = 0.0;
   now_.resting = true;
   whole_turn_ = false;
 }
 
-std::vector<BlowTruth> HammerOnBoom::takeBlows() { return std::exchange(blows_, {}); }
+std::vector<BlowTruth> HammerOnBoom::takeBlows() { return elastic_ ? follower_.take() : std::exchange(blows_, {}); }
 
 }  // namespace hammer_loads::simulation

@@ -3,11 +3,15 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "hammer_loads/simulation/blow_follower.h"
+#include "hammer_loads/simulation/elastic_links.h"
 #include "hammer_loads/simulation/moving_links.h"
 #include "hammer_loads/simulation/normal_noise.h"
 #include "hammer_loads/simulation/oil_boom.h"
+#include "hammer_loads/simulation/struck_tool.h"
 #include "hammer_loads/simulation/working_machine.h"
 
 namespace hammer_loads::simulation {
@@ -37,7 +41,9 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
 /// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
 /// impulse within the linkage, or with a restitution that is drawn. settings.on_boom.rock holds the hull up where it is
 /// pressed on the tool; without it the hull hangs free and the rock holds the tool alone. The boom's swing about the
-/// vertical is left out. Of BlowTruth force and impulses of the turn are not followed: not-a-number.
+/// vertical is left out. With settings.rod elastic the rocker is a coordinate of its own and the blow follows from the
+/// contact, as in ElasticMachine: its force bears on rocker, hull and boom; the tool's own motion is as in a hull that
+/// stands still. Of BlowTruth force and impulses of the turn are not followed: not-a-number.
 class HammerOnBoom {
  public:
   /// Level rocker, rigid coupling; throws std::invalid_argument when the hammer's linkage is impossible.
@@ -55,20 +61,23 @@ class HammerOnBoom {
   const MachineSettings& settings() const noexcept { return machine_; }
 
  private:
-  using Vector4 = Eigen::Vector4d;
-  using Matrix4 = Eigen::Matrix4d;
+  /// Joints, crank, rocker: where the rod is rigid the last one stays zero, and the crank moves the rocker.
+  using Coordinates = Eigen::Matrix<double, 5, 1>;
+  using Inertia = Eigen::Matrix<double, 5, 5>;
   struct State {
     double time{};
     bool before_blow{};
     bool resting{};     ///< the crank turned back onto the tool: held at the dead centre, as by a brake
-    Vector4 x, v;       ///< angles of the joints, crank's offset from its nearest dead centre
+    Coordinates x, v;   ///< angles of the joints, crank's offset from its nearest dead centre, rocker
     double pressure{};  ///< at the motor [Pa]
+    ToolState tool;     ///< of an elastic machine, as what follows
+    double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
   };
   /// A moving body: its place, and what each coordinate does to place and angle.
   struct Body {
     double mass{}, inertia{};
     PlanePoint place;
-    Vector4 x, z, turn;
+    Coordinates x, z, turn;
   };
   /// Links, then the rocker, which the crank moves within the hull.
   struct Bodies {
@@ -84,6 +93,13 @@ class HammerOnBoom {
     Eigen::Vector3d weight;     ///< of everything, on the joints [N m]
     Eigen::Vector3d stiffness;  ///< of the oil about the joints [N m/rad]
   };
+  /// A rod that gives, and what the rocker then strikes.
+  struct Elastic {
+    ElasticLinks links;
+    RodSpring rod;
+    StruckTool struck;
+    double shortest{};  ///< step [s]
+  };
   using Links = std::array<OilBoomLink, 3>;
   using Rocker = LinkBodies::Body;  ///< in the mechanism frame
 
@@ -91,13 +107,15 @@ class HammerOnBoom {
   State heldAt(double time) const;
   Hold holdAt(double time) const;
 
-  Rocker rockerAt(const State& s) const { return links_.at({s.x[3], s.before_blow, false}).body[0]; }
+  int rockerIndex() const { return elastic_ ? 4 : 3; }  ///< of the coordinate that moves it
+  Rocker rockerAt(const State& s) const;
+  double rockerOf(double crank_angle) const { return elastic_ ? elastic_->links.rockerAngle(crank_angle) : 0.0; }
   Bodies bodies(const State& s, const Links& links, const Rocker& rocker) const;
   static void turnAbout(const Bodies& all, Body& body, std::size_t joints);
   Bodies bodies(const State& s) const { return bodies(s, boom_.links, rockerAt(s)); }
   Bodies heldBodies(const State& held) const { return bodies(held, boom_.links, held_rocker_); }
-  Matrix4 massMatrix(const Bodies& all) const;
-  Vector4 weight(const Bodies& all) const;
+  Inertia massMatrix(const Bodies& all) const;
+  Coordinates weight(const Bodies& all) const;
   Eigen::Vector3d stiffness(const State& held) const;
   void followOperator();
   Eigen::Vector3d holding(const State& s, const Hold& hold) const;
@@ -112,9 +130,19 @@ class HammerOnBoom {
   double rockHeight(const Hold& hold) const;
   double rockForce(const Foot& foot) const;
   Load rockLoad(const State& held) const;
-  Vector4 force(const State& s, const Bodies& all, const Hold& hold) const;
-  Vector4 inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const;
-  Vector4 acceleration(const State& s, const Hold& hold) const;
+  Coordinates force(const State& s, const Bodies& all, const Hold& hold) const;
+  Coordinates inertiaOfSpeeds(const State& s, const Bodies& all, const Rocker& rocker) const;
+  Coordinates acceleration(const State& s, const Hold& hold) const;
+  StruckTool::Striker striker(const State& s) const;
+  StruckTool::Answer struck(const State& s) const;
+  double gravityDown(const State& s) const;
+  Coordinates elasticForce(const State& s) const;
+  Coordinates toolLift(const State& s) const;
+  PlanePoint strikingPlace(const State& s) const;
+  int contacts(const State& s) const;
+  Hold holdBetween(double time) const;
+  void advanceElastic(double time);
+  void acceptElastic(const State& next);
   State stepped(const State& s, double dt) const;
   double timeToDeadCentre(double dt) const;
   void letGo();
@@ -125,18 +153,18 @@ class HammerOnBoom {
   static double hullAngle(const State& s) { return angleBefore(s, 3); }
   PlanePoint jointPlace(const State& s, std::size_t joint) const;
   PlanePoint imuPlace(const State& s) const;
-  State along(const State& s, const Vector4& a, double dt) const;
+  State along(const State& s, const Coordinates& a, double dt) const;
   /// Now, a moment later and a moment sooner: what accelerations are found from.
   struct Moments {
     State state[3];
     Rocker rocker[3];
   };
-  Moments momentsAbout(const Vector4& a) const;
+  Moments momentsAbout(const Coordinates& a) const;
   /// Of the bodies from `first` on, without what holds them, about a place in axes turned by an angle.
-  Load loadOf(const Vector4& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
+  Load loadOf(const Coordinates& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
               double axes) const;
-  Load cutLoad(const OnBoomTruth& t, const Vector4& a, const Moments& m, const OilBoomCut& cut) const;
-  OnBoomSensors sensors(const Hold& hold, const Vector4& a) const;
+  Load cutLoad(const OnBoomTruth& t, const Coordinates& a, const Moments& m, const OilBoomCut& cut) const;
+  OnBoomSensors sensors(const Hold& hold, const Coordinates& a) const;
   void readCylinders(const Hold& hold, OnBoomSensors& s) const;
 
   MachineSettings machine_;
@@ -145,6 +173,7 @@ class HammerOnBoom {
   double rotor_{}, ratio_{};  ///< Jc [kg m2], drive_reaction_ratio
   Rocker held_rocker_{};      ///< of every heldAt()
   Hold hold_;                 ///< at the beginning of the step in hand
+  Hold hold_later_;           ///< settings.on_boom.step after it; of an elastic machine, which steps between the two
   Eigen::Matrix3d damping_;
   double rock_height_{};  ///< over the foot of a hull that is held without rock [m]
   double step_{};         ///< longest [s]
@@ -154,6 +183,9 @@ class HammerOnBoom {
   bool whole_turn_{};
   NormalNoise draws_;
   std::vector<BlowTruth> blows_;
+  std::optional<Elastic> elastic_;
+  double next_step_{};  ///< [s]
+  BlowFollower follower_;
 };
 
 }  // namespace hammer_loads::simulation

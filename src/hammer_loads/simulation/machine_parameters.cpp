@@ -1,5 +1,6 @@
 #include "hammer_loads/simulation/machine_parameters.h"
 
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -18,6 +19,7 @@ constexpr NumberRule kNotNegative = NumberRule::notNegative();
 constexpr std::int64_t kLargestSeed = std::int64_t{1} << 53;  // exact in every reader of YAML
 constexpr std::int64_t kMostCounts = 1 << 24;
 constexpr std::int64_t kMostBurst = 10000;
+constexpr std::array<std::pair<const char*, bool>, 2> kRodNames{{{"rigid", false}, {"elastic", true}}};
 
 DriveSettings readDrive(ParameterReader& reader) {
   DriveSettings d;
@@ -59,6 +61,35 @@ BlowSettings readBlow(ParameterReader& reader) {
   b.early_tool_mass = reader.number("early_tool_mass_kg", "kg", kPositive);
   b.blank_share = reader.number("blank_share", "", NumberRule::within(0.0, 1.0));
   return b;
+}
+
+/// Stiffness 0 for `rod: rigid`.
+RodSettings readRod(ParameterReader& reader) {
+  RodSettings r;
+  const bool elastic = reader.choice("rod", kRodNames);
+  r.stiffness = reader.number("machine_rod_stiffness_N_m", "N/m", kPositive);
+  r.damping_ratio = reader.number("machine_rod_damping_ratio", "", kNotNegative);
+  r.play = reader.number("machine_pin_play_m", "m", NumberRule::within(0.0, 0.005));
+  if (!elastic) r = {};
+  return r;
+}
+
+StrikeSettings readStrike(ParameterReader& reader) {
+  StrikeSettings s;
+  s.tool_mass = reader.number("tool_mass_kg", "kg", kPositive);
+  s.contact_stiffness = reader.number("contact_stiffness_N_m", "N/m", kPositive);
+  s.contact_damping = reader.number("contact_damping_s_m", "s/m", kNotNegative);
+  s.rock_stiffness = reader.number("tool_rock_stiffness_N_m", "N/m", kPositive);
+  s.rock_damping = reader.number("tool_rock_damping_s_m", "s/m", kNotNegative);
+  s.rock_strength = reader.number("tool_rock_strength_N", "N", kPositive);
+  s.tool_late = reader.number("tool_late_m", "m", NumberRule::within(-0.05, 0.05));
+  s.tool_spread = reader.number("tool_spread_m", "m", NumberRule::within(0.0, 0.05));
+  s.retainer_stiffness = reader.number("retainer_stiffness_N_m", "N/m", kNotNegative);
+  s.retainer_damping = reader.number("retainer_damping_s_m", "s/m", kNotNegative);
+  s.retainer_gap = reader.number("retainer_gap_m", "m", NumberRule::within(0.0, 0.05));
+  s.no_tool_from = reader.number("no_tool_start_s", "s", kNotNegative);
+  s.no_tool_to = s.no_tool_from + reader.number("no_tool_length_s", "s", kNotNegative);
+  return s;
 }
 
 /// Where the encoder sits on the crank.
@@ -128,6 +159,18 @@ void checkOnBoom(ParameterReader& reader, const MachineSettings& machine) {
   mustBeZero("blank_share", machine.blow.blank_share);
 }
 
+/// What follows from an elastic rod and the tool's contact, and is not to be given.
+void checkElastic(ParameterReader& reader, const MachineSettings& machine) {
+  if (machine.rod.stiffness == 0.0) return;
+  const auto mustBeZero = [&](const char* key, double value) {
+    if (value > 0.0) reader.addProblem(format("%s: %.9g, must be 0 with rod: elastic", key, value));
+  };
+  if (machine.blow.restitution_drawn) reader.addProblem("restitution_drawn: true, must be false with rod: elastic");
+  mustBeZero("coupling_frequency_Hz", machine.drive.coupling_frequency);
+  mustBeZero("blow_crank_loss", machine.blow.crank_loss);
+  mustBeZero("tool_early_rad", machine.blow.tool_early);
+}
+
 JointMotion readJoint(ParameterReader& reader, const std::string& joint) {
   JointMotion motion;
   motion.mean = reader.number(joint + "_mean_rad", "rad", kAny);
@@ -154,6 +197,8 @@ MachineSettings readMachine(ParameterReader& reader) {
   machine.level = reader.choice("level", kLevelNames);
   machine.drive = readDrive(reader);
   machine.blow = readBlow(reader);
+  machine.rod = readRod(reader);
+  machine.strike = readStrike(reader);
   machine.crank = readCrankSensor(reader);
   machine.boom = {readJoint(reader, "swing"), readJoint(reader, "boom"), readJoint(reader, "arm"),
                   readJoint(reader, "hammer")};
@@ -167,6 +212,7 @@ MachineSettings readMachine(ParameterReader& reader) {
   machine.seed = static_cast<std::uint64_t>(reader.integer("seed", "", 0, kLargestSeed));
   readTimes(reader, machine);
   checkOnBoom(reader, machine);
+  checkElastic(reader, machine);
   return machine;
 }
 

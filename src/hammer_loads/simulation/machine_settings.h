@@ -49,6 +49,31 @@ struct BlowSettings {
   double blank_share{};          ///< of the blows that find no tool [-], in [0, 1]
 };
 
+/// Rod, pins and bearings in series, along the line of the pins.
+struct RodSettings {
+  double stiffness{};      ///< [N/m]; 0: rigid
+  double damping_ratio{};  ///< of an oscillator of 200 Hz on this spring [-]: damping = ratio stiffness/(200 pi Hz)
+  double play{};           ///< free way of both pins together [m]
+};
+
+/// What an elastic machine's rocker strikes: a tool with mass that stands on rock, or the hull's retainer. As
+/// constructed a blow lasts 0.34 ms and the rocker leaves with 0.16 of its speed, near what the linkage then asks for
+/// (model.md 2).
+struct StrikeSettings {
+  double tool_mass{40.0};               ///< [kg], > 0
+  double contact_stiffness{1.2e9};      ///< between rocker and tool [N/m], > 0
+  double contact_damping{0.07};         ///< that force counts 1 + this times the speed of approach [s/m]
+  double rock_stiffness{5e8};           ///< [N/m], > 0
+  double rock_damping{0.05};            ///< likewise [s/m]
+  double rock_strength{2e5};            ///< the rock yields above this force [N], > 0
+  double tool_late{};                   ///< the tool stands so far below the dead centre's place; < 0: early [m]
+  double tool_spread{};                 ///< drawn anew for each turn, uniform within plus and minus this [m]
+  double retainer_stiffness{};          ///< of the hull's retainer [N/m]; 0: none
+  double retainer_gap{0.005};           ///< below the dead centre's place [m]
+  double retainer_damping{0.05};        ///< as of the contact [s/m]
+  double no_tool_from{}, no_tool_to{};  ///< between them a turn that begins finds no tool [s]
+};
+
 /// amount [sin(n angle + phase) - sin(phase)] is added to the encoder's angle [rad].
 struct Eccentricity {
   double amount{}, phase{};  ///< [rad]
@@ -134,6 +159,8 @@ struct MachineSettings {
   Level level{Level::kRocker};  ///< which links have mass
   DriveSettings drive;
   BlowSettings blow;
+  RodSettings rod;        ///< elastic: `strike` holds, and of `blow` blank_share alone
+  StrikeSettings strike;  ///< of an elastic rod
   CrankSensorSettings crank;
   std::array<JointMotion, 4> boom;
   OnBoomSettings on_boom;

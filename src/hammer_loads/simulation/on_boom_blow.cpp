@@ -28,7 +28,7 @@ void HammerOnBoom::blow() {
   Vector5 J, v, loop;  // of the striking point along the tool; the linkage allows no speed along the loop
   for (std::size_t j = 0; j < 3; ++j) J[static_cast<int>(j)] = (to_hull * -kI * (striker - jointPlace(now_, j))).imag();
   J[3] = 0.0, J[4] = machine_.hammer.striking_distance;
-  v << now_.v, u_before * now_.v[3];
+  v << now_.v.head<4>(), u_before * now_.v[3];
   loop << 0.0, 0.0, 0.0, u_after, -1.0;
   const Eigen::LDLT<Matrix5> inverse = M.ldlt();
   const Vector5 by_tool = inverse.solve(J), by_loop = inverse.solve(loop);
@@ -47,7 +47,7 @@ void HammerOnBoom::blow() {
   truth.turn_peak_force_z = truth.turn_impulse_x = truth.turn_impulse_z = truth.last_lobe_impulse_z = kNaN;
   truth.whole_turn = whole_turn_;
   blows_.push_back(truth);
-  now_.v = after.head<4>();
+  now_.v.head<4>() = after.head<4>();
   now_.before_blow = false;
   last_blow_ = now_.time;
   whole_turn_ = true;

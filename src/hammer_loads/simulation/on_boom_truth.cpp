@@ -14,7 +14,7 @@ double moment(PlanePoint r, PlanePoint f) { return r.imag() * f.real() - r.real(
 
 }  // namespace
 
-HammerOnBoom::State HammerOnBoom::along(const State& s, const Vector4& a, double dt) const {
+HammerOnBoom::State HammerOnBoom::along(const State& s, const Coordinates& a, double dt) const {
   State to = s;
   to.x += dt * s.v + 0.5 * dt * dt * a;
   return to;
@@ -25,15 +25,15 @@ PlanePoint HammerOnBoom::imuPlace(const State& s) const {
   return jointPlace(s, 3) + turnedBy(hullAngle(s)) * PlanePoint(imu.x, imu.z);
 }
 
-HammerOnBoom::Moments HammerOnBoom::momentsAbout(const Vector4& a) const {
+HammerOnBoom::Moments HammerOnBoom::momentsAbout(const Coordinates& a) const {
   Moments m{{now_, along(now_, a, kInstant), along(now_, a, -kInstant)}, {}};
   for (int i = 0; i < 3; ++i) m.rocker[i] = rockerAt(m.state[i]);
   return m;
 }
 
 /// Accelerations by differences in time.
-Load HammerOnBoom::loadOf(const Vector4& a, const Moments& m, const Links& links, std::size_t first, PlanePoint about,
-                          double axes) const {
+Load HammerOnBoom::loadOf(const Coordinates& a, const Moments& m, const Links& links, std::size_t first,
+                          PlanePoint about, double axes) const {
   constexpr double h = kInstant;
   const Bodies now = bodies(m.state[0], links, m.rocker[0]), later = bodies(m.state[1], links, m.rocker[1]),
                sooner = bodies(m.state[2], links, m.rocker[2]);
@@ -52,7 +52,7 @@ Load HammerOnBoom::loadOf(const Vector4& a, const Moments& m, const Links& links
 }
 
 /// With the forces of the cylinders that have their base before the cut and their rod's pin beyond it.
-Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const Moments& m, const OilBoomCut& cut) const {
+Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Moments& m, const OilBoomCut& cut) const {
   const double axes = angleBefore(now_, cut.link + 1);
   const PlanePoint turn = turnedBy(axes), about = jointPlace(now_, cut.link) + turn * cut.place;
   Links links = boom_.links;
@@ -62,6 +62,11 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Vector4& a, const Moments
                    by_rock = PlanePoint(t.rock.force_x, t.rock.force_z) * turnedBy(hullAngle(now_));
   const PlanePoint rock_here = by_rock * std::conj(turn);
   load.force_x += rock_here.real(), load.force_z += rock_here.imag(), load.torque_y += moment(foot, by_rock);
+  if (elastic_) {
+    const PlanePoint by_tool = t.tool_force * kI * turnedBy(hullAngle(now_)), here = by_tool * std::conj(turn);
+    load.force_x += here.real(), load.force_z += here.imag();
+    load.torque_y += moment(strikingPlace(now_) - about, by_tool);
+  }
   for (std::size_t k = cut.link; k < 3; ++k) {
     const OilCylinder& c = boom_.cylinders[k];
     const bool rod_beyond = k > cut.link || c.rod.real() > cut.place.real();
@@ -97,7 +102,7 @@ void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
   }
 }
 
-OnBoomSensors HammerOnBoom::sensors(const Hold& hold, const Vector4& a) const {
+OnBoomSensors HammerOnBoom::sensors(const Hold& hold, const Coordinates& a) const {
   OnBoomSensors s;
   s.angles = now_.x.head<3>(), s.rates = now_.v.head<3>();
   const PlanePoint later = imuPlace(along(now_, a, kInstant)), sooner = imuPlace(along(now_, a, -kInstant));
@@ -117,10 +122,11 @@ OnBoomSensors HammerOnBoom::sensors() const {
 OnBoomTruth HammerOnBoom::truth() const {
   OnBoomTruth t;
   const Hold hold = holdAt(now_.time);
-  const Vector4 a = acceleration(now_, hold);
+  const Coordinates a = acceleration(now_, hold);
   t.time = now_.time;
   t.turn = turn_;
   t.angle = now_.before_blow ? now_.x[3] + 2.0 * kPi : now_.x[3];
+  if (t.angle >= kTwoPi) t.angle = std::nextafter(kTwoPi, 0.0);
   t.speed = t.motor_speed = now_.v[3];
   t.acceleration = a[3];
   t.pressure = now_.pressure;
@@ -130,6 +136,16 @@ OnBoomTruth HammerOnBoom::truth() const {
   t.load = loadOf(a, moments, boom_.links, 3, jointPlace(now_, 3), t.hull_pitch);
   t.drive_reaction_y = -rotor_ * ratio_ * (a[3] + ratio_ * a.head<3>().sum());
   t.load.torque_y -= t.drive_reaction_y;
+  if (elastic_) {
+    const StruckTool::Answer answer = struck(now_);
+    const RodStretch rod = elastic_->links.rod({now_.x[3], now_.x[4]});
+    t.tool_force = answer.tool, t.retainer_force = answer.retainer;
+    t.rod_force = -elastic_->rod.tension(rod.stretch, rod.rate({now_.v[3], now_.v[4]}));
+    t.rocker_angle = now_.x[4], t.rocker_speed = now_.v[4];
+    t.load.force_z += t.tool_force;
+    t.load.torque_y +=
+        moment((strikingPlace(now_) - jointPlace(now_, 3)) * std::conj(turnedBy(t.hull_pitch)), t.tool_force * kI);
+  }
   static_cast<OnBoomSensors&>(t) = sensors(hold, a);
   t.displacement = t.angles - hold.state.x.head<3>();
   t.hold = holding(now_, hold);

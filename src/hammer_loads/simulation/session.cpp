@@ -15,8 +15,9 @@ constexpr double kImuLag = 0.0004, kPressureLag = 0.0007;  // theirs, so that no
 constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9, kJointSeed = 0x94d049bb133111eb;
 constexpr std::uint64_t kImuSeed = 0xd6e8feb86659fd93, kPressureSeed = 0xa0761d6478bd642f;
 
-std::variant<WorkingMachine, HammerOnBoom> machineOf(const MachineSettings& settings) {
+std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machineOf(const MachineSettings& settings) {
   if (settings.on_boom.on) return HammerOnBoom(settings);
+  if (settings.rod.stiffness > 0.0) return ElasticMachine(settings);
   return WorkingMachine(settings);
 }
 
@@ -124,7 +125,7 @@ void SessionStream::take(Session& session) {
     taken.on_boom = machine->truth();
     taken.truth = *taken.on_boom;
   } else {
-    taken.truth = std::get<WorkingMachine>(machine_).truth();
+    std::visit([&](const auto& any) { taken.truth = any.truth(); }, machine_);
   }
   taken.reading = read(taken.truth, stamp_error_, speed_error_);
   taken.twice = message_draws_.uniform() < sensor.duplicate_share;

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "hammer_loads/simulation/elastic_machine.h"
 #include "hammer_loads/simulation/hammer_on_boom.h"
 #include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/simulation/normal_noise.h"
@@ -89,7 +90,7 @@ class SessionStream {
   std::int64_t stampAt(double time) const noexcept;
 
   MachineSettings settings_;
-  std::variant<WorkingMachine, HammerOnBoom> machine_;
+  std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machine_;
   NormalNoise noise_;
   NormalNoise message_draws_, joint_noise_, imu_noise_, pressure_noise_;
   std::vector<Taken> burst_;

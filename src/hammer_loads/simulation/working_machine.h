@@ -27,6 +27,11 @@ struct CrankTruth {
   double hull_pitch{};        ///< [rad]
   Load load;                  ///< BY the links, weight included
   double drive_reaction_y{};  ///< BY motor and flywheel about +y [N m]
+  double rocker_angle{};      ///< psi [rad]; of an elastic machine alone, as what follows
+  double rocker_speed{};      ///< psi' [rad/s]
+  double rod_force{};         ///< compression > 0 [N]
+  double tool_force{};        ///< along +z BY the tool ON the rocker [N]
+  double retainer_force{};    ///< along +z BY the hull's retainer ON the rocker [N]
 };
 
 /// One blow and the turn that it ended.
@@ -40,6 +45,9 @@ struct BlowTruth {
   double turn_impulse_z{};       ///< [N s]
   double last_lobe_impulse_z{};  ///< integral of Fz from its last rise through zero to the blow [N s]
   bool whole_turn{};             ///< began with a blow and went forward all the way
+  double contact{};              ///< time that all its touches lasted [s]; of an elastic machine alone, as what follows
+  double retainer_impulse{};     ///< along +z BY the hull's retainer ON the rocker [N s]
+  int touches{};                 ///< of tool and retainer
 };
 
 /// Where the energy went since the start [J]. Balances are tested:

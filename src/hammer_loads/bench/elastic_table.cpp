@@ -1,0 +1,166 @@
+#include "hammer_loads/bench/elastic_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "hammer_loads/bench/machine_table.h"
+#include "hammer_loads/bench/session_run.h"
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads::accuracy {
+namespace {
+
+using simulation::CrankTruth;
+using simulation::MachineSettings;
+
+constexpr double kAfterFrom = 0.006, kAfterTo = 0.040;  // of the ring, from the first touch [s]
+
+std::array<double, 3> valuesOf(const CrankTruth& t) {
+  return {t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
+}
+
+/// Gathers one part of the turn.
+struct Gathering {
+  std::array<double, 3> square{}, truth_square{}, within{};
+  int count{};
+  void add(const WrenchAt& estimate, const std::array<double, 3>& truth) {
+    const double value[]{estimate.force_x, estimate.force_z, estimate.torque_y};
+    const double deviation[]{estimate.force_x_deviation, estimate.force_z_deviation, estimate.torque_y_deviation};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double error = value[i] - truth[i];
+      square[i] += error * error, truth_square[i] += truth[i] * truth[i];
+      within[i] += std::abs(error) <= 2.0 * deviation[i];
+    }
+    ++count;
+  }
+  PartErrors over(const std::array<double, 3>& scale) const {
+    PartErrors e;
+    for (std::size_t i = 0; i < 3; ++i)
+      e.rms[i] = std::sqrt(square[i] / count) / scale[i], e.covered[i] = within[i] / count;
+    e.scale = scale, e.count = count;
+    return e;
+  }
+  std::array<double, 3> truthRms() const {
+    std::array<double, 3> rms;
+    for (std::size_t i = 0; i < 3; ++i) rms[i] = std::sqrt(truth_square[i] / count);
+    return rms;
+  }
+};
+
+/// Since the last blow's first touch [s]; infinite before the first.
+double sinceBlow(const std::vector<simulation::BlowTruth>& blows, double time) {
+  const auto next = std::upper_bound(blows.begin(), blows.end(), time,
+                                     [](double t, const simulation::BlowTruth& b) { return t < b.time; });
+  return next == blows.begin() ? kInfinity : time - std::prev(next)->time;
+}
+
+ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& session, const MachineSettings& machine) {
+  std::vector<double> times;
+  for (const WrenchAt& w : run.wrenches) times.push_back(w.time);
+  const std::vector<CrankTruth> truth = simulation::truthAt(machine, times);
+  Gathering whole, strike, after;
+  std::array<double, 3> largest{};
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (times[k] < 3.0 || times[k] > machine.duration - 3.0) continue;
+    const std::array<double, 3> values = valuesOf(truth[k]);
+    for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
+    whole.add(run.wrenches[k], values);
+    if (truth[k].angle >= kPi) strike.add(run.wrenches[k], values);
+    const double since = sinceBlow(session.blows, times[k]);
+    if (since >= kAfterFrom && since <= kAfterTo) after.add(run.wrenches[k], values);
+  }
+  return {whole.over(largest), strike.over(largest), after.over(after.truthRms())};
+}
+
+/// Everything a little, and a usual sensor.
+void makeTogether(MachineSettings& s) {
+  makeTypical(s);
+  s.rod = {8e8, 0.3, 1e-4};
+  s.strike.tool_spread = 1e-3;
+  s.drive.ripple = 0.03;
+  s.hammer.rocker_mass *= 1.015;
+  s.hammer.rocker_inertia_about_pivot *= 0.99;
+  s.hammer.crank_mass *= 1.02;
+  s.hammer.rod_mass *= 0.98;
+}
+
+}  // namespace
+
+std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer) {
+  MachineSettings base = simulation::workingMo100();
+  base.hammer = hammer;
+  base.level = Level::kLinkage;
+  base.seed = 77;
+  const auto rod = [&](double stiffness, double damping_ratio, double play) {
+    MachineSettings s = base;
+    s.rod = {stiffness, damping_ratio, play};
+    return s;
+  };
+  MachineSettings together = base;
+  makeTogether(together);
+  return {{"elastic damped: 1e9 N/m, 0.6", rod(1e9, 0.6, 0.0)}, {"elastic average: 1e9 N/m, 0.2", rod(1e9, 0.2, 0.0)},
+          {"elastic dead: 1e9 N/m, 3", rod(1e9, 3.0, 0.0)},     {"elastic dead, play 0.2 mm", rod(1e9, 3.0, 2e-4)},
+          {"elastic, 0.3, play 0.5 mm", rod(1e9, 0.3, 5e-4)},   {"elastic together", together}};
+}
+
+ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, Level level) {
+  const simulation::Session session = simulation::recordSession(kind.machine);
+  PipelineSettings pipeline = settings.pipeline;
+  pipeline.level = level;
+  const SessionRun run = runSession(session, kind.machine.start_stamp, settings.mechanism, pipeline);
+  return judgeParts(run, session, kind.machine);
+}
+
+std::vector<ElasticRow> elasticTable(const Settings& settings) {
+  std::vector<ElasticRow> rows;
+  for (const ElasticKind& kind : elasticKinds(settings.mechanism.parameters())) {
+    for (const Level level : {Level::kRocker, Level::kLinkage})
+      rows.push_back({kind.name, level, elasticErrors(settings, kind, level)});
+  }
+  return rows;
+}
+
+namespace {
+
+std::string cells(const PartErrors& e, int digits) {
+  const auto three = [](const std::array<double, 3>& v, int places) {
+    return format("%.*f, %.*f, %.*f %%", places, 100 * v[0], places, 100 * v[1], places, 100 * v[2]);
+  };
+  return three(e.rms, digits) + " | " + three(e.covered, 0) + " | ";
+}
+
+std::string jsonOf(const char* name, const PartErrors& e) {
+  const auto three = [](const std::array<double, 3>& v) { return format("[%.6g, %.6g, %.6g]", v[0], v[1], v[2]); };
+  return format("\"%s\": {\"rms\": ", name) + three(e.rms) + ", \"covered\": " + three(e.covered) +
+         ", \"scale\": " + three(e.scale) + format(", \"samples\": %d}", e.count);
+}
+
+}  // namespace
+
+std::string markdown(const std::vector<ElasticRow>& rows) {
+  std::string text =
+      "| machine | level | whole turn: rms Fx, Fz, moment | within two deviations | 180 to 360 deg: rms | within two "
+      "deviations | 6 to 40 ms after the blow: rms over the truth's | within two deviations | true Fz there |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (const ElasticRow& row : rows) {
+    const ElasticErrors& e = row.errors;
+    text += "| " + row.machine + " | " + nameOf(row.level) + " | " + cells(e.whole, 2) + cells(e.strike, 2) +
+            cells(e.after, 0) + format("%.0f N rms |\n", e.after.scale[1]);
+  }
+  return text;
+}
+
+std::string json(const std::vector<ElasticRow>& rows) {
+  std::string text = "[";
+  for (const ElasticRow& row : rows) {
+    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", ", &row == rows.data() ? "" : ",",
+                   row.machine.c_str(), nameOf(row.level)) +
+            jsonOf("whole", row.errors.whole) + ", " + jsonOf("strike", row.errors.strike) + ", " +
+            jsonOf("after", row.errors.after) + "}";
+  }
+  return text + "\n]";
+}
+
+}  // namespace hammer_loads::accuracy

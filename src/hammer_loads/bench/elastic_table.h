@@ -1,0 +1,52 @@
+/// Cost table, fifth part: errors on machines whose rod gives and whose blow lasts, by level.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/machine_settings.h"
+
+namespace hammer_loads::accuracy {
+
+/// Of Fx, Fz and the moment in one part of the turn.
+struct PartErrors {
+  std::array<double, 3> rms{};      ///< of the errors, over `scale` [-]
+  std::array<double, 3> covered{};  ///< part of the errors within two of their deviations [-]
+  std::array<double, 3> scale{};    ///< [N, N, N m]
+  int count{};                      ///< of samples
+};
+
+struct ElasticErrors {
+  PartErrors whole;   ///< over the largest of the truth
+  PartErrors strike;  ///< crank from 180 to 360 deg; likewise
+  PartErrors after;   ///< 6 to 40 ms after the first touch; over the root mean square of the truth there
+};
+
+struct ElasticRow {
+  std::string machine;
+  Level level{};
+  ElasticErrors errors;
+};
+
+/// A machine of the elastic rows.
+struct ElasticKind {
+  std::string name;
+  simulation::MachineSettings machine;
+};
+
+/// The given hammer with crank and rod as it has them, 1 kHz, 4096 counts and speeds unless the name says otherwise.
+std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer);
+/// Of one session through the pipeline at a level (seeded: the same on every run).
+ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, Level level);
+/// Every machine at levels rocker and linkage, some ten seconds of computing.
+std::vector<ElasticRow> elasticTable(const Settings& settings);
+
+/// As a table in Markdown.
+std::string markdown(const std::vector<ElasticRow>& rows);
+/// As a JSON array of objects, errors as parts of one.
+std::string json(const std::vector<ElasticRow>& rows);
+
+}  // namespace hammer_loads::accuracy

@@ -1,0 +1,40 @@
+/// Gathers the touches of tool and retainer into blows.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hammer_loads/simulation/working_machine.h"
+
+namespace hammer_loads::simulation {
+
+/// A blow begins with a touch at more than 0.1 m/s - a crank that leans on the tool strikes nothing - and takes in all
+/// touches of the next 20 ms.
+class BlowFollower {
+ public:
+  struct Instant {
+    double time{};
+    double crank_speed{}, rocker_speed{};                      ///< [rad/s]
+    double approach{};                                         ///< of the striking point, down [m/s]
+    double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
+    bool touches{};
+  };
+  /// After each step. What the turn before it was, where a blow begins now: for the caller to fill in.
+  BlowTruth* follow(const Instant& now);
+  /// Hands over the blows that ended since the last call.
+  std::vector<BlowTruth> take() { return std::exchange(blows_, {}); }
+
+ private:
+  struct Meeting {
+    BlowTruth truth;
+    Instant begun;
+    double touched{};  ///< last time [s]
+  };
+  void end(const Instant& now);
+  std::optional<Meeting> meeting_;
+  bool touched_{};
+  std::vector<BlowTruth> blows_;
+};
+
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,86 @@
+/// Crank, rod and rocker of a hammer whose rod gives: the two angles are independent of each other.
+#pragma once
+
+#include <array>
+#include <complex>
+
+#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/level.h"
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/simulation/machine_settings.h"
+#include "hammer_loads/simulation/moving_links.h"
+
+namespace hammer_loads::simulation {
+
+/// Angles, speeds or accelerations of crank and rocker, or forces on them.
+using TwoBodies = std::array<double, 2>;
+
+/// The rod between its pins: how much longer than as drawn, and what each angle does to that.
+struct RodStretch {
+  double stretch{};   ///< [m]
+  TwoBodies slope{};  ///< [m/rad]
+  double rate(const TwoBodies& speed) const noexcept { return slope[0] * speed[0] + slope[1] * speed[1]; }
+};
+
+/// Spring with a damper beside it, and play. Without play it holds both ways at once; with play each side can only
+/// push, and its damper grows with the first 5 um of pressing, as an oil film does: a step of the force would have no
+/// source.
+class RodSpring {
+ public:
+  explicit RodSpring(const RodSettings& rod) noexcept;
+
+  /// That pulls the pins together, at a stretch [m] and its rate [m/s]; negative: pushes them apart [N].
+  double tension(double stretch, double rate) const noexcept;
+  double energy(double stretch) const noexcept;   ///< [J]
+  double pressed(double stretch) const noexcept;  ///< part of a stretch beyond the play, with its sign [m]
+
+ private:
+  double stiffness_, damping_, half_play_;  ///< [N/m], [N s/m], [m]
+};
+
+/// Rocker, and at level linkage crank and rod, as rigid bodies in the plane of the mechanism frame (model.md 1), places
+/// as complex numbers from A. The rod's centre of mass keeps its place relative to both pins, so that its mass and
+/// inertia enter as they are. Motor and flywheel are not part of it.
+class ElasticLinks {
+ public:
+  struct Body {
+    double mass{}, inertia{};        ///< [kg], about the centre of mass [kg m2]
+    std::complex<double> place;      ///< centre of mass [m]
+    std::complex<double> slope[2];   ///< of it by crank and rocker angle [m/rad]
+    double turn[2]{};                ///< of its angle by them [-]
+    std::complex<double> by_speeds;  ///< its acceleration at constant speeds of both [m/s2]
+    double turn_by_speeds{};         ///< [rad/s2]
+  };
+  struct View {
+    Body body[3];
+    int count{};
+    RodStretch rod;
+  };
+
+  ElasticLinks(const HammerParameters& parameters, Level level);
+
+  View at(const TwoBodies& angle, const TwoBodies& speed) const noexcept;
+  RodStretch rod(const TwoBodies& angle) const noexcept;
+  /// What moves both: inertia[0] of the crank, [1] between them, [2] of the rocker [kg m2].
+  std::array<double, 3> inertia(const View& view) const noexcept;
+  /// On crank and rocker by weight [N m].
+  TwoBodies weight(const View& view, Gravity gravity) const noexcept;
+  /// On crank and rocker by the inertia of what moves at constant speeds [N m].
+  TwoBodies inertiaOfSpeeds(const View& view) const noexcept;
+  /// Momentum theorem; tool_force [N]: along +z at the striking point, from outside of hammer and hull.
+  Load load(const View& view, double rocker_angle, const TwoBodies& acceleration, Gravity gravity,
+            double tool_force) const noexcept;
+  /// Depth of the striking point below its place at the dead centre [m] and what the rocker's angle does to it.
+  double depth(double rocker_angle) const noexcept;
+  double depthSlope(double rocker_angle) const noexcept;
+  /// Of a rod that is as long as drawn, on the branch of the working turn, crank angle in [0, 2 pi] [rad].
+  double rockerAngle(double crank_angle) const noexcept;
+
+ private:
+  std::complex<double> inMechanism(Gravity gravity) const noexcept;
+  HammerParameters p_;
+  Level level_;
+  double cos_a_, sin_a_;
+};
+
+}  // namespace hammer_loads::simulation

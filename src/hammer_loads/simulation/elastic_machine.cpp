@@ -1,0 +1,192 @@
+#include "hammer_loads/simulation/elastic_machine.h"
+
+#include <algorithm>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <cmath>
+
+#include "hammer_loads/simulation/drive.h"
+#include "hammer_loads/util/constants.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kShortest = 1e-8;  // step in which a contact may begin or end [s]
+/// Error of a step at most: angles [rad], their speeds [rad/s], tool's way and speed [m], [m/s], yielded [m], pressure
+/// [Pa]. 1e-11 rad are 0.5 N in a rod of 1e9 N/m.
+constexpr double kError[] = {1e-11, 1e-11, 1e-6, 1e-6, 1e-11, 1e-6, 1e-11, 10.0};
+
+}  // namespace
+
+ElasticMachine::ElasticMachine(const MachineSettings& settings)
+    : settings_(settings),
+      links_(settings.hammer, settings.level),
+      rod_(settings.rod),
+      struck_(settings),
+      next_step_(settings.step) {
+  const double start = settings_.start_angle;
+  now_[kCrank] = start > kPi ? start - kTwoPi : start;
+  now_[kRocker] = links_.rockerAngle(start);
+  contacts_ = contacts(now_);
+  rate(now_, slope_, time_);
+}
+
+double ElasticMachine::pitch(double time) const noexcept {
+  double pitch = 0.0;
+  for (std::size_t i = 1; i < settings_.boom.size(); ++i) pitch += positionOf(settings_.boom[i], time);
+  return pitch;
+}
+
+Gravity ElasticMachine::gravity(double time) const noexcept {
+  const double at = pitch(time);
+  return {settings_.gravity * std::sin(at), -settings_.gravity * std::cos(at)};
+}
+
+StruckTool::Striker ElasticMachine::striker(const State& y) const noexcept {
+  return {links_.depth(y[kRocker]), links_.depthSlope(y[kRocker]) * y[kRockerSpeed]};
+}
+
+ElasticMachine::Acting ElasticMachine::acting(const State& y, double time) const noexcept {
+  Acting a;
+  const Gravity g = gravity(time);
+  const TwoBodies w = speeds(y);
+  const ElasticLinks::View view = links_.at(angles(y), w);
+  const double rate = view.rod.rate(w);
+  a.rod = rod_.tension(view.rod.stretch, rate);
+  a.rod_loss = (a.rod - rod_.tension(view.rod.stretch, 0.0)) * rate;
+  a.struck = struck_.answer(striker(y), tool(y), -g.z);
+  a.net_torque = netTorque(settings_.drive, y[kPressure], w[0]);
+  const TwoBodies weight = links_.weight(view, g), speeds = links_.inertiaOfSpeeds(view);
+  const double up = a.struck.tool + a.struck.retainer;
+  const double on_crank = a.net_torque + weight[0] + speeds[0] - a.rod * view.rod.slope[0];
+  const double on_rocker = weight[1] + speeds[1] - a.rod * view.rod.slope[1] - up * links_.depthSlope(y[kRocker]);
+  std::array<double, 3> M = links_.inertia(view);
+  M[0] += settings_.drive.inertia;
+  const double determinant = M[0] * M[2] - M[1] * M[1];
+  a.acceleration = {(M[2] * on_crank - M[1] * on_rocker) / determinant,
+                    (M[0] * on_rocker - M[1] * on_crank) / determinant};
+  a.load = links_.load(view, y[kRocker], a.acceleration, g, a.struck.tool);
+  a.weight = weight[0] * w[0] + weight[1] * w[1];
+  if (struck_.isThere()) a.weight += settings_.strike.tool_mass * -g.z * y[kToolSpeed];
+  return a;
+}
+
+void ElasticMachine::rate(const State& y, State& r, double time) const noexcept {
+  const DriveSettings& d = settings_.drive;
+  const Acting a = acting(y, time);
+  const double w = y[kCrankSpeed], p = y[kPressure];
+  r[kCrank] = w, r[kRocker] = y[kRockerSpeed];
+  r[kCrankSpeed] = a.acceleration[0], r[kRockerSpeed] = a.acceleration[1];
+  r[kToolWay] = a.struck.rate.way, r[kToolSpeed] = a.struck.rate.speed, r[kYielded] = a.struck.rate.yielded;
+  r[kPressure] = (supplyFlow(d, time) - d.motor_displacement * w - valveFlow(d, time, p)) / d.compliance;
+  r[kImpulseX] = a.load.force_x, r[kImpulseZ] = a.load.force_z;
+  r[kMotor] = d.motor_displacement * p * w;
+  r[kFriction] = r[kMotor] - a.net_torque * w;
+  r[kWeight] = a.weight;
+  r[kRodLoss] = a.rod_loss;
+  r[kBlowLoss] = a.struck.contact_loss + a.struck.rock_loss + a.struck.retainer_loss;
+  r[kToolImpulse] = a.struck.tool, r[kToolEnergy] = a.struck.tool * striker(y).speed;
+  r[kRetainerImpulse] = a.struck.retainer;
+}
+
+/// Of tool, retainer, rock and the sides of the rod's play.
+int ElasticMachine::contacts(const State& y) const noexcept {
+  const int ground = struck_.contacts(striker(y), tool(y));
+  if (settings_.rod.play == 0.0) return ground;
+  const double pressed = rod_.pressed(links_.rod(angles(y)).stretch);
+  return ground + (pressed > 0.0 ? 8 : 0) + (pressed < 0.0 ? 16 : 0);
+}
+
+/// Returns how far it came [s].
+double ElasticMachine::step(double longest) {
+  boost::numeric::odeint::runge_kutta_dopri5<State> stepper;
+  const auto system = [this](const State& y, State& slope, double time) { rate(y, slope, time); };
+  double dt = std::min(next_step_, longest);
+  for (;;) {
+    State next, slope, error;
+    stepper.do_step(system, now_, slope_, time_, next, slope, dt, error);
+    double worst = 1e-8;
+    for (int i = 0; i < kControlled; ++i) worst = std::max(worst, std::abs(error[i]) / kError[i]);
+    const double factor = std::clamp(0.9 * std::pow(worst, -0.2), 0.1, 4.0);
+    if (worst > 1.0 && dt > kShortest) {
+      next_step_ = dt = dt * factor;
+      continue;
+    }
+    const int after = contacts(next);
+    if (after != contacts_ && dt > kShortest) {
+      next_step_ = dt = std::max(0.25 * dt, 0.9 * kShortest);
+      continue;
+    }
+    next_step_ = std::min(settings_.step, dt < next_step_ ? std::max(next_step_, dt * factor) : dt * factor);
+    accept(next, slope, dt, after);
+    return dt;
+  }
+}
+
+void ElasticMachine::advanceTo(double time) {
+  while (time_ < time) {
+    const double left = time - time_;
+    if (step(left) == left) time_ = time;
+  }
+}
+
+void ElasticMachine::accept(const State& next, const State& slope, double dt, int contacts) {
+  const double force_before = slope_[kImpulseZ], force = slope[kImpulseZ];
+  if (force_before <= 0.0 && force > 0.0) {
+    const double part = dt * force_before / (force_before - force);
+    current_.lobe = now_[kImpulseZ] + 0.5 * force_before * part;
+  }
+  const bool put_back = now_[kRocker] <= 1.0 && next[kRocker] > 1.0;  // rocker far from the tool, on its way up
+  now_ = next, slope_ = slope, contacts_ = contacts;
+  time_ += dt;
+  current_.peak = std::max(current_.peak, force);
+  if (now_[kCrankSpeed] < 0.0) current_.whole = false;
+  passDeadCentre();
+  followBlow();
+  if (put_back) putToolBack();
+}
+
+/// The turn is counted where the crank passes; its angle stays within half a turn of the nearest dead centre.
+void ElasticMachine::passDeadCentre() noexcept {
+  if (now_[kCrank] > kPi) {
+    now_[kCrank] -= kTwoPi, ++turn_;
+  } else if (now_[kCrank] < -kPi) {
+    now_[kCrank] += kTwoPi, --turn_;
+  }
+}
+
+CrankTruth ElasticMachine::truth() const noexcept {
+  const Acting a = acting(now_, time_);
+  CrankTruth t;
+  t.time = time_;
+  const bool before = now_[kCrank] < 0.0;
+  t.turn = before ? turn_ - 1 : turn_;
+  t.angle = before ? now_[kCrank] + kTwoPi : now_[kCrank];
+  if (t.angle >= kTwoPi) t.angle = std::nextafter(kTwoPi, 0.0);
+  t.speed = t.motor_speed = now_[kCrankSpeed];
+  t.acceleration = a.acceleration[0];
+  t.net_torque = a.net_torque;
+  t.pressure = now_[kPressure];
+  t.hull_pitch = pitch(time_);
+  t.load = a.load;
+  t.drive_reaction_y = -settings_.hammer.drive_reaction_ratio * settings_.drive.inertia * a.acceleration[0];
+  t.rocker_angle = now_[kRocker], t.rocker_speed = now_[kRockerSpeed];
+  t.rod_force = -a.rod;
+  t.tool_force = a.struck.tool, t.retainer_force = a.struck.retainer;
+  return t;
+}
+
+ElasticEnergy ElasticMachine::energy() const noexcept {
+  const TwoBodies w = speeds(now_);
+  const ElasticLinks::View view = links_.at(angles(now_), w);
+  const std::array<double, 3> M = links_.inertia(view);
+  ElasticEnergy e;
+  e.motor = now_[kMotor], e.friction = now_[kFriction], e.weight = now_[kWeight];
+  e.kinetic = 0.5 * ((M[0] + settings_.drive.inertia) * w[0] * w[0] + M[2] * w[1] * w[1]) + M[1] * w[0] * w[1];
+  e.elastic = rod_.energy(view.rod.stretch);
+  e.tool = struck_.energy(striker(now_), tool(now_));
+  e.rod = now_[kRodLoss];
+  e.blow = now_[kBlowLoss] + put_back_;
+  return e;
+}
+
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,115 @@
+/// A hydraulically driven hammer whose rod gives and whose blow lasts: the truth for the time after a blow.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hammer_loads/simulation/blow_follower.h"
+#include "hammer_loads/simulation/elastic_links.h"
+#include "hammer_loads/simulation/struck_tool.h"
+#include "hammer_loads/simulation/working_machine.h"
+
+namespace hammer_loads::simulation {
+
+/// Where the energy of an elastic machine went since the start [J]. The balance is tested:
+/// kinetic + elastic + rod + blow = motor - friction + weight.
+struct ElasticEnergy {
+  double motor{};     ///< work of the pressure on the shaft
+  double friction{};  ///< lost in it
+  double weight{};    ///< work of the weight of links and tool
+  double kinetic{};   ///< of links and drive now
+  double elastic{};   ///< in the rod now
+  double tool{};      ///< kinetic of the tool, elastic in contacts and rock now
+  double rod{};       ///< lost in its damper
+  double blow{};      ///< lost in contacts, rock and retainer, and with a tool that is put in its place again
+};
+
+/// Crank with drive and rocker as two bodies, the rod a spring between their pins, the tool a third body. At the dead
+/// centre nothing is special: without a blow the rocker goes through by its inertia. No rule for a blow: what it does
+/// follows from the contact's force.
+/// Neglects: motion of the hull but its pitch, a flexible coupling, bending of the links.
+/// Dormand-Prince of order 5 with steps by its error; no step runs over a change of contact by more than 10 ns.
+/// settings.rod.stiffness > 0. Of BlowTruth: `time` is the first touch, speeds after are those at the last parting,
+/// energy and impulse those through the tool, a turn lasts from one first touch to the next.
+class ElasticMachine {
+ public:
+  /// Throws std::invalid_argument when the hammer's linkage is impossible.
+  explicit ElasticMachine(const MachineSettings& settings);
+
+  /// time >= now [s].
+  void advanceTo(double time);
+  double time() const noexcept { return time_; }
+  /// load: as the momentum theorem has it, with what the tool gives and without the drive; the retainer is part of the
+  /// hull.
+  CrankTruth truth() const noexcept;
+  ElasticEnergy energy() const noexcept;
+  /// Hands over the blows that ended since the last call.
+  std::vector<BlowTruth> takeBlows() { return follower_.take(); }
+
+ private:
+  enum Index {
+    kCrank,  // from the nearest dead centre
+    kRocker,
+    kCrankSpeed,
+    kRockerSpeed,
+    kToolWay,
+    kToolSpeed,
+    kYielded,
+    kPressure,
+    kControlled,  // what follows are integrals of these
+    kImpulseX = kControlled,
+    kImpulseZ,
+    kMotor,
+    kFriction,
+    kWeight,
+    kRodLoss,
+    kBlowLoss,
+    kToolImpulse,
+    kToolEnergy,
+    kRetainerImpulse,
+    kSize
+  };
+  using State = std::array<double, kSize>;
+  struct Acting {
+    double rod{}, rod_loss{};  ///< tension [N], [W]
+    StruckTool::Answer struck;
+    TwoBodies acceleration{};
+    Load load;
+    double weight{}, net_torque{};  ///< [W], [N m]
+  };
+
+  static TwoBodies angles(const State& y) noexcept { return {y[kCrank], y[kRocker]}; }
+  static TwoBodies speeds(const State& y) noexcept { return {y[kCrankSpeed], y[kRockerSpeed]}; }
+  static ToolState tool(const State& y) noexcept { return {y[kToolWay], y[kToolSpeed], y[kYielded]}; }
+  StruckTool::Striker striker(const State& y) const noexcept;
+  Gravity gravity(double time) const noexcept;
+  double pitch(double time) const noexcept;
+  Acting acting(const State& y, double time) const noexcept;
+  void rate(const State& y, State& slope, double time) const noexcept;
+  int contacts(const State& y) const noexcept;
+  double step(double longest);
+  void accept(const State& next, const State& slope, double dt, int contacts);
+  void passDeadCentre() noexcept;
+  void followBlow();
+  void putToolBack();
+
+  MachineSettings settings_;
+  ElasticLinks links_;
+  RodSpring rod_;
+  StruckTool struck_;
+  State now_{}, slope_{};
+  double time_{}, next_step_;
+  int contacts_{};
+  std::int64_t turn_{};
+  double put_back_{};  ///< energy of tools that were [J]
+
+  struct Turn {
+    double start{}, impulse_x{}, impulse_z{};  ///< [s], [N s]
+    double lobe{};                             ///< impulse where Fz last rose through zero [N s]
+    double peak{};                             ///< [N]
+    bool whole{};
+  } current_;
+  BlowFollower follower_;
+};
+
+}  // namespace hammer_loads::simulation

@@ -1,0 +1,54 @@
+/// What the rocker of an elastic machine strikes: tool on yielding rock, the hull's retainer, or nothing.
+#pragma once
+
+#include "hammer_loads/simulation/machine_settings.h"
+#include "hammer_loads/simulation/normal_noise.h"
+
+namespace hammer_loads::simulation {
+
+/// Tool along its axis, down positive, from where it stood when the turn began, and the rock below it.
+struct ToolState {
+  double way{};      ///< [m]
+  double speed{};    ///< [m/s]
+  double yielded{};  ///< how far the rock gave way for good [m]
+};
+
+/// Contact forces grow from zero with the depth of pressing, and with its speed (Hunt and Crossley 1975): a spring and
+/// a loss that never pulls. The rock yields above its strength, within some 10 us.
+/// Neglects: waves within tool and rocker, friction of the tool's bush, motion of the hull during the blow. Each turn
+/// the tool is found in its place again.
+class StruckTool {
+ public:
+  /// Depth of the striking point below its place at the dead centre [m], and its speed [m/s].
+  struct Striker {
+    double depth{}, speed{};
+  };
+  struct Answer {
+    double tool{}, retainer{};                            ///< up, on the rocker [N]
+    ToolState rate;                                       ///< of the tool's state
+    double contact_loss{}, rock_loss{}, retainer_loss{};  ///< [W]
+  };
+
+  StruckTool(const MachineSettings& settings);
+
+  Answer answer(Striker striker, const ToolState& tool, double gravity_down) const noexcept;
+  double energy(Striker striker, const ToolState& tool) const noexcept;  ///< kinetic and elastic [J]
+  /// Who touches whom, for a step that must not run over a change: equal means the same contacts.
+  int contacts(Striker striker, const ToolState& tool) const noexcept;
+  static bool touches(int contacts) noexcept { return (contacts & 3) != 0; }
+  /// For the turn that begins at a time [s]. Draws the same numbers whatever is asked for.
+  void newTurn(double time) noexcept;
+  bool isThere() const noexcept { return there_; }
+
+ private:
+  double onTool(Striker striker, const ToolState& tool) const noexcept;
+  double onRock(const ToolState& tool) const noexcept;
+
+  StrikeSettings s_;
+  double blank_share_;
+  NormalNoise draws_;
+  double place_{};  ///< of the tool's top [m]
+  bool there_{true};
+};
+
+}  // namespace hammer_loads::simulation
