@@ -224,4 +224,15 @@ py::dict blow(const Hammer& hammer, double before, std::optional<double> after,
   return values;
 }
 
+void bareBatch(const Hammer& hammer, const Array& angle, const Array& speed, const Array& acceleration,
+               const std::string& level) {
+  const auto count = static_cast<std::size_t>(angle.size());
+  if (speed.size() != angle.size() || acceleration.size() != angle.size()) raise({"arrays must have one length"});
+  static std::vector<double> out;
+  out.resize(3 * count);
+  const HullModel model(hammer.mechanism(), levelOf(hammer, level));
+  hullWrenches(model, {angle.data(), speed.data(), acceleration.data(), count}, {},
+               {out.data(), out.data() + count, out.data() + 2 * count});
+}
+
 }  // namespace hammer_loads::python

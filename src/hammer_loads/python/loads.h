@@ -38,4 +38,9 @@ py::dict pulse(const Hammer& hammer, double speed, const LoadOptions& options);
 py::dict blow(const Hammer& hammer, double before, std::optional<double> after,
               const std::optional<std::string>& level);
 
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// One call of the batch into memory that stays, for scripts/python_cost.
+void bareBatch(const Hammer& hammer, const Array& angle, const Array& speed, const Array& acceleration,
+               const std::string& level);
+
 }  // namespace hammer_loads::python

@@ -94,6 +94,7 @@ void addHammer(py::module_& module) {
 // NOLINTNEXTLINE: the macro is pybind11's
 PYBIND11_MODULE(_native, module) {
   addHammer(module);
+  module.def("batch", &bareBatch);
   module.def("count_cycles", &countCycles, py::arg("series"), py::kw_only(), py::arg("full_scale") = py::none(),
              py::arg("classes") = 4096);
   module.def(
