@@ -5,6 +5,7 @@ set(test_dir ${PROJECT_SOURCE_DIR}/test)
 add_custom_target(tests)
 add_library(hammer_loads_test_main OBJECT EXCLUDE_FROM_ALL ${test_dir}/support/main.cpp
             ${test_dir}/support/counting_new.cpp)
+target_include_directories(hammer_loads_test_main PRIVATE ${test_dir})
 
 # hammer_loads_room(FOLDER LIBRARIES...): tests of one room, less those that need ROS
 function(hammer_loads_room room)
