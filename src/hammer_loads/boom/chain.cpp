@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <kdl/tree.hpp>
-#include <kdl_parser/kdl_parser.hpp>
 #include <set>
 #include <utility>
 
 #include "hammer_loads/boom/urdf_text.h"
+#include "hammer_loads/boom/urdf_tree.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
@@ -68,10 +68,7 @@ class ChainBuilder {
   void build() {
     if (findPath()) checkJoints();
     if (!result_.problems.empty()) return;
-    if (!kdl_parser::treeFromUrdfModel(model_, tree_)) {
-      result_.problems.push_back("robot_description: cannot be made a tree of rigid bodies");
-      return;
-    }
+    tree_ = treeOf(model_);
     addLinks();
     if (!request_.massless) checkMassBeyondJoints();
     if (!result_.problems.empty()) return;

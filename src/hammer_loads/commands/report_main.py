@@ -4,7 +4,8 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-for home in (HERE.parent, HERE.parents[1] / "share" / "hammer_loads"):  # in the source, installed
+SHARE = pathlib.Path("share") / "hammer_loads"
+for home in (HERE.parent, HERE.parents[1] / SHARE, HERE.parent / SHARE):  # in the source, installed with ROS, without
     if (home / "report" / "command.py").is_file():
         sys.path.insert(0, str(home))
         break

@@ -1,0 +1,15 @@
+/// From a robot description to KDL's bodies. ROS has this as kdl_parser, which brings roscpp with it.
+#pragma once
+
+#include <urdf_model/model.h>
+
+#include <kdl/tree.hpp>
+
+namespace hammer_loads {
+
+/// Every link as a segment of its own name, with its mass and inertia; a joint that neither turns about an axis nor
+/// slides along one counts as fixed. The root's inertia is left out, as KDL has none for it. The model must be a tree
+/// (readUrdf).
+KDL::Tree treeOf(const urdf::ModelInterface& model);
+
+}  // namespace hammer_loads

@@ -1,0 +1,90 @@
+#include "hammer_loads/python/arrays.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+namespace hammer_loads::python {
+
+StateArrays::StateArrays(const std::vector<py::object>& quantities) {
+  bool alike = true;  // then NumPy need not be asked
+  for (const py::object& quantity : quantities) {
+    Array array = Array::ensure(quantity);
+    if (!array) throw py::error_already_set();
+    arrays_.push_back(std::move(array));
+    const Array& added = arrays_.back();
+    const std::vector<py::ssize_t> shape(added.shape(), added.shape() + added.ndim());
+    if (shape.empty()) continue;
+    if (shape_.empty()) shape_ = shape;
+    alike = alike && shape == shape_;
+  }
+  if (!alike) {
+    const py::module_ numpy = py::module_::import("numpy");
+    py::tuple all(arrays_.size());
+    for (std::size_t i = 0; i < arrays_.size(); ++i) all[i] = arrays_[i];
+    shape_ = numpy.attr("broadcast")(*all).attr("shape").cast<std::vector<py::ssize_t>>();
+    for (Array& array : arrays_) {
+      if (array.ndim() != 0) array = Array(numpy.attr("broadcast_to")(array, shape_));
+    }
+  }
+  for (const py::ssize_t length : shape_) count_ *= static_cast<std::size_t>(length);
+  for (const Array& array : arrays_) data_.push_back(array.data());
+}
+
+const double* StateArrays::from(std::size_t quantity, std::size_t first, std::size_t most,
+                                std::vector<double>& scratch) const {
+  if (!isNumber(quantity)) return data_[quantity] + first;
+  scratch.assign(most, *data_[quantity]);
+  return scratch.data();
+}
+
+bool StateArrays::overlap(const double* values, std::size_t length) const {
+  for (std::size_t i = 0; i < data_.size(); ++i) {
+    const std::less<const double*> before;
+    const auto own = static_cast<std::size_t>(arrays_[i].size());
+    if (before(data_[i], values + length) && before(values, data_[i] + own)) return true;
+  }
+  return false;
+}
+
+ResultArrays::ResultArrays(std::vector<py::ssize_t> shape, py::object out)
+    : shape_(std::move(shape)), out_(std::move(out)) {
+  if (!out_.is_none() && !py::isinstance<py::dict>(out_)) raise({"out: must be a dictionary of arrays"});
+}
+
+double* ResultArrays::add(const char* name) {
+  using Exact = py::array_t<double, py::array::c_style>;
+  Exact array;
+  if (out_.is_none()) {
+    array = Exact(shape_);
+  } else {
+    const py::dict given = out_;
+    const bool there = given.contains(name) && Exact::check_(given[name]);
+    if (there) array = py::reinterpret_borrow<Exact>(given[name]);
+    const bool fits = there && array.writeable() && static_cast<std::size_t>(array.ndim()) == shape_.size() &&
+                      std::equal(shape_.begin(), shape_.end(), array.shape());
+    if (!fits) raise({std::string("out: ") + name + ": must be a writeable array of float64 in the results' shape"});
+  }
+  double* data = array.mutable_data();
+  data_.push_back(data);
+  arrays_[name] = std::move(array);
+  return data;
+}
+
+void ResultArrays::demandApartFrom(const StateArrays& states) const {
+  if (out_.is_none() || states.count() == 0) return;
+  std::vector<const double*> sorted = data_;
+  std::sort(sorted.begin(), sorted.end(), std::less<>());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const bool shared = i > 0 && static_cast<std::size_t>(sorted[i] - sorted[i - 1]) < states.count();
+    if (shared || states.overlap(sorted[i], states.count())) raise({"out: shares memory with another array"});
+  }
+}
+
+void raise(const std::vector<std::string>& problems) {
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  throw py::value_error(text);
+}
+
+}  // namespace hammer_loads::python

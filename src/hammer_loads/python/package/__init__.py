@@ -1,0 +1,11 @@
+"""Loads of a crank-rocker hydraulic hammer, with NumPy arrays in and out.
+
+    import hammer_loads_py as hl
+    hammer = hl.Hammer.from_yaml("my_hammer.yaml")
+    loads = hammer.wrenches(angle, speed)       # a dictionary of arrays: hull_force_x_N, ...
+
+SI units; results are named as the columns of the commands. What each call takes is said in __init__.pyi.
+"""
+from ._native import Hammer, count_cycles, read_database, support_impulse
+
+__all__ = ["Hammer", "count_cycles", "read_database", "support_impulse"]

@@ -1,0 +1,121 @@
+"""Counted cycles against a plain reading of ASTM E1049, databases against Python's own SQLite."""
+import math
+import os
+import sqlite3
+import tempfile
+import unittest
+
+import support  # noqa: F401
+
+import hammer_loads_py as hl
+import numpy as np
+import sample_database
+
+
+def astm(series):
+    """ASTM E1049-85, 5.4.4 as it is written there: range -> count by (range, mean)."""
+    points, counts = [], {}
+
+    def add(a, b, n):
+        key = (abs(a - b), 0.5 * (a + b))
+        counts[key] = counts.get(key, 0.0) + n
+
+    turning = [x for i, x in enumerate(series)
+               if i in (0, len(series) - 1) or (x - series[i - 1]) * (series[i + 1] - x) < 0]
+    for point in turning:
+        points.append(point)
+        while len(points) >= 3:
+            x, y = abs(points[-1] - points[-2]), abs(points[-2] - points[-3])
+            if x < y:
+                break
+            if len(points) == 3:
+                add(points[0], points[1], 0.5)
+                del points[0]
+            else:
+                add(points[-3], points[-2], 1.0)
+                del points[-3:-1]
+    for a, b in zip(points, points[1:]):
+        add(a, b, 0.5)
+    return counts
+
+
+class Cycles(unittest.TestCase):
+    def test_example_of_the_standard(self):
+        cycles = hl.count_cycles([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
+        by_range = {}
+        for r, n in zip(cycles["range"], cycles["count"]):
+            by_range[r] = by_range.get(r, 0.0) + n
+        self.assertEqual(by_range, {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5})  # X1, figure X1.1
+
+    def test_random_series(self):
+        series = np.random.default_rng(5).normal(size=2000)
+        cycles = hl.count_cycles(series)
+        got = {(r, m): n for r, m, n in zip(cycles["range"], cycles["mean"], cycles["count"])}
+        right = astm(series.tolist())
+        self.assertAlmostEqual(sum(got.values()), sum(right.values()))
+        np.testing.assert_allclose(sorted(r for (r, _), n in got.items() for _ in range(int(2 * n))),
+                                   sorted(r for (r, _), n in right.items() for _ in range(int(2 * n))), rtol=1e-12)
+
+    def test_grid_rounds_to_its_classes(self):
+        series = np.random.default_rng(6).uniform(-90.0, 90.0, 3000)
+        cycles = hl.count_cycles(series, full_scale=(-100.0, 100.0), classes=200)
+        np.testing.assert_allclose(cycles["range"], np.round(cycles["range"]), atol=1e-9)
+        exact = hl.count_cycles(series)
+        damage = [float((c["count"] * c["range"] ** 3).sum()) for c in (cycles, exact)]
+        self.assertAlmostEqual(damage[0] / damage[1], 1.0, delta=0.02)
+
+    def test_nothing_and_what_is_no_number(self):
+        self.assertEqual(hl.count_cycles([])["range"].size, 0)
+        np.testing.assert_array_equal(hl.count_cycles([0.0, math.nan, 2.0, math.inf, 0.0])["range"], [2.0])
+        self.assertEqual(support.message(hl.count_cycles, [1.0], full_scale=(2.0, 1.0)),
+                         "full scale: 2 to 1, must be finite and the first below the second")
+        self.assertIn("one", support.message(hl.count_cycles, [[1.0, 2.0]]))
+
+
+class Databases(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = os.path.join(self.folder.name, "work's.sqlite")
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_every_table_is_what_sqlite_has(self):
+        sample_database.make(self.path, seconds=20.0, boom=True)
+        tables = hl.read_database(self.path)
+        connection = sqlite3.connect(self.path)
+        names = [n for n, in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
+        self.assertEqual(sorted(tables), sorted(names))
+        for name in names:
+            rows = connection.execute(f'SELECT * FROM "{name}"')
+            columns = [d[0] for d in rows.description]
+            self.assertEqual(list(tables[name]), columns)
+            for column, values in zip(columns, zip(*rows.fetchall())):
+                got = tables[name][column]
+                for a, b in zip(got.tolist(), values):
+                    self.assertTrue(a == b or (b is None and (a is None or math.isnan(a))), (name, column, a, b))
+                self.assertEqual(len(got), len(values))
+        self.assertGreater(len(tables["turns"]["turn"]), 50)
+        self.assertEqual(tables["turns"]["stamp_ns"].dtype, np.int64)
+        connection.close()
+
+    def test_words_are_the_report_s(self):
+        self.assertEqual(support.message(hl.read_database, "/no/such"),
+                         "/no/such: cannot be read: No such file or directory")
+        self.assertEqual(support.message(hl.read_database, self.folder.name),
+                         f"{self.folder.name}: is no regular file")
+        with open(self.path, "w") as file:
+            file.write("a,b\n1,2\n" * 10)
+        self.assertEqual(support.message(hl.read_database, self.path), f"{self.path}: is no SQLite file")
+        other = self.path + "2"
+        connection = sqlite3.connect(other)
+        connection.execute("CREATE TABLE t(x)")
+        connection.commit()
+        connection.close()
+        self.assertEqual(support.message(hl.read_database, other),
+                         f"{other}: is another database (application_id 0), must be written by process_bag --db, "
+                         "--ledger or the fleet")
+
+
+if __name__ == "__main__":
+    unittest.main()
