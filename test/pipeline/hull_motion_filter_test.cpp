@@ -13,6 +13,7 @@
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/format.h"
 #include "support/constants.h"
+#include "support/exact_hammer.h"
 
 namespace hammer_loads {
 namespace {
@@ -117,8 +118,8 @@ VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise,
   m.boom[1].mean = between(-0.8, 0.05), m.boom[2].mean = between(0.6, 1.8);
   m.boom[3].mean = between(-0.4, 0.4) - m.boom[1].mean - m.boom[2].mean;
   const simulation::Session session = simulation::recordSession(m);
-  const Settings settings =
-      accuracy::shippedBoom(format("{boom: rigid, hull_motion: imu, imu_x_m: %g, imu_z_m: %g}", x, z));
+  const Settings settings = test::withExactHammer(
+      accuracy::shippedBoom(format("{boom: rigid, hull_motion: imu, imu_x_m: %g, imu_z_m: %g}", x, z)));
   accuracy::SessionPlayer player(settings.mechanism, settings.pipeline, settings.boom, session);
   VectorErrors e;
   double peak = 0.0;

@@ -11,6 +11,7 @@
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 #include "pipeline/shipped_machine.h"
+#include "support/exact_hammer.h"
 
 namespace hammer_loads {
 namespace {
@@ -23,7 +24,7 @@ struct Blows {
 };
 
 Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, double rate, std::uint64_t seed) {
-  const Settings shipped = *load(configDirectory(), {}).value;
+  const Settings shipped = test::withExactHammer(*load(configDirectory(), {}).value);
   simulation::MachineSettings machine = test::shippedMachine(shipped, 13.0, seed);
   machine.crank.rate = rate;
   flaw(machine);

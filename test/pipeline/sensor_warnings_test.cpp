@@ -7,6 +7,7 @@
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/constants.h"
+#include "support/exact_hammer.h"
 
 namespace hammer_loads {
 namespace {
@@ -28,7 +29,7 @@ struct Heard {
 };
 
 Heard hear(const simulation::MachineSettings& machine) {
-  static const Settings settings = *load(configDirectory(), {}).value;
+  static const Settings settings = test::withExactHammer(*load(configDirectory(), {}).value);
   const simulation::Session session = simulation::recordSession(machine);
   Pipeline pipeline(settings.mechanism, settings.pipeline);
   Heard heard;

@@ -135,7 +135,8 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
   const HullMotion at_rest;
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, at_rest, at); });
-  const Eigen::Matrix3d errors = root(g * own * g.transpose() + columns * columns.transpose());
+  const auto of_sensor = columns.leftCols<ConstantErrors::kTable>();
+  const Eigen::Matrix3d errors = root(g * own * g.transpose() + of_sensor * of_sensor.transpose());
   spread.count = 3;
   for (int i = 0; i < 3; ++i) {
     Wrench& part = spread.part[static_cast<std::size_t>(i)];

@@ -56,8 +56,9 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                              const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
 
-/// Samples and constants as three errors of the load that are independent of each other, from motion of the links
-/// relative to the hull; none where there is no covariance.
+/// Samples and the sensor's constants as three errors of the load that are independent of each other, from motion of
+/// the links relative to the hull; none where there is no covariance. The boom's filters take them for noise, which an
+/// error of the hammer's constants, alike in all samples, is not: those are not in it.
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                           const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept;
 
