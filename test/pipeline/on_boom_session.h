@@ -7,6 +7,7 @@
 #include <array>
 
 #include "hammer_loads/bench/boom_errors.h"
+#include "support/exact_hammer.h"
 #include "support/session_player.h"
 
 namespace hammer_loads::test {
@@ -29,7 +30,7 @@ inline simulation::MachineSettings machineOnBoom(double oil, double joint_rate, 
 /// A session by the shipped boom file with the keys in `parameters`.
 inline accuracy::BoomErrors errorsOf(const std::string& name, const simulation::Session& session,
                                      const std::string& parameters, const accuracy::SensorsOnBoom& sensors) {
-  const Settings settings = settingsWith("boom: compliant\n" + parameters);
+  const Settings settings = withExactHammer(settingsWith("boom: compliant\n" + parameters));
   const accuracy::BoomErrors e = accuracy::boomErrors(session, settings.mechanism, settings.pipeline, *settings.boom,
                                                       sensors, kJudgedFrom, kJudgedTo);
   std::printf("%s: %s\n", name.c_str(), e.text().c_str());

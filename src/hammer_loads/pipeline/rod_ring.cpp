@@ -59,6 +59,11 @@ double moved(const RodSpring& spring, double by_lever, double rigid, double time
 
 }  // namespace
 
+RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
+  const HammerDeviations& deviations = model.mechanism().parameters().deviations;
+  gives_ = std::any_of(deviations.begin(), deviations.end(), [](double deviation) { return deviation > 0.0; });
+}
+
 void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {
   if (!(blow.drive_inertia > 0.0) || !(passage.speed_before > 0.0)) return rest();
   const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
@@ -90,6 +95,7 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
 }
 
 void RodRing::follow(const CrankStep& step, const BlowFactor& blow) noexcept {
+  if (!gives_) return;
   double from = 0.0;
   for (const CrankStep::Passage& passage : step) {
     if (!passage.strikes) continue;

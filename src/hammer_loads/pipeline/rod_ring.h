@@ -27,7 +27,8 @@ inline constexpr std::array<RodSpring, 3> kRods{{{8e8, 0.15}, {8e8, 0.6}}};
 /// that of the oscillator with the lever at its middle.
 class RodRing {
  public:
-  explicit RodRing(const HullModel& model) noexcept : model_(&model) {}
+  /// The rod of a hammer that is said to be exact does not give.
+  explicit RodRing(const HullModel& model) noexcept;
 
   /// Nothing rings.
   void rest() noexcept { rings_ = false; }
@@ -43,7 +44,7 @@ class RodRing {
   void move(const CrankStep& step, double from, double to) noexcept;
 
   const HullModel* model_;
-  bool rings_{};
+  bool gives_, rings_{};
   struct State {
     double x{}, speed{};  ///< [rad], [rad/s]
   };
