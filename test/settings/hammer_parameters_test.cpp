@@ -94,16 +94,32 @@ TEST(HammerParameters, KeysAreTheContracts) {
                    "rod_inertia_about_com_kg_m2", "drive_inertia_kg_m2"}));
 }
 
+TEST(HammerParameters, DeviationsNotGivenAreTheUsualOnesWithANote) {
+  const TemporaryFile none(hammerYaml()), exact(hammerYaml() + "rocker_mass_deviation_kg: 0.0\n"),
+      impossible(hammerYaml() + "rocker_mass_deviation_kg: 50.0\n");
+  const Checked<Settings> usual = loadFiles(configDirectory(), {none.path()});
+  const Checked<Settings> given = loadFiles(configDirectory(), {exact.path()});
+  ASSERT_TRUE(usual.value && given.value);
+  constexpr std::size_t kLength = 0, kMass = 6;  // in the file's order
+  const HammerParameters& read = usual.value->mechanism.parameters();
+  EXPECT_EQ(read.deviations[kLength], 3e-4);
+  EXPECT_EQ(read.deviations[kMass], 0.02 * read.rocker_mass);
+  EXPECT_NE(usual.notes[0].find("rocker_mass_deviation_kg"), std::string::npos);
+  EXPECT_EQ(given.value->mechanism.parameters().deviations[kMass], 0.0);
+  EXPECT_EQ(given.notes[0].find("rocker_mass_deviation_kg"), std::string::npos);
+  EXPECT_FALSE(loadFiles(configDirectory(), {impossible.path()}).value);
+}
+
 TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
   const TemporaryFile without(hammerYaml()), with(hammerYaml() + "drive_reaction_ratio: -0.2\n");
   const Checked<Settings> absent = loadFiles(configDirectory(), {without.path()});
   const Checked<Settings> given = loadFiles(configDirectory(), {with.path()});
   ASSERT_TRUE(absent.value && given.value);
   EXPECT_EQ(absent.value->mechanism.parameters().drive_reaction_ratio, 1.0);
-  ASSERT_EQ(absent.notes.size(), 1U);
-  EXPECT_TRUE(beginsWith(absent.notes[0], "drive_reaction_ratio: not given, counts as 1")) << absent.notes[0];
+  ASSERT_EQ(absent.notes.size(), 2U);
+  EXPECT_TRUE(beginsWith(absent.notes[1], "drive_reaction_ratio: not given, counts as 1")) << absent.notes[1];
   EXPECT_EQ(given.value->mechanism.parameters().drive_reaction_ratio, -0.2);
-  EXPECT_TRUE(given.notes.empty());
+  EXPECT_EQ(given.notes.size(), 1U);  // of the deviations
   EXPECT_EQ(problemsWith({}, "drive_reaction_ratio: 1e9\n").size(), 1U);
 }
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLongest = 1e-3;              // [s] in which the lever counts as constant
 constexpr double kReference = kTwoPi * 200.0;  // [rad/s] of the damping ratio
+constexpr double kOver = 0.2;                  // [s]: no rod rings so long
 constexpr double kRestitutionDoubt = 0.05;     // what a rod that gives adds to a measured restitution
 constexpr double kBallistic = 1e-2;            // [rad]: below, the spring does nothing within a part
 
@@ -78,11 +79,13 @@ void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) 
 
 void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   if (!rings_ || !(to > from)) return;
+  if (!(to - from < kOver)) return rest();
   const HammerParameters& p = model_->mechanism().parameters();
   const int parts = static_cast<int>(std::ceil((to - from) / kLongest));
   const double time = (to - from) / parts;
   for (int i = 0; i < parts; ++i) {
-    const CrankEstimate crank = step.at(from + (i + 0.5) * time);
+    CrankEstimate crank = step.at(step.length());  // turned back at its speed: the lever needs no more
+    crank.position.slide(-crank.speed * (step.length() - from - (i + 0.5) * time));
     if (crank.position.angle.side == Side::kBeforeBlow || !(crank.speed > 0.0)) return rest();
     const LinkMotion links = linkMotion(model_->mechanism().linkage(), crank.position.angle);
     const double lever = p.lengths.rocker * links.sin_mu, by_lever = square(lever) / p.rocker_inertia_about_pivot;

@@ -1,0 +1,28 @@
+// A machine that is not the one of its drawing: deviations hold what the drawing does not say.
+#include <gtest/gtest.h>
+
+#include "hammer_loads/bench/drawing_table.h"
+
+namespace hammer_loads {
+namespace {
+
+TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
+  Settings settings = *load(configDirectory(), {}).value;
+  settings.pipeline.level = Level::kLinkage;
+  double covered[3]{}, energy = 0.0;
+  constexpr int kDrawings = 6;
+  for (int i = 0; i < kDrawings; ++i) {
+    const accuracy::DrawingRow row = accuracy::drawingRow(settings, 901 + static_cast<std::uint64_t>(i), 1.0);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_GT(row.covered[k], 0.75) << row.seed << ' ' << k;
+      EXPECT_LT(row.said[k], 0.06) << row.seed << ' ' << k;
+      covered[k] += row.covered[k] / kDrawings;
+    }
+    energy += row.energy_covered / kDrawings;
+  }
+  for (const double part : covered) EXPECT_GT(part, 0.88);
+  EXPECT_GT(energy, 0.88);
+}
+
+}  // namespace
+}  // namespace hammer_loads
