@@ -15,7 +15,6 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
     const accuracy::DrawingRow row = accuracy::drawingRow(settings, 901 + static_cast<std::uint64_t>(i), 1.0);
     for (int k = 0; k < 3; ++k) {
       EXPECT_GT(row.covered[k], 0.75) << row.seed << ' ' << k;
-      EXPECT_LT(row.said[k], 0.06) << row.seed << ' ' << k;
       covered[k] += row.covered[k] / kDrawings;
     }
     energy += row.energy_covered / kDrawings;
