@@ -18,10 +18,9 @@ struct DrawingRow {
   double said[kQuantities]{};     ///< root of the mean squared deviation, of the peak
   double energy{};                ///< root of the mean squared relative error
   double energy_covered{};        ///< part of the blows
-  double restitution_covered{};
 };
 
-/// off: times the deviations that the machine is drawn with; the pipeline is told the file's. counts: of the encoder.
+/// off: times the deviations that the machine is drawn with; the pipeline has the file's.
 DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off);
 
 std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings);

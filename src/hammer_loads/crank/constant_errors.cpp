@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -21,19 +22,6 @@ constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a s
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
 
-/// Also where some error is certain to be zero.
-ConstantErrors::Matrix rootOf(const ConstantErrors::Matrix& moment) noexcept {
-  ConstantErrors::Matrix root = ConstantErrors::Matrix::Zero();
-  for (Eigen::Index j = 0; j < moment.cols(); ++j) {
-    const double pivot = moment(j, j) - root.row(j).head(j).squaredNorm();
-    if (!(pivot > 1e-12 * moment(j, j))) continue;
-    root(j, j) = std::sqrt(pivot);
-    for (Eigen::Index i = j + 1; i < moment.rows(); ++i)
-      root(i, j) = (moment(i, j) - root.row(i).head(j).dot(root.row(j).head(j))) / root(j, j);
-  }
-  return root;
-}
-
 }  // namespace
 
 void ConstantErrors::takeSupply(double change) noexcept {
@@ -44,7 +32,7 @@ void ConstantErrors::takeSupply(double change) noexcept {
 ConstantErrors::ConstantErrors(const Vector& prior) noexcept : prior_(prior) {
   fit_.begin(prior_);
   considerPriors();
-  root_ = rootOf(moment_);
+  root_ = covarianceRoot(moment_);
 }
 
 void ConstantErrors::considerPriors() noexcept {
@@ -82,7 +70,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
   considerPriors();
-  root_ = rootOf(moment_);
+  root_ = covarianceRoot(moment_);
   fit_.fade(1.0 - 1.0 / kMemoryTurns);
   beside_ *= 1.0 - 1.0 / kMemoryTurns;
 }

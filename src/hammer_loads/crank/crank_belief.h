@@ -110,4 +110,8 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
 CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
                                    double growth, const ConstantErrors::Matrix& root, double torque_part) noexcept;
 
+/// What the hammer's constants make of the acceleration [rad/s2] at the state itself.
+void addAcceleration(const ShaftModel& model, const ShaftState& state, double acceleration, double inverse_inertia,
+                     CrankUncertainty& result) noexcept;
+
 }  // namespace hammer_loads

@@ -43,13 +43,12 @@ void apply(const FlexibleMatrix& f, Joint& all) noexcept {
 }
 
 /// On the crank acts the coupling's moment.
-void endColumns(const ShaftModel& model, const ShaftState& to, double h, ColumnStep& columns, Joint& all) noexcept {
+void endColumns(const ShaftModel& model, const ShaftState& to, double h, const ColumnStep& columns,
+                Joint& all) noexcept {
   const CouplingLaw law = lawOf(*model.coupling(), to);
   const ShaftLoad load = model(to.position.angle);
   const double moment = law.moment(to.twist, to.motor_speed, to.speed) - law.crank_inertia * load.hull_acceleration;
-  columns.end(to, law.crank_inertia, load, moment, h);
-  all.by_constant.row(Belief::kSpeed).tail<kMachineColumns>() += columns.speed();
-  all.by_constant.row(Belief::kAngle).tail<kMachineColumns>() += columns.angle();
+  columns.end(model, to, law.crank_inertia, load, moment, h, all.by_constant);
 }
 
 /// speed: of crank and motor together; torque: of the motor.
@@ -132,7 +131,8 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
     const BlowPrior prior = b.priorOf(drawn);
     std::optional<ColumnStep> columns;
     if (!model.isExact())
-      columns.emplace(model, b.state, lawOf(*model.coupling(), b.state).crank_inertia, model(b.state.position.angle));
+      columns.emplace(model, b.state, lawOf(*model.coupling(), b.state).crank_inertia, model(b.state.position.angle),
+                      all.by_constant);
     FlexibleMatrix f = FlexibleMatrix::Identity();
     const bool struck = advanceFlexible(model, h, {prior.mean, contact}, b.state, &f) > 0;
     if (struck) {
@@ -143,7 +143,6 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
       blows += !b.tool_met;
       b.tool_met = false;
     }
-    if (columns) all.by_constant.row(Belief::kSpeed).tail<kMachineColumns>() += columns->atStart();
     apply(f, all);
     if (columns) endColumns(model, b.state, h, *columns, all);
     addNoise(walks, lawOf(*model.coupling(), b.state), h, all);

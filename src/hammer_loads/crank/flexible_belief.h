@@ -5,10 +5,6 @@
 
 namespace hammer_loads {
 
-/// What the hammer's constants make of the acceleration [rad/s2] at the state itself.
-void addAcceleration(const ShaftModel& model, const ShaftState& state, double acceleration, double inverse_inertia,
-                     CrankUncertainty& result) noexcept;
-
 /// The motor, on which the encoder sits, is where the crank is but for a twist of standard deviation
 /// torque_deviation [N m] over the stiffness.
 void beginMotor(const Coupling& coupling, double torque_deviation, CrankBelief& belief) noexcept;

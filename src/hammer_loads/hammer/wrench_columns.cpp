@@ -17,9 +17,9 @@ WrenchColumns::Matrix WrenchColumns::wrench(double drive_inertia, const LinksAtA
   if (isExact()) return columns;
   const Eigen::Vector3d here = load(*model_, at.links);
   for (std::size_t i = 0; i < models_.size(); ++i) {
-    const bool alike = columns_->columns()[i].links_move_alike;
-    columns.col(static_cast<Eigen::Index>(i)) =
-        load(models_[i], alike ? at.links : linksAt(models_[i], at.angle).links) - here;
+    const MachineColumn& column = columns_->columns()[i];
+    if (column.enters == HammerConstant::Enters::kBlow) continue;
+    columns.col(static_cast<Eigen::Index>(i)) = load(models_[i], column.linksAt(at.angle, at.links)) - here;
   }
   return columns;
 }

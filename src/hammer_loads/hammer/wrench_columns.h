@@ -26,8 +26,6 @@ class WrenchColumns {
                 const HullMotion& hull) const noexcept;
   /// Hammers in the columns' order.
   const std::vector<HullModel>& models() const noexcept { return models_; }
-  /// Keys of their constants, likewise.
-  const char* key(std::size_t column) const noexcept { return columns_->columns()[column].key; }
 
  private:
   const HullModel* model_;

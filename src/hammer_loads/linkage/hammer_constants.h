@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/util/constants.h"
@@ -17,12 +18,12 @@ struct HammerConstant {
   double (*usual)(const HammerParameters&);  ///< standard deviation where the file says nothing, in the field's unit
   double away;                               ///< 1 or -1: where a deviation leads to a hammer that can exist
   enum class Enters {
-    kLoads,
-    kBlow,
-    kLearned,
-    kFollows
-  } enters;  ///< kBlow: the blow alone; kLearned: the crank's
-             ///< filter knows it better; kFollows: of the others
+    kMotion,   ///< how the links move, and by that the loads
+    kLoads,    ///< the loads of a given motion
+    kBlow,     ///< the blow alone
+    kLearned,  ///< nothing: the crank's filter knows it better
+    kFollows,  ///< nothing of its own: it follows from others
+  } enters;
 };
 
 namespace usual {
@@ -35,18 +36,18 @@ constexpr double kGuessed = 0.5;   // of the crank's and the rod's: drawings of 
 
 }  // namespace usual
 
-inline constexpr std::size_t kHammerConstantCount = 20;
+inline constexpr std::size_t kHammerConstantCount = std::tuple_size_v<HammerDeviations>;
 
 /// In the order of the file. Absent deviations: contract.
 inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstants{{
     {"crank_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.crank; }, usual::length, -1.0,
-     HammerConstant::Enters::kLoads},
+     HammerConstant::Enters::kMotion},
     {"rod_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rod; }, usual::exact, 1.0,
      HammerConstant::Enters::kFollows},
     {"rocker_length_m", "m", [](HammerParameters& p) -> double& { return p.lengths.rocker; }, usual::length, 1.0,
-     HammerConstant::Enters::kLoads},
+     HammerConstant::Enters::kMotion},
     {"pivot_distance_m", "m", [](HammerParameters& p) -> double& { return p.lengths.pivot_distance; }, usual::length,
-     1.0, HammerConstant::Enters::kLoads},
+     1.0, HammerConstant::Enters::kMotion},
     {"rocker_com_distance_m", "m", [](HammerParameters& p) -> double& { return p.rocker_com_distance; },
      [](const HammerParameters&) { return usual::kCentre; }, -1.0, HammerConstant::Enters::kLoads},
     {"rocker_com_angle_deg", "deg", [](HammerParameters& p) -> double& { return p.rocker_com_angle; },

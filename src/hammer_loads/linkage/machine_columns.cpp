@@ -1,19 +1,11 @@
 #include "hammer_loads/linkage/machine_columns.h"
 
-#include "hammer_loads/linkage/hammer_constants.h"
-
 namespace hammer_loads {
 namespace {
 
 using Enters = HammerConstant::Enters;
 
-bool isLength(const HammerConstant& constant) noexcept {
-  HammerParameters p;
-  const double *field = &constant.field(p), *lengths = &p.lengths.crank;
-  return field >= lengths && field < lengths + sizeof(LinkLengths) / sizeof(double);
-}
-
-/// The hammer with a constant so far off, whether or not it could be built.
+/// The hammer with a constant so far off; nothing where there can be none.
 std::optional<Mechanism> shifted(HammerParameters p, const HammerConstant& constant, double by) {
   constant.field(p) += by;
   p.lengths.rod = p.lengths.pivot_distance + p.lengths.rocker - p.lengths.crank;
@@ -34,9 +26,9 @@ MachineColumns::MachineColumns(const Mechanism& mechanism, Level level) : mechan
     if (!(p.deviations[i] > 0.0) || constant.enters == Enters::kLearned || constant.enters == Enters::kFollows)
       continue;
     const auto other = shifted(p, constant, constant.away * p.deviations[i]);
-    if (other) columns_.push_back({constant.key, *other, level, !isLength(constant)});
+    if (other) columns_.push_back({*other, level, constant.enters});
   }
-  if (level != Level::kLinkage) columns_.push_back({"level", mechanism, Level::kLinkage, true});
+  if (level != Level::kLinkage) columns_.push_back({mechanism, Level::kLinkage, Enters::kLoads});
 }
 
 MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravity) const noexcept {
@@ -45,8 +37,8 @@ MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravit
   OnShaft effects = OnShaft::Zero();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const MachineColumn& c = columns_[i];
-    const ShaftLoad there =
-        loadOf(c.mechanism, c.level, c.links_move_alike ? links : linkMotion(c.mechanism.linkage(), angle), gravity);
+    if (c.enters == Enters::kBlow) continue;
+    const ShaftLoad there = loadOf(c.mechanism, c.level, c.linksAt(angle, links), gravity);
     effects.col(static_cast<Eigen::Index>(i)) << there.inertia - here.inertia,
         there.half_inertia_slope - here.half_inertia_slope, there.weight_torque - here.weight_torque;
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/linkage/shaft_load.h"
 
 namespace hammer_loads {
@@ -16,10 +17,14 @@ constexpr int kMachineColumns = 20;
 /// hammer are independent, and the sum of their squares is a variance (JCGM 100, 5.1.2, with the difference at the
 /// deviation's own size in the place of the derivative). Lengths keep the change point: the rod follows.
 struct MachineColumn {
-  const char* key;      ///< of the hammer file; "level" of what the level leaves out, which level linkage has
   Mechanism mechanism;  ///< of the other hammer
-  Level level;
-  bool links_move_alike;  ///< as those of the hammer
+  Level level;          ///< likewise: of what a level leaves out, that which has it
+  HammerConstant::Enters enters;
+
+  /// links: of the hammer itself at the angle.
+  LinkMotion linksAt(CrankAngle angle, const LinkMotion& links) const noexcept {
+    return enters == HammerConstant::Enters::kMotion ? linkMotion(mechanism.linkage(), angle) : links;
+  }
 };
 
 class MachineColumns {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/pipeline/crank_step.h"
 
 namespace hammer_loads {
@@ -45,18 +46,6 @@ HullDeviation unknownDeviation() noexcept {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr HullWrench kWrench{kUnknown, kUnknown, kUnknown};
   return {kWrench, kWrench, kUnknown, kUnknown, kUnknown};
-}
-
-/// L with L L^T = covariance, also where some variance is zero.
-Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) noexcept {
-  Eigen::Matrix3d l = Eigen::Matrix3d::Zero();
-  for (int j = 0; j < 3; ++j) {
-    const double pivot = covariance(j, j) - l.row(j).head(j).squaredNorm();
-    if (!(pivot > 0.0)) continue;
-    l(j, j) = std::sqrt(pivot);
-    for (int i = j + 1; i < 3; ++i) l(i, j) = (covariance(i, j) - l.row(i).head(j).dot(l.row(j).head(j))) / l(j, j);
-  }
-  return l;
 }
 
 }  // namespace
@@ -136,7 +125,7 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, at_rest, at); });
   const auto of_sensor = columns.leftCols<ConstantErrors::kTable>();
-  const Eigen::Matrix3d errors = root(g * own * g.transpose() + of_sensor * of_sensor.transpose());
+  const Eigen::Matrix3d errors = covarianceRoot<3>(g * own * g.transpose() + of_sensor * of_sensor.transpose());
   spread.count = 3;
   for (int i = 0; i < 3; ++i) {
     Wrench& part = spread.part[static_cast<std::size_t>(i)];

@@ -1,15 +1,12 @@
 #include "hammer_loads/pipeline/life_follower.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {
-namespace {}  // namespace
 
 LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& settings)
     : pipeline_(&pipeline),

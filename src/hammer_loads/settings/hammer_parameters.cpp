@@ -70,7 +70,9 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   const char* ratio = kHammerConstants[kRatio].key;
   if (reader.given(ratio)) parameters.drive_reaction_ratio = reader.number(ratio, "", kRules[kRatio]);
 
-  Checked<Mechanism> mechanism = Mechanism::make(parameters);
+  std::vector<std::string> of_deviations;
+  readDeviations(reader, parameters, of_deviations);  // known keys, whatever else is wrong
+  const Checked<Mechanism> mechanism = Mechanism::make(parameters);
   for (const std::string& problem : mechanism.problems) reader.addProblem(problem);
   for (std::size_t i = 0; i < kRatio; ++i) {
     const HammerConstant& constant = kHammerConstants[i];
@@ -78,14 +80,11 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
     if (std::isfinite(value)) reader.demand(constant.key, constant.unit, value, kRules[i]);
   }
   const double gyration = std::sqrt(parameters.rocker_inertia_about_pivot / parameters.rocker_mass);
-  if (mechanism.value) {
+  if (mechanism.value)
     reader.demand("striking_distance_m", "m", parameters.striking_distance,
                   NumberRule::within(kLeastLever * gyration, kMostLever * gyration));
-    notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
-    parameters = mechanism.value->parameters();
-  }
-  readDeviations(reader, parameters, notes);  // known keys, whatever else is wrong
-  if (mechanism.value) mechanism = Mechanism::make(parameters);
+  notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
+  notes.insert(notes.end(), of_deviations.begin(), of_deviations.end());
   if (!reader.given(ratio))
     notes.push_back(std::string(ratio) +
                     ": not given, counts as 1: the hull feels the drive's reaction as of a flywheel on the crank's "

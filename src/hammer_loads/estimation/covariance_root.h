@@ -1,0 +1,25 @@
+/// A covariance as errors that are independent of each other.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace hammer_loads {
+
+/// L with L L^T = covariance, lower triangular, also where some error is certain to be zero: its columns are errors of
+/// one standard deviation each.
+template <int size>
+Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, size, size>& covariance) noexcept {
+  constexpr double kRounding = 1e-12;  // of a variance: a pivot below it is what rounding left of zero
+  Eigen::Matrix<double, size, size> root = Eigen::Matrix<double, size, size>::Zero();
+  for (Eigen::Index j = 0; j < size; ++j) {
+    const double pivot = covariance(j, j) - root.row(j).head(j).squaredNorm();
+    if (!(pivot > kRounding * covariance(j, j))) continue;
+    root(j, j) = std::sqrt(pivot);
+    for (Eigen::Index i = j + 1; i < size; ++i)
+      root(i, j) = (covariance(i, j) - root.row(i).head(j).dot(root.row(j).head(j))) / root(j, j);
+  }
+  return root;
+}
+
+}  // namespace hammer_loads
