@@ -7,7 +7,9 @@ OF_CHANNEL = "FROM bags b JOIN runs r USING(bag_id) JOIN channels c USING(run_id
 CHANNELS = ("SELECT r.machine, c.name, c.least, c.greatest, c.classes, sum(r.duration_s), sum(c.samples), "
             "sum(c.skipped), sum(c.below), sum(c.above), sum(c.gaps), min(c.minimum), max(c.maximum), "
             "sum(c.mean_deviation * c.samples), sum(CASE WHEN c.mean_deviation IS NULL THEN 0 ELSE c.samples END), "
-            "max(r.equivalent_cycles_per_hour) " + OF_CHANNEL + "WHERE b.machine = ? AND c.counted = 1 "
+            "max(r.equivalent_cycles_per_hour), sum(c.range_own_deviation * c.samples), "
+            "sum(c.range_common_deviation * c.samples), "
+            "sum(CASE WHEN c.range_own_deviation IS NULL THEN 0 ELSE c.samples END) " + OF_CHANNEL + "WHERE b.machine = ? AND c.counted = 1 "
             "GROUP BY r.machine, c.name, c.least, c.greatest, c.classes ORDER BY r.machine, min(c.channel)")
 LATEST = ("SELECT c.unit, c.sn_knee_range_MPa, c.sn_knee_cycles, c.sn_slope, c.sn_slope_below, "
           "c.mean_stress_sensitivity " + OF_CHANNEL + "WHERE " + SAME + " ORDER BY r.first_stamp_ns DESC LIMIT 1")
@@ -30,6 +32,9 @@ def channel_of(store, machine, row):
                        for name, v in zip(TALLY, row[6:13])})
     if row[13] is not None and row[14]:
         channel.add_deviation(float(row[13]) / float(row[14]), float(row[14]))
+    if row[16] is not None and row[18]:
+        weight = float(row[18])
+        channel.add_range_deviations(float(row[16]) / weight, float(row[17]) / weight, weight)
     channel.count.add_closed(store.rows(CYCLES, *same))
     channel.count.join(point for point, in store.rows(RESIDUES, *same))
     return channel, row[0], latest
@@ -52,10 +57,10 @@ def write_channel(store, machine, channel, identity, latest):
     remaining = channel.remaining_hours(damage)[0]
     store.insert("machine_channels",
                  ["machine_channel", "machine", "identity", "name", "unit", "least", "greatest", "classes", "hours",
-                  *TALLY, "mean_deviation", *CURVE, "equivalent_cycles_per_hour", "largest_range", "damage",
+                  *TALLY, "mean_deviation", "range_own_deviation", "range_common_deviation", *CURVE, "equivalent_cycles_per_hour", "largest_range", "damage",
                   "remaining_hours"],
                  [(at, machine, identity, channel.name, channel.unit, *count.grid(), channel.hours,
-                   *(getattr(channel, name) for name in TALLY), channel.deviation, *latest[1:], channel.cycles_per_hour,
+                   *(getattr(channel, name) for name in TALLY), channel.deviation, *channel.range_deviations, *latest[1:], channel.cycles_per_hour,
                    cycles[-1][0] if cycles else 0.0, damage[0],
                    None if remaining is None or remaining == float("inf") else remaining)])
     store.insert("machine_equivalents", ["machine_channel", "slope", "equivalent_range", "deviation"],

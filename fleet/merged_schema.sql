@@ -36,6 +36,7 @@ CREATE TABLE channels(
   run_id INTEGER NOT NULL, channel INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT, counted INTEGER,
   least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, samples BIGINT, skipped BIGINT, below BIGINT,
   above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION, mean_deviation DOUBLE PRECISION,
+  range_own_deviation DOUBLE PRECISION, range_common_deviation DOUBLE PRECISION,
   sn_knee_range_MPa DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION, sn_slope DOUBLE PRECISION,
   sn_slope_below DOUBLE PRECISION, mean_stress_sensitivity DOUBLE PRECISION, PRIMARY KEY(run_id, channel));
 CREATE TABLE cycles(
@@ -54,7 +55,8 @@ CREATE TABLE machine_channels(
   machine_channel INTEGER PRIMARY KEY, machine TEXT NOT NULL, identity TEXT NOT NULL, name TEXT NOT NULL, unit TEXT,
   least DOUBLE PRECISION, greatest DOUBLE PRECISION, classes INTEGER, hours DOUBLE PRECISION, samples BIGINT,
   skipped BIGINT, below BIGINT, above BIGINT, gaps BIGINT, minimum DOUBLE PRECISION, maximum DOUBLE PRECISION,
-  mean_deviation DOUBLE PRECISION, sn_knee_range_MPa DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION,
+  mean_deviation DOUBLE PRECISION, range_own_deviation DOUBLE PRECISION, range_common_deviation DOUBLE PRECISION,
+  sn_knee_range_MPa DOUBLE PRECISION, sn_knee_cycles DOUBLE PRECISION,
   sn_slope DOUBLE PRECISION, sn_slope_below DOUBLE PRECISION, mean_stress_sensitivity DOUBLE PRECISION,
   equivalent_cycles_per_hour DOUBLE PRECISION, largest_range DOUBLE PRECISION, damage DOUBLE PRECISION,
   remaining_hours DOUBLE PRECISION);

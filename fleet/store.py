@@ -9,6 +9,17 @@ SCHEMA = pathlib.Path(__file__).resolve().parent / "merged_schema.sql"
 ROWS_AT_ONCE = 1000
 
 
+# Columns that older merged files of this version do not have.
+NEWER = [(table, column, "DOUBLE PRECISION") for table in ("channels", "machine_channels")
+         for column in ("range_own_deviation", "range_common_deviation")]
+
+
+def add_newer_columns(store):
+    for table, column, kind in NEWER:
+        if column not in store.columns(table):
+            store.execute(f"ALTER TABLE {table} ADD COLUMN {column} {kind}")
+
+
 class BadStore(Exception):
     """One line that names the file or the server."""
 
@@ -42,6 +53,7 @@ class SqliteStore:
             raise BadStore(f"{self.name}: is another database, no merged file")
         elif version != VERSION:
             raise BadStore(f"{self.name}: merged file of version {version}, this program writes version {VERSION}")
+        add_newer_columns(self)
         self.commit()
 
     def begin(self):
@@ -86,6 +98,7 @@ class PostgresStore:
         self.begin()
         if not self.columns("bags"):
             self._cursor.execute(SCHEMA.read_text(encoding="utf-8"))
+        add_newer_columns(self)
         self.commit()
 
     def begin(self):

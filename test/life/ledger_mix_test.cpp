@@ -163,6 +163,14 @@ void makeVersion1(const std::string& path) {
   Database old(path, Database::Use::kWrite, 0);
   old.run(R"(
 DROP INDEX days_of_run; DROP TABLE marks;
+CREATE TABLE old_tallies(
+  channel INTEGER NOT NULL REFERENCES channels, day INTEGER NOT NULL REFERENCES days,
+  counted INTEGER NOT NULL, skipped INTEGER NOT NULL, below INTEGER NOT NULL, above INTEGER NOT NULL,
+  gaps INTEGER NOT NULL, deviations INTEGER NOT NULL, deviation_sum INTEGER NOT NULL, least REAL, greatest REAL,
+  PRIMARY KEY(channel, day)) WITHOUT ROWID;
+INSERT INTO old_tallies SELECT channel, day, counted, skipped, below, above, gaps, deviations, deviation_sum, least,
+  greatest FROM tallies;
+DROP TABLE tallies; ALTER TABLE old_tallies RENAME TO tallies;
 CREATE TABLE old_residues(
   channel INTEGER NOT NULL REFERENCES channels, open INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
   PRIMARY KEY(channel, open, place)) WITHOUT ROWID;

@@ -259,7 +259,7 @@ TEST(Ledger, AnythingElseInItsPlaceIsLeftAsItIs) {
   refused(file.path("no/such/place"), "No such file or directory");
   EXPECT_EQ(LedgerRun(file.path(), machine(), "a").end(piece), kWritten);
   Database(file.path(), Database::Use::kWrite, 0).run("PRAGMA user_version = 99");
-  refused(file.path(), "a ledger of version 99, must be at most 2");
+  refused(file.path(), "a ledger of version 99, must be at most 3");
   EXPECT_NE(contentsOf(file.path()).problem.find("version 99"), std::string::npos);
   for (const char* name : {"text", "other", "directory", "none"}) EXPECT_NE(contentsOf(file.path(name)).problem, "");
   std::ofstream(file.path("empty")).close();  // what a kill at the very start leaves

@@ -70,6 +70,30 @@ TEST(LifeRecorder, DeviationsAddInSquaresOverAHotSpotsLoads) {
   EXPECT_TRUE(std::isnan(meanDeviation(CycleCount(recorder.grid(0)))));
 }
 
+TEST(LifeRecorder, RangesOfTurnsCarryTheErrorsOfTheirTwoEnds) {
+  LifeRecorder recorder = LifeRecorder::make(settings(), kInputs).value.value();
+  const auto sample = [&](std::int64_t stamp, double force, double deviation, double common) {
+    const double values[] = {0.0, force, 0.0}, deviations[] = {0.0, deviation, 0.0}, alike[] = {0.0, common, 0.0};
+    recorder.sample(stamp, values, deviations, alike);
+  };
+  EXPECT_TRUE(std::isnan(rangeDeviation(CycleCount(recorder.grid(0))).common));
+  sample(1, -100.0, 5.0, 3.0);   // own 4
+  sample(2, 0.0, 100.0, 100.0);  // no end of the range
+  sample(3, 300.0, 13.0, 12.0);  // own 5
+  recorder.turn();
+  const RangeDeviation one = rangeDeviation(recorder.take().counts[0]);
+  EXPECT_NEAR(one.own, std::hypot(4.0, 5.0) / 400.0, 1e-4);
+  EXPECT_NEAR(one.common, 15.0 / 400.0, 1e-4);
+  EXPECT_EQ(one.absolute, 0.0);
+  CycleCount sum(recorder.grid(0));
+  for (int turn = 0; turn < 50; ++turn) {
+    sample(4 + 2 * turn, -100.0, 5.0, 3.0), sample(5 + 2 * turn, 300.0, 13.0, 12.0);
+    recorder.turn();
+    sum.append(recorder.take().counts[0]);
+  }
+  EXPECT_NEAR(rangeDeviation(sum).common, 15.0 / 400.0, 1e-4) << "does not average out";
+}
+
 TEST(LifeRecorder, UnknownChannelsAreNamed) {
   LifeSettings s = settings();
   s.channels.push_back({"hull_wrench/force_y_N", s.channels[0].grid});

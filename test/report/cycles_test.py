@@ -60,10 +60,12 @@ class Damage(unittest.TestCase):
         cycles, shift = [(50.0, 3.0, 10.0), (120.0, -8.0, 2.5)], 1e-5
         moved = [(r + shift, m, n) for r, m, n in cycles]
         for slope in SLOPES:
-            value, deviation = equivalent_range(cycles, slope, 7.0, shift)
+            value, deviation = equivalent_range(cycles, slope, 7.0, (shift, 0.0))
             self.assertAlmostEqual(equivalent_range(moved, slope, 7.0)[0] - value, deviation, delta=1e-4 * deviation)
+            part = equivalent_range(cycles, slope, 7.0, (0.0, 0.02))
+            self.assertAlmostEqual(part[1] / part[0], 0.02)
         curve = Curve(100.0, 1e6, 3.0, 5.0, 0.3)
-        value, deviation = curve.damage(cycles, shift)
+        value, deviation = curve.damage(cycles, (shift, 0.0))
         self.assertAlmostEqual(curve.damage(moved)[0] - value, deviation, delta=1e-4 * deviation)
 
 

@@ -12,25 +12,38 @@ import roslib.packages
 import rospkg
 import rospy
 import rostest
-from hammer_loads.msg import Blow, BoomVibration, HullLoads, JointLoads
+from hammer_loads.msg import (Blow, BoomVibration, HullLoads, JointLoads, JointReactions, LoadCycles, Pulse, SectionLoads,
+                              TurnLoads)
+from geometry_msgs.msg import Vector3, Wrench
 from sensor_msgs.msg import JointState
 
 DATA = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'data')
 RULES = os.path.join(DATA, '..', '..', 'migration', 'hammer_loads.bmr')
-# As test/data/old_messages has them: before deviations and flags, and before the flags of Blow.
-OLD = {'first': ('Blow', 'BoomVibration', 'HullLoads', 'JointLoads'), 'second': ('Blow', 'HullLoads')}
+# As test/data/old_messages has them: before deviations and flags, before the flags of Blow, and before deviations had a
+# common part.
+KINDS = {kind._type.split('/')[1]: kind for kind in (
+    Blow, BoomVibration, HullLoads, JointLoads, JointReactions, LoadCycles, Pulse, SectionLoads, TurnLoads)}
+OLD = {'first': ('Blow', 'BoomVibration', 'HullLoads', 'JointLoads'), 'second': ('Blow', 'HullLoads'),
+       'third': tuple(sorted(set(KINDS) - {'BoomVibration'}))}
 RULE = '=' * 80
 PARTS = (RULE + '\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n' +
-         RULE + '\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n')
+         RULE + '\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n' +
+         RULE + '\nMSG: geometry_msgs/Wrench\ngeometry_msgs/Vector3 force\ngeometry_msgs/Vector3 torque\n')
 
 
 def old_class(version, name):
-    """A message as it was before."""
-    with open(os.path.join(DATA, 'old_messages', version, name + '.msg')) as definition:
-        return genpy.dynamic.generate_dynamic('hammer_loads/' + name, definition.read() + PARTS)['hammer_loads/' + name]
+    """A message as it was before, and the class of its channels if it has any."""
+    def definition(of):
+        with open(os.path.join(DATA, 'old_messages', version, of + '.msg')) as file:
+            return file.read()
+    text = definition(name) + PARTS
+    if name == 'LoadCycles':
+        text += RULE + '\nMSG: hammer_loads/ChannelCycles\n' + definition('ChannelCycles')
+    classes = genpy.dynamic.generate_dynamic('hammer_loads/' + name, text)
+    return classes['hammer_loads/' + name], classes.get('hammer_loads/ChannelCycles')
 
 
-def number_all(message, start):
+def number_all(message, start, channel=None):
     """Every number different, so that none can be taken for another."""
     for i, (name, kind) in enumerate(zip(message.__slots__, message._slot_types)):
         if kind == 'float64':
@@ -47,13 +60,23 @@ def number_all(message, start):
             setattr(message, name, rospy.Time(99, i))
         elif kind == 'geometry_msgs/Vector3':
             getattr(message, name).y = start + i
-    message.header.stamp = rospy.Time(100, 7)
-    message.header.frame_id = 'hammer_hull'
+        elif kind == 'geometry_msgs/Wrench[]':
+            setattr(message, name, [Wrench(torque=Vector3(y=start + i + place)) for place in (0, 0.5)])
+        elif kind == 'geometry_msgs/Vector3[]':
+            setattr(message, name, [Vector3(y=start + i + place) for place in (0, 0.5)])
+        elif kind == 'hammer_loads/ChannelCycles[]':
+            setattr(message, name, [number_all(channel(), start + 50 + i), number_all(channel(), start + 70 + i)])
+    if hasattr(message, 'header'):
+        message.header.stamp = rospy.Time(100, 7)
+        message.header.frame_id = 'hammer_hull'
     return message
 
 
-def text_of(message, field):
-    value = getattr(message, field)
+def text_of(message, field, fields_of):
+    """fields_of: the message whose parts say which of their fields count."""
+    value, other = getattr(message, field), getattr(fields_of, field)
+    if isinstance(value, (list, tuple)) and value and hasattr(value[0], '__slots__'):
+        return str([[str(getattr(part, name)) for name in like.__slots__] for part, like in zip(value, other)])
     return str(list(value) if isinstance(value, tuple) else value)
 
 
@@ -65,7 +88,8 @@ class Migration(unittest.TestCase):
         self.messages = {}
         with rosbag.Bag(self.old, 'w') as bag:
             for i, (version, name) in enumerate((v, n) for v, names in OLD.items() for n in names):
-                message = number_all(old_class(version, name)(), 1000.0 * (i + 1))
+                message_class, channel = old_class(version, name)
+                message = number_all(message_class(), 1000.0 * (i + 1), channel)
                 self.messages[version, name] = message
                 bag.write('/%s/%s' % (version, name), message, rospy.Time(100 + i))
 
@@ -90,18 +114,32 @@ class Migration(unittest.TestCase):
     def test_fix_keeps_what_was_recorded(self):
         found = self.fix()
         self.assertEqual(set(found), set(self.messages))
-        kinds = {kind._type.split('/')[1]: kind for kind in (Blow, BoomVibration, HullLoads, JointLoads)}
         for key, message in self.messages.items():
-            self.assertEqual(found[key]._md5sum, kinds[key[1]]._md5sum)
+            self.assertEqual(found[key]._md5sum, KINDS[key[1]]._md5sum)
             self.assertNotEqual(message._md5sum, found[key]._md5sum, key)
             for field in message.__slots__:
-                self.assertEqual(text_of(found[key], field), text_of(message, field), (key, field))
+                self.assertEqual(text_of(found[key], field, message), text_of(message, field, message), (key, field))
 
     def test_flags_that_did_not_exist_do_not_hold(self):
         found = self.fix()
         for version in OLD:
             self.assertEqual(found[version, 'Blow'].flags, 0, version)
             self.assertFalse(found[version, 'HullLoads'].flags & HullLoads.FLAG_INCONSISTENT, version)
+
+    def test_common_parts_are_not_known(self):
+        found = {name: message for (version, name), message in self.fix().items() if version == 'third'}
+        for name, field in (('Blow', 'energy_common_deviation_J'), ('HullLoads', 'force_z_common_deviation_N'),
+                            ('Pulse', 'impulse_deviation_Ns'), ('Pulse', 'turn_impulse_z_common_deviation_Ns')):
+            self.assertEqual(str(getattr(found[name], field)), 'nan', (name, field))
+        for name, field in (('TurnLoads', 'maximum_common_deviation'),
+                            ('JointLoads', 'total_torque_common_deviation_Nm'),
+                            ('JointLoads', 'cylinder_force_common_deviation_N')):
+            self.assertEqual(str(getattr(found[name], field)), '(nan, nan)', (name, field))
+        self.assertEqual(str(found['SectionLoads'].load_common_deviation[1].torque.z), 'nan')
+        self.assertEqual(str(found['JointReactions'].load_common_deviation[0].force.x), 'nan')
+        self.assertEqual([str(c.damage_common_deviation) for c in found['LoadCycles'].channel], ['nan', 'nan'])
+        self.assertEqual(len(found['LoadCycles'].channel[0].equivalent_range_common_deviation), 2)
+        self.assertEqual(found['Blow'].struck, Blow.STRUCK_UNKNOWN)
 
     def test_what_was_not_recorded_is_not_a_number(self):
         found = {name: message for (version, name), message in self.fix().items() if version == 'first'}

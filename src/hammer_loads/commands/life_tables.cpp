@@ -106,7 +106,7 @@ std::string epochText(const EpochReport& report) {
 std::string cell(double value) { return std::isnan(value) ? "" : life::shortNumber(value); }
 
 std::string cells(const std::optional<Figure>& figure) {
-  return figure ? ',' + cell(figure->value) + ',' + cell(figure->deviation) : ",,";
+  return figure ? ',' + cell(figure->value) + ',' + cell(figure->deviation) + ',' + cell(figure->common) : ",,,";
 }
 
 std::string quoted(const std::string& text) {
@@ -124,9 +124,13 @@ std::string csvFigures(double hours, std::uint64_t blows, const ChannelFigures& 
 
 std::string csvHeader() {
   std::string header = "epoch,channel,unit,day,hours,blows,cycles,largest_range";
-  for (std::size_t i = 0; i < life::kSlopeCount; ++i)
-    header += ",equivalent_range_" + slopeName(i) + ",equivalent_range_" + slopeName(i) + "_deviation";
-  return header + ",damage,damage_deviation,remaining_hours,remaining_hours_deviation,below,above,skipped,gaps\n";
+  const auto figure = [&](const std::string& name) {
+    header += ',' + name + ',' + name + "_deviation," + name + "_common_deviation";
+  };
+  for (std::size_t i = 0; i < life::kSlopeCount; ++i) figure("equivalent_range_" + slopeName(i));
+  figure("damage");
+  figure("remaining_hours");
+  return header + ",below,above,skipped,gaps\n";
 }
 
 std::string csvLines(std::int64_t epoch, const ChannelReport& c) {
@@ -145,7 +149,9 @@ std::string csvLines(std::int64_t epoch, const ChannelReport& c) {
 using Json = nlohmann::json;
 
 /// Keys are sorted by name; null is written for what is no finite number.
-Json json(const Figure& figure) { return {{"value", figure.value}, {"deviation", figure.deviation}}; }
+Json json(const Figure& figure) {
+  return {{"value", figure.value}, {"deviation", figure.deviation}, {"common_deviation", figure.common}};
+}
 Json json(const std::optional<Figure>& figure) { return figure ? json(*figure) : Json(nullptr); }
 
 Json json(double hours, std::uint64_t blows, const ChannelFigures& f) {

@@ -25,8 +25,6 @@ struct RockerBlow {
   double drive_impulse_y{};      ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
   double restitution_deviation{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
   double energy_deviation{std::numeric_limits<double>::quiet_NaN()};       ///< likewise [J]
-  double restitution_common_deviation{std::numeric_limits<double>::quiet_NaN()};  ///< the part of constants [-]
-  double energy_common_deviation{std::numeric_limits<double>::quiet_NaN()};       ///< likewise [J]
   /// restitution or energy are what no blow has, by more than two deviations: both are NaN
   bool impossible{};
 };

@@ -1,6 +1,7 @@
 #include "hammer_loads/life/cycle_count.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hammer_loads/life/four_point.h"
@@ -56,6 +57,13 @@ double meanDeviation(const CycleCount& count) {
   if (count.tally.deviations == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(count.tally.deviation_sum) / static_cast<double>(count.tally.deviations) *
          (count.grid.width() / kDeviationUnits);
+}
+
+RangeDeviation rangeDeviation(const CycleCount& count) {
+  const SampleTally& t = count.tally;
+  if (t.range_square == 0) return {std::sqrt(2.0) * meanDeviation(count), 0.0, std::numeric_limits<double>::quiet_NaN()};
+  const auto square = static_cast<double>(t.range_square);
+  return {0.0, static_cast<double>(t.range_own) / square, static_cast<double>(t.range_common) / square};
 }
 
 std::vector<RangeMean> rangesAndMeans(const CycleCount& count) {

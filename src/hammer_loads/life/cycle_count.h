@@ -30,6 +30,9 @@ struct SampleTally {
   /// Standard deviations given with the samples, and their sum in 1/1024 of a class width: whole numbers, so that
   /// pieces add exactly.
   std::uint64_t deviations{}, deviation_sum{};
+  /// Ranges of turns and their standard deviations, weighed by the range: sums of R^2, R own and R common in
+  /// 1/kRangeUnits of a class width squared, whole numbers likewise.
+  std::uint64_t range_square{}, range_own{}, range_common{};
 
   void add(const SampleTally& o) {
     counted += o.counted;
@@ -39,14 +42,19 @@ struct SampleTally {
     gaps += o.gaps;
     deviations += o.deviations;
     deviation_sum += o.deviation_sum;
+    range_square += o.range_square;
+    range_own += o.range_own;
+    range_common += o.range_common;
   }
   bool operator==(const SampleTally& o) const {
     return counted == o.counted && skipped == o.skipped && below == o.below && above == o.above && gaps == o.gaps &&
-           deviations == o.deviations && deviation_sum == o.deviation_sum;
+           deviations == o.deviations && deviation_sum == o.deviation_sum && range_square == o.range_square &&
+           range_own == o.range_own && range_common == o.range_common;
   }
 };
 
 constexpr double kDeviationUnits = 1024.0;  ///< per class width, in SampleTally::deviation_sum
+constexpr double kRangeUnits = 64.0;        ///< per class width squared, in its sums of ranges: for 1e10 turns
 
 /// Smallest and largest value that came in, not rounded to the grid; NaN before the first one.
 struct Extremes {
@@ -87,6 +95,15 @@ void sortClosed(std::vector<ClosedCycles>& closed);
 
 /// Mean standard deviation of a sample [channel's unit]; NaN where none was given.
 double meanDeviation(const CycleCount& count);
+
+/// How far ranges may be off: standard deviations.
+struct RangeDeviation {
+  double absolute{};  ///< alike for all ranges, in the channel's unit: where turns say nothing
+  double own{};       ///< of turns, over the range [-]
+  double common{};    ///< of constants, the same in all turns, over the range [-]; NaN: not known apart
+};
+/// By the ranges of turns; where there are none by the samples, whose errors at a range's two ends are independent.
+RangeDeviation rangeDeviation(const CycleCount& count);
 
 /// Range and mean in the channel's unit; `count` is a multiple of 1/2.
 struct RangeMean {

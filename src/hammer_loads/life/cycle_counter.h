@@ -45,6 +45,17 @@ class CycleCounter {
     ++tally_.deviations;
     tally_.deviation_sum += static_cast<std::uint64_t>(units + 0.5);
   }
+  /// Range of a turn and its standard deviations [channel's unit]; what is not finite is none.
+  void addRange(double range, double own, double common) noexcept {
+    if (!(range > 0.0 && own >= 0.0 && common >= 0.0)) return;
+    const auto classes = [&](double value) {
+      return std::fmin(value / grid_.width(), static_cast<double>(classes_));
+    };
+    const double weight = kRangeUnits * classes(range);
+    tally_.range_square += static_cast<std::uint64_t>(weight * classes(range) + 0.5);
+    tally_.range_own += static_cast<std::uint64_t>(weight * classes(own) + 0.5);
+    tally_.range_common += static_cast<std::uint64_t>(weight * classes(common) + 0.5);
+  }
   /// Samples are missing here. The series goes on: the cycle across the gap is the least that the loads have done.
   void gap() noexcept { ++tally_.gaps; }
 

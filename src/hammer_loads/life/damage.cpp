@@ -8,11 +8,22 @@
 
 namespace hammer_loads::life {
 
+namespace {
+
+/// by_absolute, by_relative: of the figure, by a unit of the ranges' deviation and by a part of them.
+Figure figureOf(double value, double by_absolute, double by_relative, const RangeDeviation& range) {
+  const double own = std::hypot(by_absolute * range.absolute, by_relative * range.own);
+  const double common = by_relative * range.common;
+  return {value, std::isnan(common) ? own : std::hypot(own, common), common};
+}
+
+}  // namespace
+
 Figure equivalentLoad(const std::vector<RangeMean>& cycles, double slope, double equivalent_cycles,
-                      double range_deviation) {
+                      const RangeDeviation& range) {
   double largest = 0.0;
   for (const RangeMean& c : cycles) largest = std::max(largest, c.range);
-  if (largest == 0.0) return {0.0, range_deviation == range_deviation ? 0.0 : range_deviation};
+  if (largest == 0.0) return {0.0, std::isnan(range.absolute) ? range.absolute : 0.0, 0.0};
   double sum = 0.0, derivative = 0.0;  // in units of the largest range: no overflow, no underflow
   for (const RangeMean& c : cycles) {
     const double power = std::pow(c.range / largest, slope - 1.0);
@@ -20,7 +31,7 @@ Figure equivalentLoad(const std::vector<RangeMean>& cycles, double slope, double
     derivative += c.count * power;
   }
   const double value = largest * std::pow(sum / equivalent_cycles, 1.0 / slope);
-  return {value, value * derivative / (sum * largest) * range_deviation};
+  return figureOf(value, value * derivative / (sum * largest), value, range);
 }
 
 Checked<SnCurve> SnCurve::make(double knee_range, double knee_cycles, double slope, double slope_below) {
@@ -52,27 +63,27 @@ FkmMeanStress::Equivalent FkmMeanStress::atAlternating(double amplitude, double 
 }
 
 Figure damage(const std::vector<RangeMean>& cycles, const SnCurve& curve, const std::optional<FkmMeanStress>& mean,
-              double range_deviation) {
-  Figure sum;
-  double derivative = 0.0;
+              const RangeDeviation& deviation) {
+  double sum = 0.0, by_absolute = 0.0, by_relative = 0.0;
   for (const RangeMean& c : cycles) {
     FkmMeanStress::Equivalent at{0.5 * c.range, 1.0};
     if (mean) at = mean->atAlternating(0.5 * c.range, c.mean);
     if (!(at.amplitude > 0.0)) continue;
     const double range = 2.0 * at.amplitude, each = curve.damage(range);
-    sum.value += c.count * each;
-    derivative += c.count * each * curve.slopeAt(range) / range * at.derivative;
+    const double derivative = c.count * each * curve.slopeAt(range) / range * at.derivative;
+    sum += c.count * each;
+    by_absolute += derivative;
+    by_relative += derivative * c.range;
   }
-  sum.deviation = derivative * range_deviation;
-  return sum;
+  return figureOf(sum, by_absolute, by_relative, deviation);
 }
 
 Figure remainingHours(const Figure& damage, double hours) {
-  if (!(damage.value > 0.0)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!(damage.value > 0.0)) return {std::numeric_limits<double>::infinity(), kNone, kNone};
   const double life = hours / damage.value;
-  return {std::max(0.0, life - hours), life / damage.value * damage.deviation};
+  const double by_damage = life / damage.value;
+  return {std::max(0.0, life - hours), by_damage * damage.deviation, by_damage * damage.common};
 }
-
-double rangeDeviation(double load_deviation) { return std::sqrt(2.0) * load_deviation; }
 
 }  // namespace hammer_loads::life

@@ -9,16 +9,16 @@
 
 namespace hammer_loads::life {
 
-/// A figure and its standard deviation, in the same unit; the deviation is NaN where the loads have none.
+/// A figure and its standard deviation, in the same unit, and the part of it that constants make, which more turns do
+/// not lower; NaN where the loads have none.
 struct Figure {
-  double value{}, deviation{};
+  double value{}, deviation{}, common{};
 };
 
 /// Range that, in `equivalent_cycles` cycles, does the damage of all cycles on a material of this slope:
-/// L = (sum n r^m / N)^(1/m), r the range; 0 without cycles. `range_deviation`: of every range, in its unit; all err
-/// alike, so that dL = L sum n r^(m-1) / sum n r^m.
+/// L = (sum n r^m / N)^(1/m), r the range; 0 without cycles. All ranges err alike: dL = L sum n r^(m-1) dr / sum n r^m.
 Figure equivalentLoad(const std::vector<RangeMean>& cycles, double slope, double equivalent_cycles,
-                      double range_deviation);
+                      const RangeDeviation& range);
 
 /// Cycles to failure by stress range, a straight line of two slopes in log-log: N = N_knee (S_knee/S)^m with m =
 /// `slope` above the knee and `slope_below` below it.
@@ -55,15 +55,12 @@ struct FkmMeanStress {
   Equivalent atAlternating(double amplitude, double mean) const;
 };
 
-/// Sum of n/N over the cycles; with a mean-stress correction the curve must be one for R = -1. Linear propagation of
-/// `range_deviation`, of every range, all erring alike.
+/// Sum of n/N over the cycles; with a mean-stress correction the curve must be one for R = -1. Linear propagation of the
+/// ranges' deviations, all erring alike.
 Figure damage(const std::vector<RangeMean>& cycles, const SnCurve& curve, const std::optional<FkmMeanStress>& mean,
-              double range_deviation);
+              const RangeDeviation& range);
 
 /// Hours until the damage is 1 at the rate so far; infinite without damage, 0 when it is 1 already. `hours` > 0.
 Figure remainingHours(const Figure& damage, double hours);
-
-/// Of a range, from the standard deviation of a load: its two ends err independently.
-double rangeDeviation(double load_deviation);
 
 }  // namespace hammer_loads::life

@@ -38,7 +38,8 @@ std::uint64_t unsignedOf(const Database::Statement& row, int column) {
 void addTally(const Database::Statement& row, CycleCount& count) {
   SampleTally t;
   int column = 0;
-  for (std::uint64_t* value : {&t.counted, &t.skipped, &t.below, &t.above, &t.gaps, &t.deviations, &t.deviation_sum})
+  for (std::uint64_t* value : {&t.counted, &t.skipped, &t.below, &t.above, &t.gaps, &t.deviations, &t.deviation_sum,
+                               &t.range_square, &t.range_own, &t.range_common})
     *value = unsignedOf(row, column++);
   count.tally.add(t);
   Extremes extremes;
@@ -120,7 +121,9 @@ void LedgerReader::read(std::int64_t channel, std::optional<std::int64_t> day, C
   Database& database = state_->database;
   const std::string place = std::string(" WHERE channel = ?1 ") + (day ? "AND day = ?2 " : "");
   const std::string tally =
-      "SELECT counted, skipped, below, above, gaps, deviations, deviation_sum, least, greatest FROM tallies" + place;
+      "SELECT counted, skipped, below, above, gaps, deviations, deviation_sum, range_square, range_own, range_common, "
+      "least, greatest FROM tallies" +
+      place;
   const std::string cycle = "SELECT steps, low, sum(count) FROM cycles" + place + "GROUP BY steps, low";
   Database::Statement tallies(database, tally.c_str()), cycles(database, cycle.c_str());
   for (Database::Statement* rows : {&tallies, &cycles}) day ? rows->with(channel, *day) : rows->with(channel);

@@ -57,6 +57,12 @@ ALTER TABLE residues_by_run RENAME TO residues;
 CREATE TABLE marks(
   mark INTEGER NOT NULL, run INTEGER NOT NULL REFERENCES runs, PRIMARY KEY(mark, run)) WITHOUT ROWID;
 CREATE INDEX days_of_run ON days(run);
+)",
+    // Ranges of turns and their deviations; 0: not known apart.
+    R"(
+ALTER TABLE tallies ADD COLUMN range_square INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE tallies ADD COLUMN range_own INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE tallies ADD COLUMN range_common INTEGER NOT NULL DEFAULT 0;
 )"};
 
 /// A ledger of version 1 as one of version 2, for reading: the file stays as it is.
@@ -68,6 +74,11 @@ CREATE TEMP VIEW residues AS SELECT r.channel, place, class,
   FROM main.residues r JOIN main.channels c USING(channel);
 CREATE TEMP VIEW runs AS SELECT run, name, epoch, pieces, ended, 0 AS apart, '' AS parameters, 0 AS messages
   FROM main.runs;
+)";
+
+/// One of version 1 or 2 as one of version 3.
+constexpr char kReadVersion2[] = R"(
+CREATE TEMP VIEW tallies AS SELECT *, 0 AS range_square, 0 AS range_own, 0 AS range_common FROM main.tallies;
 )";
 
 std::int64_t valueOf(Database& database, const char* sql) {
@@ -106,6 +117,7 @@ void beginReading(Database& database) {
   const std::int64_t version = versionOf(database);
   if (version == 0) database.fail("holds no ledger");
   if (version == 1) database.run(kReadVersion1);
+  if (version == 1 || version == 2) database.run(kReadVersion2);
 }
 
 }  // namespace hammer_loads::life

@@ -5,7 +5,7 @@
 
 namespace hammer_loads::life {
 
-constexpr int kLedgerVersion = 2;
+constexpr int kLedgerVersion = 3;
 
 /// Begins a transaction in which the file is a ledger of this version: a new or empty file gets its tables, an older
 /// ledger is upgraded. Anything else is left as it is, with a problem.

@@ -95,16 +95,18 @@ void addCycles(Database& database, std::int64_t channel, std::int64_t day, const
 void addTally(Database& database, std::int64_t channel, std::int64_t day, const CycleCount& count) {
   Database::Statement add(
       database,
-      "INSERT INTO tallies VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) ON CONFLICT(channel, day) DO UPDATE "
-      "SET "
+      "INSERT INTO tallies VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14) "
+      "ON CONFLICT(channel, day) DO UPDATE SET "
       "counted = counted + excluded.counted, skipped = skipped + excluded.skipped, below = below + excluded.below, "
       "above = above + excluded.above, gaps = gaps + excluded.gaps, deviations = deviations + excluded.deviations, "
       "deviation_sum = deviation_sum + excluded.deviation_sum, "
+      "range_square = range_square + excluded.range_square, range_own = range_own + excluded.range_own, "
+      "range_common = range_common + excluded.range_common, "
       "least = coalesce(min(least, excluded.least), least, excluded.least), "
       "greatest = coalesce(max(greatest, excluded.greatest), greatest, excluded.greatest)");
   const SampleTally& t = count.tally;
   add.run(channel, day, t.counted, t.skipped, t.below, t.above, t.gaps, t.deviations, t.deviation_sum,
-          count.extremes.least, count.extremes.greatest);
+          count.extremes.least, count.extremes.greatest, t.range_square, t.range_own, t.range_common);
 }
 
 void setResidue(Database& database, std::int64_t channel, std::int64_t run, const std::vector<std::uint32_t>& residue) {

@@ -51,6 +51,7 @@ Checked<LifeRecorder> LifeRecorder::make(const LifeSettings& settings, const std
     for (const Influence& influence : spot.influences) addTerm(influence.channel, influence.factor);
     addCounter(hotSpotChannel(spot), spot.grid, first);
   }
+  recorder.extremes_.resize(recorder.counters_.size());
   if (result.problems.empty()) result.value.emplace(std::move(recorder));
   return result;
 }
@@ -62,20 +63,28 @@ double LifeRecorder::valueOf(std::size_t counter, const double* values) const no
   return value;
 }
 
-double LifeRecorder::deviationOf(std::size_t counter, const double* deviations) const noexcept {
-  double variance = 0.0;
+/// Loads of one instant err independently by samples; what constants do to them adds up at most.
+LoadError LifeRecorder::errorOf(std::size_t counter, const double* deviations, const double* common) const noexcept {
+  if (deviations == nullptr) return {};
+  double variance = 0.0, alike = 0.0;
   for (std::size_t t = sums_[counter].begin; t < sums_[counter].end; ++t) {
-    const double part = terms_[t].factor * deviations[terms_[t].input];
-    variance += part * part;
+    const std::size_t input = terms_[t].input;
+    const LoadError error = LoadError::of(deviations[input], common == nullptr ? 0.0 : common[input]);
+    variance += terms_[t].factor * terms_[t].factor * error.own * error.own;
+    alike += std::abs(terms_[t].factor) * error.common;
   }
-  return std::sqrt(variance);
+  return {std::sqrt(variance), alike};
 }
 
-void LifeRecorder::sample(std::int64_t stamp, const double* values, const double* deviations) noexcept {
+void LifeRecorder::sample(std::int64_t stamp, const double* values, const double* deviations,
+                          const double* common) noexcept {
   for (std::size_t i = 0; i < counters_.size(); ++i) {
     const double value = valueOf(i, values);
     counters_[i].add(value);
-    if (deviations != nullptr && CycleCounter::isLoad(value)) counters_[i].addDeviation(deviationOf(i, deviations));
+    if (!CycleCounter::isLoad(value)) continue;
+    const LoadError error = errorOf(i, deviations, common);
+    counters_[i].addDeviation(error.deviation());
+    extremes_[i].add(value, error);
   }
   lastUntil(stamp);
   if (!piece_begun_) {
@@ -84,10 +93,13 @@ void LifeRecorder::sample(std::int64_t stamp, const double* values, const double
   }
 }
 
-void LifeRecorder::between(std::int64_t instant, const double* values) noexcept {
+void LifeRecorder::between(std::int64_t instant, const double* values, const double* deviations,
+                           const double* common) noexcept {
   for (std::size_t i = 0; i < counters_.size(); ++i) {
     const double value = valueOf(i, values);
-    if (!std::isnan(value)) counters_[i].add(value);
+    if (std::isnan(value)) continue;
+    counters_[i].add(value);
+    if (CycleCounter::isLoad(value)) extremes_[i].add(value, errorOf(i, deviations, common));
   }
   lastUntil(instant);
 }
@@ -96,6 +108,15 @@ void LifeRecorder::lastUntil(std::int64_t stamp) noexcept {
   if (contiguous_ && stamp > last_) duration_ += static_cast<std::uint64_t>(stamp - last_);
   contiguous_ = true;
   last_ = stamp;
+}
+
+void LifeRecorder::turn() noexcept {
+  ++turns_;
+  for (std::size_t i = 0; i < counters_.size(); ++i) {
+    const LoadError error = extremes_[i].ofRange();
+    counters_[i].addRange(extremes_[i].range(), error.own, error.common);
+    extremes_[i] = {};
+  }
 }
 
 void LifeRecorder::gap() noexcept {

@@ -7,6 +7,7 @@
 
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/life_settings.h"
+#include "hammer_loads/life/load_error.h"
 #include "hammer_loads/util/checked.h"
 
 namespace hammer_loads::life {
@@ -27,8 +28,8 @@ struct LifePiece {
 /// How the caller's loop looks:
 ///
 ///     if (recorder.due(stamp)) use(recorder.take());   // before the sample: pieces end at whole periods and days
-///     recorder.between(instant, values);               // each extreme since the last sample, in time order
-///     recorder.sample(stamp, values, deviations);
+///     recorder.between(instant, values, deviations, common);  // each extreme since the last sample, in time order
+///     recorder.sample(stamp, values, deviations, common);
 ///
 /// recorder.gap() where samples are missing or time ran back, recorder.turn() at each blow, take() at the end.
 class LifeRecorder {
@@ -36,15 +37,17 @@ class LifeRecorder {
   /// `inputs`: names of the values that sample() will get. A problem for each channel that is not among them.
   static Checked<LifeRecorder> make(const LifeSettings& settings, const std::vector<std::string>& inputs);
 
-  /// Values and standard deviations of the inputs at an instant [ns], in their order; NaN: none, and `deviations` may
-  /// be null. No allocation.
-  void sample(std::int64_t stamp, const double* values, const double* deviations) noexcept;
+  /// Values of the inputs at an instant [ns], in their order, their standard deviations and the part of these that
+  /// constants make; NaN: none, and the last two may be null. No allocation.
+  void sample(std::int64_t stamp, const double* values, const double* deviations,
+              const double* common = nullptr) noexcept;
   /// Values at an instant between two samples [ns], where some are known; NaN: not known there, which is no sample left
-  /// out. A hot spot counts where all its loads are known. No allocation.
-  void between(std::int64_t instant, const double* values) noexcept;
+  /// out. A hot spot counts where all its loads are known. Deviations: of a sample beside it. No allocation.
+  void between(std::int64_t instant, const double* values, const double* deviations = nullptr,
+               const double* common = nullptr) noexcept;
   /// Samples are missing before the next one, or time runs back there.
   void gap() noexcept;
-  void turn() noexcept { ++turns_; }
+  void turn() noexcept;
 
   /// Whether a piece ends before a sample of this stamp: a period or a day (UTC) is over, or time ran back. A piece of
   /// one period at most and of one day makes the trend by day the same live and from bags.
@@ -71,11 +74,12 @@ class LifeRecorder {
   };
 
   double valueOf(std::size_t counter, const double* values) const noexcept;
-  double deviationOf(std::size_t counter, const double* deviations) const noexcept;
+  LoadError errorOf(std::size_t counter, const double* deviations, const double* common) const noexcept;
   void lastUntil(std::int64_t stamp) noexcept;
 
   std::vector<std::string> names_;
   std::vector<CycleCounter> counters_;
+  std::vector<TurnExtremes> extremes_;  ///< of the present turn, of each counter
   std::vector<Sum> sums_;
   std::vector<Term> terms_;
   std::int64_t period_{};

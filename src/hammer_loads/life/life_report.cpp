@@ -41,12 +41,12 @@ ChannelFigures figuresOf(const CycleCount& count, const LedgerChannel& channel, 
                          double equivalent_cycles_per_hour) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::vector<RangeMean> cycles = rangesAndMeans(count);
-  const double deviation = rangeDeviation(meanDeviation(count));
+  const RangeDeviation deviation = rangeDeviation(count);
   ChannelFigures figures;
   for (std::size_t i = 0; i < kSlopeCount; ++i) {
     figures.equivalent_range[i] =
         hours > 0.0 ? equivalentLoad(cycles, kSlopes[i], hours * equivalent_cycles_per_hour, deviation)
-                    : Figure{kNone, kNone};
+                    : Figure{kNone, kNone, kNone};
   }
   if (!cycles.empty()) figures.largest_range = cycles.back().range;
   for (const RangeMean& c : cycles) figures.cycles += c.count;

@@ -13,6 +13,7 @@ TurnLoads emptyTurn(std::size_t channels) {
   TurnLoads turn;
   for (auto* values : {&turn.minimum, &turn.maximum, &turn.mean}) values->assign(channels, kNone);
   for (auto* instants : {&turn.minimum_instant, &turn.maximum_instant}) instants->assign(channels, 0);
+  for (auto* errors : {&turn.of_minimum, &turn.of_maximum}) errors->assign(channels, {});
   turn.skipped.assign(channels, 0);
   return turn;
 }
@@ -22,7 +23,8 @@ TurnLoads emptyTurn(std::size_t channels) {
 TurnLoadsRecorder::TurnLoadsRecorder(std::size_t channels)
     : turn_(emptyTurn(channels)), result_(turn_), integrals_(channels) {}
 
-void TurnLoadsRecorder::take(std::int64_t instant, const double* values, bool sampled) noexcept {
+void TurnLoadsRecorder::take(std::int64_t instant, const double* values, const double* deviations,
+                             const double* common, bool sampled) noexcept {
   if (!started_) {
     started_ = true;
     turn_.start = instant;
@@ -34,13 +36,18 @@ void TurnLoadsRecorder::take(std::int64_t instant, const double* values, bool sa
       continue;
     }
     Integral& integral = integrals_[i];
+    const auto error = [&] {
+      return deviations == nullptr ? LoadError{} : LoadError::of(deviations[i], common == nullptr ? 0.0 : common[i]);
+    };
     if (!(value >= turn_.minimum[i])) {
       turn_.minimum[i] = value;
       turn_.minimum_instant[i] = instant;
+      turn_.of_minimum[i] = error();
     }
     if (!(value <= turn_.maximum[i])) {
       turn_.maximum[i] = value;
       turn_.maximum_instant[i] = instant;
+      turn_.of_maximum[i] = error();
     }
     if (!integral.begun) {
       integral = {instant, instant, value, value, 0.0, true};
@@ -83,6 +90,7 @@ void TurnLoadsRecorder::clear() noexcept {
   for (auto* values : {&turn_.minimum, &turn_.maximum, &turn_.mean}) std::fill(values->begin(), values->end(), kNone);
   for (auto* instants : {&turn_.minimum_instant, &turn_.maximum_instant})
     std::fill(instants->begin(), instants->end(), 0);
+  for (auto* errors : {&turn_.of_minimum, &turn_.of_maximum}) std::fill(errors->begin(), errors->end(), LoadError{});
   std::fill(turn_.skipped.begin(), turn_.skipped.end(), 0U);
   std::fill(integrals_.begin(), integrals_.end(), Integral{});
 }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "hammer_loads/life/load_error.h"
+
 namespace hammer_loads::life {
 
 /// One value per channel each; NaN where the channel had no value in the turn.
@@ -13,6 +15,7 @@ struct TurnLoads {
   bool whole{};                                                ///< it began with a blow; else with the first sample
   std::vector<double> minimum, maximum;                        ///< of samples and the extremes between them
   std::vector<std::int64_t> minimum_instant, maximum_instant;  ///< the first time that it was reached [ns]
+  std::vector<LoadError> of_minimum, of_maximum;               ///< by the sample or that beside it
   std::vector<double> mean;                                    ///< over time
   std::vector<std::uint64_t> skipped;                          ///< values of the turn that were no number
 };
@@ -27,9 +30,16 @@ class TurnLoadsRecorder {
 
   /// One value per channel at an instant [ns]; NaN or infinity: none. An instant that is not after the one before adds
   /// to the extremes and nothing to the mean.
-  void add(std::int64_t instant, const double* values) noexcept { take(instant, values, true); }
+  /// Deviations as LifeRecorder::sample().
+  void add(std::int64_t instant, const double* values, const double* deviations = nullptr,
+           const double* common = nullptr) noexcept {
+    take(instant, values, deviations, common, true);
+  }
   /// The same for an instant between samples; NaN: not known there, which is no number left out.
-  void between(std::int64_t instant, const double* values) noexcept { take(instant, values, false); }
+  void between(std::int64_t instant, const double* values, const double* deviations = nullptr,
+               const double* common = nullptr) noexcept {
+    take(instant, values, deviations, common, false);
+  }
   /// The blow at `instant` ends the turn. Valid until the next call.
   const TurnLoads& endTurn(std::int64_t instant) noexcept;
   /// Samples are missing, or time ran back: forgets the turn begun. The next one begins with its first value.
@@ -41,7 +51,8 @@ class TurnLoadsRecorder {
     double first_value{}, last_value{}, sum{};
     bool begun{};
   };
-  void take(std::int64_t instant, const double* values, bool sampled) noexcept;
+  void take(std::int64_t instant, const double* values, const double* deviations, const double* common,
+            bool sampled) noexcept;
   void clear() noexcept;
 
   TurnLoads turn_, result_;

@@ -2,13 +2,29 @@
 
 #include <cmath>
 
-#include "hammer_loads/util/square.h"
-
 namespace hammer_loads {
+namespace {
 
-void addConstants(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
-                  const BlowColumns& columns, RockerBlow& blow) noexcept {
-  double restitution = 0.0, energy = 0.0;  // variances
+/// Of the impulses, by the readings.
+void addOwn(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow, BlowErrors& errors) noexcept {
+  const auto add = [&](const CrankBlow& other) {
+    const RockerBlow there = measuredBlow(model, other);
+    errors.tool_impulse_z.own = std::hypot(errors.tool_impulse_z.own, there.tool_impulse_z - blow.tool_impulse_z);
+    errors.support_impulse_z.own =
+        std::hypot(errors.support_impulse_z.own, there.support_impulse_z - blow.support_impulse_z);
+  };
+  CrankBlow faster = crank, rebound = crank, heavier = crank;
+  faster.speed += crank.speed_deviation;
+  rebound.factor += crank.factor_deviation;
+  heavier.drive_inertia *= 1.0 + crank.inertia_deviation;
+  add(faster), add(rebound), add(heavier);
+}
+
+}  // namespace
+
+BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
+                      const BlowColumns& columns, RockerBlow& blow) noexcept {
+  BlowErrors errors;
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {
     const Eigen::Index of_hammer = i - ConstantErrors::kTable;
     const bool is_hammers = of_hammer >= 0 && of_hammer < static_cast<Eigen::Index>(hammer.models().size());
@@ -19,13 +35,17 @@ void addConstants(const WrenchColumns& hammer, const HullModel& model, const Cra
     other.drive_inertia *= 1.0 + columns(2, i);
     const RockerBlow there =
         measuredBlow(is_hammers ? hammer.models()[static_cast<std::size_t>(of_hammer)] : model, other);
-    restitution += square(there.restitution - blow.restitution);
-    energy += square(there.energy - blow.energy);
+    errors.restitution.columns[i] = there.restitution - blow.restitution;
+    errors.energy.columns[i] = there.energy - blow.energy;
+    errors.tool_impulse_z.columns[i] = there.tool_impulse_z - blow.tool_impulse_z;
+    errors.support_impulse_z.columns[i] = there.support_impulse_z - blow.support_impulse_z;
   }
-  blow.restitution_common_deviation = std::sqrt(restitution);
-  blow.energy_common_deviation = std::sqrt(energy);
-  blow.restitution_deviation = std::hypot(blow.restitution_deviation, blow.restitution_common_deviation);
-  blow.energy_deviation = std::hypot(blow.energy_deviation, blow.energy_common_deviation);
+  errors.restitution.own = blow.restitution_deviation;
+  errors.energy.own = blow.energy_deviation;
+  addOwn(model, crank, blow, errors);
+  blow.restitution_deviation = errors.restitution.deviation();
+  blow.energy_deviation = errors.energy.deviation();
+  return errors;
 }
 
 }  // namespace hammer_loads

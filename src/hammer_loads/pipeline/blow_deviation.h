@@ -1,8 +1,9 @@
-/// How far a measured blow may be off, by constants of sensor and hammer.
+/// How far a measured blow may be off, by readings and by constants of sensor and hammer.
 #pragma once
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/hammer/wrench_columns.h"
+#include "hammer_loads/pipeline/number_error.h"
 
 namespace hammer_loads {
 
@@ -10,8 +11,9 @@ namespace hammer_loads {
 /// ConstantErrors: rows speed [rad/s], factor [-], drive inertia (relative).
 using BlowColumns = Eigen::Matrix<double, 3, ConstantErrors::kSize>;
 
-/// Adds them to the deviations of a blow: each column by a difference at its own size.
-void addConstants(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
-                  const BlowColumns& columns, RockerBlow& blow) noexcept;
+/// blow: measuredBlow() of `crank`, whose deviations get the part of constants. Each cause by a difference at its own
+/// size.
+BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
+                      const BlowColumns& columns, RockerBlow& blow) noexcept;
 
 }  // namespace hammer_loads

@@ -141,6 +141,7 @@ void BoomFollower::findLoads(const BoomSample& sample, double step) noexcept {
   takeMeasured(sample, step);
   boom_.steelLoads(w_tip + state_.contact, links, state_.steel);
   findDeviations(spreadWithRock(sample.spread), rigid);
+  addConstants(sample);
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) state_.cylinder_flags[i] = boom_.flags(i, state_.loads);
 }
 

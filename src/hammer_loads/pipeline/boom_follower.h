@@ -29,6 +29,7 @@ struct BoomSample {
   HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
                              ///< weight, no hull motion
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
+  WrenchSpread constants{}, of_hammer{};  ///< errors of constants, the same in all samples: of all, of the hammer's
   std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
   bool imu_lost{};                  ///< earlier readings cannot be trusted
   HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
@@ -53,6 +54,7 @@ struct BoomState {
   BoomLoads loads;
   SteelLoads steel;           ///< sections and joints as Boom orders them
   BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
+  BoomDeviations common;      ///< the part of them that constants of crank sensor and hammer make
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
   bool dead_centre{};               ///< a cylinder does not hold its joint: no modes, taken as rigid
   JointVector frequency;            ///< natural frequencies, per mode [Hz]; none when vibration is not followed
@@ -142,6 +144,7 @@ class BoomFollower {
   void followContact(StampNs stamp) noexcept;
   void findContact(double step) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
+  void addConstants(const BoomSample& sample) noexcept;
   LoadErrors measuredErrors(const Wrench& lasting, bool rigid) const noexcept;
   LoadErrors followedErrors(const WrenchSpread& spread, bool rigid) const noexcept;
   void fillVibration() noexcept;

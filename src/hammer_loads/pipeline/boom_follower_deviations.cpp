@@ -10,6 +10,20 @@ namespace {
 
 constexpr double kUnexplainedMemory = 1.0;  // [s]
 
+void addVariance(double other, double& deviation) noexcept { deviation = std::hypot(deviation, other); }
+
+void addVariance(const Wrench& other, Wrench& deviation) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    addVariance(other.force[i], deviation.force[i]);
+    addVariance(other.torque[i], deviation.torque[i]);
+  }
+}
+
+template <typename List>
+void addVariances(const List& others, std::size_t count, List& deviations) noexcept {
+  for (std::size_t i = 0; i < count; ++i) addVariance(others[i], deviations[i]);
+}
+
 }  // namespace
 
 /// What hammer and oil as given do not make of the hull's acceleration is a force on its mass.
@@ -52,6 +66,29 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
     deviations.torque[joint] = std::sqrt(square(torque->deviation) + square(lasting_torque[joint]));
     deviations.cylinder[i] = deviations.torque[joint] / std::abs(boom_.cylinderPosition(i).arm);
   }
+}
+
+/// As loads that do not change: a boom's modes make more of what falls on them, and less of what is above. Into what is
+/// measured they do not enter.
+void BoomFollower::addConstants(const BoomSample& sample) noexcept {
+  const auto joints = static_cast<std::size_t>(boom_.chain().joints());
+  const auto of = [&](const WrenchSpread& spread) {
+    LoadErrors errors(boom_.cylinders());
+    for (int i = 0; i < spread.count && !tip_; ++i) errors.addInPlane(inPlane(spread.part[static_cast<std::size_t>(i)]));
+    boom_.deviations(errors, state_.common);
+    for (std::size_t i = 0; pressuresCount() && i < boom_.cylinders().size(); ++i) {
+      if (measured_.of(i)) state_.common.torque[boom_.cylinders()[i].joint()] = state_.common.cylinder[i] = 0.0;
+    }
+  };
+  if (sample.of_hammer.count > 0) {
+    of(sample.of_hammer);
+    BoomDeviations& all = state_.deviations;
+    for (Eigen::Index i = 0; i < all.torque.size(); ++i) addVariance(state_.common.torque[i], all.torque[i]);
+    addVariances(state_.common.cylinder, boom_.cylinders().size(), all.cylinder);
+    addVariances(state_.common.section, boom_.sections().size(), all.section);
+    addVariances(state_.common.joint, joints, all.joint);
+  }
+  if (sample.constants.count > 0) of(sample.constants);
 }
 
 LoadErrors BoomFollower::measuredErrors(const Wrench& lasting, bool rigid) const noexcept {

@@ -14,28 +14,31 @@ double* put(const Wrench& wrench, double* place) noexcept {
 
 }  // namespace
 
-void channelValues(const SampleResult& result, const HullWrench& wrench_deviation, const Boom* boom, double* values,
-                   double* deviations) noexcept {
+void channelValues(const SampleResult& result, const Boom* boom, double* values, double* deviations,
+                   double* common) noexcept {
   wrenchValues(result.wrench, values);
-  wrenchValues(wrench_deviation, deviations);
+  wrenchValues(result.deviation.wrench, deviations);
+  wrenchValues(result.deviation.common, common);
   if (boom == nullptr) return;
-  double *value = values + kHullChannels, *deviation = deviations + kHullChannels;
+  double* value = values + kHullChannels;
   const auto joints = static_cast<std::size_t>(boom->chain().joints());
   const std::size_t cylinders = boom->cylinders().size(), sections = boom->sections().size();
   if (result.boom == nullptr || result.boom->fault) {
-    std::fill_n(value, joints + cylinders + kSectionChannels * sections, kNaN);
-    std::fill_n(deviation, joints + cylinders + kSectionChannels * sections, kNaN);
+    for (double* all : {values, deviations, common})
+      std::fill_n(all + kHullChannels, joints + cylinders + kSectionChannels * sections, kNaN);
     return;
   }
   const BoomState& state = *result.boom;
   value = std::copy_n(state.loads.total.data(), joints, value);
-  deviation = std::copy_n(state.deviations.torque.data(), joints, deviation);
   for (std::size_t i = 0; i < cylinders; ++i) *value++ = state.loads.cylinder[i].force;
-  deviation = std::copy_n(state.deviations.cylinder.data(), cylinders, deviation);
-  for (std::size_t i = 0; i < sections; ++i) {
-    value = put(state.steel.section[i], value);
-    deviation = put(state.deviations.section[i], deviation);
-  }
+  for (std::size_t i = 0; i < sections; ++i) value = put(state.steel.section[i], value);
+  const auto putDeviations = [&](const BoomDeviations& of, double* place) {
+    place = std::copy_n(of.torque.data(), joints, place);
+    place = std::copy_n(of.cylinder.data(), cylinders, place);
+    for (std::size_t i = 0; i < sections; ++i) place = put(of.section[i], place);
+  };
+  putDeviations(state.deviations, deviations + kHullChannels);
+  putDeviations(state.common, common + kHullChannels);
 }
 
 }  // namespace hammer_loads

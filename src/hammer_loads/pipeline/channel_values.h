@@ -13,9 +13,9 @@ inline void wrenchValues(const HullWrench& wrench, double* values) noexcept {
   values[0] = wrench.force_x, values[1] = wrench.force_z, values[2] = wrench.torque_y;
 }
 
-/// Of an accepted sample; NaN: not known. boom: as for the names. Both arrays have as many places as
-/// there are names. The wrench's deviation is that at the sample.
-void channelValues(const SampleResult& result, const HullWrench& wrench_deviation, const Boom* boom, double* values,
-                   double* deviations) noexcept;
+/// Of an accepted sample; NaN: not known. boom: as for the names. All arrays have as many places as
+/// there are names. The wrench's deviations are those at the sample; common: the part of constants in them.
+void channelValues(const SampleResult& result, const Boom* boom, double* values, double* deviations,
+                   double* common) noexcept;
 
 }  // namespace hammer_loads

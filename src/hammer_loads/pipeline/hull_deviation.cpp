@@ -42,10 +42,21 @@ HullWrench deviationOf(const Gradient& g, const Eigen::Matrix3d& covariance) noe
   return {deviation(0), deviation(1), deviation(2)};
 }
 
+WrenchSpread spreadOf(const Eigen::Matrix3d& covariance) noexcept {
+  const Eigen::Matrix3d errors = covarianceRoot<3>(covariance);
+  WrenchSpread spread;
+  spread.count = 3;
+  for (int i = 0; i < 3; ++i) {
+    Wrench& part = spread.part[static_cast<std::size_t>(i)];
+    part = {{errors(0, i), 0.0, errors(1, i)}, {0.0, errors(2, i), 0.0}};
+  }
+  return spread;
+}
+
 HullDeviation unknownDeviation() noexcept {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr HullWrench kWrench{kUnknown, kUnknown, kUnknown};
-  return {kWrench, kWrench, kUnknown, kUnknown, kUnknown};
+  return {kWrench, kWrench, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 }
 
 }  // namespace
@@ -63,7 +74,10 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
           {},
           std::sqrt(covariance(0, 0)),
           std::sqrt(covariance(1, 1)),
-          std::sqrt(covariance(2, 2))};
+          std::sqrt(covariance(2, 2)),
+          0.0,
+          0.0,
+          0.0};
 }
 
 HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
@@ -84,10 +98,16 @@ HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model,
   columns(2, ConstantErrors::kSize) = by_inertia * uncertainty.inertia;
   const Eigen::Vector3d common = columns.rowwise().squaredNorm();
   const Eigen::Vector3d own = vectorOf(deviationOf(g, uncertainty.own));
-  const auto of = [&](Eigen::Index i) {
-    return std::sqrt(uncertainty.own(i, i) + uncertainty.by_constant.row(i).squaredNorm());
-  };
-  return {wrenchOf((own.cwiseAbs2() + common).cwiseSqrt()), wrenchOf(common.cwiseSqrt()), of(0), of(1), of(2)};
+  const Eigen::Vector3d of_crank = uncertainty.by_constant.topRows<3>().rowwise().squaredNorm();
+  const Eigen::Vector3d crank_all = (uncertainty.own.diagonal() + of_crank).cwiseSqrt();
+  return {wrenchOf((own.cwiseAbs2() + common).cwiseSqrt()),
+          wrenchOf(common.cwiseSqrt()),
+          crank_all[0],
+          crank_all[1],
+          crank_all[2],
+          std::sqrt(of_crank[0]),
+          std::sqrt(of_crank[1]),
+          std::sqrt(of_crank[2])};
 }
 
 void addHullMotion(const HullModel& model, const DriveReaction& drive, const LinkMotion& links, double crank_speed,
@@ -119,19 +139,19 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                           const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept {
-  WrenchSpread spread;
-  if (!(own(1, 1) > 0.0)) return spread;
+  if (!(own(1, 1) > 0.0)) return {};
   const HullMotion at_rest;
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, at_rest, at); });
   const auto of_sensor = columns.leftCols<ConstantErrors::kTable>();
-  const Eigen::Matrix3d errors = covarianceRoot<3>(g * own * g.transpose() + of_sensor * of_sensor.transpose());
-  spread.count = 3;
-  for (int i = 0; i < 3; ++i) {
-    Wrench& part = spread.part[static_cast<std::size_t>(i)];
-    part = {{errors(0, i), 0.0, errors(1, i)}, {0.0, errors(2, i), 0.0}};
-  }
-  return spread;
+  return spreadOf(g * own * g.transpose() + of_sensor * of_sensor.transpose());
+}
+
+WrenchSpread constantSpread(const LoadColumns& columns) noexcept { return spreadOf(columns * columns.transpose()); }
+
+WrenchSpread hammerSpread(const LoadColumns& columns) noexcept {
+  const auto of_hammer = columns.middleCols<kMachineColumns>(ConstantErrors::kTable);
+  return spreadOf(of_hammer * of_hammer.transpose());
 }
 
 }  // namespace hammer_loads

@@ -18,6 +18,7 @@ struct HullDeviation {
   double angle{};         ///< of the crank [rad]
   double speed{};         ///< [rad/s]
   double acceleration{};  ///< [rad/s2]
+  double common_angle{}, common_speed{}, common_acceleration{};  ///< the part of constants of these
 };
 
 /// How the links move at a crank angle and a little beside it: what gradients by the angle need.
@@ -61,5 +62,9 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 /// error of the hammer's constants, alike in all samples, is not: those are not in it.
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                           const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept;
+
+/// Errors of constants likewise: of all of them, or of the hammer's alone.
+WrenchSpread constantSpread(const LoadColumns& columns) noexcept;
+WrenchSpread hammerSpread(const LoadColumns& columns) noexcept;
 
 }  // namespace hammer_loads

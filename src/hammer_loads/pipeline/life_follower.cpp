@@ -16,6 +16,7 @@ LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& s
       turn_(channels_.size()),
       values_(channels_.size()),
       deviations_(channels_.size()),
+      common_(channels_.size()),
       between_(channels_.size(), std::numeric_limits<double>::quiet_NaN()) {
   turns_.fill(life::TurnLoadsRecorder(channels_.size()).endTurn(-1));
 }
@@ -54,9 +55,9 @@ void LifeFollower::follow() noexcept {
 }
 
 void LifeFollower::count(const SampleResult& result) noexcept {
-  channelValues(result, result.deviation.wrench, boom_, values_.data(), deviations_.data());
-  recorder_.sample(result.stamp, values_.data(), deviations_.data());
-  turn_.add(result.stamp, values_.data());
+  channelValues(result, boom_, values_.data(), deviations_.data(), common_.data());
+  recorder_.sample(result.stamp, values_.data(), deviations_.data(), common_.data());
+  turn_.add(result.stamp, values_.data(), deviations_.data(), common_.data());
 }
 
 void LifeFollower::followStep(const SampleResult& result) noexcept {
@@ -72,8 +73,8 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
         if (!published) return;
         wrenchValues(wrench, between_.data());
         keepWhatBothEndsSay(load, place, end);
-        recorder_.between(step.stampAt(place.time), between_.data());
-        turn_.between(step.stampAt(place.time), between_.data());
+        recorder_.between(step.stampAt(place.time), between_.data(), deviations_.data(), common_.data());
+        turn_.between(step.stampAt(place.time), between_.data(), deviations_.data(), common_.data());
       },
       [&](double time) { endTurn(step.stampAt(time)); });
 }

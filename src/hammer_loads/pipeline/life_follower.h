@@ -64,7 +64,7 @@ class LifeFollower {
   /// Turns whose blow is not measured yet, and those just measured: as many as a result has ends, and one.
   std::array<life::TurnLoads, std::tuple_size<decltype(SampleResult::ends)>::value + 1> turns_;
   std::size_t next_turn_{};  ///< in turns_
-  std::vector<double> values_, deviations_, between_;
+  std::vector<double> values_, deviations_, common_, between_;
 };
 
 }  // namespace hammer_loads

@@ -60,17 +60,21 @@ class MisuseFollower {
     pressed_ = pressed_ || now.value_or(false);
     watched_ = true;
   }
-  /// A turn that ended with a blow. period: its length [s], none where it was not seen whole.
-  void blow(std::optional<double> period) noexcept {
+  /// A turn that ended with a blow. period: its length [s], none where it was not seen whole. Whether the rock bore on
+  /// the hull in it; nothing: not known.
+  std::optional<bool> blow(std::optional<double> period) noexcept {
+    std::optional<bool> pressed;
     if (period && watched_ && !unknown_) {
+      pressed = pressed_;
       ++counts_.judged_blows;
       counts_.unpressed_blows += !pressed_;
     }
     watched_ = unknown_ = pressed_ = false;
-    if (!period || !place_) return;
+    if (!period || !place_) return pressed;
     at_place_ += *period;
     counts_.placed_time += *period;
     counts_.still_time += std::fmin(*period, std::fmax(0.0, at_place_ - kPatience));
+    return pressed;
   }
 
   const MisuseCounts& counts() const noexcept { return counts_; }

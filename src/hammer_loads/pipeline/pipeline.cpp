@@ -77,7 +77,7 @@ const SampleResult& Pipeline::withhold(Refusal refusal) noexcept {
   const bool believed = refusal == Refusal::kUnsettled && crank_.step().known();
   swingOn(believed ? wrenchHistory(model_, crank_.step()) : WrenchHistory{});
   sampler_.forget();
-  turn_.published(false);
+  turn_.withheld();
   return refuse(refusal);
 }
 
@@ -140,7 +140,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
                 result_.deviation.wrench);
   sampler_.sample(links, result_);
-  turn_.published(true);
+  turn_.published(result_);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;
   followMisuse();
@@ -225,8 +225,12 @@ void Pipeline::followBoom(const LinksBeside& links) noexcept {
       wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
-  result_.boom = &boom_->sample({result_.stamp, motion, spread, hull_.newImuReading(result_.stamp), imu_lost, displaced,
-                                 stampNoise(), at_work ? nominal_force_ : 0.0},
+  const bool uncertain = spread.count > 0;
+  result_.boom = &boom_->sample({result_.stamp, motion, spread,
+                                 uncertain ? constantSpread(result_.load_columns) : WrenchSpread{},
+                                 uncertain && !columns_.isExact() ? hammerSpread(result_.load_columns) : WrenchSpread{},
+                                 hull_.newImuReading(result_.stamp), imu_lost, displaced, stampNoise(),
+                                 at_work ? nominal_force_ : 0.0},
                                 step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
@@ -246,7 +250,8 @@ void Pipeline::followMisuse() noexcept {
                                                   : std::nullopt);
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
     const std::optional<HalfSinePulse>& pulse = result_.ends[i].pulse;
-    misuse_.blow(pulse ? std::make_optional(pulse->period) : std::nullopt);
+    const std::optional<bool> pressed = misuse_.blow(pulse ? std::make_optional(pulse->period) : std::nullopt);
+    if (pressed.value_or(false)) result_.ends[i].struck = TurnEnd::Struck::kTool;
   }
 }
 

@@ -12,6 +12,7 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/hull_state.h"
+#include "hammer_loads/pipeline/number_error.h"
 #include "hammer_loads/pipeline/refusal.h"
 
 namespace hammer_loads {
@@ -21,8 +22,11 @@ struct TurnEnd {
   StampNs stamp{};       ///< instant of the blow, found between samples [ns]
   std::uint64_t turn{};  ///< blows since the start, 1 for the first
   RockerBlow blow;
+  BlowErrors blow_errors;
+  enum class Struck : std::uint8_t { kUnknown, kTool, kHull } struck{};
   double mean_press_force{};  ///< tool impulse times blow rate [N]; NaN where the turn was not seen whole
   std::optional<HalfSinePulse> pulse;
+  PulseErrors pulse_errors;
 };
 
 /// One publication of the hull wrench.

@@ -75,12 +75,20 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   end.stamp = step_->stampAt(passage.time);
   end.turn = ++turns_;
   const double time = seconds(step_->start() - epoch_) + passage.time;
-  end.pulse = turn_.end(instant(time, step_->besides(passage, Side::kBeforeBlow)));
-  if (end.pulse) peak_force_ = end.pulse->amplitude;
+  const CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
+  const CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0);
+  end.pulse = turn_.end(instant(time, before));
+  if (end.pulse) {
+    peak_force_ = end.pulse->amplitude;
+    const LinksBeside links(*model_, linksAt(*model_, before.position.angle));
+    end.pulse_errors = errors_.end(
+        end.stamp, *end.pulse,
+        momentumDeviation(*model_, driveReaction(*model_, tracker_->driveInertia()), before, links, doubt.own));
+  }
+  errors_.begin(end.stamp);
   end.mean_press_force =  // times the impulse, once that is known
       last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
-  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before,
-                 tracker_->uncertaintyBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0));
+  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, doubt);
   pending_.follow(tracker_->blowFactor());
   last_blow_ = end.stamp;
   turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
@@ -100,11 +108,14 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
     ++blank_;
     return;
   }
-  turn_.correctBegin(linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter()));
+  const LinkMomentum after = linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter());
+  turn_.correctBegin(after);
   RockerBlow& blow = pending_end_.blow;
   const CrankBlow crank = pending_.take();
+  const double doubt = std::hypot(crank.speed_deviation / crank.speed, crank.factor_deviation / crank.factor);
+  errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0});
   blow = measuredBlow(*model_, crank);
-  addConstants(*columns_, *model_, crank, pending_.columns(), blow);
+  pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
   voidImpossible(model_->mechanism(), model_->level(), blow);
   impossible_ += blow.impossible;
   blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull

@@ -8,6 +8,7 @@
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/pending_blow.h"
 #include "hammer_loads/pipeline/sample_result.h"
+#include "hammer_loads/pipeline/turn_errors.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
 
 namespace hammer_loads {
@@ -30,9 +31,14 @@ class TurnFollower {
   /// after the blow, with its stamp. hull: motion over the step.
   void follow(const HullMotion& hull, SampleResult& result) noexcept;
 
-  /// The last sample's loads were published, or withheld.
-  void published(bool were) noexcept {
-    if (pending_.isWaiting()) pending_.count(were);
+  /// The last sample's loads were withheld.
+  void withheld() noexcept {
+    if (pending_.isWaiting()) pending_.count(false);
+  }
+  /// They are published.
+  void published(const SampleResult& result) noexcept {
+    if (pending_.isWaiting()) pending_.count(true);
+    errors_.sample(result.stamp, result.wrench, result.deviation, result.load_columns);
   }
   bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
   /// Velocity of the hull at that blow; zero until it is given.
@@ -55,6 +61,7 @@ class TurnFollower {
   const CrankStep* step_;
   const CrankTracker* tracker_;
   TurnRecorder turn_;
+  TurnErrors errors_;
   PendingBlow pending_;
   TurnEnd pending_end_;  ///< of the pending blow
   HullMotion hull_;

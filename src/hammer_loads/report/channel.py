@@ -1,5 +1,7 @@
 """A counted channel: its load cycles, the time they took, and what they cost."""
-from report.damage import SLOPES, curve_of, equivalent_range, range_deviation, remaining_hours
+import math
+
+from report.damage import SLOPES, by_samples, curve_of, equivalent_range, remaining_hours
 from report.rainflow import Count
 
 TALLY = ("samples", "skipped", "below", "above", "gaps")
@@ -15,6 +17,7 @@ class Channel:
         self.samples = self.skipped = self.below = self.above = self.gaps = 0
         self.minimum = self.maximum = None
         self._deviation_sum, self._deviations = 0.0, 0
+        self._range_sums, self._range_weight = [0.0, 0.0], 0
 
     @classmethod
     def of(cls, row, cycles_per_hour):
@@ -35,6 +38,21 @@ class Channel:
             self._deviation_sum += mean * samples
             self._deviations += samples
 
+    def add_range_deviations(self, own, common, weight):
+        """Of the ranges of turns, over the range: drawn anew in each turn, and of constants, which does not average out."""
+        if own is not None and common is not None and weight:
+            self._range_sums = [before + weight * part for before, part in zip(self._range_sums, (own, common))]
+            self._range_weight += weight
+
+    @property
+    def range_deviations(self):
+        """(own, common), mean over what was added; None each where there is none."""
+        return tuple(part / self._range_weight if self._range_weight else None for part in self._range_sums)
+
+    def _range_deviation(self):
+        own, common = self.range_deviations
+        return by_samples(self.deviation) if own is None else (0.0, math.hypot(own, common))
+
     @property
     def deviation(self):
         """Mean standard deviation of a sample; None where there is none."""
@@ -45,7 +63,7 @@ class Channel:
         if not (self.hours > 0.0 and self.cycles_per_hour and self.cycles_per_hour > 0.0):
             return [(None, None)] * len(SLOPES)
         cycles = self.count.ranges_and_means() if cycles is None else cycles
-        deviation = range_deviation(self.deviation)
+        deviation = self._range_deviation()
         return [equivalent_range(cycles, m, self.hours * self.cycles_per_hour, deviation) for m in SLOPES]
 
     def damage(self, cycles=None):
@@ -53,7 +71,7 @@ class Channel:
         if self.curve is None:
             return None, None
         cycles = self.count.ranges_and_means() if cycles is None else cycles
-        return self.curve.damage(cycles, range_deviation(self.deviation))
+        return self.curve.damage(cycles, self._range_deviation())
 
     def remaining_hours(self, damage):
         return remaining_hours(damage, self.hours) if damage[0] is not None and self.hours > 0.0 else (None, None)

@@ -7,20 +7,25 @@ import math
 SLOPES = (3.0, 4.0, 5.0, 10.0)
 
 
-def range_deviation(load_deviation):
-    """Of a range: its two ends err independently."""
-    return None if load_deviation is None else math.sqrt(2.0) * load_deviation
+def by_samples(load_deviation):
+    """Deviation of all ranges, (absolute, over the range), by that of a sample: a range's two ends err independently."""
+    return None if load_deviation is None else (math.sqrt(2.0) * load_deviation, 0.0)
+
+
+def figure_of(value, by_absolute, by_relative, deviation):
+    """deviation: of all ranges, (absolute, over the range), or None."""
+    return value, None if deviation is None else math.hypot(by_absolute * deviation[0], by_relative * deviation[1])
 
 
 def equivalent_range(cycles, slope, equivalent_cycles, deviation=None):
-    """Range that does the same damage in so many cycles; 0 without cycles."""
+    """Range that does the same damage in so many cycles; 0 without cycles. deviation: as for figure_of()."""
     largest = max((r for r, _, _ in cycles), default=0.0)
     if largest == 0.0:
         return 0.0, None if deviation is None else 0.0
     total = sum(n * (r / largest) ** slope for r, _, n in cycles)
     derivative = sum(n * (r / largest) ** (slope - 1.0) for r, _, n in cycles)
     value = largest * (total / equivalent_cycles) ** (1.0 / slope)
-    return value, None if deviation is None else value * derivative / (total * largest) * deviation
+    return figure_of(value, value * derivative / (total * largest), value, deviation)
 
 
 def at_alternating(amplitude, mean, sensitivity):
@@ -43,8 +48,8 @@ class Curve:
         self.slope, self.slope_below, self.sensitivity = slope, slope_below, sensitivity
 
     def damage(self, cycles, deviation=None):
-        """Part of the life that is used."""
-        total, derivative = 0.0, 0.0
+        """Part of the life that is used. deviation: as for figure_of()."""
+        total = by_absolute = by_relative = 0.0
         for r, mean, n in cycles:
             amplitude, slant = 0.5 * r, 1.0
             if self.sensitivity is not None:
@@ -55,8 +60,9 @@ class Curve:
             m = self.slope if at >= self.knee_range else self.slope_below
             each = (at / self.knee_range) ** m / self.knee_cycles
             total += n * each
-            derivative += n * each * m / at * slant
-        return total, None if deviation is None else derivative * deviation
+            by_absolute += n * each * m / at * slant
+            by_relative += n * each * m / at * slant * r
+        return figure_of(total, by_absolute, by_relative, deviation)
 
 
 def curve_of(row):

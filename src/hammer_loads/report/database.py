@@ -8,7 +8,7 @@ from report.problem import Problem
 
 RECORDING, LEDGER, FLEET = "recording", "ledger", "fleet"
 KINDS = {0x484C5242: RECORDING, 0x484C4C31: LEDGER, 0x484C5246: FLEET}
-VERSIONS = {RECORDING: (1,), LEDGER: (1, 2), FLEET: (1,)}
+VERSIONS = {RECORDING: (1,), LEDGER: (1, 2, 3), FLEET: (1,)}
 STEPS = 100000  # of SQLite's machine, some ms, between two looks for a signal
 BUSY_S = 5.0  # a node that writes its ledger needs some ms
 

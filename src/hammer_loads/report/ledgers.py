@@ -3,7 +3,8 @@ from report.channel import Channel
 
 TALLY = ("SELECT sum(counted) AS samples, sum(skipped) AS skipped, sum(below) AS below, sum(above) AS above, "
          "sum(gaps) AS gaps, min(least) AS minimum, max(greatest) AS maximum, sum(deviations) AS deviations, "
-         "sum(deviation_sum) AS deviation_sum FROM tallies WHERE channel = ?")
+         "sum(deviation_sum) AS deviation_sum, sum(range_square) AS range_square, sum(range_own) AS range_own, "
+         "sum(range_common) AS range_common FROM tallies WHERE channel = ?")
 CYCLES = "SELECT steps, low, sum(count) FROM cycles WHERE channel = ?{} GROUP BY steps, low"
 DEVIATION_UNITS = 1024.0  # per class width, in tallies.deviation_sum
 
@@ -15,6 +16,8 @@ VERSION_1 = (
     "CREATE TEMP VIEW residues AS SELECT r.channel, place, class, (SELECT CASE r.open WHEN 1 THEN max(run) ELSE "
     "min(run) END FROM main.runs WHERE runs.epoch = c.epoch) AS run FROM main.residues r JOIN main.channels c "
     "USING(channel)")
+# One of version 1 or 2 as one of version 3.
+BEFORE_3 = "CREATE TEMP VIEW tallies AS SELECT *, 0 AS range_square, 0 AS range_own, 0 AS range_common FROM main.tallies"
 
 
 class Epoch:
@@ -55,6 +58,9 @@ class Epoch:
         if tally["deviations"]:
             unit = channel.count.width / DEVIATION_UNITS
             channel.add_deviation(tally["deviation_sum"] / tally["deviations"] * unit, tally["deviations"])
+        if tally["range_square"]:
+            channel.add_range_deviations(tally["range_own"] / tally["range_square"],
+                                         tally["range_common"] / tally["range_square"], tally["range_square"])
         channel.count.add_closed(self._database.rows(CYCLES.format(only), *place))
         channel.hours = self.hours if day is None else day[2]
         self._join_residues(row, day, channel)
@@ -83,4 +89,6 @@ def epochs_of(database):
     if database.version == 1:
         for view in VERSION_1:
             database.value(view)
+    if database.version < 3:
+        database.value(BEFORE_3)
     return [Epoch(database, row) for row in database.records("SELECT * FROM epochs ORDER BY epoch")]

@@ -103,6 +103,7 @@ def add_piece(channel, database, run, row):
     place = (run["run_id"], row["channel"])
     channel.add_tally(row)
     channel.add_deviation(row["mean_deviation"], row["samples"])
+    channel.add_range_deviations(row.get("range_own_deviation"), row.get("range_common_deviation"), row["samples"])
     channel.hours += (run["duration_s"] or 0.0) / 3600.0
     channel.count.add_closed(database.rows(
         "SELECT steps, low, count FROM cycles WHERE run_id = ? AND channel = ?", *place))
@@ -119,6 +120,7 @@ def fleet_channels(subject):
         channel = Channel.of(row, per_hour)
         channel.add_tally(row)
         channel.add_deviation(row["mean_deviation"], row["samples"])
+        channel.add_range_deviations(row.get("range_own_deviation"), row.get("range_common_deviation"), row["samples"])
         channel.hours = row["hours"]
         at = row["machine_channel"]
         channel.count.add_closed(database.rows("SELECT steps, low, count FROM machine_cycles WHERE machine_channel = ?", at))

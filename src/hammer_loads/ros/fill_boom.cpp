@@ -33,8 +33,10 @@ void prepareJointLoads(const Boom& boom, JointLoads& message) {
   for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
   message.contact_torque_Nm.resize(joints);
   message.total_torque_deviation_Nm.resize(joints, kNaN);
+  message.total_torque_common_deviation_Nm.resize(joints, kNaN);
   message.cylinder_force_N.resize(boom.cylinders().size());
   message.cylinder_force_deviation_N.resize(boom.cylinders().size(), kNaN);
+  message.cylinder_force_common_deviation_N.resize(boom.cylinders().size(), kNaN);
   message.cylinder_flags.resize(boom.cylinders().size());
   message.cylinder_pressure_Pa.resize(boom.cylinders().size());
 }
@@ -44,6 +46,7 @@ void prepareSections(const Boom& boom, SectionLoads& message) {
   for (const Section& section : boom.sections()) message.section_name.push_back(section.name());
   message.load.resize(boom.sections().size());
   message.load_deviation.resize(boom.sections().size());
+  message.load_common_deviation.resize(boom.sections().size());
 }
 
 void prepareReactions(const Boom& boom, JointReactions& message) {
@@ -52,6 +55,7 @@ void prepareReactions(const Boom& boom, JointReactions& message) {
   message.joint_name = boom.chain().jointNames();
   message.load.resize(joints);
   message.load_deviation.resize(joints);
+  message.load_common_deviation.resize(joints);
   for (const Cylinder& cylinder : boom.cylinders()) message.cylinder_name.push_back(cylinder.parameters().name);
   message.base_force_N.resize(boom.cylinders().size());
   message.rod_force_N.resize(boom.cylinders().size());
@@ -74,9 +78,11 @@ void fillJointLoads(const BoomState& state, JointLoads& message) {
   copy(state.contact_torque, message.contact_torque_Nm);
   copy(state.loads.total, message.total_torque_Nm);
   copy(state.deviations.torque, message.total_torque_deviation_Nm);
+  copy(state.common.torque, message.total_torque_common_deviation_Nm);
   for (std::size_t i = 0; i < message.cylinder_name.size(); ++i) {
     message.cylinder_force_N[i] = state.loads.cylinder[i].force;
     message.cylinder_force_deviation_N[i] = state.deviations.cylinder[i];
+    message.cylinder_force_common_deviation_N[i] = state.common.cylinder[i];
     message.cylinder_pressure_Pa[i] = state.loads.cylinder[i].pressure;
     message.cylinder_flags[i] = state.cylinder_flags[i];
   }
@@ -91,6 +97,7 @@ void fillSections(const BoomState& state, SectionLoads& message) {
   for (std::size_t i = 0; i < message.load.size(); ++i) {
     copy(state.steel.section[i], message.load[i]);
     copy(state.deviations.section[i], message.load_deviation[i]);
+    copy(state.common.section[i], message.load_common_deviation[i]);
   }
 }
 
@@ -99,6 +106,7 @@ void fillReactions(const BoomState& state, JointReactions& message) {
   for (std::size_t i = 0; i < message.load.size(); ++i) {
     copy(state.steel.joint[i], message.load[i]);
     copy(state.deviations.joint[i], message.load_deviation[i]);
+    copy(state.common.joint[i], message.load_common_deviation[i]);
   }
   for (std::size_t i = 0; i < message.base_force_N.size(); ++i) {
     copy(state.steel.pins[i].base, message.base_force_N[i]);

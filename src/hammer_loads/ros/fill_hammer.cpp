@@ -36,6 +36,12 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
   message.crank_angle_deviation_rad = deviation.angle;
   message.crank_speed_deviation_rad_s = deviation.speed;
   message.crank_acceleration_deviation_rad_s2 = deviation.acceleration;
+  message.force_x_common_deviation_N = deviation.common.force_x;
+  message.force_z_common_deviation_N = deviation.common.force_z;
+  message.torque_y_common_deviation_Nm = deviation.common.torque_y;
+  message.crank_angle_common_deviation_rad = deviation.common_angle;
+  message.crank_speed_common_deviation_rad_s = deviation.common_speed;
+  message.crank_acceleration_common_deviation_rad_s2 = deviation.common_acceleration;
   message.interval_s = output.interval;
   message.consistency = result.consistency;
   message.flags = 0;
@@ -74,6 +80,7 @@ void fillPinForces(const SampleResult& result, PinForces& message) {
 
 void fillBlow(const TurnEnd& end, Blow& message) {
   const RockerBlow& blow = end.blow;
+  const BlowErrors& errors = end.blow_errors;
   message.header.stamp = timeOf(end.stamp);
   message.turn = end.turn;
   message.crank_speed_before_rad_s = blow.crank_speed_before;
@@ -83,20 +90,28 @@ void fillBlow(const TurnEnd& end, Blow& message) {
   message.restitution = blow.restitution;
   message.restitution_deviation = blow.restitution_deviation;
   message.energy_J = blow.energy;
+  message.restitution_common_deviation = errors.restitution.common();
   message.energy_deviation_J = blow.energy_deviation;
+  message.energy_common_deviation_J = errors.energy.common();
   message.tool_impulse_x_Ns = blow.tool_impulse_x;
   message.tool_impulse_z_Ns = blow.tool_impulse_z;
+  message.tool_impulse_z_deviation_Ns = errors.tool_impulse_z.deviation();
+  message.tool_impulse_z_common_deviation_Ns = errors.tool_impulse_z.common();
   message.support_impulse_x_Ns = blow.support_impulse_x;
   message.support_impulse_z_Ns = blow.support_impulse_z;
+  message.support_impulse_z_deviation_Ns = errors.support_impulse_z.deviation();
+  message.support_impulse_z_common_deviation_Ns = errors.support_impulse_z.common();
   message.support_impulse_y_Nms = blow.support_impulse_y;
   message.drive_impulse_y_Nms = blow.drive_impulse_y;
   message.mean_press_force_N = end.mean_press_force;
+  message.struck = static_cast<std::uint8_t>(end.struck);
   message.flags = 0;
   if (blow.impossible) message.flags |= Blow::FLAG_IMPOSSIBLE;
 }
 
 void fillPulse(const TurnEnd& end, Pulse& message) {
   const HalfSinePulse& pulse = *end.pulse;
+  const PulseErrors& errors = end.pulse_errors;
   message.header.stamp = timeOf(end.stamp);
   message.turn = end.turn;
   message.period_s = pulse.period;
@@ -107,6 +122,14 @@ void fillPulse(const TurnEnd& end, Pulse& message) {
   message.turn_impulse_x_Ns = pulse.turn_impulse_x;
   message.turn_impulse_z_Ns = pulse.turn_impulse_z;
   message.half_sine_rms_error = pulse.half_sine_rms_error;
+  message.amplitude_deviation_N = errors.amplitude.deviation();
+  message.amplitude_common_deviation_N = errors.amplitude.common();
+  message.impulse_deviation_Ns = errors.impulse.deviation();
+  message.impulse_common_deviation_Ns = errors.impulse.common();
+  message.turn_impulse_x_deviation_Ns = errors.turn_impulse_x.deviation();
+  message.turn_impulse_x_common_deviation_Ns = errors.turn_impulse_x.common();
+  message.turn_impulse_z_deviation_Ns = errors.turn_impulse_z.deviation();
+  message.turn_impulse_z_common_deviation_Ns = errors.turn_impulse_z.common();
 }
 
 }  // namespace hammer_loads

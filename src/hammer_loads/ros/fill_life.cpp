@@ -29,17 +29,24 @@ void fillCount(const life::CycleCount& count, ChannelCycles& message) {
   message.minimum = count.extremes.least;
   message.maximum = count.extremes.greatest;
   message.mean_deviation = life::meanDeviation(count);
+  const life::RangeDeviation range = life::rangeDeviation(count);
+  message.range_own_deviation = count.tally.range_square > 0 ? range.own : kNaN;
+  message.range_common_deviation = range.common;
 }
 
 void fillFigures(const life::ChannelFigures& figures, ChannelCycles& message) {
-  message.equivalent_range.clear(), message.equivalent_range_deviation.clear();
+  for (std::vector<double>* values : {&message.equivalent_range, &message.equivalent_range_deviation,
+                                      &message.equivalent_range_common_deviation})
+    values->clear();
   for (const life::Figure& range : figures.equivalent_range) {
     message.equivalent_range.push_back(range.value);
     message.equivalent_range_deviation.push_back(range.deviation);
+    message.equivalent_range_common_deviation.push_back(range.common);
   }
   message.largest_range = figures.largest_range;
   message.damage = figures.damage ? figures.damage->value : kNaN;
   message.damage_deviation = figures.damage ? figures.damage->deviation : kNaN;
+  message.damage_common_deviation = figures.damage ? figures.damage->common : kNaN;
   message.remaining_hours = figures.remaining_hours ? figures.remaining_hours->value : kNaN;
 }
 
@@ -47,7 +54,9 @@ void fillFigures(const life::ChannelFigures& figures, ChannelCycles& message) {
 
 void prepareTurnLoads(const std::vector<std::string>& channels, TurnLoads& message) {
   message.channel = channels;
-  for (std::vector<double>* values : {&message.minimum, &message.maximum, &message.mean})
+  for (std::vector<double>* values :
+       {&message.minimum, &message.maximum, &message.mean, &message.minimum_deviation, &message.maximum_deviation,
+        &message.minimum_common_deviation, &message.maximum_common_deviation})
     values->assign(channels.size(), kNaN);
 }
 
@@ -59,6 +68,12 @@ void fillTurnLoads(const TurnEnd& end, const life::TurnLoads& turn, TurnLoads& m
   std::copy(turn.minimum.begin(), turn.minimum.end(), message.minimum.begin());
   std::copy(turn.maximum.begin(), turn.maximum.end(), message.maximum.begin());
   std::copy(turn.mean.begin(), turn.mean.end(), message.mean.begin());
+  for (std::size_t i = 0; i < turn.of_minimum.size(); ++i) {
+    message.minimum_deviation[i] = turn.of_minimum[i].deviation();
+    message.maximum_deviation[i] = turn.of_maximum[i].deviation();
+    message.minimum_common_deviation[i] = turn.of_minimum[i].common;
+    message.maximum_common_deviation[i] = turn.of_maximum[i].common;
+  }
 }
 
 void fillLoadCycles(StampNs since, const life::LifePiece& total, const life::LedgerMachine& machine,

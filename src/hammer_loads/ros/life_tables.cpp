@@ -29,6 +29,8 @@ ChannelCount countOf(const ChannelCycles& message, const life::LifeSettings& set
   count.minimum = message.minimum;
   count.maximum = message.maximum;
   count.mean_deviation = message.mean_deviation;
+  count.range_own_deviation = message.range_own_deviation;
+  count.range_common_deviation = message.range_common_deviation;
   count.steps = message.steps;
   count.low = message.low;
   count.count = message.count;
@@ -51,7 +53,9 @@ void LifeTables::takeTurn(const TurnLoads& message) {
   if (!message.whole) return;
   for (std::size_t i = 0; i < message.channel.size(); ++i)
     writer_->turnLoad(
-        run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i], message.mean[i]});
+        run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i], message.mean[i],
+               message.minimum_deviation[i], message.maximum_deviation[i], message.minimum_common_deviation[i],
+               message.maximum_common_deviation[i]});
 }
 
 void LifeTables::end(const HammerBridge& bridge) {

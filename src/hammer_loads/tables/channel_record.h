@@ -15,7 +15,7 @@ struct ChannelCount {
   double least{}, greatest{};  ///< the grid's ends, in the channel's unit
   std::uint64_t classes{};
   std::uint64_t samples{}, skipped{}, below{}, above{}, gaps{};
-  double minimum{}, maximum{}, mean_deviation{};
+  double minimum{}, maximum{}, mean_deviation{}, range_own_deviation{}, range_common_deviation{};
   double sn_knee_range{RunRecord::kUnknown};  ///< [MPa]
   double sn_knee_cycles{RunRecord::kUnknown}, sn_slope{RunRecord::kUnknown}, sn_slope_below{RunRecord::kUnknown};
   double mean_stress_sensitivity{RunRecord::kUnknown};
@@ -36,6 +36,7 @@ struct TurnLoad {
   std::uint64_t turn{};
   std::int64_t channel{};
   double minimum{}, maximum{}, mean{};
+  double minimum_deviation{}, maximum_deviation{}, minimum_common_deviation{}, maximum_common_deviation{};
 };
 
 }  // namespace hammer_loads

@@ -28,11 +28,12 @@ CREATE TABLE warnings(run_id INTEGER, place INTEGER, key TEXT, text TEXT, PRIMAR
 CREATE TABLE channels(
   run_id INTEGER, channel INTEGER, name TEXT, unit TEXT, counted INTEGER, least REAL, greatest REAL, classes INTEGER,
   samples INTEGER, skipped INTEGER, below INTEGER, above INTEGER, gaps INTEGER,
-  minimum REAL, maximum REAL, mean_deviation REAL,
+  minimum REAL, maximum REAL, mean_deviation REAL, range_own_deviation REAL, range_common_deviation REAL,
   sn_knee_range_MPa REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL, mean_stress_sensitivity REAL,
   PRIMARY KEY(run_id, channel)) WITHOUT ROWID;
 CREATE TABLE turn_loads(
-  run_id INTEGER, turn INTEGER, channel INTEGER, minimum REAL, maximum REAL, mean REAL,
+  run_id INTEGER, turn INTEGER, channel INTEGER, minimum REAL, maximum REAL, mean REAL, minimum_deviation REAL,
+  maximum_deviation REAL, minimum_common_deviation REAL, maximum_common_deviation REAL,
   PRIMARY KEY(run_id, turn, channel)) WITHOUT ROWID;
 CREATE TABLE cycles(
   run_id INTEGER, channel INTEGER, steps INTEGER, low INTEGER, count INTEGER,

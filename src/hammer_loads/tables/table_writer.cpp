@@ -45,14 +45,16 @@ TableWriter::TableWriter(const std::string& file, std::vector<TableColumn> turn,
   database_.run(beginTablesSql(turn, blow).c_str());
   turns_.emplace(database_, "turns", std::move(turn));
   blows_.emplace(database_, "blows", std::move(blow));
-  turn_load_.emplace(database_, insertSql("turn_loads", 6).c_str());
+  turn_load_.emplace(database_, insertSql("turn_loads", 10).c_str());
 }
 
 void TableWriter::turn(std::int64_t run, const TurnRow& row) { turns_->add(run, row); }
 void TableWriter::blow(std::int64_t run, const TurnRow& row) { blows_->add(run, row); }
 
 void TableWriter::turnLoad(std::int64_t run, const TurnLoad& load) {
-  turn_load_->run(run, load.turn, load.channel, finite(load.minimum), finite(load.maximum), finite(load.mean));
+  turn_load_->run(run, load.turn, load.channel, finite(load.minimum), finite(load.maximum), finite(load.mean),
+                  finite(load.minimum_deviation), finite(load.maximum_deviation), finite(load.minimum_common_deviation),
+                  finite(load.maximum_common_deviation));
 }
 
 void TableWriter::channel(std::int64_t run, std::int64_t number, const ChannelRecord& record) {
@@ -63,10 +65,10 @@ void TableWriter::channel(std::int64_t run, std::int64_t number, const ChannelRe
 
 void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRecord& record) {
   const ChannelCount& c = *record.count;
-  Statement(database_, insertSql("channels", 21).c_str())
+  Statement(database_, insertSql("channels", 23).c_str())
       .run(run, channel, record.name, record.unit(), std::int64_t{1}, finite(c.least), finite(c.greatest), c.classes,
            c.samples, c.skipped, c.below, c.above, c.gaps, finite(c.minimum), finite(c.maximum),
-           finite(c.mean_deviation), finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope),
+           finite(c.mean_deviation), finite(c.range_own_deviation), finite(c.range_common_deviation), finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope),
            finite(c.sn_slope_below), finite(c.mean_stress_sensitivity));
   Statement cycle(database_, insertSql("cycles", 5).c_str());
   for (std::size_t i = 0; i < c.count.size(); ++i) cycle.run(run, channel, c.steps[i], c.low[i], c.count[i]);

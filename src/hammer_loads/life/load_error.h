@@ -1,0 +1,37 @@
+/// How far a load may be off, and the range between a turn's extremes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hammer_loads::life {
+
+/// Standard deviations, in the load's unit: of this sample alone, and of constants, the same in all samples; NaN: not
+/// known.
+struct LoadError {
+  double own{std::numeric_limits<double>::quiet_NaN()}, common{std::numeric_limits<double>::quiet_NaN()};
+
+  static LoadError of(double deviation, double common) noexcept {
+    return {std::sqrt(std::max(0.0, deviation * deviation - common * common)), common};
+  }
+  double deviation() const noexcept { return std::hypot(own, common); }
+};
+
+/// Least and largest value of a turn with their errors.
+struct TurnExtremes {
+  double least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
+  LoadError of_least, of_greatest;
+
+  void add(double value, const LoadError& error) noexcept {
+    if (value < least) least = value, of_least = error;
+    if (value > greatest) greatest = value, of_greatest = error;
+  }
+  double range() const noexcept { return greatest - least; }
+  /// Samples err independently. What constants do to one end and to the other may have any signs: at most both add up.
+  LoadError ofRange() const noexcept {
+    return {std::hypot(of_least.own, of_greatest.own), of_least.common + of_greatest.common};
+  }
+};
+
+}  // namespace hammer_loads::life
