@@ -51,7 +51,7 @@ class Bags(ReportTest):
         self.bag.write_text("broken")
         outcome = report(self.bag, "--html", out)
         self.assertEqual(outcome.returncode, 1)
-        self.assertEqual(outcome.stderr.splitlines()[-1], f"{self.bag}: process_bag ended with code 1, there is no page")
+        self.assertEqual(outcome.stderr.splitlines()[-1], f"{self.bag}: process_bag ended with code 1, nothing is written")
         self.assertRefused(report(self.directory / "none.bag", "--html", out), "none.bag: cannot be read")
         (self.programs / "process_bag").unlink()
         self.assertRefused(report(self.bag, "--html", out), "needs the built command process_bag")

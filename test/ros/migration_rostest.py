@@ -76,7 +76,7 @@ def text_of(message, field, fields_of):
     """fields_of: the message whose parts say which of their fields count."""
     value, other = getattr(message, field), getattr(fields_of, field)
     if isinstance(value, (list, tuple)) and value and hasattr(value[0], '__slots__'):
-        return str([[str(getattr(part, name)) for name in like.__slots__] for part, like in zip(value, other)])
+        return str([[text_of(part, name, like) for name in like.__slots__] for part, like in zip(value, other)])
     return str(list(value) if isinstance(value, tuple) else value)
 
 
@@ -122,7 +122,7 @@ class Migration(unittest.TestCase):
 
     def test_flags_that_did_not_exist_do_not_hold(self):
         found = self.fix()
-        for version in OLD:
+        for version in ('first', 'second'):
             self.assertEqual(found[version, 'Blow'].flags, 0, version)
             self.assertFalse(found[version, 'HullLoads'].flags & HullLoads.FLAG_INCONSISTENT, version)
 

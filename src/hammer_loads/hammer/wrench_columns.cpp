@@ -8,6 +8,13 @@ WrenchColumns::WrenchColumns(const HullModel& model)
   for (const MachineColumn& column : columns_->columns()) models_.emplace_back(column.mechanism, column.level);
 }
 
+std::vector<std::string> WrenchColumns::names() const {
+  std::vector<std::string> names;
+  if (isExact()) return names;
+  for (const MachineColumn& column : columns_->columns()) names.push_back(column.name);
+  return names;
+}
+
 WrenchColumns::Matrix WrenchColumns::wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
                                             const HullMotion& hull) const noexcept {
   Matrix columns = Matrix::Zero();

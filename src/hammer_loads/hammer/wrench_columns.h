@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "hammer_loads/hammer/hammer_model.h"
@@ -24,6 +25,8 @@ class WrenchColumns {
   /// [kg m2]. No allocation.
   Matrix wrench(double drive_inertia, const LinksAtAngle& at, const CrankMotion& crank,
                 const HullMotion& hull) const noexcept;
+  /// Sources in the columns' order, as MachineColumn::name.
+  std::vector<std::string> names() const;
   /// Hammers in the columns' order.
   const std::vector<HullModel>& models() const noexcept { return models_; }
 

@@ -20,6 +20,7 @@ struct MachineColumn {
   Mechanism mechanism;  ///< of the other hammer
   Level level;          ///< likewise: of what a level leaves out, that which has it
   HammerConstant::Enters enters;
+  std::string name;  ///< key of the constant, or the level that leaves something out
 
   /// links: of the hammer itself at the angle.
   LinkMotion linksAt(CrankAngle angle, const LinkMotion& links) const noexcept {

@@ -123,9 +123,9 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_deviation_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
-  const HullWrench ring = rod_.wrench(links.here.links);
+  result_.rod_ring = rod_.wrench(links.here.links);
   result_.deviation.wrench =
-      wrenchOf((vectorOf(result_.deviation.wrench).cwiseAbs2() + vectorOf(ring).cwiseAbs2()).cwiseSqrt());
+      wrenchOf((vectorOf(result_.deviation.wrench).cwiseAbs2() + vectorOf(result_.rod_ring).cwiseAbs2()).cwiseSqrt());
   result_.beside_blow = !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, result_.deviation.angle);
   followBoom(links);
   hullMovedAtBlow();

@@ -51,6 +51,8 @@ class Pipeline {
   SampleCounts counts() const noexcept;
   const HullModel& model() const noexcept { return model_; }
   const CrankFollower& crank() const noexcept { return crank_; }
+  /// Of SampleResult::load_columns: names of the hammer's, behind those of the sensor.
+  std::vector<std::string> hammerColumns() const { return columns_.names(); }
   const CrankTrust& crankTrust() const noexcept { return trust_; }
   const HullState& hull() const noexcept { return hull_; }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }

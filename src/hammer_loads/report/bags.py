@@ -48,5 +48,5 @@ def database_of(splits, options, folder):
     database = str(place / (pathlib.Path(splits[0]).stem + ".sqlite"))
     done = subprocess.run([program(), "--no-bag", *splits, "--db", database, *options], stdout=subprocess.DEVNULL)
     if done.returncode != 0:
-        raise Problem(f"{splits[0]}: {PROGRAM} ended with code {done.returncode}, there is no page")
+        raise Problem(f"{splits[0]}: {PROGRAM} ended with code {done.returncode}, nothing is written")
     return database

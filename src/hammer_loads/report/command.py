@@ -48,14 +48,18 @@ def parser():
     result.add_argument("--html", metavar="OUT.html", help="page to write, which must not exist")
     result.add_argument("--csv", metavar="DIRECTORY", help="every table as CSV into a new directory")
     result.add_argument("--machine", metavar="NAME", help="of a fleet's merged file this machine alone")
-    result.add_argument("--params", action="append", default=[], metavar="FILE.yaml",
-                        help="for bags: parameters, as of process_bag; may be repeated")
-    result.add_argument("--urdf", metavar="FILE.urdf", help="for bags: robot description")
-    for topic, of in TOPICS.items():
-        result.add_argument(f"--{topic}", metavar="TOPIC", help=f"for bags: of {of}; else as in their run_info")
+    add_bag_options(result)
     result.add_argument("--force", action="store_true", help="replace what this command wrote")
-    result.add_argument("--version", action=Version, nargs=0, help="print the version and end")
     return result
+
+
+def add_bag_options(to):
+    to.add_argument("--params", action="append", default=[], metavar="FILE.yaml",
+                    help="for bags: parameters, as of process_bag; may be repeated")
+    to.add_argument("--urdf", metavar="FILE.urdf", help="for bags: robot description")
+    for topic, of in TOPICS.items():
+        to.add_argument(f"--{topic}", metavar="TOPIC", help=f"for bags: of {of}; else as in their run_info")
+    to.add_argument("--version", action=Version, nargs=0, help="print the version and end")
 
 
 def run(given):
@@ -105,6 +109,11 @@ def main(arguments):
     given = options.parse_args(arguments)
     if given.html is None and given.csv is None:
         options.error("nothing to write: --html OUT.html, --csv DIRECTORY or both are needed")
+    return guarded(run, given, options)
+
+
+def guarded(run, given, options):
+    """Exit code of run(given)."""
     if bag_options(given) and not any(map(bags.is_bag, given.files)):
         options.error("--params, --urdf and topics are for bags; a database has its parameters")
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

@@ -2,6 +2,7 @@
 import pathlib
 
 from report.boom_loads import boom_loads
+from report.budget import budget
 from report.charts import Charts
 from report.comparison import comparison, runs_compared
 from report.costs import costs
@@ -71,6 +72,7 @@ def subject_section(at, subject, segments, charts, most_points):
              ("misuse", "Misuse", misuse(subject)),
              ("cycles", "Load cycles", cycle_figures(channels)),
              ("costs", "Which blows cost what", costs(subject, channels)),
+             ("budget", "Where the uncertainty comes from", budget(subject)),
              ("sensor", "Is the sensor sound?", sensor_health(subject))]
     content = "".join(section(f"{name}-{key}", title, part, 3) for key, title, part in parts)
     return section(name, subject.label, content)

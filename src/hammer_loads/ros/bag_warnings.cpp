@@ -23,7 +23,8 @@ std::pair<const std::string, std::string> definition() {
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> known{
       definition<Blow>(),           definition<BoomVibration>(), definition<HullLoads>(), definition<JointLoads>(),
-      definition<JointReactions>(), definition<SectionLoads>(),  definition<PinForces>(), definition<Pulse>()};
+      definition<JointReactions>(), definition<SectionLoads>(),  definition<PinForces>(), definition<Pulse>(),
+      definition<TurnLoads>(),      definition<LoadCycles>()};
   return known;
 }
 

@@ -140,6 +140,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
   const SampleResult& result =
       pipeline_->crankJoint(stampOf(message.header.stamp), message.name, message.position, message.velocity);
   life_->follow(message, record_time);
+  if (watch_) watch_();
   last_record_time_ = record_time;
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], record_time);
   if (result.refusal) return;
@@ -156,6 +157,7 @@ void HammerBridge::crank(const sensor_msgs::JointState& message, const ros::Time
 void HammerBridge::end() {
   const SampleResult& result = pipeline_->end();
   life_->end();
+  if (watch_) watch_();
   for (std::size_t i = 0; i < result.turn_ends; ++i) send(result.ends[i], last_record_time_);
 }
 

@@ -6,8 +6,10 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hammer_loads/pipeline/make_tracker.h"
@@ -55,6 +57,8 @@ class HammerBridge {
   /// What each run counts goes there as well, piece by piece; to be called before the first input. It must outlive
   /// this.
   void keepPieces(life::PieceSink& pieces);
+  /// Called after each crank message and at the end of a run, before its turns are sent; replaced with each call.
+  void watch(std::function<void()> sample) { watch_ = std::move(sample); }
   /// Ends the count of the run at work: its last ~load_cycles and piece. What follows begins a new one.
   void finishCount();
   /// end() and finishCount(): what a run and its log end with.
@@ -90,6 +94,7 @@ class HammerBridge {
   std::vector<ChainLink> chain_links_;
   std::vector<std::size_t> frame_outputs_;  ///< in outputs_.boom_wrench, in the order of the frames
   std::optional<FrameWrenches> frame_wrenches_;
+  std::function<void()> watch_;
   bool run_begun_{};
   ros::Time last_record_time_;  ///< of a crank message
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hammer_loads/settings/channel_names.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -44,6 +46,8 @@ ChannelCount countOf(const ChannelCycles& message, const life::LifeSettings& set
 void LifeTables::begin(HammerBridge& bridge, std::int64_t run) {
   run_ = run;
   cycles_ = {};
+  budget_.emplace(bridge.pipeline());
+  bridge.watch([this] { budget_->follow(); });
   bridge.outputs().turn_loads.attach([this](const TurnLoads& message, const ros::Time&) { takeTurn(message); });
   bridge.outputs().load_cycles.attach([this](const LoadCycles& message, const ros::Time&) { cycles_ = message; });
 }
@@ -58,7 +62,35 @@ void LifeTables::takeTurn(const TurnLoads& message) {
                message.maximum_common_deviation[i]});
 }
 
+void LifeTables::write(const BudgetFigure& figure) {
+  double all = 0.0;
+  for (const BudgetFigure::Source& source : figure.sources) all += source.variance;
+  for (const BudgetFigure::Source& source : figure.sources)
+    writer_->budget(run_, {figure.quantity, figure.value, figure.deviation, source.name, source.variance / all});
+}
+
+/// A channel's range has the parts of its own turns; of the boom's, whose constants are not told apart, those of all
+/// constants and of the rest.
+void LifeTables::writeBudget() {
+  for (const BudgetFigure& figure : budget_->figures()) write(figure);
+  const std::vector<std::string> names = channelNames(nullptr);  // those of the hull
+  for (const ChannelCycles& channel : cycles_.channel) {
+    if (channel.equivalent_range.empty() || !(channel.equivalent_range.front() > 0.0)) continue;
+    BudgetFigure figure{"equivalent_range_" + std::to_string(static_cast<int>(life::kSlopes[0])) + "/" + channel.name,
+                        channel.equivalent_range.front(), channel.equivalent_range_deviation.front(), {}};
+    const auto of_hull = std::find(names.begin(), names.end(), channel.name);
+    if (of_hull != names.end()) {
+      figure.sources = budget_->ofRange(static_cast<std::size_t>(of_hull - names.begin()));
+    } else if (channel.range_own_deviation >= 0.0 && channel.range_common_deviation >= 0.0) {
+      figure.sources = {{"constants of hammer and crank sensor", channel.range_common_deviation * channel.range_common_deviation},
+                        {"readings, oil and rock", channel.range_own_deviation * channel.range_own_deviation}};
+    }
+    write(figure);
+  }
+}
+
 void LifeTables::end(const HammerBridge& bridge) {
+  writeBudget();
   std::vector<ChannelRecord> records;
   for (const std::string& name : bridge.outputs().turn_loads.message.channel) records.push_back({name, {}});
   for (const ChannelCycles& counted : cycles_.channel) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "hammer_loads/pipeline/budget.h"
 #include "hammer_loads/ros/hammer_bridge.h"
 #include "hammer_loads/tables/table_writer.h"
 
@@ -23,9 +24,12 @@ class LifeTables {
 
  private:
   void takeTurn(const TurnLoads& message);
+  void writeBudget();
+  void write(const BudgetFigure& figure);
 
   TableWriter* writer_;
   std::int64_t run_{};
+  std::optional<BudgetRecorder> budget_;
   LoadCycles cycles_;  ///< the last message: all of the run so far
 };
 

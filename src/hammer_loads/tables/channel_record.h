@@ -39,4 +39,12 @@ struct TurnLoad {
   double minimum_deviation{}, maximum_deviation{}, minimum_common_deviation{}, maximum_common_deviation{};
 };
 
+/// What one source adds to the variance of a figure.
+struct BudgetRow {
+  std::string quantity;  ///< its end is its unit
+  double value{}, deviation{};
+  std::string source;
+  double share{};  ///< of the variance; those of a quantity sum to 1
+};
+
 }  // namespace hammer_loads

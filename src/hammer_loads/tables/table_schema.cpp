@@ -41,6 +41,9 @@ CREATE TABLE cycles(
 CREATE TABLE residues(
   run_id INTEGER, channel INTEGER, place INTEGER, class INTEGER,
   PRIMARY KEY(run_id, channel, place)) WITHOUT ROWID;
+CREATE TABLE budget(
+  run_id INTEGER, quantity TEXT, value REAL, deviation REAL, source TEXT, share REAL,
+  PRIMARY KEY(run_id, quantity, source)) WITHOUT ROWID;
 CREATE TABLE traces(
   run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time_s REAL, force_x_N REAL, force_z_N REAL, torque_y_Nm REAL,
   force_z_deviation_N REAL, crank_angle_rad REAL, PRIMARY KEY(run_id, kind, place)) WITHOUT ROWID;

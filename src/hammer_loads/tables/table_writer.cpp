@@ -77,6 +77,11 @@ void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRec
   for (const std::uint32_t turning_point : c.residue) residue.run(run, channel, place++, turning_point);
 }
 
+void TableWriter::budget(std::int64_t run, const BudgetRow& row) {
+  Statement(database_, insertSql("budget", 6).c_str())
+      .run(run, row.quantity, finite(row.value), finite(row.deviation), row.source, finite(row.share));
+}
+
 void TableWriter::traces(std::int64_t run, const TurnTraces& traces) {
   if (const TurnTrace* typical = traces.typical()) trace(run, "typical", *typical);
   if (traces.worst()) trace(run, "worst", *traces.worst());

@@ -33,6 +33,7 @@ class TableWriter {
   void turnLoad(std::int64_t run, const TurnLoad& load);
   /// number: as in the turns' loads.
   void channel(std::int64_t run, std::int64_t number, const ChannelRecord& record);
+  void budget(std::int64_t run, const BudgetRow& row);
   void traces(std::int64_t run, const TurnTraces& traces);
   void run(std::int64_t run, const RunRecord& record);
   /// Ends the transaction: all of the file is written.

@@ -1,0 +1,115 @@
+#include "hammer_loads/pipeline/budget.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr std::size_t kSensor = static_cast<std::size_t>(ConstantErrors::kTable);
+
+}  // namespace
+
+BudgetRecorder::BudgetRecorder(const Pipeline& pipeline) : pipeline_(&pipeline) {
+  for (std::size_t i = 0; i < kSensor; ++i) names_[i] = kUnknowns[i].key;
+  const std::vector<std::string> of_hammer = pipeline.hammerColumns();
+  std::copy(of_hammer.begin(), of_hammer.end(), names_.begin() + kSensor);
+  names_.back() = "drive_inertia_kg_m2";
+}
+
+void BudgetRecorder::Sum::add(double number, const NumberError& error) noexcept {
+  if (!std::isfinite(number) || !std::isfinite(error.own) || !error.columns.allFinite()) return;
+  ++count;
+  value += number;
+  own += square(error.own);
+  columns += error.columns;
+}
+
+void BudgetRecorder::Range::endTurn() noexcept {
+  const double range = greatest.value - least.value;
+  if (range > 0.0) {
+    square += range * range;
+    readings += range * std::sqrt(greatest.readings + least.readings);
+    rod += range * std::sqrt(greatest.rod + least.rod);
+    columns += range * (greatest.columns - least.columns);
+  }
+  least = {std::numeric_limits<double>::infinity()};
+  greatest = {-std::numeric_limits<double>::infinity()};
+}
+
+void BudgetRecorder::sample(const SampleResult& result) noexcept {
+  const Eigen::Vector3d load = vectorOf(result.wrench), all = vectorOf(result.deviation.wrench),
+                        common = vectorOf(result.deviation.common), rod = vectorOf(result.rod_ring);
+  for (std::size_t i = 0; i < kHullChannels; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (!std::isfinite(all[row])) continue;
+    End end{load[row], result.load_columns.row(row), 0.0, square(rod[row])};
+    end.readings = std::max(0.0, square(all[row]) - square(common[row]) - end.rod);
+    if (end.value < ranges_[i].least.value) ranges_[i].least = end;
+    if (end.value > ranges_[i].greatest.value) ranges_[i].greatest = end;
+  }
+}
+
+void BudgetRecorder::follow() noexcept {
+  const SampleResult& result = pipeline_->result();
+  for (std::size_t i = 0; i < result.turn_ends; ++i) {
+    const TurnEnd& end = result.ends[i];
+    for (Range& range : ranges_) range.endTurn();
+    if (!end.blow.impossible) {
+      energy_.add(end.blow.energy, end.blow_errors.energy);
+      restitution_.add(end.blow.restitution, end.blow_errors.restitution);
+    }
+    if (!end.pulse) continue;
+    amplitude_.add(end.pulse->amplitude, end.pulse_errors.amplitude);
+    impulse_.add(end.pulse->impulse, end.pulse_errors.impulse);
+    turn_impulse_x_.add(end.pulse->turn_impulse_x, end.pulse_errors.turn_impulse_x);
+    turn_impulse_z_.add(end.pulse->turn_impulse_z, end.pulse_errors.turn_impulse_z);
+  }
+  if (!result.refusal && !result.beside_blow) sample(result);
+}
+
+/// Rows of one name are parts of one source.
+std::vector<BudgetFigure::Source> BudgetRecorder::sources(const Columns& columns, double readings, double rod) const {
+  std::vector<BudgetFigure::Source> sources;
+  const auto add = [&](const std::string& name, double variance) {
+    if (!(variance > 0.0)) return;
+    const auto found = std::find_if(sources.begin(), sources.end(), [&](const auto& s) { return s.name == name; });
+    if (found != sources.end()) {
+      found->variance += variance;
+    } else {
+      sources.push_back({name, variance});
+    }
+  };
+  for (std::size_t i = 0; i < names_.size(); ++i) add(names_[i], square(columns[static_cast<Eigen::Index>(i)]));
+  add("readings", readings);
+  add("rod_stiffness_N_m", rod);
+  return sources;
+}
+
+std::vector<BudgetFigure> BudgetRecorder::figures() const {
+  std::vector<BudgetFigure> figures;
+  const auto add = [&](const char* quantity, const Sum& sum) {
+    if (sum.count == 0) return;
+    const double part = 1.0 / static_cast<double>(sum.count);
+    const Columns columns = part * sum.columns;
+    figures.push_back({quantity, part * sum.value, std::sqrt(columns.squaredNorm() + part * sum.own),
+                       sources(columns, part * sum.own, 0.0)});
+  };
+  add("pulse/turn_impulse_x_Ns", turn_impulse_x_);
+  add("pulse/turn_impulse_z_Ns", turn_impulse_z_);
+  add("pulse/impulse_Ns", impulse_);
+  add("pulse/amplitude_N", amplitude_);
+  add("blow/energy_J", energy_);
+  add("blow/restitution", restitution_);
+  return figures;
+}
+
+std::vector<BudgetFigure::Source> BudgetRecorder::ofRange(std::size_t channel) const {
+  const Range& range = ranges_[channel];
+  if (!(range.square > 0.0)) return {};
+  return sources(range.columns / range.square, square(range.readings / range.square), square(range.rod / range.square));
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,70 @@
+/// Where the uncertainty of a run's figures comes from (JCGM 100, 5.1.2: one contribution to the variance for each
+/// source).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/pipeline/channel_values.h"
+#include "hammer_loads/pipeline/pipeline.h"
+
+namespace hammer_loads {
+
+/// A figure and what each source adds to its variance.
+struct BudgetFigure {
+  struct Source {
+    std::string name;  ///< a key of the parameter files, "readings", or what a level leaves out
+    double variance{};
+  };
+  std::string quantity;
+  double value{}, deviation{};  ///< mean over the run, and the standard deviation of one turn's; unit as the name ends
+  std::vector<Source> sources;  ///< without those that add nothing
+};
+
+/// Follows a pipeline's samples: pulse, blow and ranges of the hull's loads, over all turns of the run.
+class BudgetRecorder {
+ public:
+  explicit BudgetRecorder(const Pipeline& pipeline);
+
+  /// Takes the pipeline's last sample or the ends of Pipeline::end(). No allocation.
+  void follow() noexcept;
+  /// Of pulse and blow; nothing before a turn has ended.
+  std::vector<BudgetFigure> figures() const;
+  /// Relative variances of the ranges of a hull channel, of kHullChannels; all zero before a turn has ended.
+  std::vector<BudgetFigure::Source> ofRange(std::size_t channel) const;
+
+ private:
+  using Columns = NumberError::Columns;
+  struct Sum {
+    std::uint64_t count{};
+    double value{}, own{};  ///< own: of variances
+    Columns columns{Columns::Zero()};
+
+    void add(double number, const NumberError& error) noexcept;
+  };
+  struct End {
+    double value{};
+    Columns columns{Columns::Zero()};
+    double readings{}, rod{};  ///< variances
+  };
+  /// Of one channel: of the present turn, and sums over turns weighed by the range.
+  struct Range {
+    End least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
+    double square{}, readings{}, rod{};
+    Columns columns{Columns::Zero()};
+
+    void endTurn() noexcept;
+  };
+  void sample(const SampleResult& result) noexcept;
+  std::vector<BudgetFigure::Source> sources(const Columns& columns, double readings, double rod) const;
+
+  const Pipeline* pipeline_;
+  std::array<std::string, kLoadColumns> names_;
+  std::array<Range, kHullChannels> ranges_;
+  Sum amplitude_, impulse_, turn_impulse_x_, turn_impulse_z_, energy_, restitution_;
+};
+
+}  // namespace hammer_loads
