@@ -14,8 +14,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first
 NO_DIGITS = 10.0  # where the picture shows errors above 1 and those that are no number
 COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank": "#3a8f5c", "pipeline": "#7a4ca0",
           "grapple": "#b08a1e"}
-SESSION = {"none": "none", "difference": "difference",
-           "mechanism, linkage, smoothed": "smoothed"}  # crank rows by estimator; all others: mechanism
+SESSION = {"mechanism, linkage, smoothed": "smoothed"}  # crank rows by estimator; all others: mechanism
 MACHINE = {"mechanism, linkage, flexible shaft of 50 Hz": "coupling of 50 Hz, given as 60"}  # rows with machines of their own
 EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage, AVX2"),
            ("crank", "mechanism, linkage"), ("pipeline", "linkage")]

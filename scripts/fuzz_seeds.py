@@ -37,8 +37,7 @@ def pipeline_seeds():
         "rocker_1khz": session(1, 1000, 120, 3),
         "linkage_200hz": session(2, 200, 30, 4),
         "pulse_100hz": session(16, 100, 25, 3),
-        "difference_100hz": session(225, 100, 25, 3),
-        "none_50hz": session(209, 50, 20, 3),
+        "rocker_50hz": session(209, 50, 20, 3),
         "all_operations": session(1, 100, 30, 2) + boom + raw + stamped + shapes + b"\xff" + session(1, 100, 30, 1)[1:],
     }
 

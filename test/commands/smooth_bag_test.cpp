@@ -83,9 +83,6 @@ TEST_F(SmoothBag, RunsOfARecordingAreSmoothedEachByItself) {
 
 TEST_F(SmoothBag, WhatItWouldMixOrCannotSmoothIsRefused) {
   EXPECT_EQ(run(kSession + " " + path("out.bag") + " --smooth --ledger " + path("machine.sqlite")).exit_code, 2);
-  const test::TemporaryFile plain("crank_estimator: difference\n");
-  expectRefused(run(kSession + " " + path("out.bag") + " --smooth --params " + plain.path()),
-                {"--smooth", "crank_estimator", "mechanism"});
   const test::TemporaryFile flexible("shaft: flexible\n");
   expectRefused(run(kSession + " " + path("out.bag") + " --smooth --params " + flexible.path()),
                 {"--smooth", "shaft", "rigid"});

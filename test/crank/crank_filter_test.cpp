@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "hammer_loads/crank/plain_tracker.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/constants.h"
 #include "support/filter_settings.h"
@@ -221,25 +220,6 @@ TEST(Encoder, TakesAFinerSensorAsItIs) {
   for (int i = 0; i < 5; ++i) encoder.angle(0.1234 * i + 0.01);
   EXPECT_TRUE(encoder.isFiner());
   EXPECT_DOUBLE_EQ(encoder.angle(100 * test::kEncoderCount), 100 * test::kEncoderCount);
-}
-
-TEST(PlainTracker, TakesSpeedsAndTheirDifferenceAsTheyAre) {
-  PlainTracker tracker(PlainTracker::Acceleration::kDifference, test::kEncoderCount, 0.6, {});
-  tracker.start({6.2, 30.0});
-  EXPECT_EQ(tracker.update(1e-2, {6.2 + 0.305 - kTwoPi, 31.0}), Tracking::kContinued);
-  EXPECT_DOUBLE_EQ(tracker.estimate().speed, 31.0);
-  EXPECT_NEAR(tracker.estimate().acceleration, 100.0, 1e-9);
-  EXPECT_EQ(tracker.estimate().position.blowsPassed(), 0);  // -1 before
-  EXPECT_NEAR(tracker.between(5e-3).speed, 30.5, 1e-9);
-}
-
-TEST(PlainTracker, AssumesNoAccelerationAsThePaper) {
-  PlainTracker tracker(PlainTracker::Acceleration::kZero, test::kEncoderCount, 0.6, {});
-  tracker.start({1.0, std::nullopt});
-  EXPECT_FALSE(tracker.hasSpeed());
-  tracker.update(1e-2, {1.3, std::nullopt});
-  EXPECT_NEAR(tracker.estimate().speed, 30.0, 0.1);
-  EXPECT_EQ(tracker.estimate().acceleration, 0.0);
 }
 
 }  // namespace

@@ -29,9 +29,6 @@ PipelineSettings settingsOf(Bytes& bytes) {
   PipelineSettings settings = test::shippedSettings().pipeline;
   const auto choice = bytes.take<std::uint8_t>();
   settings.level = choice % 16 == 0 ? Level::kPulse : choice % 2 == 0 ? Level::kLinkage : Level::kRocker;
-  settings.crank_estimator = choice / 16 < 13    ? CrankEstimator::kMechanism
-                             : choice / 16 == 13 ? CrankEstimator::kNone
-                                                 : CrankEstimator::kDifference;
   return settings;
 }
 

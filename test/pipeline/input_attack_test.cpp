@@ -247,21 +247,15 @@ std::vector<PipelineSettings> allSettings() {
   std::vector<PipelineSettings> all;
   const PipelineSettings shipped = loadFiles(configDirectory(), {}).value->pipeline;
   for (const auto& [name, level] : kLevelNames) {
-    for (const auto& [word, estimator] : kCrankEstimatorNames) {
-      all.push_back(shipped);
-      all.back().level = level;
-      all.back().crank_estimator = estimator;
-    }
+    all.push_back(shipped);
+    all.back().level = level;
   }
   return all;
 }
 
 /// Good, attack, good.
 void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
-  SCOPED_TRACE(testing::Message() << attack.name << ", level " << static_cast<int>(settings.level) << ", estimator "
-                                  << static_cast<int>(settings.crank_estimator));
-  // The filter's errors are judged once the attack is a turn ago; the trackers for comparison promise nothing.
-  const bool judged = settings.crank_estimator == CrankEstimator::kMechanism && settings.level == Level::kRocker;
+  SCOPED_TRACE(testing::Message() << attack.name << ", level " << static_cast<int>(settings.level));
   Victim victim(settings);
   victim.work(kUndisturbedFrom, kAttack);
   ASSERT_GT(victim.accepted(), 900u) << "the channel must work before";
@@ -270,10 +264,7 @@ void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   victim.work(kAttack, kSoundFrom, [&](const CrankReading& r) { attack.strike(victim, r), ++hostile; });
   ASSERT_GT(hostile, 90u);
   if (attack.refusal) {
-    // The plain trackers know no outlier: they can refuse only by value, shape and stamp.
-    if (settings.crank_estimator == CrankEstimator::kMechanism || *attack.refusal != Refusal::kImplausible) {
-      EXPECT_GE(victim.refused(*attack.refusal), refused + hostile);
-    }
+    EXPECT_GE(victim.refused(*attack.refusal), refused + hostile);
   }
   const std::uint64_t accepted = victim.accepted();
   victim.work(kSoundFrom, kSoundFrom + kOneTurn);
@@ -284,7 +275,7 @@ void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   EXPECT_TRUE(victim.finite());
   // 900 samples; what contradicted the model is withheld until a whole half turn before the blow agrees (CrankTrust).
   EXPECT_GT(victim.accepted(), accepted + 500u);
-  if (judged) {
+  if (settings.level == Level::kRocker) {  // once the attack is a turn ago
     EXPECT_LE(victim.worst(), kUndisturbedError);
   }
 }
@@ -348,7 +339,7 @@ TEST(InputAttack, TheBoomsAngles) {
       victim.forgetErrors();
       victim.work(kSoundFrom, kUntil);
       EXPECT_TRUE(victim.finite());
-      if (settings.crank_estimator == CrankEstimator::kMechanism && settings.level == Level::kRocker) {
+      if (settings.level == Level::kRocker) {
         EXPECT_LE(victim.worst(), kUndisturbedError) << "good angles count at once";
       }
     }

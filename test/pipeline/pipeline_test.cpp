@@ -91,22 +91,6 @@ TEST(Pipeline, AfterADropOutNothingIsTenPercentWrong) {
   }
 }
 
-TEST(Pipeline, ThePapersAssumptionOfConstantSpeedIsThirtyPercentWrong) {
-  const MachineSettings machine = machineWithDropOut(1, 1000.0);
-  const Session session = simulation::recordSession(machine);
-  PipelineSettings settings = shippedSettings().pipeline;
-  settings.crank_estimator = CrankEstimator::kNone;
-  const auto none =
-      accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings),
-                      session, machine);
-  EXPECT_GT(none.turn_peak, 0.25);
-  settings.crank_estimator = CrankEstimator::kDifference;
-  const auto diff =
-      accuracy::judge(accuracy::runSession(session, machine.start_stamp, test::mechanismOf(machine.hammer), settings),
-                      session, machine);
-  EXPECT_GT(diff.rms_z, 0.03);
-}
-
 TEST(Pipeline, AllocatesNothingPerSample) {
   const MachineSettings machine = machineWithDropOut(1, 1000.0);
   const Session session = simulation::recordSession(machine);

@@ -34,7 +34,6 @@ TEST(Load, ShippedFilesAreValid) {
   ASSERT_EQ(settings.problems, Lines{});
   const PipelineSettings& p = settings.value->pipeline;
   EXPECT_EQ(p.level, Level::kRocker);
-  EXPECT_EQ(p.crank_estimator, CrankEstimator::kMechanism);
   EXPECT_EQ(p.crank_joint, "hammer_crank_joint");
   EXPECT_EQ(p.pitch_joints, (Lines{"boom_joint", "arm_joint", "hammer_joint"}));
   EXPECT_EQ(p.gravity, 9.80665);
@@ -58,11 +57,11 @@ TEST(Load, ShippedFilesOfOneKindEachLoadOverThemselves) {
 }
 
 TEST(Load, GivenKeysReplaceShippedOnesKeyByKey) {
-  const TemporaryFile file("gravity_m_s2: 1.62\ncrank_estimator: none\nlog_enabled: false\n");
+  const TemporaryFile file("gravity_m_s2: 1.62\ncrank_stamps: steady\nlog_enabled: false\n");
   const Checked<Settings> settings = loadShippedWith({file.path()});
   ASSERT_EQ(settings.problems, Lines{});
   EXPECT_EQ(settings.value->pipeline.gravity, 1.62);
-  EXPECT_EQ(settings.value->pipeline.crank_estimator, CrankEstimator::kNone);
+  EXPECT_EQ(settings.value->pipeline.crank_stamps, CrankStamps::kSteady);
   EXPECT_FALSE(settings.value->log.enabled);
   EXPECT_EQ(settings.value->pipeline.stale_after, 0.25);
   EXPECT_EQ(settings.value->mechanism.parameters().rocker_mass, 35.2);
@@ -202,8 +201,6 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
        "output_rate_Hz: 100000 Hz, must be at most 100000 outputs over stale_after_s = 9 s"},
       {"torque_deviation_part: 1", "torque_deviation_part: 2",
        "torque_deviation_part: 2, must be a number in [0.0, 1.0]"},
-      {"crank_estimator: difference", "crank_estimator: 1",
-       "crank_estimator: 1, must be one of mechanism, difference, none"},
       {"crank_joint: c", "crank_joint: [c]", "crank_joint: (a list), must be a text, not empty"},
       {"pitch_joints: [a]", "pitch_joints: [a, a]", "pitch_joints: (a list), must be a list of different names"},
       {"pitch_signs: [1, -1, 1]", "pitch_signs: [1, 0, 1]", "pitch_signs: (a list), must be a list of 1 and -1"},
@@ -241,6 +238,23 @@ TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
     EXPECT_EQ(problemsOf(pair.good), Lines{}) << pair.good;
     EXPECT_EQ(problemsOf(pair.bad), Lines{std::string(pair.problem) + " (FILE:1)"});
   }
+}
+
+TEST(Load, AKeyOfAnEarlierVersionIsTakenAndSaidToBeIgnored) {
+  const auto loaded = [](const std::string& text) {
+    const TemporaryFile file(text);
+    Checked<Settings> settings = loadShippedWith({file.path()});
+    EXPECT_EQ(settings.problems, Lines{}) << text;
+    EXPECT_EQ(settings.value->yaml, loadShippedWith({}).value->yaml) << text;
+    const std::string origin = " (" + file.path() + ":1)";
+    Lines notes = settings.value->notes;
+    for (std::string& note : notes) note.erase(std::min(note.find(origin), note.size()));
+    return notes;
+  };
+  EXPECT_EQ(loaded("crank_estimator: mechanism\n"), Lines{});
+  for (const std::string value : {"difference", "none", "1"})
+    EXPECT_EQ(loaded("crank_estimator: " + value + "\n"),
+              Lines{"crank_estimator: " + value + ", of an earlier version, is ignored: mechanism is used"});
 }
 
 TEST(Load, LevelAutoIsChosenAtStartAndTold) {
@@ -436,8 +450,6 @@ TEST(Load, AnAbsurdCouplingIsRefusedByItsKeys) {
             (Lines{"coupling_motor_share: 1.0, must be a number in [0.05, 0.95] (FILE:1)"}));
   EXPECT_EQ(problemsOf("coupling_frequency_Hz: 0.0\n").size(), 1U);
   EXPECT_EQ(problemsOf("coupling_damping_ratio: 1.5\n").size(), 1U);
-  EXPECT_EQ(problemsOf("shaft: flexible\ncrank_estimator: difference\n"),
-            (Lines{"shaft: flexible, must be rigid where crank_estimator is not mechanism (FILE:1)"}));
 }
 
 TEST(Load, ImpossibleCrankSensorIsRefusedByItsKeys) {

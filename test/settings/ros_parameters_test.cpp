@@ -55,7 +55,7 @@ TEST(RosParameters, KeepsListsAndMaps) {
 TEST(RosParameters, ReachTheSameReaderAsFiles) {
   XmlRpcValue parameters;
   parameters["gravity_m_s2"] = 9;
-  parameters["crank_estimator"] = "none";
+  parameters["crank_stamps"] = "steady";
   parameters["pitch_joints"][0] = "boom_joint";
   EXPECT_EQ(problemsOnServer(parameters), Lines{});
 }
@@ -66,10 +66,10 @@ TEST(RosParameters, ProblemsNameTheNameSpace) {
   parameters["hull_pitch_rad"] = std::numeric_limits<double>::quiet_NaN();
   parameters["stale_after_s"] = -1.5;
   parameters["excavator"]["length_m"] = 3.0;
-  EXPECT_EQ(problemsOnServer(parameters),
-            (Lines{"hull_pitch_rad: .nan rad, must be a number in [-6.3, 6.3] (/node)",
-                   "gravity_m_s2: \"9.8\" m/s2, must be a number in [0.0, 100.0] (/node)",
-                   "stale_after_s: -1.5 s, must be a number in [0.001, 10.0] (/node)", "excavator: unknown key (/node)"}));
+  EXPECT_EQ(problemsOnServer(parameters), (Lines{"hull_pitch_rad: .nan rad, must be a number in [-6.3, 6.3] (/node)",
+                                                 "gravity_m_s2: \"9.8\" m/s2, must be a number in [0.0, 100.0] (/node)",
+                                                 "stale_after_s: -1.5 s, must be a number in [0.001, 10.0] (/node)",
+                                                 "excavator: unknown key (/node)"}));
 }
 
 TEST(RosParameters, OneHammerKeyMeansThatAllMustBeGiven) {

@@ -1,5 +1,6 @@
 #include "hammer_loads/bench/session_table.h"
 
+#include "hammer_loads/bench/plain_tracker.h"
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/pipeline/smoothed_runs.h"
 #include "hammer_loads/util/format.h"
@@ -7,7 +8,9 @@
 namespace hammer_loads::accuracy {
 namespace {
 
-const std::string kSmoothed = "smoothed";  // mechanism, as process_bag --smooth has it
+const std::string kNone = "none", kDifference = "difference";  // PlainTracker
+const std::string kMechanism = "mechanism";                    // the shipped filter
+const std::string kSmoothed = "smoothed";                      // the same, as process_bag --smooth has it
 
 simulation::MachineSettings machineOf(const Settings& settings, const SessionRow& row) {
   simulation::MachineSettings machine = simulation::workingMo100();
@@ -27,13 +30,13 @@ SessionErrors errorsOf(const Settings& settings, const SessionRow& row) {
   const simulation::Session session = simulation::recordSession(machine);
   PipelineSettings pipeline = settings.pipeline;
   pipeline.crank_angle_resolution = kTwoPi / row.counts;
-  for (const auto& [name, estimator] : kCrankEstimatorNames) {
-    if (name == row.estimator) pipeline.crank_estimator = estimator;
-  }
   const auto run = [&](const TrackerMaker& make) {
     return runSession(session, machine.start_stamp, settings.mechanism, pipeline, make);
   };
-  if (row.estimator != kSmoothed) return judge(run(makeTracker), session, machine);
+  if (row.estimator == kNone) return judge(run(plainTracker(PlainTracker::Acceleration::kZero)), session, machine);
+  if (row.estimator == kDifference)
+    return judge(run(plainTracker(PlainTracker::Acceleration::kDifference)), session, machine);
+  if (row.estimator == kMechanism) return judge(run(makeTracker), session, machine);
   SmoothedRuns runs;
   run(runs.ahead());
   runs.end();
@@ -44,12 +47,12 @@ SessionErrors errorsOf(const Settings& settings, const SessionRow& row) {
 
 std::vector<SessionRow> sessionTable(const Settings& settings) {
   std::vector<SessionRow> rows;
-  for (const char* estimator : {"none", "difference", "mechanism"}) {
+  for (const std::string& estimator : {kNone, kDifference, kMechanism}) {
     for (const double rate : {2000.0, 1000.0, 500.0, 200.0, 100.0, 50.0, 20.0})
       rows.push_back({estimator, rate, 4096, true, {}});
   }
-  for (const int counts : {512, 1024, 2048, 8192, 65536}) rows.push_back({"mechanism", 1000.0, counts, true, {}});
-  for (const double rate : {1000.0, 100.0}) rows.push_back({"mechanism", rate, 4096, false, {}});
+  for (const int counts : {512, 1024, 2048, 8192, 65536}) rows.push_back({kMechanism, 1000.0, counts, true, {}});
+  for (const double rate : {1000.0, 100.0}) rows.push_back({kMechanism, rate, 4096, false, {}});
   for (const double rate : {1000.0, 100.0}) rows.push_back({kSmoothed, rate, 4096, true, {}});
   rows.push_back({kSmoothed, 1000.0, 1024, true, {}});
   for (SessionRow& row : rows) row.errors = errorsOf(settings, row);

@@ -33,10 +33,9 @@ std::vector<simulation::CrankReading> workingReadings(const Settings& settings, 
   return work;
 }
 
-PipelineSettings settingsOf(const Settings& settings, Level level, CrankEstimator estimator) {
+PipelineSettings settingsOf(const Settings& settings, Level level) {
   PipelineSettings s = settings.pipeline;
   s.level = level;
-  s.crank_estimator = estimator;
   s.crank_angle_resolution = kTwoPi / 4096.0;  // the simulated encoder
   return s;
 }
@@ -53,14 +52,14 @@ CostRow trackerCost(const char* name, CrankTracker& tracker, const std::vector<s
   return {"crank", name, costOf(readings.size(), pass), {}, {}};
 }
 
-CostRow trackerCost(const Settings& settings, const char* name, Level level, CrankEstimator estimator) {
-  const auto tracker = makeTracker(settings.mechanism, settingsOf(settings, level, estimator));
+CostRow trackerCost(const Settings& settings, const char* name, Level level) {
+  const auto tracker = makeTracker(settings.mechanism, settingsOf(settings, level));
   return trackerCost(name, *tracker, workingReadings(settings, level));
 }
 
 /// coupling_frequency [Hz]: of the machine, and as given.
 CostRow flexibleCost(const Settings& settings, const char* name, Level level, double coupling_frequency) {
-  PipelineSettings pipeline = settingsOf(settings, level, CrankEstimator::kMechanism);
+  PipelineSettings pipeline = settingsOf(settings, level);
   pipeline.coupling = Coupling{coupling_frequency, 0.5, kDamping, 0.3, 0.03};
   const auto tracker = makeTracker(settings.mechanism, pipeline);
   return trackerCost(name, *tracker, workingReadings(settings, level, coupling_frequency));
@@ -69,7 +68,7 @@ CostRow flexibleCost(const Settings& settings, const char* name, Level level, do
 /// The filter, its track and the way back: what a recording's sample costs beside the second pass.
 CostRow smoothedCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
-  const PipelineSettings pipeline = settingsOf(settings, level, CrankEstimator::kMechanism);
+  const PipelineSettings pipeline = settingsOf(settings, level);
   const auto pass = [&] {
     SmoothedRuns runs;
     const auto ahead = runs.ahead()(settings.mechanism, pipeline);
@@ -84,7 +83,7 @@ CostRow smoothedCost(const Settings& settings, const char* name, Level level) {
 
 CostRow pipelineCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
-  Pipeline pipeline(settings.mechanism, settingsOf(settings, level, CrankEstimator::kMechanism));
+  Pipeline pipeline(settings.mechanism, settingsOf(settings, level));
   const auto pass = [&] {
     for (const simulation::CrankReading& r : readings) keep(pipeline.crankSample(r.stamp, {r.angle, r.speed}));
   };  // the second pass begins with time running back: one restart
@@ -106,7 +105,7 @@ CostRow onBoomCost(const char* name, const simulation::Session& session, const c
 /// Pipeline, turn loads and cycles of the shipped channels.
 CostRow countedCost(const Settings& settings, const char* name, Level level) {
   const std::vector<simulation::CrankReading> readings = workingReadings(settings, level);
-  Pipeline pipeline(settings.mechanism, settingsOf(settings, level, CrankEstimator::kMechanism));
+  Pipeline pipeline(settings.mechanism, settingsOf(settings, level));
   LifeFollower follower(pipeline, settings.life);
   const auto pass = [&] {
     for (const simulation::CrankReading& r : readings) {
@@ -122,10 +121,8 @@ CostRow countedCost(const Settings& settings, const char* name, Level level) {
 
 std::vector<CostRow> stepCosts(const Settings& settings) {
   const simulation::Session on_boom = simulation::recordSession(machineOnBoom(kOnBoomEnds));
-  return {trackerCost(settings, "none", Level::kRocker, CrankEstimator::kNone),
-          trackerCost(settings, "difference", Level::kRocker, CrankEstimator::kDifference),
-          trackerCost(settings, "mechanism, rocker", Level::kRocker, CrankEstimator::kMechanism),
-          trackerCost(settings, "mechanism, linkage", Level::kLinkage, CrankEstimator::kMechanism),
+  return {trackerCost(settings, "mechanism, rocker", Level::kRocker),
+          trackerCost(settings, "mechanism, linkage", Level::kLinkage),
           flexibleCost(settings, "mechanism, linkage, flexible shaft of 50 Hz", Level::kLinkage, 50.0),
           smoothedCost(settings, "mechanism, linkage, smoothed", Level::kLinkage),
           pipelineCost(settings, "rocker", Level::kRocker),

@@ -1,7 +1,6 @@
 #include "hammer_loads/pipeline/crank_follower.h"
 
 #include <cmath>
-#include <limits>
 
 #include "hammer_loads/pipeline/hull_deviation.h"
 
@@ -15,8 +14,6 @@ constexpr double kFrozenDeviations = 5;   // of a sensor's noise, likewise
 
 /// resolution: of the angle sensor [rad].
 double frozenTurn(const PipelineSettings& s, double resolution) noexcept {
-  // The trackers for comparison take every reading as it is.
-  if (s.crank_estimator != CrankEstimator::kMechanism) return std::numeric_limits<double>::infinity();
   return kFrozenCounts * resolution + kFrozenDeviations * s.crank_angle_noise;
 }
 

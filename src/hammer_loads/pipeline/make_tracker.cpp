@@ -1,6 +1,5 @@
 #include "hammer_loads/pipeline/make_tracker.h"
 
-#include "hammer_loads/crank/plain_tracker.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 
 namespace hammer_loads {
@@ -26,13 +25,8 @@ CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSet
 }
 
 std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const PipelineSettings& s) {
-  if (s.crank_estimator == CrankEstimator::kMechanism)
-    return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level, s.coupling),
-                                         mechanism.parameters().drive_inertia, filterSettings(mechanism, s));
-  const auto acceleration = s.crank_estimator == CrankEstimator::kNone ? PlainTracker::Acceleration::kZero
-                                                                       : PlainTracker::Acceleration::kDifference;
-  return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, mechanism.parameters().drive_inertia,
-                                        s.crank_sensor);
+  return std::make_unique<CrankFilter>(ShaftModel(mechanism, s.level, s.coupling), mechanism.parameters().drive_inertia,
+                                       filterSettings(mechanism, s));
 }
 
 }  // namespace hammer_loads

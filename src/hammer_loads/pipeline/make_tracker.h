@@ -1,4 +1,4 @@
-/// The crank tracker that the settings ask for.
+/// The filter that follows the crank.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ std::unique_ptr<CrankTracker> makeTracker(const Mechanism& mechanism, const Pipe
 using TrackerMaker =
     std::function<std::unique_ptr<CrankTracker>(const Mechanism& mechanism, const PipelineSettings& settings)>;
 
-/// Of the filter with estimator `mechanism`.
+/// Of that filter.
 CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSettings& settings);
 
 }  // namespace hammer_loads

@@ -183,8 +183,6 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
 std::vector<std::string> prepareSmoothing(std::vector<BagRun>& runs, std::vector<BagWarning>& warnings) {
   const std::string mark = "smooth: the crank is estimated by later samples as well; the live node gives other values";
   for (BagRun& run : runs) {
-    if (run.settings.pipeline.crank_estimator != CrankEstimator::kMechanism)
-      return {"--smooth: crank_estimator must be mechanism"};
     if (run.settings.pipeline.coupling) return {"--smooth: shaft is flexible, must be rigid"};
     run.settings.notes.push_back(mark);
   }

@@ -12,6 +12,7 @@
 #include "hammer_loads/settings/read_boom.h"
 #include "hammer_loads/settings/read_life.h"
 #include "hammer_loads/settings/read_log.h"
+#include "hammer_loads/settings/retired_keys.h"
 #include "hammer_loads/settings/yaml_value.h"
 #include "hammer_loads/util/format.h"
 
@@ -106,6 +107,7 @@ life::LifeSettings readLife(ParameterReader& reader, const std::optional<Boom>& 
 
 Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot_description, bool hammer_given) {
   Checked<Settings> result;
+  dropRetiredKeys(parameters, result.notes);
   const InputTopics topics = takeInputTopics(parameters, result.problems);
   const bool boom_file = hasBoomKey(parameters);
   ParameterReader reader(std::move(parameters));

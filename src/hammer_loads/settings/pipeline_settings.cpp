@@ -67,7 +67,7 @@ CrankSensor readCrankSensor(ParameterReader& reader) {
   return sensor.value.value_or(CrankSensor());
 }
 
-std::optional<Coupling> readCoupling(ParameterReader& reader, CrankEstimator estimator) {
+std::optional<Coupling> readCoupling(ParameterReader& reader) {
   const Shaft shaft = reader.choice("shaft", kShaftNames);
   Coupling coupling;
   coupling.frequency = reader.number("coupling_frequency_Hz", "Hz", NumberRule::within(10.0, 500.0));
@@ -76,8 +76,6 @@ std::optional<Coupling> readCoupling(ParameterReader& reader, CrankEstimator est
   coupling.stiffness_deviation = reader.number("coupling_stiffness_deviation", "", NumberRule::within(0.0, 1.0));
   coupling.share_deviation = reader.number("coupling_share_deviation", "", NumberRule::within(0.0, 0.5));
   if (shaft == Shaft::kRigid) return {};
-  if (estimator != CrankEstimator::kMechanism)
-    reader.addProblem("shaft: flexible, must be rigid where crank_estimator is not mechanism");
   return coupling;
 }
 
@@ -92,7 +90,6 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.turn_rate = reader.number("turn_rate_Hz", "Hz", NumberRule::within(0.01, 100.0));
   s.output = reader.choice("output", kOutputNames);
   s.output_rate = reader.number("output_rate_Hz", "Hz", NumberRule::zeroOrWithin(1e-3, 1e5));
-  s.crank_estimator = reader.choice("crank_estimator", kCrankEstimatorNames);
   s.crank_joint = reader.text("crank_joint");
   s.pitch_joints = reader.names("pitch_joints");
   s.pitch_signs = reader.signs("pitch_signs");
@@ -111,7 +108,7 @@ PipelineSettings readPipelineSettings(ParameterReader& reader) {
   s.crank_stamps = reader.choice("crank_stamps", kCrankStampsNames);
   s.crank_timing_noise = reader.number("crank_timing_noise_s", "s", NumberRule::within(0.0, 1.0));
   s.crank_speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", NumberRule::within(1e-3, 1e3));
-  s.coupling = readCoupling(reader, s.crank_estimator);
+  s.coupling = readCoupling(reader);
   s.torque_walk = reader.number("torque_walk_rad_s2", "rad/s2/sqrt(s)", NumberRule::within(1e-3, 1e6));
   s.speed_walk = reader.number("speed_walk_rad_s", "rad/s/sqrt(s)", NumberRule::within(0.0, 1e3));
   s.inertia_walk = reader.number("inertia_walk", "1/sqrt(s)", NumberRule::within(0.0, 1.0));

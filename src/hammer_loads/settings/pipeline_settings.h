@@ -19,13 +19,6 @@ namespace hammer_loads {
 
 class ParameterReader;
 
-/// Where the crank's acceleration comes from.
-enum class CrankEstimator {
-  kMechanism,   ///< Kalman filter on the mechanism
-  kDifference,  ///< difference of measured speeds
-  kNone,        ///< zero, as P0 assumes
-};
-
 /// What the published hull wrench is.
 enum class OutputKind {
   kInstantaneous,  ///< at the stamp
@@ -42,11 +35,6 @@ constexpr const char* nameOf(Level level) noexcept {
     if (named == level) return name;
   return "";
 }
-constexpr std::array<std::pair<const char*, CrankEstimator>, 3> kCrankEstimatorNames{
-    {{"mechanism", CrankEstimator::kMechanism},
-     {"difference", CrankEstimator::kDifference},
-     {"none", CrankEstimator::kNone}}};
-
 constexpr std::array<std::pair<const char*, CrankStamps>, 3> kCrankStampsNames{
     {{"auto", CrankStamps::kAuto}, {"header", CrankStamps::kHeader}, {"steady", CrankStamps::kSteady}}};
 
@@ -106,8 +94,7 @@ struct PipelineSettings {
   double tolerance{};   ///< of the wrench's peak, for `auto` [-], > 0
   double turn_rate{};   ///< of the working turn by which `auto` judges [Hz], > 0
   OutputKind output{};
-  double output_rate{};  ///< of hull_wrench [Hz]; 0: one per crank sample
-  CrankEstimator crank_estimator{};
+  double output_rate{};                   ///< of hull_wrench [Hz]; 0: one per crank sample
   std::string crank_joint;                ///< joint whose position is the crank angle
   std::vector<std::string> pitch_joints;  ///< joints whose angles add up to the hull's pitch
   std::vector<int> pitch_signs;           ///< of each of them, 1 or -1: how it turns about +y; empty: all 1

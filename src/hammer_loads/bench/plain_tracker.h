@@ -3,17 +3,18 @@
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
+#include "hammer_loads/pipeline/make_tracker.h"
 
-namespace hammer_loads {
+namespace hammer_loads::accuracy {
 
 /// Angle and speed as measured (speed by difference of angles where none is measured); acceleration zero, as P0
-/// assumes, or by difference of speeds. Neglects noise, encoder counts and the mechanism; on a working machine the peak
-/// force is some 30 % wrong with zero and 20 % with the difference (model.md 6).
+/// assumes, or by difference of speeds. Neglects noise, encoder counts and the mechanism; how wrong the peak
+/// force of a working machine is: doc/accuracy.md, clean sessions.
 class PlainTracker final : public CrankTracker {
  public:
   enum class Acceleration { kZero, kDifference };
 
-  /// drive_inertia: as given [kg m2].
+  /// angle_resolution: one count [rad]; drive_inertia: as given [kg m2].
   PlainTracker(Acceleration acceleration, double angle_resolution, double drive_inertia, const CrankSensor& sensor)
       : acceleration_(acceleration), drive_inertia_(drive_inertia), encoder_(angle_resolution, sensor) {}
 
@@ -38,4 +39,7 @@ class PlainTracker final : public CrankTracker {
   bool has_speed_{};
 };
 
-}  // namespace hammer_loads
+/// For a pipeline, in place of the filter.
+TrackerMaker plainTracker(PlainTracker::Acceleration acceleration);
+
+}  // namespace hammer_loads::accuracy

@@ -1,8 +1,8 @@
-#include "hammer_loads/crank/plain_tracker.h"
+#include "hammer_loads/bench/plain_tracker.h"
 
 #include <cmath>
 
-namespace hammer_loads {
+namespace hammer_loads::accuracy {
 namespace {
 
 constexpr double kFurthest = 200.0;  // [rad] between two samples: some 30 turns; further ones look the same
@@ -51,4 +51,11 @@ CrankEstimate PlainTracker::between(double dt) const noexcept {
   return estimate;
 }
 
-}  // namespace hammer_loads
+TrackerMaker plainTracker(PlainTracker::Acceleration acceleration) {
+  return [acceleration](const Mechanism& mechanism, const PipelineSettings& s) {
+    return std::make_unique<PlainTracker>(acceleration, s.crank_angle_resolution, mechanism.parameters().drive_inertia,
+                                          s.crank_sensor);
+  };
+}
+
+}  // namespace hammer_loads::accuracy
