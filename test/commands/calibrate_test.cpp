@@ -143,7 +143,9 @@ TEST(Calibrate, ReadsNoMoreOfALongRecordingThanItNeeds) {
   const auto deviations = deviationsIn(outcome.out);
   ASSERT_EQ(deviations.count("crank_zero_rad"), 1U) << outcome.out;
   for (const auto& [key, known] : deviations) {
-    if (key != "drive_inertia_kg_m2") EXPECT_LE(known.first, 0.5 * known.second) << key;
+    if (key != "drive_inertia_kg_m2") {
+      EXPECT_LE(known.first, 0.5 * known.second) << key;
+    }
   }
   const Checked<Settings> settings = loadFiles(configDirectory(), {output.path()});
   ASSERT_TRUE(settings.value);

@@ -52,7 +52,7 @@ Tables made() {
 
 TEST(TablesPage, NamesEveryTableAndColumn) {
   Tables page = documented();
-  ASSERT_EQ(page.size(), 11U);
+  ASSERT_EQ(page.size(), 12U);
   // Of these the page leaves what the messages say.
   for (const auto& [table, fields] : {std::make_pair("turns", numberFieldsOf<Pulse>().columns()),
                                       std::make_pair("blows", numberFieldsOf<Blow>().columns())}) {
@@ -68,6 +68,7 @@ TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {
   blow.turn = 7;
   blow.crank_speed_before_rad_s = 11.5;
   blow.mean_press_force_N = -2.25;
+  blow.struck = Blow::STRUCK_TOOL;
   blow.flags = Blow::FLAG_IMPOSSIBLE;
   NumberFields fields = numberFieldsOf<Blow>();
   const std::vector<TableColumn> columns = fields.columns();
@@ -80,14 +81,16 @@ TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {
   EXPECT_FALSE(columns[1].is_integer);
   EXPECT_EQ(values[1], 11.5);
   const std::size_t last = columns.size() - 1;
-  EXPECT_EQ(columns[last - 1].name, "mean_press_force_N");
-  EXPECT_FALSE(columns[last - 1].is_integer);
-  EXPECT_EQ(values[last - 1], -2.25);
+  EXPECT_EQ(columns[last - 1].name, "struck");
+  EXPECT_TRUE(columns[last - 1].is_integer);
+  EXPECT_EQ(values[last - 1], 1.0);
+  EXPECT_EQ(columns[last - 2].name, "mean_press_force_N");
+  EXPECT_EQ(values[last - 2], -2.25);
   EXPECT_EQ(columns[last].name, "flags") << "a constant is no column";
   EXPECT_TRUE(columns[last].is_integer);
   EXPECT_EQ(values[last], 1.0);
   blow.header.frame_id = "another, longer name";
-  EXPECT_EQ(fields.valuesOf(blow)[last - 1], -2.25);
+  EXPECT_EQ(fields.valuesOf(blow)[last - 2], -2.25);
 }
 
 TEST(NumberFields, KnowEveryNumberAndRefuseTheRest) {

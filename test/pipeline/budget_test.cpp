@@ -1,0 +1,95 @@
+// Shares of a budget against machines that are one constant off (JCGM 101: draws, here of one source at a time).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "hammer_loads/bench/session_player.h"
+#include "hammer_loads/linkage/hammer_constants.h"
+#include "hammer_loads/pipeline/budget.h"
+#include "pipeline/shipped_machine.h"
+#include "support/exact_hammer.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The shipped hammer with deviations of these constants alone, as parts of them.
+Settings drawing(const std::map<std::string, double>& known) {
+  Settings settings = *load(configDirectory(), {}).value;
+  HammerParameters p = settings.mechanism.parameters();
+  p.deviations = {};
+  for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
+    const auto found = known.find(kHammerConstants[i].key);
+    if (found != known.end()) p.deviations[i] = found->second * kHammerConstants[i].field(p);
+  }
+  settings.mechanism = test::mechanismOf(p);
+  settings.pipeline.level = Level::kLinkage;
+  return settings;
+}
+
+/// Follows a run of the drawing's own machine.
+template <typename Use>
+void follow(const Settings& settings, const Use& use) {
+  simulation::MachineSettings machine = test::shippedMachine(settings, 10.0, 77);
+  machine.level = Level::kLinkage;
+  machine.crank.drop_outs.clear();
+  const simulation::Session session = simulation::recordSession(machine);
+  accuracy::SessionPlayer player(settings.mechanism, settings.pipeline, {}, session);
+  BudgetRecorder budget(player.pipeline);
+  EXPECT_TRUE(budget.figures().empty() && budget.ofRange(1).empty());
+  player.playTo(kInfinity, [&](double, const SampleResult&) { budget.follow(); });
+  use(budget);
+}
+
+std::map<std::string, BudgetFigure> figuresOf(const Settings& settings) {
+  std::map<std::string, BudgetFigure> figures;
+  follow(settings, [&](const BudgetRecorder& budget) {
+    for (const BudgetFigure& figure : budget.figures()) figures[figure.quantity] = figure;
+  });
+  return figures;
+}
+
+double variance(const BudgetFigure& figure, const std::string& source) {
+  for (const BudgetFigure::Source& s : figure.sources)
+    if (s.name == source) return s.variance;
+  return 0.0;
+}
+
+TEST(Budget, SharesAreSquaresOfWhatConstantsDo) {
+  const std::map<std::string, double> known{{"rocker_mass_kg", 0.03}, {"rocker_inertia_about_pivot_kg_m2", 0.03}};
+  const auto figures = figuresOf(drawing(known));
+  const BudgetFigure& impulse = figures.at("pulse/turn_impulse_z_Ns");
+  // The impulse of links that swing as they did is first moment times speed: in proportion to the mass, not to the
+  // inertia, which is the crank's to know by its own speed.
+  const double by_mass = std::sqrt(variance(impulse, "rocker_mass_kg"));
+  EXPECT_NEAR(by_mass, 0.03 * std::abs(impulse.value), 0.1 * 0.03 * std::abs(impulse.value));
+  EXPECT_LT(std::sqrt(variance(impulse, "rocker_inertia_about_pivot_kg_m2")), 0.2 * by_mass);
+  // A blow's energy is that of the rocker's rotation.
+  const BudgetFigure& energy = figures.at("blow/energy_J");
+  EXPECT_GT(variance(energy, "rocker_inertia_about_pivot_kg_m2"), variance(energy, "rocker_mass_kg"));
+  double all = 0.0;
+  for (const BudgetFigure::Source& source : impulse.sources) all += source.variance;
+  EXPECT_NEAR(all, impulse.deviation * impulse.deviation, 1e-9 * all);
+}
+
+TEST(Budget, AnExactHammerHasNoShare) {
+  const auto figures = figuresOf(test::withExactHammer(drawing({})));
+  for (const auto& [name, figure] : figures) {
+    for (const BudgetFigure::Source& source : figure.sources)
+      EXPECT_EQ(source.name.find("rocker_"), std::string::npos) << name << ' ' << source.name;
+  }
+  EXPECT_EQ(figures.size(), 6U);
+}
+
+TEST(Budget, RangesOfTheHullsLoadsHaveThePartOfTheMass) {
+  double by_mass = 0.0;
+  follow(drawing({{"rocker_mass_kg", 0.03}}), [&](const BudgetRecorder& budget) {
+    for (const BudgetFigure::Source& s : budget.ofRange(1)) by_mass += s.name == "rocker_mass_kg" ? s.variance : 0.0;
+  });
+  EXPECT_NEAR(std::sqrt(by_mass), 0.03, 0.003);
+}
+
+}  // namespace
+}  // namespace hammer_loads
