@@ -254,16 +254,16 @@ TEST(EvaluateCommand, PrintsWhatTheLibraryWrites) {
 
 TEST(EvaluateCommand, TakesLevelAndMachineFromFilesInOrder) {
   const std::string input = kHeader + "\n6,31.416,0,0.2,9.8\n";
-  const TemporaryFile linkage("level: linkage\n"), pulse("level: pulse\n");
+  const TemporaryFile rocker("level: rocker\n"), pulse("level: pulse\n");
   const TemporaryFile light(test::hammerYaml({{"rocker_mass_kg", "17.6"}}));
-  EXPECT_EQ(runEvaluate("", input).out, runEvaluate("--level rocker", input).out);
-  EXPECT_EQ(runEvaluate("--params " + linkage.path(), input).out, runEvaluate("--level linkage", input).out);
-  EXPECT_EQ(runEvaluate("--params " + linkage.path() + " --params " + pulse.path(), input).out,
+  EXPECT_EQ(runEvaluate("", input).out, runEvaluate("--level linkage", input).out);
+  EXPECT_EQ(runEvaluate("--params " + rocker.path(), input).out, runEvaluate("--level rocker", input).out);
+  EXPECT_EQ(runEvaluate("--params " + rocker.path() + " --params " + pulse.path(), input).out,
             runEvaluate("--level pulse", input).out);
-  EXPECT_EQ(runEvaluate("--params " + linkage.path() + " --level rocker", input).out,
-            runEvaluate("--level rocker", input).out);
-  const double force = rowOf(runEvaluate("", input).out, 0).at("hull_force_x_N");
-  EXPECT_NEAR(rowOf(runEvaluate("--params " + light.path(), input).out, 0).at("hull_force_x_N"), 0.5 * force, 1e-9);
+  EXPECT_EQ(runEvaluate("--params " + rocker.path() + " --level linkage", input).out,
+            runEvaluate("--level linkage", input).out);
+  const double force = rowOf(runEvaluate("--level rocker", input).out, 0).at("hull_force_x_N");
+  EXPECT_NEAR(rowOf(runEvaluate("--level rocker --params " + light.path(), input).out, 0).at("hull_force_x_N"), 0.5 * force, 1e-9);
 }
 
 TEST(EvaluateCommand, BadInputIsOneLineEachAndExitCode1) {

@@ -36,6 +36,7 @@ ParameterMap parametersWithInertia(double factor) {
   ParameterMap given =
       *readParameterFile(configDirectory() + "/hammer_mo100.yaml", *std::make_unique<std::vector<std::string>>());
   given["drive_inertia_kg_m2"].value = YAML::Load(std::to_string(0.6 * factor));
+  given["level"] = {YAML::Load("rocker"), "level of the recorded machine"};
   return given;
 }
 

@@ -135,7 +135,7 @@ TEST_F(Tables, SameInputGivesTheSameBytesWithAndWithoutABag) {
 }
 
 TEST_F(Tables, KnowInputParametersAndMachine) {
-  const test::TemporaryFile level("level: linkage\n"), inertia("drive_inertia_kg_m2: 0.7\n");
+  const test::TemporaryFile level("level: rocker\n"), inertia("drive_inertia_kg_m2: 0.7\n");
   ASSERT_EQ(tables(kSession, "shipped.sqlite").exit_code, 0);
   ASSERT_EQ(tables(kSession, "level.sqlite", "--params " + level.path()).exit_code, 0);
   const std::string sha = test::runCommand("sha256sum", kSession).out.substr(0, 64);
@@ -149,8 +149,8 @@ TEST_F(Tables, KnowInputParametersAndMachine) {
   EXPECT_NE(both("run_key").first, both("run_key").second);
   const std::string changed = "SELECT key || ' ' || value || ' ' || shipped FROM parameters WHERE value <> shipped";
   EXPECT_EQ(ask("shipped.sqlite", changed), std::vector<std::string>{});
-  EXPECT_EQ(ask("level.sqlite", changed), std::vector<std::string>{"level linkage rocker"});
-  EXPECT_EQ(ask("level.sqlite", "SELECT level FROM runs"), std::vector<std::string>{"linkage"});
+  EXPECT_EQ(ask("level.sqlite", changed), std::vector<std::string>{"level rocker linkage"});
+  EXPECT_EQ(ask("level.sqlite", "SELECT level FROM runs"), std::vector<std::string>{"rocker"});
   EXPECT_EQ(ask("shipped.sqlite", "SELECT value FROM parameters WHERE key = 'pitch_joints'"),
             std::vector<std::string>{"[boom_joint, arm_joint, hammer_joint]"});
   const std::string yaml = ask("shipped.sqlite", "SELECT parameters_yaml FROM runs").at(0);

@@ -65,7 +65,7 @@ TEST(TurnTable, HasOneRowPerStepAndBothSidesOfTheBlow) {
 
 TEST(TurnTable, RowsAreTheModelsToTwelveDigits) {
   const Settings settings = loadFiles(configDirectory(), {}).value.value();
-  const std::vector<std::string> lines = linesOf(runTurnTable("--speed 20 --step-deg 7.3 --pitch 0.3").out);
+  const std::vector<std::string> lines = linesOf(runTurnTable("--level rocker --speed 20 --step-deg 7.3 --pitch 0.3").out);
   ASSERT_EQ(lines.size(), 1U + 50U + 1U);  // 0 to 357.7, and 360
   const double g = settings.pipeline.gravity;
   for (std::size_t i = 1; i < 51; ++i) {
@@ -82,7 +82,7 @@ TEST(TurnTable, RowsAreTheModelsToTwelveDigits) {
 
 TEST(TurnTable, WeightCountsOnlyWithAPitch) {
   const auto forceAtStart = [](const std::string& pitch) {
-    return numbersOf(linesOf(runTurnTable("--step-deg 360 " + pitch).out).at(1)).at(3);
+    return numbersOf(linesOf(runTurnTable("--level rocker --step-deg 360 " + pitch).out).at(1)).at(3);
   };
   EXPECT_NEAR(forceAtStart(""), 0.0, 1e-9);
   EXPECT_NEAR(forceAtStart("--pitch 0"), -35.2 * 9.80665, 1e-8);
@@ -90,10 +90,10 @@ TEST(TurnTable, WeightCountsOnlyWithAPitch) {
 
 TEST(TurnTable, TakesParameterFilesInOrder) {
   const TemporaryFile light(hammerYaml({{"rocker_mass_kg", "17.6"}})), heavy("rocker_mass_kg: 35.2\n");
-  const std::string mo100 = linesOf(runTurnTable("--summary").out).at(0);
+  const std::string mo100 = linesOf(runTurnTable("--summary --level rocker").out).at(0);
   const std::string files = "--params " + light.path() + " --params " + heavy.path();
-  EXPECT_EQ(linesOf(runTurnTable("--summary " + files).out).at(0), mo100);
-  EXPECT_EQ(linesOf(runTurnTable("--summary --params " + light.path()).out).at(0), "amplitude_N: 20279.0197608");
+  EXPECT_EQ(linesOf(runTurnTable("--summary --level rocker " + files).out).at(0), mo100);
+  EXPECT_EQ(linesOf(runTurnTable("--summary --level rocker --params " + light.path()).out).at(0), "amplitude_N: 20279.0197608");
 }
 
 TEST(TurnTable, PinsAddsTheModelsPinForcesAndDriveTorque) {

@@ -1,6 +1,8 @@
 // A machine that is not the one of its drawing: deviations hold what the drawing does not say.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "hammer_loads/bench/drawing_table.h"
 
 namespace hammer_loads {
@@ -9,7 +11,8 @@ namespace {
 TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
   Settings settings = *load(configDirectory(), {}).value;
   settings.pipeline.level = Level::kLinkage;
-  double covered[3]{}, energy = 0.0;
+  double covered[3]{}, energy = 0.0, impulse = 0.0, amplitude = 0.0;
+  int ranges = 0;
   constexpr int kDrawings = 6;
   for (int i = 0; i < kDrawings; ++i) {
     const accuracy::DrawingRow row = accuracy::drawingRow(settings, 901 + static_cast<std::uint64_t>(i), 1.0);
@@ -17,10 +20,16 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
       EXPECT_GT(row.covered[k], 0.75) << row.seed << ' ' << k;
       covered[k] += row.covered[k] / kDrawings;
     }
-    energy += row.energy_covered / kDrawings;
+    energy += row.energy.covered / kDrawings;
+    impulse += row.impulse.covered / kDrawings;
+    amplitude += row.amplitude.covered / kDrawings;
+    ranges += std::abs(row.range_error) <= 2.0 * row.range_deviation;
   }
   for (const double part : covered) EXPECT_GT(part, 0.88);
   EXPECT_GT(energy, 0.88);
+  EXPECT_GT(impulse, 0.88);
+  EXPECT_GT(amplitude, 0.88);
+  EXPECT_GE(ranges, kDrawings - 1);
 }
 
 }  // namespace

@@ -5,12 +5,13 @@
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/settings/load.h"
 #include "support/counting_new.h"
+#include "support/exact_hammer.h"
 
 namespace hammer_loads {
 namespace {
 
 const Settings& shipped() {
-  static const Settings settings = *load(configDirectory(), {}).value;
+  static const Settings settings = test::withExactHammer(*load(configDirectory(), {}).value);
   return settings;
 }
 

@@ -10,6 +10,7 @@
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/mo100.h"
+#include "support/exact_hammer.h"
 
 namespace hammer_loads {
 namespace {
@@ -40,7 +41,7 @@ struct Result {
 };
 
 Result play(const Session& session, const Fault& fault) {
-  static const Settings settings = *loadFiles(configDirectory(), {}).value;
+  static const Settings settings = test::withExactHammer(*loadFiles(configDirectory(), {}).value);
   Pipeline pipeline(settings.mechanism, settings.pipeline);
   pipeline.boomJoints(0, {"boom_joint", "arm_joint", "hammer_joint"}, {-0.35, 1.20, -0.85}, {});
   Result result;

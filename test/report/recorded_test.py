@@ -12,7 +12,9 @@ DATA = SOURCE / "test" / "data"
 class Recorded(ReportTest):
     def test_page_of_a_session(self):
         out = self.directory / "page.html"
-        outcome = report(DATA / "mo100_1khz.bag", "--html", out)
+        level = self.directory / "level.yaml"  # that of the session's machine
+        level.write_text("level: rocker\n")
+        outcome = report(DATA / "mo100_1khz.bag", "--params", level, "--html", out)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         page = Reader(out.read_text(encoding="utf-8"))
         with open(DATA / "mo100_1khz_blows.csv", newline="") as file:

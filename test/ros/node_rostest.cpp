@@ -121,8 +121,10 @@ TEST_F(NodeTest, GivesOneWrenchPerSampleWithItsStampAndThePipelinesValue) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.duration = 4.0;
   machine.start_stamp = static_cast<std::int64_t>(start_.toNSec());
-  const simulation::Session session = simulation::recordSession(machine);
   const Settings settings = *loadFiles(configDirectory(), {}).value;
+  machine.hammer = settings.mechanism.parameters();
+  machine.level = settings.pipeline.level;
+  const simulation::Session session = simulation::recordSession(machine);
   Pipeline pipeline(settings.mechanism, settings.pipeline);
   std::vector<std::string> names(simulation::kBoomJoints.begin(), simulation::kBoomJoints.end());
   sensor_msgs::JointState joints;

@@ -33,7 +33,7 @@ TEST(Load, ShippedFilesAreValid) {
   const Checked<Settings> settings = loadShippedWith({});
   ASSERT_EQ(settings.problems, Lines{});
   const PipelineSettings& p = settings.value->pipeline;
-  EXPECT_EQ(p.level, Level::kRocker);
+  EXPECT_EQ(p.level, Level::kLinkage);
   EXPECT_EQ(p.crank_joint, "hammer_crank_joint");
   EXPECT_EQ(p.pitch_joints, (Lines{"boom_joint", "arm_joint", "hammer_joint"}));
   EXPECT_EQ(p.gravity, 9.80665);
@@ -262,11 +262,11 @@ TEST(Load, LevelAutoIsChosenAtStartAndTold) {
     const TemporaryFile file(text);
     return *loadFiles(configDirectory(), {file.path()}).value;
   };
-  const Settings strict = loaded("{level: auto, tolerance: 1.0e-6}"), loose = loaded("{level: auto, tolerance: 0.5}");
+  const Settings strict = loaded("{level: auto, tolerance: 1.0e-6}"), loose = loaded("{level: auto, tolerance: 5.0}");
   EXPECT_EQ(strict.pipeline.level, Level::kLinkage);
   EXPECT_EQ(loose.pipeline.level, Level::kRocker);
   ASSERT_EQ(loose.notes.size(), 1U);
-  EXPECT_EQ(loose.notes[0].find("level auto: rocker is the cheapest within tolerance 50 % of the peak"), 0U);
+  EXPECT_EQ(loose.notes[0].find("level auto: rocker is the cheapest whose difference to linkage is within 5 of what"), 0U);
   EXPECT_TRUE(loaded("{level: rocker}").notes.empty());
 }
 

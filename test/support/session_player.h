@@ -21,10 +21,12 @@ namespace hammer_loads::test {
 constexpr double kSessionWorks = 2.0;  ///< [s]: from then on the machine strikes
 constexpr double kSessionEnd = 5.0;    ///< [s]
 
-/// The shipped settings with the shipped boom, and with the keys in `text` over them.
+/// The shipped settings with the shipped boom, and with the keys in `text` over them. Level rocker unless `text` has
+/// one: the machine of the sessions has a massless crank and rod.
 inline Settings settingsWith(const std::string& text, bool boom_file = true) {
   const TemporaryFile given(text);
-  std::vector<std::string> files{given.path()};
+  const TemporaryFile level("level: rocker\n");
+  std::vector<std::string> files{level.path(), given.path()};
   if (boom_file) files.insert(files.begin(), configDirectory() + "/boom_eo2621.yaml");
   const Checked<Settings> settings = loadFiles(configDirectory(), files, shippedUrdf());
   if (!settings.value) throw std::runtime_error(settings.problems.front());

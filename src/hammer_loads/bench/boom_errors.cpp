@@ -26,6 +26,7 @@ Settings shippedBoom(const std::string& keys) {
   Checked<Settings> settings = load(shipped, given, urdf.str());
   problems.insert(problems.end(), settings.problems.begin(), settings.problems.end());
   if (!problems.empty() || !settings.value->boom) throw std::runtime_error("shipped boom: " + problems.front());
+  settings.value->pipeline.level = Level::kRocker;  // crank and rod of the simulated machine on a boom are massless
   return *std::move(settings.value);
 }
 

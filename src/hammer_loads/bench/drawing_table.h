@@ -16,8 +16,12 @@ struct DrawingRow {
   double rms[kQuantities]{};      ///< of the peak of each
   double covered[kQuantities]{};  ///< part of the samples within two deviations
   double said[kQuantities]{};     ///< root of the mean squared deviation, of the peak
-  double energy{};                ///< root of the mean squared relative error
-  double energy_covered{};        ///< part of the blows
+  /// Root of the mean squared relative error, and the part of the turns within two deviations.
+  struct OfTurns {
+    double rms{}, covered{};
+  };
+  OfTurns energy, impulse, amplitude;      ///< of the blow; of Fz over the turn; its peak
+  double range_error{}, range_deviation{};  ///< of Fz's damage-equivalent range, relative
 };
 
 /// off: times the deviations that the machine is drawn with; the pipeline has the file's.

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <vector>
 
+#include "hammer_loads/hammer/wrench_columns.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr int kPoints = 2000;  // of the turn; the pulse is some 200 of them long
+constexpr int kPoints = 2000;        // of the turn; the pulse is some 200 of them long
+constexpr double kRounding = 1e-12;  // of a load: no difference
 
 /// A turn from blow to blow under constant torque, at level linkage and without weight.
 std::vector<CrankMotion> workingTurn(const Mechanism& mechanism, double turn_rate) {
@@ -34,17 +36,21 @@ std::vector<CrankMotion> workingTurn(const Mechanism& mechanism, double turn_rat
   return turn;
 }
 
-double largestError(const HullModel& model, const HullModel& rich, const std::vector<CrankMotion>& turn,
-                    Gravity gravity) {
-  double force = 0.0, moment = 0.0, force_error = 0.0, moment_error = 0.0;
-  for (const CrankMotion& point : turn) {
-    const HullWrench actual = hullWrench(model, point, gravity), reference = hullWrench(rich, point, gravity);
-    force = std::max({force, std::abs(reference.force_x), std::abs(reference.force_z)});
-    moment = std::max(moment, std::abs(reference.torque_y));
-    force_error = std::max({force_error, std::abs(actual.force_x - reference.force_x), std::abs(actual.force_z - reference.force_z)});
-    moment_error = std::max(moment_error, std::abs(actual.torque_y - reference.torque_y));
-  }
-  return std::max(force_error / force, moment_error / moment);
+using Vectors = std::vector<Eigen::Vector3d>;
+
+Eigen::Vector3d loadOf(const HullModel& model, const CrankMotion& point, Gravity gravity) {
+  return vectorOf(hullWrench(model, point, gravity));
+}
+
+/// Variances of level linkage by the hammer's constants, sums over the turn.
+Eigen::Vector3d openVariance(const HullModel& rich, const std::vector<CrankMotion>& turn, const HullMotion& hull) {
+  const WrenchColumns columns(rich);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const CrankMotion& point : turn)
+    sum += columns.wrench(rich.mechanism().parameters().drive_inertia, linksAt(rich, point.angle), point, hull)
+               .rowwise()
+               .squaredNorm();
+  return sum;
 }
 
 }  // namespace
@@ -52,11 +58,23 @@ double largestError(const HullModel& model, const HullModel& rich, const std::ve
 LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double turn_rate, double g) {
   const std::vector<CrankMotion> turn = workingTurn(mechanism, turn_rate);
   const HullModel rich(mechanism, Level::kLinkage);
+  const Gravity gravity{0.0, -g};
+  const Eigen::Vector3d open = openVariance(rich, turn, HullMotion{gravity});
   LevelChoice choice{Level::kLinkage, tolerance, {}};
   const std::array<Level, 2> poorer{Level::kPulse, Level::kRocker};
   for (std::size_t i = poorer.size(); i-- > 0;) {
-    choice.error[i] = largestError(HullModel(mechanism, poorer[i]), rich, turn, {0.0, -g});
-    if (choice.error[i] <= tolerance) choice.level = poorer[i];
+    const HullModel model(mechanism, poorer[i]);
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero(), size = Eigen::Vector3d::Zero();
+    for (const CrankMotion& point : turn) {
+      const Eigen::Vector3d reference = loadOf(rich, point, gravity);
+      squares += (loadOf(model, point, gravity) - reference).cwiseAbs2();
+      size += reference.cwiseAbs2();
+    }
+    for (int k = 0; k < 3; ++k) {
+      if (squares[k] <= kRounding * kRounding * size[k]) continue;
+      choice.difference[i] = std::max(choice.difference[i], std::sqrt(squares[k] / open[k]));
+    }
+    if (choice.difference[i] <= tolerance) choice.level = poorer[i];
   }
   return choice;
 }
@@ -64,10 +82,9 @@ LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double tur
 std::string describe(const LevelChoice& choice) {
   const char* names[] = {"pulse", "rocker", "linkage"};
   return format(
-      "level auto: %s is the cheapest within tolerance %.3g %% of the peak; error over a working turn: "
-      "pulse %.3g %%, rocker %.3g %%, linkage 0 %%",
-      names[static_cast<std::size_t>(choice.level)], 100.0 * choice.tolerance, 100.0 * choice.error[0],
-      100.0 * choice.error[1]);
+      "level auto: %s is the cheapest whose difference to linkage is within %.3g of what the hammer file leaves open; "
+      "over a working turn: pulse %.3g, rocker %.3g, linkage 0",
+      names[static_cast<std::size_t>(choice.level)], choice.tolerance, choice.difference[0], choice.difference[1]);
 }
 
 }  // namespace hammer_loads

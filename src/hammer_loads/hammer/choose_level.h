@@ -8,12 +8,13 @@
 
 namespace hammer_loads {
 
-/// Largest error of a level's wrench over a working turn, against level linkage: of force along x and z over the
-/// largest force, of the moment over the largest moment; the largest of the three [-].
+/// Difference of a level's wrench to that of level linkage over what the hammer's constants leave open of the latter
+/// (WrenchColumns): root mean squares over a working turn, the largest of force x, force z and moment [-]. A hammer that
+/// is said to be exact leaves nothing open: then it is infinite, unless there is no difference.
 struct LevelChoice {
   Level level{};  ///< the cheapest within tolerance
   double tolerance{};
-  std::array<double, 2> error{};  ///< of pulse and of rocker
+  std::array<double, 2> difference{};  ///< of pulse and of rocker
 };
 
 /// Works one turn with the machine at level linkage: constant net drive torque that makes up for the blow, so that each

@@ -91,7 +91,7 @@ constexpr std::array<std::pair<const char*, HullMotionSource>, 3> kHullMotionNam
 struct PipelineSettings {
   Level level{};        ///< in force; where it was `auto`, the one chosen
   bool choose_level{};  ///< the file says `auto`
-  double tolerance{};   ///< of the wrench's peak, for `auto` [-], > 0
+  double tolerance{};   ///< of what the hammer leaves open, for `auto` [-], > 0
   double turn_rate{};   ///< of the working turn by which `auto` judges [Hz], > 0
   OutputKind output{};
   double output_rate{};                   ///< of hull_wrench [Hz]; 0: one per crank sample
