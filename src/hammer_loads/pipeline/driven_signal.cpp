@@ -23,8 +23,8 @@ constexpr double kUnknownSlope = 1e3;         // [1/s] times the smooth part's d
 constexpr double kLeastNoise = 1e-3;          // of the first guess: a logarithm is taken of it
 constexpr double kUnknownSignal = 1e3;        // of the noise: smooth part at the start
 
-/// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it the
-/// slope counts.
+/// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it
+/// the slope counts.
 template <typename Rows>
 HAMMER_LOADS_INLINE auto carried(const Rows& M, const DrivenSignal::Step& step, double slope_step) noexcept {
   const double h = step.length;
