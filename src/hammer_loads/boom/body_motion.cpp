@@ -2,6 +2,8 @@
 
 #include <kdl/chain.hpp>
 
+#include "hammer_loads/util/inline.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -18,7 +20,7 @@ RigidBody bodyOf(const KDL::Segment& segment) {
   return body;
 }
 
-Eigen::Vector3d accelerationAt(const BodyMotion& m, const Eigen::Vector3d& r) noexcept {
+HAMMER_LOADS_INLINE Eigen::Vector3d accelerationAt(const BodyMotion& m, const Eigen::Vector3d& r) noexcept {
   return m.acceleration + m.angular_acceleration.cross(r) + m.rate.cross(m.rate.cross(r));
 }
 
@@ -27,7 +29,7 @@ PlacedBody placed(const RigidBody& body, const Pose& X_BL) noexcept {
   return {body.mass, R * body.com, R * body.inertia * R.transpose()};
 }
 
-Wrench loadOf(const PlacedBody& body, const Pose& X_BL, const BodyMotion& m) noexcept {
+HAMMER_LOADS_INLINE Wrench loadOf(const PlacedBody& body, const Pose& X_BL, const BodyMotion& m) noexcept {
   const Eigen::Vector3d force = -body.mass * accelerationAt(m, body.com);
   const Eigen::Vector3d moment = body.inertia * m.angular_acceleration + m.rate.cross(body.inertia * m.rate);
   return {force, (X_BL.translation() + body.com).cross(force) - moment};

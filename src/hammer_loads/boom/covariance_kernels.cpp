@@ -3,7 +3,8 @@
 namespace hammer_loads {
 
 void subtractSquare(CovarianceBlock P, const Eigen::Ref<const Eigen::VectorXd>& column, double S) noexcept {
-  for (Eigen::Index j = 0; j < P.cols(); ++j) P.col(j) -= column[j] / S * column;
+  const double by = 1.0 / S;
+  for (Eigen::Index j = 0; j < P.cols(); ++j) P.col(j) -= by * column[j] * column;
 }
 
 void replaceTwo(CovarianceBlock P, int first, const std::array<int, 5>& of, const std::array<double, 5>& by_one,

@@ -132,7 +132,7 @@ class ModeIdentifier {
   static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
   /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
-  int begin() const noexcept { return kMaxChannels - channels_; }
+  int begin() const noexcept { return (kMaxChannels - channels_) / 2 * 2; }  // an even place
   int end() const noexcept { return kModes + kParts * count_; }
   int states() const noexcept { return end() - begin(); }
   auto block() noexcept { return covariance_.block(begin(), begin(), states(), states()); }

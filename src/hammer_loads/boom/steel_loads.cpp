@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hammer_loads/boom/body_motion.h"
+#include "hammer_loads/util/inline.h"
 
 namespace hammer_loads {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 constexpr double kMostLoad = 1e200;
 
 /// Of the root's frame, at a point, in axes of its own.
-Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& axes, const Wrench& w) noexcept {
+HAMMER_LOADS_INLINE Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& axes, const Wrench& w) noexcept {
   return {axes.transpose() * w.force, axes.transpose() * (w.torque - p.cross(w.force))};
 }
 

@@ -38,6 +38,17 @@ HAMMER_LOADS_INLINE auto carried(const Rows& M, const DrivenSignal::Step& step, 
   return result;
 }
 
+/// M H^T of rows of states, where H makes the signal at a load.
+template <typename Rows>
+HAMMER_LOADS_INLINE auto signalsOf(const Rows& M, const Eigen::Vector3d& load) noexcept {
+  Eigen::Matrix<double, Rows::RowsAtCompileTime, 1> result = M.col(kSmooth);
+  result += M.template middleCols<3>(kCompliance).lazyProduct(load);
+  return result;
+}
+HAMMER_LOADS_INLINE double signalIn(const DrivenSignal::State& x, const Eigen::Vector3d& load) noexcept {
+  return x[kSmooth] + x.segment<3>(kCompliance).dot(load);
+}
+
 }  // namespace
 
 DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settings) {
@@ -57,14 +68,8 @@ DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settin
 
 double DrivenSignal::Candidate::score() const noexcept { return std::log(variance) + log_spread; }
 
-DrivenSignal::State DrivenSignal::rowOf(const Eigen::Vector3d& load) const noexcept {
-  State row = State::Zero();
-  if (settings_.reads == Reads::kIntegral) {
-    row[kIntegral] = 1.0;
-  } else {
-    row[kSmooth] = 1.0, row.segment<3>(kCompliance) = load;
-  }
-  return row;
+double DrivenSignal::readOf(const State& x, const Eigen::Vector3d& load) const noexcept {
+  return settings_.reads == Reads::kIntegral ? x[kIntegral] : signalIn(x, load);
 }
 
 double DrivenSignal::walkOf(const Candidate& c) const noexcept {
@@ -108,9 +113,9 @@ void DrivenSignal::carry(const Step& step, double slope_step, double walk, doubl
 }
 
 void DrivenSignal::update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& c) noexcept {
-  const State row = rowOf(load);
-  const State PH = c.P.lazyProduct(row);
-  const double S = row.dot(PH) + 1.0, off = reading - row.dot(c.x);
+  const bool itself = settings_.reads == Reads::kItself;
+  const State PH = itself ? signalsOf(c.P, load) : State(c.P.col(kIntegral));
+  const double S = 1.0 + readOf(PH, load), off = reading - readOf(c.x, load);
   const State gain = PH / S;
   c.x += gain * off;
   c.P -= gain.lazyProduct(PH.transpose());
@@ -129,8 +134,8 @@ void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load
   if (!begun_) return begin(reading, load);
   interval_ = interval_ > 0.0 ? interval_ + 0.05 * (step - interval_) : step;
   for (Candidate& c : candidates_) update(reading, load, counts, c);
-  const double value = rowOf(load).dot(best().x);
-  if (settings_.reads == Reads::kItself) steady_ += std::min(1.0, step / steady_time_) * (value - steady_);
+  if (settings_.reads == Reads::kItself)
+    steady_ += std::min(1.0, step / steady_time_) * (readOf(best().x, load) - steady_);
   steady_time_ = std::min(steady_time_ + step, kSteadyMemory);
   if (!counts) return;
   counted_ += 1.0;
@@ -146,11 +151,10 @@ void DrivenSignal::Future::advance(const Step& step) noexcept {
 }
 
 DrivenSignal::Value DrivenSignal::Future::at(const Eigen::Vector3d& load) const noexcept {
-  State row = State::Zero();
-  row[kSmooth] = 1.0, row.segment<3>(kCompliance) = load;
-  const State PH = P_.lazyProduct(row);
+  const State PH = signalsOf(P_, load);
   const double unit = signal_.best().variance;
-  return {row.dot(x_), x_[kIntegral], unit * row.dot(PH), unit * PH[kIntegral], unit * P_(kIntegral, kIntegral)};
+  return {signalIn(x_, load), x_[kIntegral], unit * signalIn(PH, load), unit * PH[kIntegral],
+          unit * P_(kIntegral, kIntegral)};
 }
 
 DrivenSignal::Swing DrivenSignal::swing(const State& x, double h, const Eigen::Vector3d& impulse,
