@@ -14,8 +14,8 @@ namespace {
 // Beyond these, in units of the nominal turn at constant speed, nothing is published. Its peak is some four times that
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
-constexpr double kMostSpeedUnproven = 2.0;  // then the crank may be in degrees
-constexpr double kAtWork = 0.3;             // of the nominal speed: blows are struck
+constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
+constexpr double kAtWork = 0.3;                               // of the nominal speed: blows are struck
 constexpr double kLeadOfZero = 0.8;  // of the time that the crank needs at the blow: what a zero makes of the vibration
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
