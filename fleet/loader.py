@@ -1,18 +1,11 @@
 """Takes outcomes of bags into a merged file: each run once, a bag that changed instead of its older self."""
 import datetime
 import json
-import pathlib
-import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-for home in (HERE.parent / "src" / "hammer_loads", HERE.parent):  # in the source, installed
-    if (home / "report").is_dir():
-        sys.path.insert(0, str(home))
-        break
-
-from report.database import RECORDING, Database  # noqa: E402  (the path must be set first)
-from report.problem import Problem  # noqa: E402
-from report.quantities import QUANTITIES, value_of  # noqa: E402
+import programs  # noqa: F401  (sets the path of report)
+from report.database import RECORDING, Database
+from report.problem import Problem
+from report.quantities import QUANTITIES, value_of
 
 # Copied as they are, with another run_id.
 COPIED = ["refusals", "warnings", "channels", "cycles", "residues"]

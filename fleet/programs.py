@@ -1,11 +1,17 @@
-"""Where the package's programs are: beside the source's build, or installed."""
+"""Where the package's programs are, beside the source's build or installed, and its Python modules."""
 import os
 import pathlib
-import subprocess
+import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 PLACES = (HERE.parent / "build" / "devel" / "lib" / "hammer_loads", HERE.parent / "devel" / "lib" / "hammer_loads",
           HERE.parents[2] / "lib" / "hammer_loads")
+for home in (HERE.parent / "src" / "hammer_loads", HERE.parent):  # in the source, installed
+    if (home / "report").is_dir():
+        sys.path.insert(0, str(home))
+        break
+
+from report import bags as inputs  # noqa: E402  (the path must be set first)
 
 
 def program(name):
@@ -18,13 +24,5 @@ def program(name):
 
 
 def recordings(bags):
-    """Lists of bags: splits of one recording in their order, as process_bag finds them; every other bag alone."""
-    done = subprocess.run([program("process_bag"), "--recordings", *bags], stdout=subprocess.PIPE,
-                          stderr=subprocess.DEVNULL, encoding="utf-8", errors="surrogateescape")
-    splits_of = {}
-    for line in done.stdout.splitlines():
-        number, _, bag = line.partition(" ")
-        splits_of.setdefault(number, []).append(bag)
-    found = list(splits_of.values())
-    whole = done.returncode == 0 and sorted(bag for splits in found for bag in splits) == sorted(bags)
-    return found if whole else [[bag] for bag in bags]
+    """Lists of bags: splits of one recording in their order; every other bag alone."""
+    return inputs.recordings(bags, program("process_bag"))

@@ -23,37 +23,15 @@ function(hammer_loads_room room)
   add_test(NAME ${room} COMMAND ${room}_test)
 endfunction()
 
-hammer_loads_room(estimation hammer_loads_core)
-hammer_loads_room(linkage hammer_loads_core)
-hammer_loads_room(hammer hammer_loads_bench)
-hammer_loads_room(crank hammer_loads_bench)
-hammer_loads_room(property hammer_loads_core)
-hammer_loads_room(grapple hammer_loads_settings)
-hammer_loads_room(boom hammer_loads_settings)
-hammer_loads_room(life hammer_loads_life)
+include(${test_dir}/rooms.cmake)
 hammer_loads_room(settings hammer_loads_command_line)
-hammer_loads_room(pipeline hammer_loads_bench)
-hammer_loads_room(simulation hammer_loads_bench)
-hammer_loads_room(calibration hammer_loads_calibration hammer_loads_bench)
-hammer_loads_room(bench hammer_loads_bench)
-hammer_loads_room(tables hammer_loads_tables)
 hammer_loads_room(commands hammer_loads_command_line)
 foreach(command count_cycles evaluate life turn_table)
   string(TOUPPER ${command} name)
   target_compile_definitions(commands_test PRIVATE HAMMER_LOADS_${name}="$<TARGET_FILE:${command}>")
   add_dependencies(commands_test ${command})
 endforeach()
-target_compile_definitions(bench_test PRIVATE HAMMER_LOADS_ACCURACY="$<TARGET_FILE:accuracy>")
-add_dependencies(bench_test accuracy)
-set_property(SOURCE ${test_dir}/property/random_machines_test.cpp ${test_dir}/grapple/speed_test.cpp
-             ${test_dir}/grapple/branch_property_test.cpp ${test_dir}/boom/boom_hot_path_test.cpp
-             ${test_dir}/hammer/batch_test.cpp APPEND PROPERTY COMPILE_OPTIONS -O3)
-
-hammer_loads_precompile(linkage_test <gtest/gtest.h> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <fstream> <map> <sstream>
-                        <yaml-cpp/yaml.h>)
-hammer_loads_precompile_as(linkage_test estimation_test hammer_test crank_test property_test grapple_test boom_test life_test
-                           settings_test pipeline_test simulation_test calibration_test bench_test tables_test
-                           commands_test)
+hammer_loads_precompile_as(linkage_test settings_test commands_test)
 
 if(TARGET hammer_loads_py)
   add_test(NAME python COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1

@@ -1,9 +1,9 @@
 // What a mode did some ms ago, against its closed solution.
+#include "hammer_loads/boom/mode_history.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "hammer_loads/boom/four_modes.h"
 
 namespace hammer_loads {
 namespace {
@@ -36,15 +36,12 @@ class History : public testing::Test {
   void expectAt(double ago, const SwingOfMode& truth, double tolerance) {
     ModeHistory::Place place;
     ASSERT_TRUE(history_.find(ago, place)) << ago;
-    const ModeState as_known = truth.at(time_ + 1e-12);
-    FourModes now{}, then;
-    now.x[kSecondMode] = as_known.x, now.v[kSecondMode] = as_known.v;
-    look(history_, place, 0, Lanes{1.0, kSwing, 1.0, 1.0}, now, then);
+    const ModeHistory::Moment then = history_.at(place, kSecondMode, kSwing, truth.at(time_ + 1e-12));
     const ModeState right = truth.at(time_ - ago);
-    EXPECT_NEAR(then.x[kSecondMode], right.x, tolerance) << ago;
-    EXPECT_NEAR(then.v[kSecondMode], right.v, kSwing * tolerance) << ago;
-    EXPECT_NEAR(then.force[kSecondMode], time_ - ago, 1e-12) << ago;
-    EXPECT_NEAR(then.force_rate[kSecondMode], 1.0, 1e-9) << ago;
+    EXPECT_NEAR(then.state.x, right.x, tolerance) << ago;
+    EXPECT_NEAR(then.state.v, right.v, kSwing * tolerance) << ago;
+    EXPECT_NEAR(then.force, time_ - ago, 1e-12) << ago;
+    EXPECT_NEAR(then.force_rate, 1.0, 1e-9) << ago;
   }
 
   ModeHistory history_;

@@ -9,21 +9,18 @@
 
 namespace hammer_loads {
 
-/// A vector in space in four places, the last of no meaning.
-using InFours = std::array<double, 4>;
-
 /// How a link moves in the root's axes.
 struct BodyMotion {
-  InFours rate;                  ///< [rad/s]
-  InFours angular_acceleration;  ///< [rad/s2]
-  InFours acceleration;          ///< of its origin [m/s2]
+  Eigen::Vector3d rate;                  ///< [rad/s]
+  Eigen::Vector3d angular_acceleration;  ///< [rad/s2]
+  Eigen::Vector3d acceleration;          ///< of its origin [m/s2]
 };
 
 /// A body where its link stands, in the root's axes.
 struct PlacedBody {
-  double mass;                     ///< [kg]
-  InFours com;                     ///< centre of mass from the link's origin [m]
-  std::array<double, 12> inertia;  ///< about the centre of mass, columns of four [kg m2]
+  double mass;              ///< [kg]
+  Eigen::Vector3d com;      ///< centre of mass from the link's origin [m]
+  Eigen::Matrix3d inertia;  ///< about the centre of mass [kg m2]
 };
 using PlacedBodies = std::array<PlacedBody, kMaxLinks>;  ///< index of links as in Chain
 

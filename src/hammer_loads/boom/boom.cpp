@@ -133,12 +133,10 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   const JointVector zero = JointVector::Zero(chain.joints());
   const Eigen::Index joints = chain.joints(), held = static_cast<Eigen::Index>(cylinders_.size());
   const Eigen::Index rows = 7 * joints + 6 * static_cast<Eigen::Index>(this->sections().size()) + 3 * held;
-  const Eigen::Index fours = (rows + kFour - 1) / kFour;
   response_.setZero(rows, held + 6);
-  response_fours_.setZero(kFour, fours * (held + 6));
-  response_in_plane_.setZero(kFour, fours * (held + 3));
+  response_in_plane_.setZero(rows, held + 3);
   rows_in_plane_.setZero(rows);
-  variance_.setZero(kFour * fours);
+  variance_.setZero(rows);
   deviation_.setZero(rows);
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());

@@ -160,19 +160,15 @@ class Boom {
   void findResponse() noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void arrangeResponse() noexcept;
-  static constexpr Eigen::Index kFour = 4;
-  using Fours = Eigen::Matrix<double, kFour, Eigen::Dynamic>;  ///< see LinearLoads
-  void findVariances(const LoadErrors& errors, const Fours& response, Eigen::Index rows) noexcept;
   void takeDeviations(BoomDeviations& result) const noexcept;
   /// Columns: LoadErrors::Inputs. Rows: joint torques, sections, joints (force and moment of each), cylinders' forces
   /// on their rods' pins.
   Eigen::MatrixXd response_;
-  Fours response_fours_;     ///< the same
-  Fours response_in_plane_;  ///< without inputs across the plane, and without the rows, half of all, that are zero then
-  Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them
+  Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane, nor the rows, half of all, that are then 0
+  Eigen::VectorXi rows_in_plane_;      ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
   JointVector response_at_;    ///< steady_position_ where it belongs; NaN: nowhere yet
-  Eigen::VectorXd variance_;   ///< one entry a row of the response used, in fours
+  Eigen::VectorXd variance_;   ///< one entry a row of response_in_plane_
   Eigen::VectorXd deviation_;  ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };

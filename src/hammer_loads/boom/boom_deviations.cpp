@@ -35,18 +35,16 @@ void Boom::storeResponse(Eigen::Index column, const JointVector& torque, const S
   for (std::size_t i = 0; i < cylinders_.size(); ++i) append(load.pins[i].rod);
 }
 
-/// From response_: by all inputs, and by those in the plane the loads that are not zero then.
+/// The rows of response_ that inputs in the plane make other than zero.
 void Boom::arrangeResponse() noexcept {
-  const Eigen::Index columns = response_.cols(), in_plane = columns - 3;
+  const Eigen::Index in_plane = response_.cols() - 3;
+  const auto by = response_.leftCols(in_plane).cwiseAbs();
   Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, LoadErrors::kMost> least(in_plane);
-  for (Eigen::Index c = 0; c < in_plane; ++c) least[c] = kRounded * response_.col(c).cwiseAbs().maxCoeff();
-  response_fours_.setZero(), response_in_plane_.setZero();
+  for (Eigen::Index c = 0; c < in_plane; ++c) least[c] = kRounded * by.col(c).maxCoeff();
   in_plane_ = 0;
   for (Eigen::Index row = 0; row < response_.rows(); ++row) {
-    const auto by = response_.row(row);
-    response_fours_.block(row % kFour, row / kFour * columns, 1, columns) = by;
-    if ((by.head(in_plane).array().abs() <= least).all()) continue;
-    response_in_plane_.block(in_plane_ % kFour, in_plane_ / kFour * in_plane, 1, in_plane) = by.head(in_plane);
+    if ((by.row(row).array() <= least).all()) continue;
+    response_in_plane_.row(in_plane_) = response_.row(row).head(in_plane);
     rows_in_plane_[in_plane_++] = static_cast<int>(row);
   }
 }
@@ -79,14 +77,6 @@ void Boom::findResponse() noexcept {
   arrangeResponse();
 }
 
-/// To variance_.
-void Boom::findVariances(const LoadErrors& errors, const Fours& response, Eigen::Index rows) noexcept {
-  const LinearLoads loads{response.data(), static_cast<int>(rows), errors.size()};
-  hammer_loads::findVariances(loads, errors.covariance().data(), LoadErrors::kMost, variance_.data());
-  if (errors.hasLarger())
-    addLargerSquare(loads, errors.larger()[0].data(), errors.larger()[1].data(), variance_.data());
-}
-
 void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, bool rigid,
                       BoomDeviations& result) noexcept {
   const bool vibrates = !rigid && vibration_.known();
@@ -108,13 +98,13 @@ void Boom::deviations(const VibrationSpread& spread, const WrenchSpread& w_tip, 
 void Boom::deviations(const LoadErrors& errors, BoomDeviations& result) noexcept {
   findResponse();
   if (errors.isAcross()) {
-    findVariances(errors, response_fours_, response_.rows());
-    deviation_ = variance_.head(response_.rows()).cwiseSqrt();
+    errors.findVariances(response_, deviation_);
+    deviation_ = deviation_.cwiseSqrt();
   } else {
-    findVariances(errors, response_in_plane_, in_plane_);
+    auto variance = variance_.head(in_plane_);
+    errors.findVariances(response_in_plane_.topRows(in_plane_), variance);
     deviation_.setZero();
-    variance_.head(in_plane_) = variance_.head(in_plane_).cwiseSqrt();
-    for (Eigen::Index i = 0; i < in_plane_; ++i) deviation_[rows_in_plane_[i]] = variance_[i];
+    for (Eigen::Index i = 0; i < in_plane_; ++i) deviation_[rows_in_plane_[i]] = std::sqrt(variance[i]);
   }
   takeDeviations(result);
 }

@@ -1,23 +1,17 @@
 #include "hammer_loads/boom/chain_pose.h"
 
-#include "hammer_loads/boom/lanes.h"
-#include "hammer_loads/util/avx2.h"
 #include "hammer_loads/util/sine_cosine.h"
 
 namespace hammer_loads {
-namespace {
 
-HAMMER_LOADS_INLINE void forwardKinematicsAny(const Chain& chain, const JointVector& position,
-                                              ChainPose& pose) noexcept {
+void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept {
   pose.links = chain.links();
   pose.joints = chain.joints();
   pose.X_BL[0].setIdentity();
   for (int i = 1; i < pose.links; ++i) {
     const ChainLink& link = chain.link(i);
-    const auto here = static_cast<std::size_t>(i);
-    const Pose& before = pose.X_BL[here - 1];
-    const double* X_BP = before.data();
-    double* X_BL = pose.X_BL[here].data();
+    const Pose& X_BP = pose.X_BL[static_cast<std::size_t>(i - 1)];
+    Pose& X_BL = pose.X_BL[static_cast<std::size_t>(i)];
     Eigen::Matrix3d R_PL = link.steady;
     Eigen::Vector3d p_PL = link.origin;
     if (link.joint >= 0) {
@@ -26,26 +20,14 @@ HAMMER_LOADS_INLINE void forwardKinematicsAny(const Chain& chain, const JointVec
       const auto [sin_q, cos_q] = link.prismatic ? SineCosine{} : sineCosine(q);
       R_PL += sin_q * link.sine + cos_q * link.cosine;
       p_PL += q * link.slide;
-      store(product(X_BP, link.axis.data()), pose.axis_B[joint]);
+      pose.axis_B[joint] = X_BP.linear() * link.axis;
       pose.prismatic[joint] = link.prismatic;
       pose.sine[joint] = sin_q, pose.cosine[joint] = cos_q;
     }
-    for (int c = 0; c < 3; ++c) store(product(X_BP, R_PL.data() + 3 * c), X_BL + 4 * c);
-    const Lanes p = pointAt(before, p_PL.data());
-    store(p, X_BL + 12);
-    if (link.joint >= 0) store(p, pose.p_BJ_B[static_cast<std::size_t>(link.joint)]);
+    X_BL.linear() = X_BP.linear() * R_PL;
+    X_BL.translation() = X_BP * p_PL;
+    if (link.joint >= 0) pose.p_BJ_B[static_cast<std::size_t>(link.joint)] = X_BL.translation();
   }
-}
-HAMMER_LOADS_AVX2 void forwardKinematicsAvx2(const Chain& chain, const JointVector& position,
-                                             ChainPose& pose) noexcept {
-  forwardKinematicsAny(chain, position, pose);
-}
-
-}  // namespace
-
-void forwardKinematics(const Chain& chain, const JointVector& position, ChainPose& pose) noexcept {
-  if (kHasAvx2) return forwardKinematicsAvx2(chain, position, pose);
-  forwardKinematicsAny(chain, position, pose);
 }
 
 Jacobian tipJacobian(const ChainPose& pose) noexcept {

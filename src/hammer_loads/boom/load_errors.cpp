@@ -71,4 +71,22 @@ void LoadErrors::addLarger(const JointVector& acceleration, const JointVector& o
   has_larger_ = true;
 }
 
+void LoadErrors::findVariances(const Eigen::Ref<const Eigen::MatrixXd>& response,
+                               Eigen::Ref<Eigen::VectorXd> variance) const noexcept {
+  const Eigen::Index inputs = size();
+  variance.setZero();
+  for (Eigen::Index k = 0; k < inputs; ++k) {
+    const Eigen::Index after = inputs - k - 1;
+    const auto& column = covariance_.col(k);
+    variance.array() +=
+        response.col(k).array() *
+        (column[k] * response.col(k) + 2.0 * response.rightCols(after).lazyProduct(column.segment(k + 1, after)))
+            .array();
+  }
+  variance = variance.cwiseMax(0.0);
+  if (!has_larger_) return;
+  const auto squares = [&](const Inputs& one) { return (response.lazyProduct(one.head(inputs))).cwiseAbs2(); };
+  variance += squares(larger_[0]).cwiseMax(squares(larger_[1]));
+}
+
 }  // namespace hammer_loads

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "hammer_loads/boom/boom_modes.h"
-#include "hammer_loads/boom/covariance_kernels.h"
 #include "hammer_loads/boom/wrench.h"
 
 namespace hammer_loads {
@@ -18,8 +17,6 @@ class LoadErrors {
   /// What is in error: accelerations in the order of the cylinders, then of the load what lies in the boom's plane
   /// (force x, z, moment y), then what lies across it (force y, moment x, z).
   using Inputs = Eigen::Matrix<double, kMost, 1>;
-  /// What counts is below the diagonal, and on it, of the inputs that there are.
-  using Covariance = Eigen::Matrix<double, kMost, kMost>;
 
   explicit LoadErrors(const std::vector<Cylinder>& cylinders) noexcept;
 
@@ -36,19 +33,23 @@ class LoadErrors {
 
   int size() const noexcept { return isAcross() ? held_ + 6 : held_ + 3; }  ///< of the inputs in use
   bool isAcross() const noexcept { return across_; }                        ///< some of the load lies across the plane
-  const Covariance& covariance() const noexcept { return covariance_; }
-  bool hasLarger() const noexcept { return has_larger_; }
-  const std::array<Inputs, 2>& larger() const noexcept { return larger_; }
+  /// What they make of loads that are linear in the inputs, one variance a row of response; its columns are the inputs
+  /// in use. Where rounding would make one negative it is zero.
+  void findVariances(const Eigen::Ref<const Eigen::MatrixXd>& response,
+                     Eigen::Ref<Eigen::VectorXd> variance) const noexcept;
 
  private:
   Inputs inputsOf(const JointVector& acceleration) const noexcept;
   void setTip(const Wrench& tip, Inputs& inputs) noexcept;
   void addProduct(const Inputs& one, const Inputs& other) noexcept;
 
+  static constexpr int kUsualInputs = 6;  ///< compiled for: three cylinders and a load in the boom's plane
+
   int held_{};  ///< by cylinders
   std::array<int, kMaxJoints> joint_{};
   bool across_{}, has_larger_{};
-  Covariance covariance_;
+  /// What counts is below the diagonal, and on it, of the inputs that there are.
+  Eigen::Matrix<double, kMost, kMost> covariance_;
   std::array<Inputs, 2> larger_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hammer_loads/util/square.h"
+
 namespace hammer_loads {
 
 void ModeHistory::begin(double step) noexcept {
@@ -19,6 +21,31 @@ bool ModeHistory::find(double ago, Place& place) const noexcept {
     return true;
   }
   return false;
+}
+
+ModeHistory::Moment ModeHistory::at(const Place& place, int mode, double omega, const ModeState& now) const noexcept {
+  const Step& step = stepWith(place.newer);
+  const double h = step.duration, per_time = 1.0 / h, u = place.since * per_time, w = 1.0 - u;
+  const double from_x = step.from_x[mode], to_x = step.to_x[mode], moved = to_x - from_x;
+  // What a straight line lacks at its ends.
+  const double lacks_first = h * step.from_v[mode] - moved, lacks_last = moved - h * step.to_v[mode];
+  const double force_from = step.force_from[mode], force_to = step.force_to[mode];
+  Moment then{{w * from_x + u * to_x + u * w * (w * lacks_first + u * lacks_last),
+               (moved + w * (w - 2.0 * u) * lacks_first + u * (2.0 * w - u) * lacks_last) * per_time},
+              w * force_from + u * force_to,
+              (force_to - force_from) * per_time};
+  ModeState after = now;  // begin of the next step
+  double t = -place.ago;
+  for (std::size_t newer = 0; newer <= place.newer; ++newer) {
+    const Step& its = stepWith(newer);
+    // What was shown then, back without force, undamped: cosine and sine to the fifth power of omega t.
+    const double x = after.x - its.to_x[mode], v = after.v - its.to_v[mode] - its.jump[mode], xx = square(omega * t);
+    const double cosine = 1.0 - xx * (0.5 - xx / 24.0), sine = t * (1.0 - xx * (1.0 / 6.0 - xx / 120.0));
+    then.state.x += cosine * x + sine * v, then.state.v += cosine * v - square(omega) * sine * x;
+    after = {its.from_x[mode], its.from_v[mode]};
+    t += its.duration;
+  }
+  return then;
 }
 
 }  // namespace hammer_loads

@@ -18,13 +18,6 @@ class ModeHistory {
  public:
   static constexpr std::size_t kSteps = 64;  ///< 12 ms at 5 kHz
 
-  struct Step {
-    double duration{};                                                                      ///< [s]
-    ModeVector from_x = ModeVector::Zero(), from_v = from_x, to_x = from_x, to_v = from_x;  ///< as ModeState
-    ModeVector force_from = from_x, force_to = from_x;                                      ///< modal, of the hammer
-    ModeVector jump = from_x;  ///< of the velocity by a blow at the end [m sqrt(kg)/s]
-  };
-
   void clear() noexcept { count_ = 0; }
   /// A step [s] > 0 begins; set() each mode of it.
   void begin(double step) noexcept;
@@ -43,10 +36,26 @@ class ModeHistory {
   };
   /// So long before the present [s]. False: that is too long.
   bool find(double ago, Place& place) const noexcept;
+  /// A mode at an instant, with the force of the hammer, modal, and that by the second.
+  struct Moment {
+    ModeState state;
+    double force{}, force_rate{};
+  };
+  /// What a mode did there. By cubics through both ends of a step, relative error (omega step)^4/384. now: what
+  /// readings have shown since then counts for then as well.
+  Moment at(const Place& place, int mode, double omega, const ModeState& now) const noexcept;
+
+ private:
+  struct Step {
+    double duration{};                                                                      ///< [s]
+    ModeVector from_x = ModeVector::Zero(), from_v = from_x, to_x = from_x, to_v = from_x;  ///< as ModeState
+    ModeVector force_from = from_x, force_to = from_x;                                      ///< modal, of the hammer
+    ModeVector jump = from_x;  ///< of the velocity by a blow at the end [m sqrt(kg)/s]
+  };
+
   /// The last but `newer`.
   const Step& stepWith(std::size_t newer) const noexcept { return steps_[(newest_ + kSteps - newer) % kSteps]; }
 
- private:
   std::array<Step, kSteps> steps_;
   std::size_t newest_{}, count_{};
 };

@@ -102,14 +102,6 @@ void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
   modes_ = given;
   count_ = given.count;
   history_.clear();
-  given_omega_.setZero();
-  given_omega_.head(count_) = given.given_omega;
-  for (int i = 0; i < count_; ++i) {
-    const auto at_joint = static_cast<std::size_t>(i);
-    for (auto* rows : {&shape_, &inertia_}) (*rows)[at_joint].setZero();
-    shape_[at_joint].head(count_) = given.shape.row(i);
-    inertia_[at_joint].head(count_) = given.inertia.row(given.joint[at_joint]);
-  }
   if (!carries) {
     forgetMotion();
   } else {
@@ -221,7 +213,8 @@ void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) 
   const int x = at(mode, kX);
   state_[x + kX] = next.x, state_[x + kV] = next.v;
   history_.set(mode, now, next, force.from, force.to);
-  replaceTwo(block(), x, {x + kX, x + kV, x + kFrequency, x + kDamping, kContact},
+  const int first = begin(), its_x = x - first;
+  replaceTwo(block(), its_x, {its_x + kX, its_x + kV, its_x + kFrequency, its_x + kDamping, kContact - first},
              {its.x_by_x, its.x_by_v, of_frequency.x, of_damping.x, r.step * rock},
              {its.v_by_x, its.v_by_v, of_frequency.v, of_damping.v, r.impulse * rock});
 }

@@ -13,8 +13,6 @@
 
 namespace hammer_loads {
 
-struct FourModes;
-
 /// Time by which an angle is ahead of the crank [s], and its standard deviation.
 struct CrankLead {
   double mean{}, deviation{};
@@ -123,11 +121,9 @@ class ModeIdentifier {
   JointMatrix accelerationCovariance() const noexcept;
 
  private:
-  /// States go in fours (kLane), the fourth between the contact and the modes is always zero: loops over what is in use
-  /// have no remainder.
-  static constexpr int kLane = 4, kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;
+  static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
-  static_assert(kModes % kLane == 0);
+  static_assert(kMaxStates <= kMostStates);
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
   enum Part { kX, kV, kFrequency, kDamping, kParts };
@@ -136,10 +132,11 @@ class ModeIdentifier {
   static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
   /// Offsets are taken from the modes downwards, in the order of use: what is in use is one block.
   int offsetAt(int channel) const noexcept { return slot_[static_cast<std::size_t>(channel)]; }
-  int begin() const noexcept { return (kMaxChannels - channels_) / kLane * kLane; }
+  int begin() const noexcept { return (kMaxChannels - channels_) / 2 * 2; }  // an even place
   int end() const noexcept { return kModes + kParts * count_; }
   int states() const noexcept { return end() - begin(); }
-  CovarianceBlock block() noexcept { return {covariance_.data(), kMaxStates, begin(), end()}; }
+  auto block() noexcept { return covariance_.block(begin(), begin(), states(), states()); }
+  auto inUse(const State& state) const noexcept { return state.segment(begin(), states()); }
   /// Covariances of a state with all.
   const double* column(int state) const noexcept { return &covariance_(0, state); }
   double* column(int state) noexcept { return &covariance_(0, state); }
@@ -170,28 +167,18 @@ class ModeIdentifier {
   };
   Kept keptStates() const noexcept;
   struct Seen;
-  using SeenModes = std::array<Seen, kMaxJoints / kLane>;
-  struct Rows;
-  struct Shown;
-  void take(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept;
-  void takeAny(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept;
-  void takeAvx2(const VibrationReading* readings, std::size_t count, Shown& shown) noexcept;
-  void subtract(Shown& shown) noexcept;
-  void findRows(const VibrationReading* readings, std::size_t count, Rows& rows) const noexcept;
+  using SeenModes = std::array<Seen, kMaxJoints>;
+  void take(const VibrationReading* readings, std::size_t count) noexcept;
+  void correct(const VibrationReading& reading, const State& row, double difference, const Kept& kept) noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
-  void takeBack(const Kept& kept, double moved, double S, const State& gain_S, Shown& shown) noexcept;
-  double times(const State& a, int offset, const State& row) const noexcept;
-  void add(double factor, const State& what, State& to) const noexcept;
-  void copy(const State& from, State& to) const noexcept;
-  void clear(State& state) const noexcept;
+  void takeBack(const Kept& kept, double moved, double S, const State& gain_S) noexcept;
   void takeAsLate(Clock clock) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
   static bool counts(const VibrationReading& reading) noexcept;
   void useChannel(const VibrationReading& reading) noexcept;
-  void findMotions(int first, double ahead, FourModes& then) const noexcept;
-  void findMotionsAvx2(int first, double ahead, FourModes& then) const noexcept;
-  void see(int first, double ahead, Seen& seen) const noexcept;
+  ModeHistory::Moment momentAt(int mode, double ahead) const noexcept;
+  Seen see(int mode, double ahead) const noexcept;
   double findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept;
   bool finite() const noexcept;
   void startAnew() noexcept;
@@ -221,9 +208,7 @@ class ModeIdentifier {
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
   /// Modal, at the present time; and by the second.
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
-  ModeVector given_omega_ = force_;                     ///< of modes_
-  std::array<ModeVector, kMaxJoints> shape_, inertia_;  ///< of modes_, by each joint that vibrates
-  std::array<double, kMaxJoints> force_power_{};        ///< mean square of each modal force, over some seconds
+  std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
   std::array<double, kMaxJoints> ratio_{}, damping_{};                ///< of state_

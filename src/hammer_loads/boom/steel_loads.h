@@ -60,8 +60,6 @@ class SteelLoadFinder {
   /// In the root's frame, moments about its origin.
   struct Working;
 
-  bool findByAny(const ChainState& state, SteelLoads& result) const noexcept;
-  bool findByAvx2(const ChainState& state, SteelLoads& result) const noexcept;
   bool addHammer(const ChainState& state, Working& working) const noexcept;
   void findCylinders(const ChainState& state, Working& working, SteelLoads& result) const noexcept;
   void findJoints(const ChainState& state, const Working& working, SteelLoads& result) const noexcept;

@@ -177,7 +177,7 @@ HAMMER_LOADS_INLINE void computeBlock(const Job& job, const Columns& in, const R
       loads.wrench = pulseWrench(job.mechanism, job.pulse, offsetFromBlow(angles[i]), crank, job.gravity);
     } else {
       const Motion m = motionOf(work, i);
-      const LinkMotion l = linkMotion(ratios, m);
+      [[maybe_unused]] const LinkMotion l = linkMotion(ratios, m);
       if constexpr (level == Level::kLinkage && with_pins) {
         loads = linkageLoads(job.linkage, l, crank.speed, crank.acceleration);
       } else if constexpr (level == Level::kLinkage) {
@@ -253,10 +253,12 @@ template <bool with_pins>
   compute<with_pins>(model, gravity, in, count, out);
 }
 
+// GCC 9 uses instructions of avx512bw unasked, and its assembler refuses them where that is not named.
 template <bool with_pins>
-[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] void computeAvx512(const HullModel& model, Gravity gravity,
-                                                                         const Columns& in, std::size_t count,
-                                                                         const Results& out) noexcept {
+[[gnu::target("avx512f,avx512dq,avx512bw,avx512vl,avx2,fma")]] void computeAvx512(const HullModel& model,
+                                                                                  Gravity gravity, const Columns& in,
+                                                                                  std::size_t count,
+                                                                                  const Results& out) noexcept {
   compute<with_pins>(model, gravity, in, count, out);
 }
 #endif
@@ -285,8 +287,8 @@ BatchWidth batchWidth() noexcept {
   static const BatchWidth width = [] {
     __builtin_cpu_init();
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    const bool avx512 =
-        __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
     return avx2 && avx512 ? BatchWidth::kAvx512 : avx2 ? BatchWidth::kAvx2 : BatchWidth::kBaseline;
   }();
   return width;

@@ -21,6 +21,8 @@ class CrankTrust {
   /// a crank that turns backward 6.5, with a zero 2 deg off 2.5, on machines whose rod gives below 2
   /// (crank_trust_test).
   static constexpr double kMost = 4.0;
+  /// Of CrankTracker::consistency(), what is said, but not withheld; a clean machine has 0.9, a zero 2 deg off 2.
+  static constexpr double kInconsistent = 3.0;
   static constexpr double kSlowestKnown = 0.2;  ///< slowBehind() of a right zero is less [rad] (crank_trust_test)
 
   explicit CrankTrust(const CrankSensor& sensor) noexcept : sensor_(sensor) {}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/util/inline.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -21,6 +22,32 @@ constexpr double kComplianceWalk = 0.02;      // of the first guess's deviation 
 constexpr double kUnknownSlope = 1e3;         // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
 constexpr double kLeastNoise = 1e-3;          // of the first guess: a logarithm is taken of it
 constexpr double kUnknownSignal = 1e3;        // of the noise: smooth part at the start
+
+/// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it
+/// the slope counts.
+template <typename Rows>
+HAMMER_LOADS_INLINE auto carried(const Rows& M, const DrivenSignal::Step& step, double slope_step) noexcept {
+  const double h = step.length;
+  const auto by = [&](Part part, const Eigen::Vector3d& of) { return M.template middleCols<3>(part).lazyProduct(of); };
+  Eigen::Matrix<double, Rows::RowsAtCompileTime, 3> result;
+  result.col(kIntegral) = M.col(kIntegral) + h * M.col(kSmooth) + slope_step * (h - 0.5 * slope_step) * M.col(kSlope) +
+                          by(kCompliance, step.impulse) - by(kBending, h / 3.0 * step.way) - by(kDamping, step.way);
+  result.col(kSmooth) =
+      M.col(kSmooth) + slope_step * M.col(kSlope) - by(kBending, step.way) - by(kDamping, step.velocity);
+  result.col(kSlope) = M.col(kSlope) - by(kBending, step.velocity);
+  return result;
+}
+
+/// M H^T of rows of states, where H makes the signal at a load.
+template <typename Rows>
+HAMMER_LOADS_INLINE auto signalsOf(const Rows& M, const Eigen::Vector3d& load) noexcept {
+  Eigen::Matrix<double, Rows::RowsAtCompileTime, 1> result = M.col(kSmooth);
+  result += M.template middleCols<3>(kCompliance).lazyProduct(load);
+  return result;
+}
+HAMMER_LOADS_INLINE double signalIn(const DrivenSignal::State& x, const Eigen::Vector3d& load) noexcept {
+  return x[kSmooth] + x.segment<3>(kCompliance).dot(load);
+}
 
 }  // namespace
 
@@ -41,14 +68,8 @@ DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settin
 
 double DrivenSignal::Candidate::score() const noexcept { return std::log(variance) + log_spread; }
 
-DrivenSignal::State DrivenSignal::rowOf(const Eigen::Vector3d& load) const noexcept {
-  State row = State::Zero();
-  if (settings_.reads == Reads::kIntegral) {
-    row[kIntegral] = 1.0;
-  } else {
-    row[kSmooth] = 1.0, row.segment<3>(kCompliance) = load;
-  }
-  return row;
+double DrivenSignal::readOf(const State& x, const Eigen::Vector3d& load) const noexcept {
+  return settings_.reads == Reads::kIntegral ? x[kIntegral] : signalIn(x, load);
 }
 
 double DrivenSignal::walkOf(const Candidate& c) const noexcept {
@@ -78,22 +99,12 @@ void DrivenSignal::begin(double reading, const Eigen::Vector3d& load) noexcept {
 void DrivenSignal::carry(const Step& step, double slope_step, double walk, double unit, State& x,
                          Covariance& P) const noexcept {
   const double h = step.length, hh = h * h, q = walk * h;
-  Eigen::Matrix<double, 3, kStates> F = Eigen::Matrix<double, 3, kStates>::Identity();
-  F(kIntegral, kSmooth) = h, F(kIntegral, kSlope) = slope_step * (h - 0.5 * slope_step);
-  F(kSmooth, kSlope) = slope_step;
-  F.block<1, 3>(kIntegral, kCompliance) = step.impulse.transpose();
-  F.block<1, 3>(kIntegral, kBending) = -h / 3.0 * step.way.transpose();
-  F.block<1, 3>(kSmooth, kBending) = -step.way.transpose();
-  F.block<1, 3>(kSlope, kBending) = -step.velocity.transpose();
-  F.block<1, 3>(kIntegral, kDamping) = -step.way.transpose();
-  F.block<1, 3>(kSmooth, kDamping) = -step.velocity.transpose();
   const double struck = square(kBlowPart * step.blow.dot(x.segment<3>(kCompliance)));
-  x.head<3>() = (F * x).eval();
-  F(kIntegral, kSlope) = 0.5 * hh, F(kSmooth, kSlope) = h;
-  const Eigen::Matrix<double, 3, kStates> FP = F * P;
-  P.topRows<3>() = FP;
-  P.topLeftCorner<3, 3>() = FP * F.transpose();
-  P.leftCols<3>() = P.topRows<3>().transpose().eval();
+  x.head<3>() = carried(x.transpose(), step, slope_step).transpose();
+  const Eigen::Matrix<double, kStates, 3> PF = carried(P, step, h);
+  P.leftCols<3>() = PF;
+  P.topRows<3>() = PF.transpose();
+  P.topLeftCorner<3, 3>() = carried(P.topRows<3>(), step, h);
   P(kIntegral, kIntegral) += q * hh * hh / 20.0, P(kSmooth, kSmooth) += q * hh / 3.0, P(kSlope, kSlope) += q;
   const auto both = [&](int i, int j, double value) { P(i, j) += value, P(j, i) += value; };
   both(kIntegral, kSmooth, q * hh * h / 8.0), both(kIntegral, kSlope, q * hh / 6.0), both(kSmooth, kSlope, q * h / 2.0);
@@ -102,11 +113,12 @@ void DrivenSignal::carry(const Step& step, double slope_step, double walk, doubl
 }
 
 void DrivenSignal::update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& c) noexcept {
-  const State row = rowOf(load);
-  const State PH = c.P * row;
-  const double S = row.dot(PH) + 1.0, off = reading - row.dot(c.x);
-  c.x += PH * (off / S);
-  c.P -= PH * PH.transpose() / S;
+  const bool itself = settings_.reads == Reads::kItself;
+  const State PH = itself ? signalsOf(c.P, load) : State(c.P.col(kIntegral));
+  const double S = 1.0 + readOf(PH, load), off = reading - readOf(c.x, load);
+  const State gain = PH / S;
+  c.x += gain * off;
+  c.P -= gain.lazyProduct(PH.transpose());
   if (!counts) return;
   const double share = 1.0 / std::min(counted_ + 10.0, kMemoryOfReadings);
   const double size = std::min(square(off) / S, kFarOff * c.variance);
@@ -122,8 +134,8 @@ void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load
   if (!begun_) return begin(reading, load);
   interval_ = interval_ > 0.0 ? interval_ + 0.05 * (step - interval_) : step;
   for (Candidate& c : candidates_) update(reading, load, counts, c);
-  const double value = rowOf(load).dot(best().x);
-  if (settings_.reads == Reads::kItself) steady_ += std::min(1.0, step / steady_time_) * (value - steady_);
+  if (settings_.reads == Reads::kItself)
+    steady_ += std::min(1.0, step / steady_time_) * (readOf(best().x, load) - steady_);
   steady_time_ = std::min(steady_time_ + step, kSteadyMemory);
   if (!counts) return;
   counted_ += 1.0;
@@ -139,11 +151,10 @@ void DrivenSignal::Future::advance(const Step& step) noexcept {
 }
 
 DrivenSignal::Value DrivenSignal::Future::at(const Eigen::Vector3d& load) const noexcept {
-  State row = State::Zero();
-  row[kSmooth] = 1.0, row.segment<3>(kCompliance) = load;
-  const State PH = P_ * row;
+  const State PH = signalsOf(P_, load);
   const double unit = signal_.best().variance;
-  return {row.dot(x_), x_[kIntegral], unit * row.dot(PH), unit * PH[kIntegral], unit * P_(kIntegral, kIntegral)};
+  return {signalIn(x_, load), x_[kIntegral], unit * signalIn(PH, load), unit * PH[kIntegral],
+          unit * P_(kIntegral, kIntegral)};
 }
 
 DrivenSignal::Swing DrivenSignal::swing(const State& x, double h, const Eigen::Vector3d& impulse,

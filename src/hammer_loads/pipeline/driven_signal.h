@@ -51,7 +51,7 @@ class DrivenSignal {
   /// Readings are not continuous with those before; what the hull is stays known.
   void forgetMotion() noexcept { begun_ = false; }
   /// All that is known is a number.
-  bool isFinite() const noexcept { return best().x.allFinite() && best().P.allFinite(); }
+  bool isFinite() const noexcept { return 0.0 * (best().x.sum() + best().P.sum()) == 0.0; }
   const Settings& settings() const noexcept { return settings_; }
   /// On from the last reading.
   void advance(const Step& step) noexcept;
@@ -104,7 +104,7 @@ class DrivenSignal {
   Swing swing(const State& x, double length, const Eigen::Vector3d& impulse,
               const Eigen::Vector3d& lasting) const noexcept;
   void update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& candidate) noexcept;
-  State rowOf(const Eigen::Vector3d& load) const noexcept;
+  double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: what a reading is of that
   double walkOf(const Candidate& candidate) const noexcept;
   const Candidate& best() const noexcept { return candidates_[best_]; }
 

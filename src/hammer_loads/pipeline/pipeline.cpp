@@ -14,9 +14,8 @@ namespace {
 // Beyond these, in units of the nominal turn at constant speed, nothing is published. Its peak is some four times that
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
-constexpr double kInconsistent = 3.0;       // CrankTracker::consistency(); a clean machine has 0.9, a zero 2 deg off 2
-constexpr double kMostSpeedUnproven = 2.0;  // then the crank may be in degrees
-constexpr double kAtWork = 0.3;             // of the nominal speed: blows are struck
+constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
+constexpr double kAtWork = 0.3;                               // of the nominal speed: blows are struck
 constexpr double kLeadOfZero = 0.8;  // of the time that the crank needs at the blow: what a zero makes of the vibration
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 
@@ -151,7 +150,7 @@ void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
   const double step = taken == CrankFollower::Taken::kContinued ? crank_.step().length() : 0.0;
   if (taken == CrankFollower::Taken::kBegan) trust_.begin();
   trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
-  result_.inconsistent = result_.consistency > kInconsistent;
+  result_.inconsistent = result_.consistency > CrankTrust::kInconsistent;
 }
 
 bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {

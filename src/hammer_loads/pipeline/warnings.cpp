@@ -127,7 +127,6 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
 
 /// What the filter's innovations look like.
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
-  constexpr double kInconsistent = 3.0;   // times the variance; a clean machine has 0.9
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   const CrankFilter* filter = pipeline.crank().tracker().filter();
   const bool withheld = pipeline.counts().refusedFor(Refusal::kInconsistent) > 0;
@@ -143,8 +142,8 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                 pipeline.settings().crank_angle_resolution, filter->encoder().resolution()),
          true});
   warnOfStamps(pipeline.crank(), *filter, warnings);
-  const bool inconsistent = filter->consistency() > kInconsistent;
-  const bool strike = filter->strikeConsistency() > kInconsistent;
+  const bool inconsistent = filter->consistency() > CrankTrust::kInconsistent;
+  const bool strike = filter->strikeConsistency() > CrankTrust::kInconsistent;
   if (!inconsistent && !strike && !withheld && !filter->isUnexplained())
     return warnOfConstants(filter->constantErrors(), pipeline.settings().crank_sensor, warnings);
   warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld), true});

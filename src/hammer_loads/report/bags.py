@@ -22,11 +22,12 @@ def is_bag(name):
     return name.endswith(".bag")
 
 
-def recordings(bags):
-    """Lists of bags: the splits of one recording in their order, as process_bag finds them; every other bag alone."""
+def recordings(bags, process_bag=None):
+    """Lists of bags: the splits of one recording in their order, as process_bag finds them; every other bag alone.
+    process_bag: path of that program."""
     if len(bags) < 2:
         return [[bag] for bag in bags]
-    done = subprocess.run([program(), "--recordings", *bags], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+    done = subprocess.run([process_bag or program(), "--recordings", *bags], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                           encoding="utf-8", errors="surrogateescape")
     splits_of = {}
     for line in done.stdout.splitlines():
