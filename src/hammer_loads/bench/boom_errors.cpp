@@ -80,17 +80,20 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   ++samples;
   force_x.add(result.wrench.force_x, truth.load.force_x);
   force_z.add(result.wrench.force_z, truth.load.force_z);
+  life_force_z.add(result.wrench.force_z, truth.load.force_z);
   addWrench(truth, result);
   moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
   const BoomState& boom = *result.boom;
   for (int j = 0; j < 3; ++j) {
     const double weight = boom.loads.weight[j + 1], total = boom.loads.total[j + 1];
     torque[j].add(total - weight, -truth.hold[j] - weight);
+    life_torque[j].add(total, -truth.hold[j]);
     within += std::abs(total + truth.hold[j]) <= 2.0 * boom.deviations.torque[j + 1];
   }
   for (std::size_t s = 0; s < 3; ++s) {
     const double bending = boom.steel.section[s].torque.y(), right = truth.cut[s].torque_y;
     section[s].add(bending, right);
+    life_section[s].add(bending, right);
     sections_within += std::abs(bending - right) <= 2.0 * boom.deviations.section[s].torque.y();
   }
   contact.add(boom.contact.force.z(), truth.rock.force_z);

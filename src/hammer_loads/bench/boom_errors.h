@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "hammer_loads/bench/life_error.h"
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/bench/signal_error.h"
 #include "hammer_loads/settings/load.h"
@@ -15,6 +16,7 @@ namespace hammer_loads::accuracy {
 /// The torques are those of hammer, motion, vibration and rock, without weight; the sections those of the shipped file.
 struct BoomErrors {
   SignalError force_x, force_z, moment, torque[3], section[3], contact;
+  LifeError life_force_z, life_torque[3], life_section[3];  ///< of torques with weight, as they are counted
   std::size_t samples{}, refused{}, within{}, blows{};
   std::size_t wrench_within[3]{};         ///< of force x, force z, moment within two deviations
   double worst_force{}, largest_force{};  ///< as a vector [N]

@@ -62,6 +62,11 @@ simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose, const
   return m;
 }
 
+void takeWorse(const LifeError& e, double& worst) {
+  const double error = e.error();
+  if (std::abs(error) > std::abs(worst)) worst = error;
+}
+
 void takeWorst(const BoomErrors& e, BoomRow& row) {
   row.torque = std::max(row.torque, e.worstTorque());
   row.section = std::max(row.section, e.worstSection());
@@ -75,6 +80,9 @@ void takeWorst(const BoomErrors& e, BoomRow& row) {
   row.energy = std::max(row.energy, std::abs(e.energy()));
   row.contact = std::max(row.contact, e.contact.rmsOfRange());
   row.covered = std::min(row.covered, e.covered());
+  takeWorse(e.life_force_z, row.life_force);
+  for (const LifeError& joint : e.life_torque) takeWorse(joint, row.life_torque);
+  for (const LifeError& cut : e.life_section) takeWorse(cut, row.life_section);
 }
 
 std::string percent(double part) { return std::isfinite(part) ? format("%.1f %%", 100.0 * part) : "not known"; }
@@ -126,9 +134,11 @@ std::string json(const std::vector<BoomRow>& rows) {
     text += format(
         "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %.4g, \"section\": %.4g, \"moment\": %.4g, "
         "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g, "
-        "\"rms_x\": %.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g}",
+        "\"rms_x\": %.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g, "
+        "\"life_force\": %.4g, \"life_torque\": %.4g, \"life_section\": %.4g}",
         &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), r.torque, r.section, r.moment, r.force_z,
-        r.worst_z, r.energy, number(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force, r.covered_wrench);
+        r.worst_z, r.energy, number(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force, r.covered_wrench,
+        r.life_force, r.life_torque, r.life_section);
   return text + "\n]";
 }
 

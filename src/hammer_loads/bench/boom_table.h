@@ -19,6 +19,9 @@ struct BoomRow {
   double energy{};                ///< mean of the blows
   double contact{};               ///< of the rock's force; not-a-number without rock or pressures
   double covered{1.0};            ///< torques within two deviations, the least
+  /// Of the damage-equivalent range at slope kLifeSlope, > 0 too large: hull force z, torque of the worst joint with
+  /// weight, bending at the worst cut.
+  double life_force{}, life_torque{}, life_section{};
 };
 
 /// The simulated EO-2621 on its oil with the shipped boom file, which may be wrong of the oil; poses drawn, the same on

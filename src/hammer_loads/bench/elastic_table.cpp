@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "hammer_loads/bench/life_error.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/util/constants.h"
@@ -61,17 +62,19 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
   for (const WrenchAt& w : run.wrenches) times.push_back(w.time);
   const std::vector<CrankTruth> truth = simulation::truthAt(machine, times);
   Gathering whole, strike, after;
+  LifeError life;
   std::array<double, 3> largest{};
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (times[k] < 3.0 || times[k] > machine.duration - 3.0) continue;
     const std::array<double, 3> values = valuesOf(truth[k]);
     for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
     whole.add(run.wrenches[k], values);
+    life.add(run.wrenches[k].force_z, values[1]);
     if (truth[k].angle >= kPi) strike.add(run.wrenches[k], values);
     const double since = sinceBlow(session.blows, times[k]);
     if (since >= kAfterFrom && since <= kAfterTo) after.add(run.wrenches[k], values);
   }
-  return {whole.over(largest), strike.over(largest), after.over(after.truthRms())};
+  return {whole.over(largest), strike.over(largest), after.over(after.truthRms()), life.error()};
 }
 
 /// Everything a little, and a usual sensor.
@@ -155,8 +158,8 @@ std::string markdown(const std::vector<ElasticRow>& rows) {
 std::string json(const std::vector<ElasticRow>& rows) {
   std::string text = "[";
   for (const ElasticRow& row : rows) {
-    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", ", &row == rows.data() ? "" : ",",
-                   row.machine.c_str(), nameOf(row.level)) +
+    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"life\": %.6g, ", &row == rows.data() ? "" : ",",
+                   row.machine.c_str(), nameOf(row.level), row.errors.life) +
             jsonOf("whole", row.errors.whole) + ", " + jsonOf("strike", row.errors.strike) + ", " +
             jsonOf("after", row.errors.after) + "}";
   }

@@ -6,6 +6,7 @@
 #include "hammer_loads/bench/cost_table.h"
 #include "hammer_loads/bench/drawing_table.h"
 #include "hammer_loads/bench/elastic_table.h"
+#include "hammer_loads/bench/life_table.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_table.h"
 #include "hammer_loads/commands/command_line.h"
@@ -58,6 +59,10 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << accuracy::markdown(accuracy::drawingTable(settings, kDrawings));
     return "";
   }
+  if (only == "life") {
+    std::cout << accuracy::lifeMarkdown(accuracy::boomTable(), accuracy::elasticTable(settings));
+    return "";
+  }
   if (only == "elastic") {
     const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
     std::cout << accuracy::markdown(elastic);
@@ -76,6 +81,7 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
     const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
     std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
+    std::cout << "\n### Damage-equivalent ranges\n\n" << accuracy::lifeMarkdown(boom, elastic);
     std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
     json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
             (kMachines + accuracy::json(machines)) + ",\n" + (kBoom + accuracy::json(boom)) + ",\n" +
@@ -93,8 +99,9 @@ int run(int argc, const char* const* argv) {
   addParamsOption(line, files);
   line.option("--json", json_file, "also write the figures to this file, which must not exist");
   line.flag("--force", force, "replace that file if this command wrote it");
-  line.option("--only", only, "one of the two parts, or drawings or elastic machines alone")
-      .oneOf({"costs", "sessions", "drawings", "elastic"});
+  line.option("--only", only,
+              "one of the two parts, or drawings, elastic machines or damage-equivalent ranges (life) alone")
+      .oneOf({"costs", "sessions", "drawings", "elastic", "life"});
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   const std::optional<Settings> settings = loadOrReport(files);

@@ -101,12 +101,13 @@ constexpr int countSeen() noexcept {
 }
 /// Its place in the table; a name that is not there does not compile where that is asked for at compile time.
 constexpr int indexOfUnknown(const char* name) {
-  for (std::size_t i = 0; i < kUnknowns.size(); ++i) {
+  std::size_t i = 0;
+  for (bool found = false; i < kUnknowns.size() && !found; i += !found) {
     const char *a = kUnknowns[i].name, *b = name;
     while (*a != '\0' && *a == *b) ++a, ++b;
-    if (*a == *b) return static_cast<int>(i);
+    found = *a == *b;
   }
-  throw "no such unknown";
+  return i < kUnknowns.size() ? static_cast<int>(i) : throw "no such unknown";  // in one expression, for GCC 9
 }
 
 }  // namespace hammer_loads

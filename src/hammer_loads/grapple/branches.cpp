@@ -165,7 +165,8 @@ Branches enumerateBranches(const LeverGroup& group, Planar a) noexcept {
     return collector.result;
   }
   collector.findSelfMotion();
-  for (const std::complex<double>& t : roots) {
+  for (Eigen::Index i = 0; i < roots.size(); ++i) {  // Eigen 3.3 has no begin()
+    const std::complex<double> t = roots[i];
     if (!(std::abs(t.imag()) <= kNearlyReal * (1.0 + std::norm(t)))) continue;
     // A double root comes as a conjugate pair: its two members start on either side.
     collector.collectAt(alpha0 + 2.0 * std::atan(t.real() + t.imag()));

@@ -8,8 +8,8 @@ namespace hammer_loads {
 namespace {
 
 double* put(const Wrench& wrench, double* place) noexcept {
-  place = std::copy(wrench.force.begin(), wrench.force.end(), place);
-  return std::copy(wrench.torque.begin(), wrench.torque.end(), place);
+  place = std::copy_n(wrench.force.data(), 3, place);
+  return std::copy_n(wrench.torque.data(), 3, place);
 }
 
 }  // namespace

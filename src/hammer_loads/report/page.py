@@ -20,18 +20,19 @@ from report.sensor_health import sensor_health
 from report.subjects import subjects_of
 from report.turn_pictures import turn_pictures
 
-DYGRAPHS = "/usr/share/javascript/dygraphs/"  # Debian's libjs-dygraphs
 HERE = pathlib.Path(__file__).resolve().parent
+# Beside this folder where it is installed, else at the top of the source.
+DYGRAPHS = next((place for place in (up / "third_party" / "dygraphs" for up in (HERE.parent, HERE.parents[2]))
+                 if place.is_dir()), HERE.parent / "third_party" / "dygraphs")
 GENERATOR = '<meta name="generator" content="hammer_loads report">'
 MOST_IN_FULL = 4  # machines; beyond, the page compares them and no more
 
 
-def file_text(path, package=None):
+def file_text(path):
     try:
         return pathlib.Path(path).read_text(encoding="utf-8")
     except OSError as error:
-        hint = f"; install the package {package}" if package else ""
-        raise Problem(f"{path}: cannot be read: {error.strerror}{hint}")
+        raise Problem(f"{path}: cannot be read: {error.strerror}")
 
 
 def why_page_must_stay(name):
@@ -90,8 +91,8 @@ def page(databases, version, only_machine=None):
     """The page's bytes: the same for the same files."""
     style = file_text(HERE / "page.css")
     script = file_text(HERE / "page.js")
-    dygraphs = file_text(DYGRAPHS + "dygraph.min.js", "libjs-dygraphs")
-    dygraphs_style = file_text(DYGRAPHS + "dygraph.min.css", "libjs-dygraphs")
+    dygraphs = file_text(DYGRAPHS / "dygraph.min.js")
+    dygraphs_style = file_text(DYGRAPHS / "dygraph.min.css")
     subjects = [s for database in databases for s in subjects_of(database, only_machine)]
     if all(d.kind != "fleet" for d in databases):
         distinct_labels(subjects)

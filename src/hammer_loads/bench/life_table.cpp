@@ -1,0 +1,18 @@
+#include "hammer_loads/bench/life_table.h"
+
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads::accuracy {
+
+std::string lifeMarkdown(const std::vector<BoomRow>& boom, const std::vector<ElasticRow>& elastic) {
+  std::string text = "| machine | sensors | hull force z | joint torque | bending |\n|---|---|---|---|---|\n";
+  for (const BoomRow& r : boom)
+    text += format("| %s | %s | %+.1f %% | %+.1f %% | %+.1f %% |\n", r.machine.c_str(), r.sensors.c_str(),
+                   100.0 * r.life_force, 100.0 * r.life_torque, 100.0 * r.life_section);
+  for (const ElasticRow& r : elastic)
+    if (r.level == Level::kLinkage)
+      text += format("| %s | none | %+.1f %% | | |\n", r.machine.c_str(), 100.0 * r.errors.life);
+  return text;
+}
+
+}  // namespace hammer_loads::accuracy

@@ -1,0 +1,41 @@
+#include "hammer_loads/bench/life_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hammer_loads::accuracy {
+namespace {
+
+/// Blows of different strength over a weight that drifts.
+double load(int i) { return 1e4 * std::sin(0.21 * i) * (2.0 + std::sin(0.013 * i)) + 3e3 * std::sin(0.0017 * i); }
+
+LifeError errorOf(double factor, double offset) {
+  LifeError error;
+  for (int i = 0; i < 20000; ++i) error.add(factor * load(i) + offset, load(i));
+  return error;
+}
+
+/// A range of every cycle that is 3 % too large makes the equivalent one 3 % too large, at any slope.
+TEST(LifeError, IsTheFactorOfTheLoad) {
+  EXPECT_NEAR(errorOf(1.03, 0.0).error(), 0.03, 1e-12);
+  EXPECT_NEAR(errorOf(0.9, 0.0).error(), -0.1, 1e-12);
+}
+
+TEST(LifeError, AConstantErrorCostsNothing) { EXPECT_NEAR(errorOf(1.0, 5e4).error(), 0.0, 1e-12); }
+
+/// One range r among n of size 1: (r^m + n)^(1/m) against (1 + n)^(1/m), from the definition.
+TEST(LifeError, ASingleCycleCountsByItsPower) {
+  constexpr int kCycles = 100;
+  LifeError error;
+  for (int i = 0; i < kCycles; ++i) {
+    const double top = i == kCycles / 2 ? 2.0 : 1.0;
+    error.add(0.0, 0.0), error.add(top, 1.0);
+  }
+  error.add(0.0, 0.0);
+  EXPECT_NEAR(error.error(), std::pow((std::pow(2.0, kLifeSlope) + kCycles - 1) / kCycles, 1.0 / kLifeSlope) - 1.0,
+              1e-12);
+}
+
+}  // namespace
+}  // namespace hammer_loads::accuracy
