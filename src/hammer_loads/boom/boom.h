@@ -24,6 +24,8 @@ struct BoomParameters {
   VibrationSettings vibration;
   std::optional<Supports> supports;         ///< [m]; nothing: not known
   std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
+  double link_mass_deviation{0.03};         ///< standard, of each link that is not weighed, relative [-]
+  double link_com_deviation{0.02};          ///< standard, of its centre of mass in x and z each [m]
   double rigid_tolerance{};                 ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
