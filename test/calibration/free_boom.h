@@ -24,7 +24,8 @@ class OperatorMotion {
       const std::size_t joint = moves_.size() % 3;
       const auto [low, high] = kRange[joint];
       const bool up = at[joint] < 0.5 * (low + high);
-      const double to = up ? between(random, 0.5 * (low + high) + 0.1, high) : between(random, low, 0.5 * (low + high) - 0.1);
+      const double to =
+          up ? between(random, 0.5 * (low + high) + 0.1, high) : between(random, low, 0.5 * (low + high) - 0.1);
       const double lasts = between(random, 2.0, 5.0);
       moves_.push_back({joint, time, lasts, at[joint], to});
       at[joint] = to, time += lasts + 0.3;
@@ -57,12 +58,12 @@ class OperatorMotion {
 struct FreeBoom {
   PlanarChain<3> chain;  ///< boom, arm, bracket with hull
   std::array<simulation::OilCylinder, 3> cylinders;
-  std::array<double, 3> friction{};        ///< over the force [-]
-  std::array<double, 3> friction_force{};  ///< [N]
-  std::array<double, 3> zero{};            ///< [rad]
-  std::array<double, 3> offset{};          ///< of the bore's pressure [Pa]
-  std::array<double, 3> gain{};            ///< of both pressures, less one [-]
-  double joint_rate{50.0}, pressure_rate{100.0};      ///< [Hz]
+  std::array<double, 3> friction{};               ///< over the force [-]
+  std::array<double, 3> friction_force{};         ///< [N]
+  std::array<double, 3> zero{};                   ///< [rad]
+  std::array<double, 3> offset{};                 ///< of the bore's pressure [Pa]
+  std::array<double, 3> gain{};                   ///< of both pressures, less one [-]
+  double joint_rate{50.0}, pressure_rate{100.0};  ///< [Hz]
   double joint_noise{2e-4}, pressure_noise{2e4};  ///< [rad], [Pa]
 
   /// As the shipped description and boom file have it.
@@ -85,7 +86,8 @@ struct FreeBoom {
       link.com += std::complex<double>(0.03 * normal(random), 0.03 * normal(random));
       boom.friction[k] = between(random, 0.005, 0.05);
       boom.friction_force[k] = between(random, 0.0, 0.005) * 14e6 * boom.cylinders[k].bore_area;
-      boom.zero[k] = 0.005 * normal(random), boom.offset[k] = 5e4 * normal(random), boom.gain[k] = 0.003 * normal(random);
+      boom.zero[k] = 0.005 * normal(random), boom.offset[k] = 5e4 * normal(random),
+      boom.gain[k] = 0.003 * normal(random);
     }
     return boom;
   }
@@ -129,7 +131,8 @@ struct FreeBoom {
       for (std::size_t k = 0; k < 3; ++k) {
         const simulation::OilCylinder& c = cylinders[k];
         const double arm = c.arm(q[k]), force = -load[k] / arm, oil = force + rubbing(k, force, arm * qd[k]);
-        const double back = 8e5 + 4e5 * std::sin(0.7 * t + static_cast<double>(k));  // of the valve, in the other chamber
+        const double back =
+            8e5 + 4e5 * std::sin(0.7 * t + static_cast<double>(k));  // of the valve, in the other chamber
         const double bore = oil > 0.0 ? (oil + back * c.rod_area) / c.bore_area : back;
         const double rod = oil > 0.0 ? back : (back * c.bore_area - oil) / c.rod_area;
         for (std::size_t chamber = 0; chamber < 2; ++chamber) {

@@ -144,15 +144,31 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
 }
 
 bool hasBoomKey(const ParameterMap& parameters) {
-  constexpr const char* kKeys[] = {"root_link",         "tip_link",
-                                   "cylinders",         "bulk_modulus_Pa",
-                                   "damping_ratio",     "mode_refresh_angle_rad",
-                                   "rigid_tolerance",   "sections",
-                                   "weighed_links",     "link_mass_deviation",
+  constexpr const char* kKeys[] = {"root_link",
+                                   "tip_link",
+                                   "cylinders",
+                                   "bulk_modulus_Pa",
+                                   "damping_ratio",
+                                   "mode_refresh_angle_rad",
+                                   "rigid_tolerance",
+                                   "sections",
+                                   "weighed_links",
+                                   "link_mass_deviation",
                                    "link_com_deviation_m",
-                                   "support_front_x_m", "support_front_half_width_m",
-                                   "support_rear_x_m",  "support_rear_half_width_m"};
+                                   "support_front_x_m",
+                                   "support_front_half_width_m",
+                                   "support_rear_x_m",
+                                   "support_rear_half_width_m"};
   return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return parameters.count(key) != 0; });
+}
+
+std::string boomYaml(const std::string& parameters) {
+  std::vector<std::string> problems;
+  std::optional<ParameterMap> map = parameterMap(YAML::Load(parameters), {}, problems);
+  if (!map || !hasBoomKey(*map)) return {};
+  ParameterReader reader(*std::move(map));
+  readBoomParameters(reader);
+  return reader.yaml();
 }
 
 }  // namespace hammer_loads
