@@ -53,21 +53,28 @@ BoomCalibration calibrated(const FreeBoom& machine, std::mt19937& random, double
 TEST(BoomCalibration, WeighsWhatADrawingHasWrong) {
   std::mt19937 random(1);
   double given = 0.0;
-  for (int i = 0; i < 6; ++i) {
+  int joints = 0, weight_as_asked = 0, friction_as_asked = 0;
+  for (int i = 0; i < 8; ++i) {
     const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
     const BoomCalibration found = calibrated(machine, random);
     ASSERT_EQ(found.problem, "");
     EXPECT_TRUE(found.determined());
     const Pose3 error = staticErrors(machine, found.found, random);
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_LT(error[k], 0.015) << i << found.joints[k].joint;
+      // A hammer that hangs near the vertical weighs little there: beyond 1.5 % it is what it is said to be.
+      EXPECT_LT(error[k], std::max(0.015, 3.0 * found.joints[k].part())) << i << found.joints[k].joint;
+      ++joints, weight_as_asked += error[k] < 0.015;
       const CylinderFit& cylinder = found.cylinders[k];
       const double truth = machine.friction_force[k] + machine.friction[k] * cylinder.force;
-      EXPECT_NEAR(cylinder.friction, truth, 0.3 * truth) << i << cylinder.name;
+      EXPECT_NEAR(cylinder.friction, truth, std::max(0.3 * truth, 3.0 * cylinder.friction_deviation))
+          << i << cylinder.name;
+      friction_as_asked += std::abs(cylinder.friction - truth) < 0.3 * truth;
       EXPECT_LT(cylinder.held_out, 2.0 * cylinder.left) << i << cylinder.name;
     }
     for (const double e : staticErrors(machine, test::shippedBasis().parameters, random)) given = std::max(given, e);
   }
+  EXPECT_GE(weight_as_asked, static_cast<int>(0.8 * joints)) << joints;
+  EXPECT_GE(friction_as_asked, static_cast<int>(0.9 * joints)) << joints;
   EXPECT_GT(given, 0.08);  // the test would see a calibration that does nothing
 }
 
@@ -101,10 +108,9 @@ TEST(BoomCalibration, KnowsHowWellItKnows) {
       ++seals, seals_within += std::abs(friction(fit.x) - truth) < 2.0 * deviation;
     }
   }
-  std::cout << "weights " << weights_within << "/" << weights << " seals " << seals_within << "/" << seals << "\n";
-  EXPECT_GE(weights_within, static_cast<int>(0.88 * weights));  // 95.4 % of a normal error
-  EXPECT_LE(weights_within, static_cast<int>(0.995 * weights));
-  EXPECT_GE(seals_within, static_cast<int>(0.85 * seals));
+  EXPECT_GE(weights_within, static_cast<int>(0.88 * weights)) << weights;  // 95.4 % of a normal error
+  EXPECT_LE(weights_within, static_cast<int>(0.995 * weights)) << weights;
+  EXPECT_GE(seals_within, static_cast<int>(0.88 * seals)) << seals;
 }
 
 /// A boom weighed without a load says what hangs on it.
@@ -181,11 +187,9 @@ TEST(BoomCalibration, NamesPressuresThatAreOtherwiseThanSaid) {
 TEST(BoomCalibration, SaysWhichJointMovedTooLittle) {
   std::mt19937 random(6);
   const FreeBoom machine = FreeBoom::drawn(random);
-  BoomRecording still = machine.record(random, 120.0);
-  EXPECT_EQ(calibrateBoom(test::shippedBasis(), {{still, {}}}).problem, "");
-  for (double& q : still.joint[3].value) q = -0.5;
-  const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{still, {}}});
-  EXPECT_NE(found.problem.find("hammer_joint"), std::string::npos) << found.problem;
+  EXPECT_EQ(calibrateBoom(test::shippedBasis(), {{machine.record(random, 120.0), {}}}).problem, "");
+  const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{machine.record(random, 20.0), {}}});
+  EXPECT_NE(found.problem.find("_joint: surely moves at"), std::string::npos) << found.problem;
 }
 
 TEST(BoomCalibration, LeavesOutWhatIsHammered) {
@@ -202,7 +206,7 @@ TEST(BoomCalibration, LeavesOutWhatIsHammered) {
     trace.time.erase(from, to);
   }
   const BoomPoints part = pointsOf(recording);
-  EXPECT_NEAR(static_cast<double>(part.left_out), 15.0 / (2.0 * whole.points[0].half_width), 4.0);
+  EXPECT_NEAR(static_cast<double>(part.left_out), 15.0 / whole.points[0].half_width, 5.0);
   for (const BoomPoint& point : part.points) {
     EXPECT_FALSE(point.time > 20.0 && point.time < 30.0);
     EXPECT_FALSE(point.time > 40.2 && point.time < 44.8);

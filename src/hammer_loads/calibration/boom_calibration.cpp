@@ -10,10 +10,10 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kStrongCorrelation = 0.9;         // correlation
-constexpr std::size_t kLeastRows = 30;  // per cylinder: 12 s of motion, both ways
-constexpr std::size_t kMostPoses = 40;  // at which static torques are judged
-constexpr double kSurprise = 3.0;       // standard deviations
+constexpr double kStrongCorrelation = 0.9;  // correlation
+constexpr std::size_t kLeastRows = 60;      // per cylinder: 12 s of motion, both ways
+constexpr std::size_t kMostPoses = 40;      // at which static torques are judged
+constexpr double kSurprise = 3.0;           // standard deviations
 
 double rms(const std::vector<double>& values) {
   double square = 0.0;
@@ -56,7 +56,8 @@ Eigen::Vector2d firstMoment(const Boom& boom, int joint) {
   const Pose to_link = pose.link(first).inverse();
   for (int i = first; i < chain.links(); ++i) {
     const PointMass& body = chain.link(i).body;
-    const Eigen::Vector3d at_B = i < last ? Eigen::Vector3d(pose.link(i) * body.p) : Eigen::Vector3d(pose.link(last).translation());
+    const Eigen::Vector3d at_B =
+        i < last ? Eigen::Vector3d(pose.link(i) * body.p) : Eigen::Vector3d(pose.link(last).translation());
     moment += body.mass * (to_link * at_B);
   }
   return {moment.x(), moment.z()};
@@ -156,8 +157,7 @@ class Finder {
         if (late[i].cylinder == k) out.push_back(unseen[static_cast<Eigen::Index>(i)]);
       c.rows = force.size(), c.force = rms(force), c.left = rms(left), c.before = rms(was), c.held_out = rms(out);
       const auto friction = [&](const Eigen::VectorXd& x) {
-        return model.valueOf(x, BoomUnknown::kFrictionForce, k) +
-               c.force * model.valueOf(x, BoomUnknown::kFriction, k);
+        return model.valueOf(x, BoomUnknown::kFrictionForce, k) + c.force * model.valueOf(x, BoomUnknown::kFriction, k);
       };
       c.friction = friction(fit.x), c.friction_deviation = deviationOf(fit, gradientOf(friction, fit.x));
       result_.cylinders.push_back(c);
@@ -215,20 +215,32 @@ class Finder {
       e.meaning = format("given %.6g", before);
     };
     switch (u.kind) {
-      case BoomUnknown::kMass: return absolute(link.mass, given.mass, given.mass, "kg");
-      case BoomUnknown::kComX: return absolute(link.com_x, given.com_x, 1.0, "m");
-      case BoomUnknown::kComZ: return absolute(link.com_z, given.com_z, 1.0, "m");
-      case BoomUnknown::kInertia: return absolute(link.inertia, given.inertia, given.inertia, "kg m2");
+      case BoomUnknown::kMass:
+        return absolute(link.mass, given.mass, link.mass, "kg");
+      case BoomUnknown::kComX:
+        return absolute(link.com_x, given.com_x, 1.0, "m");
+      case BoomUnknown::kComZ:
+        return absolute(link.com_z, given.com_z, 1.0, "m");
+      case BoomUnknown::kInertia:
+        return absolute(link.inertia, given.inertia, link.inertia, "kg m2");
       case BoomUnknown::kFrictionForce:
         cylinder.friction_force_deviation = e.deviation;
         return absolute(e.value, u.given, 1.0, "N");
-      case BoomUnknown::kFriction: cylinder.friction_deviation = e.deviation; return absolute(e.value, u.given, 1.0, "");
+      case BoomUnknown::kFriction:
+        cylinder.friction_deviation = e.deviation;
+        return absolute(e.value, u.given, 1.0, "");
       case BoomUnknown::kOffset:
         cylinder.pressure_offset_deviation = e.deviation;
         return absolute(e.value, u.given, 1.0, "Pa");
-      case BoomUnknown::kZero: cylinder.joint_zero_deviation = e.deviation; return absolute(e.value, u.given, 1.0, "rad");
-      case BoomUnknown::kViscous: e.unit = "N s/m", e.meaning = "not of the boom file"; return;
-      default: e.meaning = "not of the boom file; part by which its force is shown too large"; return;
+      case BoomUnknown::kZero:
+        cylinder.joint_zero_deviation = e.deviation;
+        return absolute(e.value, u.given, 1.0, "rad");
+      case BoomUnknown::kViscous:
+        e.unit = "N s/m", e.meaning = "not of the boom file";
+        return;
+      default:
+        e.meaning = "not of the boom file; part by which its force is shown too large";
+        return;
     }
   }
 
@@ -254,7 +266,8 @@ class Finder {
         result_.remarks.push_back(format("%s is %.1f deviations off what was given", name.c_str(), std::abs(fit.x[i])));
       for (Eigen::Index j = 0; j < i; ++j) {
         const double r = fit.covariance(i, j) / (scale[i] * scale[j]);
-        if (std::abs(r) > kStrongCorrelation) result_.correlations.push_back({model.nameOf(static_cast<std::size_t>(j)), name, r});
+        if (std::abs(r) > kStrongCorrelation)
+          result_.correlations.push_back({model.nameOf(static_cast<std::size_t>(j)), name, r});
       }
     }
   }

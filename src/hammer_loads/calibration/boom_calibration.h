@@ -29,18 +29,18 @@ struct JointWeight {
 struct CylinderFit {
   std::string name;
   std::size_t rows{};
-  double force{};     ///< rms [N]
-  double left{};      ///< rms, with the values found [N]
-  double before{};    ///< rms, with those given [N]
-  double held_out{};  ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
-  double friction{};  ///< at that force [N]
+  double force{};               ///< rms [N]
+  double left{};                ///< rms, with the values found [N]
+  double before{};              ///< rms, with those given [N]
+  double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
+  double friction{};            ///< at that force [N]
   double friction_deviation{};  ///< standard [N]
 };
 
 /// One row as a picture shows it.
 struct BoomResidual {
   std::size_t cylinder{};
-  double angle{};   ///< of its joint [rad]
+  double angle{};  ///< of its joint [rad]
   bool extends{};
   double before{}, after{};  ///< [N]
 };

@@ -8,12 +8,12 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kLeastRodSpeed = 0.002;  // [m/s]: slower, seals stick and slip
-constexpr double kSurelyMoves = 3.0;      // standard deviations of the speed
-constexpr double kHuber = 3.0;            // standard deviations of what is left
+constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
+constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
+constexpr double kHuber = 3.0;           // standard deviations of what is left
 constexpr int kMostRounds = 15;
-constexpr double kSettled = 1e-3;  // of a standard deviation
-constexpr double kStep = 0.05;     // of differences, in standard deviations before the recording
+constexpr double kSettled = 1e-3;              // of a standard deviation
+constexpr double kStep = 0.05;                 // of differences, in standard deviations before the recording
 constexpr std::size_t kNeighbouringRows = 10;  // of a row that may be alike
 
 bool isFriction(BoomUnknown kind) {

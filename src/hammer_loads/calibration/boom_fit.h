@@ -27,9 +27,9 @@ struct BoomFit {
   bool converged{};
 };
 
-/// Gauss-Newton on squares of what is left and of the unknowns, each over its variance; what is left is large where it is
-/// beyond three deviations, and counts less (Huber). Noise is that of what is left, per cylinder, and what is left of
-/// neighbours may be alike: then so many of them count as one. Friction is not below zero.
+/// Gauss-Newton on squares of what is left and of the unknowns, each over its variance; what is left is large where it
+/// is beyond three deviations, and counts less (Huber). Noise is that of what is left, per cylinder, and what is left
+/// of neighbours may be alike: then so many of them count as one. Friction is not below zero.
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
 
 /// What rows show more than the model with values x says [N].

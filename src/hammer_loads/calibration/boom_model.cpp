@@ -79,17 +79,28 @@ std::string BoomModel::nameOf(std::size_t unknown) const {
   const std::string& cylinder = given_.cylinders()[u.of].parameters().name;
   const std::string& link = given_.chain().link(links_[u.of]).name;
   switch (u.kind) {
-    case BoomUnknown::kMass: return link + "_mass_kg";
-    case BoomUnknown::kComX: return link + "_com_x_m";
-    case BoomUnknown::kComZ: return link + "_com_z_m";
-    case BoomUnknown::kInertia: return link + "_inertia_kg_m2";
-    case BoomUnknown::kFrictionForce: return cylinder + "_friction_force_N";
-    case BoomUnknown::kFriction: return cylinder + "_friction";
-    case BoomUnknown::kViscous: return cylinder + "'s friction by speed";
-    case BoomUnknown::kOffset: return cylinder + "_pressure_offset_Pa";
-    case BoomUnknown::kGain: return cylinder + "'s bore and gain of its sensors";
-    case BoomUnknown::kZero: return cylinder + "_joint_zero_rad";
-    case BoomUnknown::kTipWeight: break;
+    case BoomUnknown::kMass:
+      return link + "_mass_kg";
+    case BoomUnknown::kComX:
+      return link + "_com_x_m";
+    case BoomUnknown::kComZ:
+      return link + "_com_z_m";
+    case BoomUnknown::kInertia:
+      return link + "_inertia_kg_m2";
+    case BoomUnknown::kFrictionForce:
+      return cylinder + "_friction_force_N";
+    case BoomUnknown::kFriction:
+      return cylinder + "_friction";
+    case BoomUnknown::kViscous:
+      return cylinder + "'s friction by speed";
+    case BoomUnknown::kOffset:
+      return cylinder + "_pressure_offset_Pa";
+    case BoomUnknown::kGain:
+      return cylinder + "'s bore and gain of its sensors";
+    case BoomUnknown::kZero:
+      return cylinder + "_joint_zero_rad";
+    case BoomUnknown::kTipWeight:
+      break;
   }
   return {};
 }
@@ -101,11 +112,20 @@ std::vector<WeighedLink> BoomModel::linksAt(const Eigen::VectorXd& x) const {
     const double value = valueOf(x, i);
     WeighedLink* link = unknowns_[i].kind == BoomUnknown::kTipWeight ? nullptr : &links[unknowns_[i].of];
     switch (unknowns_[i].kind) {
-      case BoomUnknown::kMass: link->mass *= 1.0 + value; break;
-      case BoomUnknown::kComX: link->com_x += value; break;
-      case BoomUnknown::kComZ: link->com_z += value; break;
-      case BoomUnknown::kInertia: link->inertia *= 1.0 + value; break;
-      default: break;
+      case BoomUnknown::kMass:
+        link->mass *= std::exp(value);
+        break;
+      case BoomUnknown::kComX:
+        link->com_x += value;
+        break;
+      case BoomUnknown::kComZ:
+        link->com_z += value;
+        break;
+      case BoomUnknown::kInertia:
+        link->inertia *= std::exp(value);
+        break;
+      default:
+        break;
     }
   }
   return links;
@@ -124,11 +144,20 @@ BoomParameters BoomModel::parametersAt(const Eigen::VectorXd& x) const {
     CylinderParameters& cylinder = parameters.cylinders[unknowns_[i].of];
     const double value = valueOf(x, i);
     switch (unknowns_[i].kind) {
-      case BoomUnknown::kFrictionForce: cylinder.friction_force = value; break;
-      case BoomUnknown::kFriction: cylinder.friction = value; break;
-      case BoomUnknown::kOffset: cylinder.pressure_offset = value; break;
-      case BoomUnknown::kZero: cylinder.joint_zero = value; break;
-      default: break;
+      case BoomUnknown::kFrictionForce:
+        cylinder.friction_force = value;
+        break;
+      case BoomUnknown::kFriction:
+        cylinder.friction = value;
+        break;
+      case BoomUnknown::kOffset:
+        cylinder.pressure_offset = value;
+        break;
+      case BoomUnknown::kZero:
+        cylinder.joint_zero = value;
+        break;
+      default:
+        break;
     }
   }
   return parameters;

@@ -8,7 +8,7 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kLeastHalfWidth = 0.20;     // [s]: an operator's motion is a parabola over it; the oil's modes average
+constexpr double kLeastHalfWidth = 0.20;  // [s]: an operator's motion is a parabola over it; the oil's modes average
 constexpr std::ptrdiff_t kLeastReadings = 7;  // of which four show no noise
 
 /// A parabola through the readings around an instant.
@@ -27,7 +27,8 @@ std::optional<LocalFit> fitAround(const Trace& trace, double time, double half_w
   double square = 0.0;
   const double level = trace.value[static_cast<std::size_t>(first - trace.time.begin())];
   for (auto it = first; it != last; ++it) {
-    const double s = (*it - time) / half_width, y = trace.value[static_cast<std::size_t>(it - trace.time.begin())] - level;
+    const double s = (*it - time) / half_width,
+                 y = trace.value[static_cast<std::size_t>(it - trace.time.begin())] - level;
     const Eigen::Vector3d row(1.0, s, 0.5 * s * s);
     normal += row * row.transpose(), right += y * row, square += y * y;
   }
@@ -66,8 +67,8 @@ std::optional<BoomPoint> pointAt(const BoomRecording& recording, double time, do
   BoomPoint point;
   point.time = time, point.half_width = half_width;
   const auto joints = static_cast<Eigen::Index>(recording.joint.size());
-  for (JointVector* v : {&point.motion.position, &point.motion.velocity, &point.motion.acceleration,
-                         &point.rate_deviation})
+  for (JointVector* v :
+       {&point.motion.position, &point.motion.velocity, &point.motion.acceleration, &point.rate_deviation})
     v->setZero(joints);
   for (Eigen::Index j = 0; j < joints; ++j) {
     const Trace& trace = recording.joint[static_cast<std::size_t>(j)];
@@ -99,7 +100,7 @@ BoomPoints pointsOf(const BoomRecording& recording) {
   });
   if (!(to > from) || !std::isfinite(to - from)) return result;
   result.seconds = to - from;
-  for (double time = from + half_width; time <= to - half_width; time += 2.0 * half_width) {
+  for (double time = from + half_width; time <= to - half_width; time += half_width) {
     const bool works = worksAround(recording.working, time, half_width);
     std::optional<BoomPoint> point = works ? std::nullopt : pointAt(recording, time, half_width);
     if (point) result.points.push_back(*std::move(point));

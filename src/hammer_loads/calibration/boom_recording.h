@@ -25,11 +25,11 @@ struct BoomRecording {
 /// What all sensors say of one instant, from a parabola in time through the readings around it: joints and pressures
 /// are smoothed alike, so that the one fits the other.
 struct BoomPoint {
-  double time{};                                       ///< [s]
-  JointMotion motion;                                  ///< as read
-  JointVector rate_deviation;                          ///< standard, of motion.velocity [rad/s]
+  double time{};                                             ///< [s]
+  JointMotion motion;                                        ///< as read
+  JointVector rate_deviation;                                ///< standard, of motion.velocity [rad/s]
   std::array<std::array<double, 2>, kMaxJoints> pressure{};  ///< per cylinder: bore, rod [Pa]
-  double half_width{};                                 ///< of the readings around it [s]
+  double half_width{};                                       ///< of the readings around it [s]
 };
 
 struct BoomPoints {
@@ -38,7 +38,7 @@ struct BoomPoints {
   double seconds{};        ///< from the first instant that all sensors know to the last
 };
 
-/// At equal intervals that share no reading.
+/// At equal intervals; neighbours share half of their readings.
 BoomPoints pointsOf(const BoomRecording& recording);
 
 }  // namespace hammer_loads::calibration

@@ -9,15 +9,16 @@
 namespace hammer_loads::calibration {
 namespace {
 
-constexpr double kFits = 0.5;    // of the force, rms: masses of a drawing, friction and zeros are within it
-constexpr double kBetter = 0.5;  // another reading of it is off by less than this part
+constexpr double kFits = 0.5;         // of the force, rms: masses of a drawing, friction and zeros are within it
+constexpr double kBetter = 0.5;       // another reading of it is off by less than this part
 constexpr double kBeyondLimit = 0.3;  // [rad]
 
 struct PressureUnit {
   const char* name;
   double pascal;
 };
-constexpr std::array<PressureUnit, 5> kUnits{{{"Pa", 1.0}, {"bar", 1e5}, {"psi", 6894.757}, {"kPa", 1e3}, {"MPa", 1e6}}};
+constexpr std::array<PressureUnit, 5> kUnits{
+    {{"Pa", 1.0}, {"bar", 1e5}, {"psi", 6894.757}, {"kPa", 1e3}, {"MPa", 1e6}}};
 
 /// One way to read a cylinder's pressures.
 struct ReadAs {
@@ -56,7 +57,8 @@ void checkCylinder(const BoomModel& model, const BoomPoints& recording, std::siz
   for (const BoomPoint& point : recording.points) {
     model.move(boom, model.zero(), point);
     const int joint = boom.cylinders()[cylinder].joint();
-    expected.push_back(boom.cylinders()[cylinder].load(boom.cylinderPosition(cylinder), boom.steadyTorque(joint)).force);
+    expected.push_back(
+        boom.cylinders()[cylinder].load(boom.cylinderPosition(cylinder), boom.steadyTorque(joint)).force);
   }
   const double as_said = misfit(model, expected, recording, cylinder, {cylinder, false, kUnits[0]});
   if (as_said <= kFits) return;
@@ -76,9 +78,10 @@ void checkCylinder(const BoomModel& model, const BoomPoints& recording, std::siz
     lines.push_back(format("%s: its pressures are off the boom's weight by %.0f %%, read as%s by %.0f %%", name.c_str(),
                            100.0 * as_said, textOf(best, cylinder, model).c_str(), 100.0 * least));
   } else {
-    lines.push_back(format("%s: its pressures are off the boom's weight by %.0f %%, must be within %.0f %%: topics, "
-                           "units, bore, anchors or masses are otherwise than given",
-                           name.c_str(), 100.0 * as_said, 100.0 * kFits));
+    lines.push_back(
+        format("%s: its pressures are off the boom's weight by %.0f %%, must be within %.0f %%: topics, "
+               "units, bore, anchors or masses are otherwise than given",
+               name.c_str(), 100.0 * as_said, 100.0 * kFits));
   }
 }
 
@@ -91,10 +94,10 @@ std::vector<std::string> misreadings(const BoomModel& model, const BoomPoints& r
     for (const BoomPoint& point : recording.points) {
       const double q = point.motion.position[j];
       if (q > chain.lower()[j] - kBeyondLimit && q < chain.upper()[j] + kBeyondLimit) continue;
-      lines.push_back(format("%s: %.4g rad, must be within the description's limits from %.4g to %.4g: in degrees, or of "
-                             "another zero",
-                             chain.jointNames()[static_cast<std::size_t>(j)].c_str(), q, chain.lower()[j],
-                             chain.upper()[j]));
+      lines.push_back(
+          format("%s: %.4g rad, must be within the description's limits from %.4g to %.4g: in degrees, or of "
+                 "another zero",
+                 chain.jointNames()[static_cast<std::size_t>(j)].c_str(), q, chain.lower()[j], chain.upper()[j]));
       break;
     }
   }
