@@ -71,7 +71,7 @@ TEST_F(CalibrateBoom, WritesABoomFileThatOtherCommandsRead) {
     boom->move({test::joints({0.0, q[0], q[1], q[2]}), test::kZero, test::kZero}, test::kLevel);
   for (int j = 1; j < 4; ++j) {
     const double right = truth[static_cast<std::size_t>(j - 1)];
-    EXPECT_NEAR(found.steadyTorque(j), right, 0.03 * std::abs(right)) << j;
+    EXPECT_NEAR(found.steadyTorque(j), right, 0.04 * std::abs(right)) << j;
   }
   EXPECT_GT(std::abs(given.steadyTorque(1) - truth[0]), 0.05 * std::abs(truth[0]));
   EXPECT_NEAR(found.cylinders()[0].parameters().friction + found.cylinders()[0].parameters().friction_force / 5e4, 0.02,

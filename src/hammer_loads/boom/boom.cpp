@@ -227,6 +227,12 @@ bool Boom::steelLoads(const Wrench& w_tip, const ChainLoads& links, SteelLoads& 
   return steel_.find({pose_, links, w_tip, at_.data()}, result);
 }
 
+JointVector Boom::jointZeros() const noexcept {
+  JointVector zeros = JointVector::Zero(chain_.joints());
+  for (const Cylinder& cylinder : cylinders_) zeros[cylinder.joint()] = cylinder.parameters().joint_zero;
+  return zeros;
+}
+
 RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {
   const double damping = vibration_.known() ? vibration_.mode(0).zeta : parameters_.vibration.damping_ratio;
   const double error = rigidError(vibration_.modes(), damping, hammerTorque(w_peak), pulse_length);

@@ -132,6 +132,8 @@ class Boom {
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 
   const Chain& chain() const noexcept { return chain_; }
+  /// What joints read at the description's zeros [rad], [m].
+  JointVector jointZeros() const noexcept;
   /// Where a cylinder stands at this pose.
   const CylinderPosition& cylinderPosition(std::size_t cylinder) const noexcept { return at_[cylinder]; }
   const std::vector<Cylinder>& cylinders() const noexcept { return cylinders_; }

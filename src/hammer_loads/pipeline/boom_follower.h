@@ -88,7 +88,8 @@ class BoomFollower {
   }
   /// Gauge pressure [Pa] of a cylinder, index as in Boom::cylinders(). Whether it was taken.
   bool pressure(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept {
-    return pressures_.update(stamp, cylinder, chamber, pressure);
+    const double offset = chamber == Chamber::kBore ? boom_.cylinders()[cylinder].parameters().pressure_offset : 0.0;
+    return pressures_.update(stamp, cylinder, chamber, pressure - offset);
   }
   /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
   /// until the next call.
