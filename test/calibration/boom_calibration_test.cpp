@@ -3,6 +3,7 @@
 
 #include "calibration/free_boom.h"
 #include "hammer_loads/calibration/reading_check.h"
+#include "hammer_loads/simulation/session.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -111,6 +112,39 @@ TEST(BoomCalibration, KnowsHowWellItKnows) {
   EXPECT_GE(weights_within, static_cast<int>(0.88 * weights)) << weights;  // 95.4 % of a normal error
   EXPECT_LE(weights_within, static_cast<int>(0.995 * weights)) << weights;
   EXPECT_GE(seals_within, static_cast<int>(0.88 * seals)) << seals;
+}
+
+/// The machine of the demo, which vibrates on its oil while it is driven: another one than that of free_boom.h.
+TEST(BoomCalibration, WeighsABoomOnItsOil) {
+  simulation::MachineSettings m = simulation::workingMo100();
+  m.hammer.drive_reaction_ratio = 1.0;
+  m.on_boom.on = true;
+  m.on_boom.seals.friction = 0.02;
+  m.on_boom.pressures = {200.0, 2e4, 6e6};
+  m.joint_rate = 100.0, m.joint_noise = 2e-4;
+  m.drive.start_time = 1e4, m.start_angle = 1e-9;
+  m.crank.rate = 10.0;
+  m.boom[1] = {-0.2, 0.45, 11.0, 0.0}, m.boom[2] = {1.3, 0.6, 7.0, 1.0}, m.boom[3] = {-0.8, 0.7, 5.0, 2.0};
+  m.duration = 120.0;
+  const simulation::Session session = simulation::recordSession(m);
+  BoomRecording recording;
+  recording.joint.resize(4), recording.pressure.resize(3);
+  const auto add = [&](Trace& trace, std::int64_t stamp, double value) {
+    trace.time.push_back(1e-9 * static_cast<double>(stamp - m.start_stamp)), trace.value.push_back(value);
+  };
+  for (const simulation::JointReading& reading : session.joints)
+    for (std::size_t j = 0; j < 4; ++j) add(recording.joint[j], reading.stamp, reading.position[j]);
+  for (const simulation::PressureReading& reading : session.pressures)
+    for (std::size_t k = 0; k < 3; ++k)
+      add(recording.pressure[k][0], reading.stamp, reading.bore[k]),
+          add(recording.pressure[k][1], reading.stamp, reading.rod[k]);
+  const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{recording, {}}});
+  ASSERT_EQ(found.problem, "");
+  EXPECT_TRUE(found.determined());
+  for (const JointWeight& joint : found.joints)
+    EXPECT_LT(joint.before, std::max(0.015 * joint.torque, 2.0 * joint.deviation)) << joint.joint;  // it is as given
+  for (const CylinderFit& cylinder : found.cylinders)
+    EXPECT_NEAR(cylinder.friction, 0.02 * cylinder.force, 0.3 * 0.02 * cylinder.force) << cylinder.name;
 }
 
 /// A boom weighed without a load says what hangs on it.

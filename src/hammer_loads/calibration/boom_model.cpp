@@ -32,6 +32,9 @@ WeighedLink together(WeighedLink link, double mass, double x, double z) {
   return link;
 }
 
+/// As much heavier as its link.
+void scale(PartBeyond& part, double by) { part.mass *= by, part.inertia_y *= by; }
+
 void replace(std::vector<WeighedLink>& links, const WeighedLink& link) {
   const auto same = std::find_if(links.begin(), links.end(), [&](const WeighedLink& l) { return l.name == link.name; });
   if (same == links.end())
@@ -105,6 +108,10 @@ std::string BoomModel::nameOf(std::size_t unknown) const {
   return {};
 }
 
+double BoomModel::massOf(const std::string& link) const {
+  return given_.chain().link(*given_.chain().linkIndex(link)).body.mass;
+}
+
 std::vector<WeighedLink> BoomModel::linksAt(const Eigen::VectorXd& x) const {
   std::vector<WeighedLink> links;
   for (const int index : links_) links.push_back(given_.chain().body(index));
@@ -131,14 +138,20 @@ std::vector<WeighedLink> BoomModel::linksAt(const Eigen::VectorXd& x) const {
   return links;
 }
 
+/// Sections are left out: a link's part beyond one may be heavier than the link on the way.
 BoomParameters BoomModel::withLinksAt(const Eigen::VectorXd& x) const {
   BoomParameters parameters = basis_.parameters;
+  parameters.sections.clear();
   for (const WeighedLink& link : linksAt(x)) replace(parameters.chain.weighed, link);
   return parameters;
 }
 
 BoomParameters BoomModel::parametersAt(const Eigen::VectorXd& x) const {
   BoomParameters parameters = withLinksAt(x);
+  parameters.sections = basis_.parameters.sections;
+  for (SectionParameters& section : parameters.sections)
+    for (const WeighedLink& link : linksAt(x))
+      if (section.beyond && section.link == link.name) scale(*section.beyond, link.mass / massOf(link.name));
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     if (unknowns_[i].kind == BoomUnknown::kTipWeight) continue;
     CylinderParameters& cylinder = parameters.cylinders[unknowns_[i].of];

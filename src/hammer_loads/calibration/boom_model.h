@@ -76,7 +76,8 @@ class BoomModel {
   std::optional<Boom> boomAt(const Eigen::VectorXd& x) const;
   /// Of a recording.
   std::optional<Boom> boomAt(const Eigen::VectorXd& x, std::size_t recording) const;
-  /// Boom file with these values, weights left out; deviations as in the basis.
+  /// Boom file with these values, weights left out; deviations as in the basis. Parts beyond sections are as much
+  /// heavier as their links.
   BoomParameters parametersAt(const Eigen::VectorXd& x) const;
   /// Zero of a cylinder's joint [rad].
   double jointZero(const Eigen::VectorXd& x, std::size_t cylinder) const;
@@ -94,6 +95,7 @@ class BoomModel {
 
  private:
   BoomParameters withLinksAt(const Eigen::VectorXd& x) const;
+  double massOf(const std::string& link) const;  ///< as given [kg]
   std::vector<WeighedLink> linksAt(const Eigen::VectorXd& x) const;
 
   BoomBasis basis_;

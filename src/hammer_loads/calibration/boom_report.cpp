@@ -139,6 +139,11 @@ std::string yamlOf(const BoomCalibration& c, const std::string& given, const std
   for (const WeighedLink& link : c.found.chain.weighed) names += (names.empty() ? "" : ", ") + link.name;
   lines.put("weighed_links", "[" + names + "]");
   for (const WeighedLink& link : c.found.chain.weighed) putLink(link, lines);
+  for (const SectionParameters& section : c.found.sections) {
+    if (!section.beyond) continue;
+    lines.put(section.name + "_section_mass_beyond_kg", section.beyond->mass);
+    lines.put(section.name + "_section_inertia_beyond_kg_m2", section.beyond->inertia_y);
+  }
   std::string text = std::string(kBoomYamlBegins) + " " + onOneLine(source) + ":\n";
   for (const JointWeight& joint : c.joints) text += "# " + jointLine(joint);
   for (const CylinderFit& cylinder : c.cylinders) text += "# " + cylinderLine(cylinder);
