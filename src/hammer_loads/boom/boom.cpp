@@ -140,6 +140,7 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   rows_in_plane_.setZero(rows);
   variance_.setZero(kFour * fours);
   deviation_.setZero(rows);
+  weight_deviation_ = zero;
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }

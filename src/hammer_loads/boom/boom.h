@@ -124,6 +124,9 @@ class Boom {
                   BoomDeviations& result) noexcept;
   /// The same by errors as they are, as where cylinders' forces are measured.
   void deviations(const LoadErrors& errors, BoomDeviations& result) noexcept;
+  /// Standard deviations of the weight's torques on the joints by the masses and centres of the links and the zeros of
+  /// the joints' sensors [N m]: the same in all samples at a pose. As of the last deviations(), zero before.
+  const JointVector& weightDeviation() const noexcept { return weight_deviation_; }
   /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
@@ -162,6 +165,7 @@ class Boom {
 
   JointMotion vibratingMotion() const noexcept;
   void findResponse() noexcept;
+  JointVector findWeightDeviation() const noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void arrangeResponse() noexcept;
   static constexpr Eigen::Index kFour = 4;
@@ -175,9 +179,10 @@ class Boom {
   Fours response_in_plane_;  ///< without inputs across the plane, and without the rows, half of all, that are zero then
   Eigen::VectorXi rows_in_plane_;  ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
-  JointVector response_at_;    ///< steady_position_ where it belongs; NaN: nowhere yet
-  Eigen::VectorXd variance_;   ///< one entry a row of the response used, in fours
-  Eigen::VectorXd deviation_;  ///< one entry a row
+  JointVector weight_deviation_;  ///< at response_at_
+  JointVector response_at_;       ///< steady_position_ where it belongs; NaN: nowhere yet
+  Eigen::VectorXd variance_;      ///< one entry a row of the response used, in fours
+  Eigen::VectorXd deviation_;     ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 
