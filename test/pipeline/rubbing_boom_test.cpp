@@ -36,5 +36,26 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
   }
 }
 
+/// What weighing found of the sensors is taken off wherever they are used.
+TEST(RubbingBoom, ZerosAndOffsetsOfTheBoomFileAreTakenOff) {
+  const simulation::Session right = rubbingSession(0.0);
+  simulation::Session wrong = right;
+  constexpr double kZero = 0.02, kOffset = 3e5;  // [rad], [Pa]
+  for (simulation::JointReading& reading : wrong.joints)
+    for (std::size_t k = 1; k < 4; ++k) reading.position[k] += kZero;
+  for (simulation::PressureReading& reading : wrong.pressures)
+    for (double& pressure : reading.bore) pressure += kOffset;
+  std::string keys = "boom_stiffness: identified\n";
+  const std::string without = keys;
+  for (const char* name : simulation::kBoomCylinders)
+    keys += format("%s_joint_zero_rad: %.9g\n%s_pressure_offset_Pa: %.9g\n", name, kZero, name, kOffset);
+  const accuracy::SensorsOnBoom sensors{true, true};
+  const BoomErrors as_right = errorsOf("right", right, without, sensors), told = errorsOf("told", wrong, keys, sensors),
+                   not_told = errorsOf("not told", wrong, without, sensors);
+  EXPECT_NEAR(told.worstTorque(), as_right.worstTorque(), 1e-4);
+  EXPECT_NEAR(told.rmsForce(), as_right.rmsForce(), 1e-4);
+  EXPECT_GT(not_told.worstTorque(), as_right.worstTorque() + 0.01);
+}
+
 }  // namespace
 }  // namespace hammer_loads
