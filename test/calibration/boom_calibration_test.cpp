@@ -3,6 +3,7 @@
 
 #include "calibration/free_boom.h"
 #include "hammer_loads/calibration/reading_check.h"
+#include "hammer_loads/calibration/static_torques.h"
 #include "hammer_loads/simulation/session.h"
 
 namespace hammer_loads::calibration {
@@ -83,7 +84,7 @@ TEST(BoomCalibration, WeighsWhatADrawingHasWrong) {
 TEST(BoomCalibration, KnowsHowWellItKnows) {
   std::mt19937 random(2);
   int weights = 0, weights_within = 0, seals = 0, seals_within = 0;
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 16; ++i) {
     const FreeBoom machine = FreeBoom::drawn(random);
     const std::vector<BoomPoints> points{pointsOf(machine.record(random, 120.0))};
     const BoomModel model(test::shippedBasis(), {TipWeight{}});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/calibration/reading_check.h"
+#include "hammer_loads/calibration/static_torques.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
@@ -19,48 +20,6 @@ double rms(const std::vector<double>& values) {
   double square = 0.0;
   for (const double v : values) square += v * v;
   return values.empty() ? kNaN : std::sqrt(square / static_cast<double>(values.size()));
-}
-
-double deviationOf(const BoomFit& fit, const Eigen::VectorXd& gradient) {
-  return std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
-}
-
-/// Of weight on the joints of all cylinders, one row a pose; joints as read.
-Eigen::MatrixXd weightTorques(const BoomModel& model, const Eigen::VectorXd& x, const std::vector<JointVector>& poses) {
-  const std::vector<Cylinder>& cylinders = model.given().cylinders();
-  Eigen::MatrixXd torques(static_cast<Eigen::Index>(poses.size()), static_cast<Eigen::Index>(cylinders.size()));
-  const std::optional<Boom> boom = model.boomAt(x);
-  if (!boom) return torques.setConstant(kNaN);
-  for (std::size_t p = 0; p < poses.size(); ++p) {
-    JointVector position = poses[p];
-    for (std::size_t k = 0; k < cylinders.size(); ++k) position[cylinders[k].joint()] -= model.jointZero(x, k);
-    ChainPose pose;
-    forwardKinematics(boom->chain(), position, pose);
-    const JointVector torque = jointTorqueOfWeight(boom->chain(), pose, model.basis().g_B);
-    for (std::size_t k = 0; k < cylinders.size(); ++k)
-      torques(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(k)) = torque[cylinders[k].joint()];
-  }
-  return torques;
-}
-
-/// First moment about a joint of all that its link carries, in the link's frame; what is beyond the next joint counts
-/// as in that.
-Eigen::Vector2d firstMoment(const Boom& boom, int joint) {
-  const Chain& chain = boom.chain();
-  ChainPose pose;
-  forwardKinematics(chain, JointVector::Zero(chain.joints()), pose);
-  const int first = chain.linkBeyond(joint);
-  int last = first + 1;
-  while (last < chain.links() && chain.link(last).joint < 0) ++last;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  const Pose to_link = pose.link(first).inverse();
-  for (int i = first; i < chain.links(); ++i) {
-    const PointMass& body = chain.link(i).body;
-    const Eigen::Vector3d at_B =
-        i < last ? Eigen::Vector3d(pose.link(i) * body.p) : Eigen::Vector3d(pose.link(last).translation());
-    moment += body.mass * (to_link * at_B);
-  }
-  return {moment.x(), moment.z()};
 }
 
 class Finder {
@@ -245,17 +204,10 @@ class Finder {
   }
 
   void fillMoments(const BoomModel& model, const BoomFit& fit, std::size_t cylinder) {
-    const int joint = model.given().cylinders()[cylinder].joint();
     const std::string& name = model.given().chain().link(model.linkOf(cylinder)).name;
-    const auto deviation = [&](int axis) {
-      const auto moment = [&](const Eigen::VectorXd& x) {
-        const std::optional<Boom> boom = model.boomAt(x);
-        return boom ? firstMoment(*boom, joint)[axis] : kNaN;
-      };
-      return deviationOf(fit, gradientOf(moment, fit.x));
-    };
+    const Eigen::Vector2d deviation = firstMomentDeviation(model, fit, cylinder);
     for (WeighedLink& link : result_.found.chain.weighed)
-      if (link.name == name) link.moment_x_deviation = deviation(0), link.moment_z_deviation = deviation(1);
+      if (link.name == name) link.moment_x_deviation = deviation[0], link.moment_z_deviation = deviation[1];
   }
 
   void fillCorrelations(const BoomModel& model, const BoomFit& fit) {
@@ -306,27 +258,6 @@ class Finder {
 bool BoomCalibration::determined() const {
   return problem.empty() &&
          std::all_of(joints.begin(), joints.end(), [](const JointWeight& j) { return j.part() <= kLimit; });
-}
-
-std::vector<std::vector<StaticTorque>> staticTorques(const BoomModel& model, const BoomFit& fit,
-                                                     const std::vector<JointVector>& poses) {
-  const Eigen::MatrixXd value = weightTorques(model, fit.x, poses);
-  std::vector<Eigen::MatrixXd> slopes;
-  constexpr double kStep = 0.1;  // of differences, in standard deviations before the recording
-  for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
-    Eigen::VectorXd up = fit.x, down = fit.x;
-    up[i] += kStep, down[i] -= kStep;
-    slopes.emplace_back((weightTorques(model, up, poses) - weightTorques(model, down, poses)) / (2.0 * kStep));
-  }
-  std::vector<std::vector<StaticTorque>> result(poses.size());
-  Eigen::VectorXd gradient(fit.x.size());
-  for (Eigen::Index p = 0; p < value.rows(); ++p) {
-    for (Eigen::Index k = 0; k < value.cols(); ++k) {
-      for (Eigen::Index i = 0; i < fit.x.size(); ++i) gradient[i] = slopes[static_cast<std::size_t>(i)](p, k);
-      result[static_cast<std::size_t>(p)].push_back({value(p, k), deviationOf(fit, gradient)});
-    }
-  }
-  return result;
 }
 
 BoomCalibration calibrateBoom(const BoomBasis& basis, const std::vector<WeighedRecording>& recordings,

@@ -68,12 +68,4 @@ struct BoomCalibration {
 BoomCalibration calibrateBoom(const BoomBasis& basis, const std::vector<WeighedRecording>& recordings,
                               const Progress& progress = {});
 
-/// Static torque about a cylinder's joint [N m].
-struct StaticTorque {
-  double value{}, deviation{};  ///< standard
-};
-/// How well they are known at poses, as joints are read: per pose, one for each cylinder.
-std::vector<std::vector<StaticTorque>> staticTorques(const BoomModel& model, const BoomFit& fit,
-                                                     const std::vector<JointVector>& poses);
-
 }  // namespace hammer_loads::calibration
