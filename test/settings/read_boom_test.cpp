@@ -97,6 +97,58 @@ TEST_F(BoomFile, EachFaultOfASectionIsOneLine) {
   expectOne("boom_foot_section_pitch_rad: 0.0", "", "boom_foot_section_pitch_rad: ");
 }
 
+/// A boom whose links were weighed holds as much as one whose description says so.
+TEST_F(BoomFile, WeighedLinksReplaceTheDescriptions) {
+  const std::string arm = R"(weighed_links: [arm_link]
+arm_link_mass_kg: 250.0
+arm_link_com_x_m: 0.8
+arm_link_com_z_m: 0.1
+arm_link_inertia_kg_m2: 100.0
+arm_link_moment_x_deviation_kg_m: 1.0
+arm_link_moment_z_deviation_kg_m: 2.0
+)";
+  ASSERT_TRUE(problems("damping_ratio:", arm + "damping_ratio:").empty());
+  Boom weighed = test::loadBoom(urdf_, {file_.string()}).value.value();
+  std::string described = test::withFirstReplaced(urdf_, "<origin xyz=\"0.70 0 0.06\"", "<origin xyz=\"0.80 0 0.10\"");
+  described = test::withFirstReplaced(described, "<mass value=\"230\"/>", "<mass value=\"250\"/>");
+  const double more = 100.0 / 86.03;
+  described = test::withFirstReplaced(
+      described, R"(ixx="2.43" ixy="0" ixz="0" iyy="86.03" iyz="0" izz="85.45")",
+      format(R"(ixx="%.17g" ixy="0" ixz="0" iyy="100" iyz="0" izz="%.17g")", 2.43 * more, 85.45 * more));
+  Boom otherwise = Boom::make(described, test::shippedBoomParameters()).value.value();
+  std::mt19937 random(1);
+  for (int i = 0; i < 10; ++i) {
+    const JointMotion motion{test::randomPosition(weighed.chain(), random), test::joints({0.3, -0.2, 0.4, 0.1}),
+                             test::joints({0.5, 1.0, -2.0, 0.7})};
+    weighed.move(motion, test::kLevel), otherwise.move(motion, test::kLevel);
+    for (int j = 0; j < 4; ++j)
+      EXPECT_NEAR(weighed.steadyTorque(j), otherwise.steadyTorque(j), 1e-9 * 5e4);  // of the largest
+  }
+  EXPECT_EQ(weighed.parameters().chain.weighed.front().moment_z_deviation, 2.0);
+
+  EXPECT_EQ(problems("damping_ratio:", withReplaced(arm, {{"arm_link", "bucket"}}) + "damping_ratio:").size(), 1U);
+  EXPECT_EQ(problems("damping_ratio:", withReplaced(arm, {{"250.0", "-250.0"}}) + "damping_ratio:").size(), 1U);
+  EXPECT_EQ(
+      problems("damping_ratio:", withReplaced(arm, {{"[arm_link]", "[arm_link, arm_link]"}}) + "damping_ratio:").size(),
+      1U);
+}
+
+TEST_F(BoomFile, OptionalKeysOfACylinder) {
+  expectOne("damping_ratio:", "arm_cylinder_friction: 0.6\ndamping_ratio:",
+            "arm_cylinder_friction: 0.6, must be from 0 to 0.5");
+  expectOne("damping_ratio:", "arm_cylinder_joint_zero_rad: 0.9\ndamping_ratio:", "arm_cylinder_joint_zero_rad: 0.9");
+  expectOne("damping_ratio:", "arm_cylinder_stiffness_deviation: 2\ndamping_ratio:", "arm_cylinder_stiffness_dev");
+  expectOne("damping_ratio:", "link_mass_deviation: 2\ndamping_ratio:", "link_mass_deviation: 2");
+  ASSERT_TRUE(problems("damping_ratio:",
+                       "arm_cylinder_friction: 0.02\narm_cylinder_pressure_offset_Pa: -2.0e+4\ndamping_ratio:")
+                  .empty());
+  const Boom boom = test::loadBoom(urdf_, {file_.string()}).value.value();
+  EXPECT_EQ(boom.cylinders()[1].parameters().friction, 0.02);
+  EXPECT_EQ(boom.cylinders()[1].parameters().pressure_offset, -2e4);
+  EXPECT_EQ(boom.cylinders()[0].parameters().friction, 0.0);
+  EXPECT_EQ(boom.cylinders()[0].parameters().friction_deviation, 0.03);
+}
+
 TEST_F(BoomFile, SectionsMayBeLeftOut) {
   yaml_.erase(yaml_.find("sections: ["));
   EXPECT_TRUE(problems("damping_ratio", "damping_ratio").empty());

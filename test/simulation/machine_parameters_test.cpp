@@ -161,7 +161,8 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   const Checked<SimulatorSettings> loaded = loadSimulator(
       configDirectory(),
       given("{rod: rigid, hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
-            " imu_x_m: 0.1, pressure_rate_Hz: 0, joint_noise_rad: 0.0001, restitution_drawn: true,"
+            " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, joint_noise_rad: 0.0001, "
+            "restitution_drawn: true,"
             " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, press_force_N: 700}"));
   ASSERT_TRUE(loaded.value) << loaded.problems.front();
   const MachineSettings& machine = loaded.value->machine;
@@ -171,6 +172,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   EXPECT_EQ(machine.on_boom.imu.rate, 500.0);
   EXPECT_EQ(machine.on_boom.imu.x, 0.1);
   EXPECT_EQ(machine.on_boom.pressures.rate, 0.0);
+  EXPECT_EQ(machine.on_boom.seals.friction, 0.02);
   EXPECT_EQ(machine.on_boom.rock.stiffness, 2e7);
   EXPECT_EQ(machine.on_boom.rock.damping, 1.5);
   EXPECT_EQ(machine.on_boom.rock.press_force, 700.0);

@@ -177,6 +177,57 @@ TEST(OnBoomSession, JointSensorsSeeTheVibration) {
   EXPECT_LT(largest, 1e-2);
 }
 
+/// Seals against the motion of their rods: what pressures show and what holds the joints differ by them.
+TEST(OnBoom, SealsRubAndOnlyTakeEnergy) {
+  const OilBoom boom = oilBoomEo2621();
+  for (const double friction : {0.0, 0.03}) {
+    MachineSettings m = onBoom();
+    m.on_boom.seals.friction = friction;
+    HammerOnBoom machine(m);
+    double taken = 0.0, most = 0.0;
+    int moving = 0;
+    for (int i = 1; i <= 3000; ++i) {
+      machine.advanceTo(1e-3 * i);
+      const OnBoomTruth t = machine.truth();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto j = static_cast<int>(k);
+        const OilCylinder& c = boom.cylinders[k];
+        const double arm = c.arm(t.angles[j]), speed = arm * t.rates[j];
+        const double oil = c.bore_area * t.bore_pressure[k] - c.rod_area * t.rod_pressure[k];
+        const double rubbing = t.hold[j] / arm - oil;  // BY the seals on the rod
+        ASSERT_LE(rubbing * speed, 1e-6) << i;
+        ASSERT_LE(std::abs(rubbing), 1.4 * friction * std::abs(oil) + 1e-6) << i;
+        taken -= rubbing * speed * 1e-3, most = std::max(most, std::abs(rubbing));
+        if (std::abs(speed) < 0.01) continue;
+        ++moving;
+        ASSERT_NEAR(rubbing, std::copysign(friction * std::abs(oil), -speed), 0.01 * friction * std::abs(oil) + 1e-6);
+      }
+    }
+    EXPECT_GT(moving, 100);
+    EXPECT_EQ(taken > 1.0, friction > 0.0) << taken;  // [J]
+    EXPECT_EQ(most > 500.0, friction > 0.0) << most;  // [N]
+  }
+}
+
+/// A boom that is let swing: with seals it comes to rest sooner.
+TEST(OnBoom, SealsBringItToRest) {
+  std::array<double, 2> swing{};
+  for (const bool rubs : {false, true}) {
+    MachineSettings m = onBoom();
+    holdStill(m);
+    m.drive.stop_time = 2.0, m.drive.stop_ramp = 0.1, m.on_boom.damping = 0.005;
+    m.on_boom.seals.friction = rubs ? 0.02 : 0.0;
+    HammerOnBoom machine(m);
+    machine.advanceTo(3.5);
+    double& largest = swing[rubs];
+    for (int i = 0; i < 500; ++i) {
+      machine.advanceTo(3.5 + 1e-3 * i);
+      largest = std::max(largest, machine.truth().rates.cwiseAbs().maxCoeff());
+    }
+  }
+  EXPECT_LT(swing[1], 0.5 * swing[0]);
+}
+
 TEST(OnBoom, SectionsCarryWhatTheirCylindersDoNot) {
   MachineSettings m = onBoom();
   holdStill(m);

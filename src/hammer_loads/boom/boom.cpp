@@ -138,6 +138,7 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   rows_in_plane_.setZero(rows);
   variance_.setZero(rows);
   deviation_.setZero(rows);
+  weight_deviation_ = zero;
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }
@@ -223,6 +224,12 @@ bool Boom::loads(const Wrench& w_tip, bool rigid, const ChainLoads& links, BoomL
 
 bool Boom::steelLoads(const Wrench& w_tip, const ChainLoads& links, SteelLoads& result) const noexcept {
   return steel_.find({pose_, links, w_tip, at_.data()}, result);
+}
+
+JointVector Boom::jointZeros() const noexcept {
+  JointVector zeros = JointVector::Zero(chain_.joints());
+  for (const Cylinder& cylinder : cylinders_) zeros[cylinder.joint()] = cylinder.parameters().joint_zero;
+  return zeros;
 }
 
 RigidVerdict Boom::rigidVerdict(const Wrench& w_peak, double pulse_length) const noexcept {

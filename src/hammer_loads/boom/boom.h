@@ -24,6 +24,8 @@ struct BoomParameters {
   VibrationSettings vibration;
   std::optional<Supports> supports;         ///< [m]; nothing: not known
   std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
+  double link_mass_deviation{0.03};         ///< standard, of each link that is not weighed, relative [-]
+  double link_com_deviation{0.02};          ///< standard, of its centre of mass in x and z each [m]
   double rigid_tolerance{};                 ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
@@ -122,6 +124,9 @@ class Boom {
                   BoomDeviations& result) noexcept;
   /// The same by errors as they are, as where cylinders' forces are measured.
   void deviations(const LoadErrors& errors, BoomDeviations& result) noexcept;
+  /// Standard deviations of the weight's torques on the joints by the masses and centres of the links and the zeros of
+  /// the joints' sensors [N m]: the same in all samples at a pose. As of the last deviations(), zero before.
+  const JointVector& weightDeviation() const noexcept { return weight_deviation_; }
   /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
@@ -130,6 +135,8 @@ class Boom {
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 
   const Chain& chain() const noexcept { return chain_; }
+  /// What joints read at the description's zeros [rad], [m].
+  JointVector jointZeros() const noexcept;
   /// Where a cylinder stands at this pose.
   const CylinderPosition& cylinderPosition(std::size_t cylinder) const noexcept { return at_[cylinder]; }
   const std::vector<Cylinder>& cylinders() const noexcept { return cylinders_; }
@@ -158,6 +165,7 @@ class Boom {
 
   JointMotion vibratingMotion() const noexcept;
   void findResponse() noexcept;
+  JointVector findWeightDeviation() const noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void arrangeResponse() noexcept;
   void takeDeviations(BoomDeviations& result) const noexcept;
@@ -167,9 +175,10 @@ class Boom {
   Eigen::MatrixXd response_in_plane_;  ///< without inputs across the plane, nor the rows, half of all, that are then 0
   Eigen::VectorXi rows_in_plane_;      ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
-  JointVector response_at_;    ///< steady_position_ where it belongs; NaN: nowhere yet
-  Eigen::VectorXd variance_;   ///< one entry a row of response_in_plane_
-  Eigen::VectorXd deviation_;  ///< one entry a row
+  JointVector weight_deviation_;  ///< at response_at_
+  JointVector response_at_;       ///< steady_position_ where it belongs; NaN: nowhere yet
+  Eigen::VectorXd variance_;      ///< one entry a row of response_in_plane_
+  Eigen::VectorXd deviation_;     ///< one entry a row
   Eigen::Vector3d g_B_ = Eigen::Vector3d::Zero();
 };
 

@@ -54,6 +54,7 @@ void Boom::findResponse() noexcept {
   if ((steady_position_ - response_at_).cwiseAbs().maxCoeff() <= kOfRefreshAngle * parameters_.vibration.refresh_angle)
     return;
   response_at_ = steady_position_;
+  weight_deviation_ = findWeightDeviation();
   const Eigen::Index joints = chain_.joints();
   const JointVector zero = JointVector::Zero(joints);
   const Eigen::Vector3d weightless = Eigen::Vector3d::Zero(), none = weightless;
@@ -107,6 +108,48 @@ void Boom::deviations(const LoadErrors& errors, BoomDeviations& result) noexcept
     for (Eigen::Index i = 0; i < in_plane_; ++i) deviation_[rows_in_plane_[i]] = std::sqrt(variance[i]);
   }
   takeDeviations(result);
+}
+
+/// Errors of links are independent of each other. A weighed link's first moment stands for all that it carries: it
+/// turns with it alone, so that links beyond the next joint do not count again.
+JointVector Boom::findWeightDeviation() const noexcept {
+  const auto square = [](double x) { return x * x; };
+  JointVector variance = JointVector::Zero(chain_.joints());
+  for (int i = 1; i < chain_.links(); ++i) {
+    const PointMass& body = chain_.link(i).body;
+    const Pose& X_BL = pose_.link(i);
+    const WeighedLink* weighed = nullptr;
+    for (const WeighedLink& w : parameters_.chain.weighed)
+      if (w.name == chain_.link(i).name) weighed = &w;
+    const Eigen::Vector3d x_B = X_BL.linear().col(0), z_B = X_BL.linear().col(2);
+    for (int j = 0; j < chain_.joints() && chain_.linkBeyond(j) <= i; ++j) {
+      const auto joint = static_cast<std::size_t>(j);
+      if (pose_.prismatic[joint]) {
+        if (!weighed)
+          variance[j] += square(parameters_.link_mass_deviation * body.mass * pose_.axis_B[joint].dot(g_B_));
+        continue;
+      }
+      const auto of = [&](const Eigen::Vector3d& moment_B) { return pose_.axis_B[joint].dot(moment_B.cross(g_B_)); };
+      if (weighed) {
+        variance[j] += square(weighed->moment_x_deviation * of(x_B)) + square(weighed->moment_z_deviation * of(z_B));
+        continue;
+      }
+      variance[j] += square(parameters_.link_mass_deviation * of(body.mass * (X_BL * body.p - pose_.p_BJ_B[joint]))) +
+                     square(parameters_.link_com_deviation * body.mass) * (square(of(x_B)) + square(of(z_B)));
+    }
+  }
+  for (const Cylinder& cylinder : cylinders_) {
+    const double zero = cylinder.parameters().joint_zero_deviation;
+    if (zero == 0.0) continue;
+    const int k = cylinder.joint();
+    for (int j = 0; j < chain_.joints(); ++j) {  // what is beyond both turns
+      const PointMass beyond = massFrom(chain_, pose_, chain_.linkBeyond(std::max(j, k)));
+      const auto at = static_cast<std::size_t>(std::max(j, k));
+      const Eigen::Vector3d moved = pose_.axis_B[static_cast<std::size_t>(k)].cross(beyond.p - pose_.p_BJ_B[at]);
+      variance[j] += square(zero * pose_.axis_B[static_cast<std::size_t>(j)].dot((beyond.mass * moved).cross(g_B_)));
+    }
+  }
+  return variance.cwiseSqrt();
 }
 
 /// From deviation_.

@@ -13,6 +13,9 @@
 namespace hammer_loads {
 namespace {
 
+constexpr double kMostWeighed = 1e9;  // [kg], [kg m2]: no product of figures overflows
+constexpr double kMostCom = 1e3;      // [m]
+
 bool moves(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
          joint.type == urdf::Joint::PRISMATIC;
@@ -66,7 +69,10 @@ class ChainBuilder {
   }
 
   void build() {
-    if (findPath()) checkJoints();
+    if (findPath()) {
+      checkJoints();
+      checkWeighed();
+    }
     if (!result_.problems.empty()) return;
     tree_ = treeOf(model_);
     addLinks();
@@ -127,6 +133,45 @@ class ChainBuilder {
     }
   }
 
+  void checkWeighed() {
+    std::set<std::string> there, named;
+    for (const urdf::JointConstSharedPtr& joint : path_) there.insert(joint->child_link_name);
+    for (const WeighedLink& w : request_.weighed) {
+      const auto refuse = [&](const std::string& why) { result_.problems.push_back("weighed_links: " + w.name + why); };
+      if (!named.insert(w.name).second) refuse(", given twice, must be different links");
+      if (there.count(w.name) == 0)
+        refuse(format(", must be a link between %s and %s", request_.root.c_str(), request_.tip.c_str()));
+      checkNumber(w.name + "_mass_kg", w.mass, " kg", w.mass > 0.0 && w.mass <= kMostWeighed, "> 0 and at most 1e9 kg");
+      checkNumber(w.name + "_com_x_m", w.com_x, " m", std::abs(w.com_x) <= kMostCom, "within 1000 m");
+      checkNumber(w.name + "_com_z_m", w.com_z, " m", std::abs(w.com_z) <= kMostCom, "within 1000 m");
+      checkNumber(w.name + "_inertia_kg_m2", w.inertia, " kg m2", w.inertia > 0.0 && w.inertia <= kMostWeighed,
+                  "> 0 and at most 1e9 kg m2");
+      checkNumber(w.name + "_moment_x_deviation_kg_m", w.moment_x_deviation, " kg m", w.moment_x_deviation >= 0.0,
+                  "a finite number >= 0");
+      checkNumber(w.name + "_moment_z_deviation_kg_m", w.moment_z_deviation, " kg m", w.moment_z_deviation >= 0.0,
+                  "a finite number >= 0");
+    }
+  }
+
+  void checkNumber(const std::string& key, double value, const char* unit, bool good, const char* rule) {
+    if (good && std::isfinite(value)) return;
+    result_.problems.push_back(format("%s: %.9g%s, must be %s", key.c_str(), value, unit, rule));
+  }
+
+  /// A weighed link's body; other axes' inertias change with that about y.
+  KDL::RigidBodyInertia asWeighed(const std::string& name, KDL::RigidBodyInertia described) const {
+    const auto found = std::find_if(request_.weighed.begin(), request_.weighed.end(),
+                                    [&](const WeighedLink& w) { return w.name == name; });
+    if (found == request_.weighed.end()) return described;
+    const KDL::RotationalInertia about_com = described.RefPoint(described.getCOG()).getRotationalInertia();
+    const double about_y = about_com.data[4];
+    const KDL::Vector com(found->com_x, described.getCOG().y(), found->com_z);
+    const KDL::RotationalInertia inertia =
+        about_y > 0.0 ? KDL::operator*(found->inertia / about_y, about_com)
+                      : KDL::RotationalInertia(found->inertia, found->inertia, found->inertia);
+    return KDL::RigidBodyInertia(found->mass, com, inertia);
+  }
+
   void addLinks() {
     for (const urdf::JointConstSharedPtr& joint : path_) in_chain_.insert(joint->child_link_name);
     in_chain_.insert(request_.root);
@@ -143,7 +188,7 @@ class ChainBuilder {
     const auto element = tree_.getSegment(joint.child_link_name);
     const KDL::Segment& bare = GetTreeElementSegment(element->second);
     data_.kdl->addSegment(KDL::Segment(bare.getName(), bare.getJoint(), bare.getFrameToTip(),
-                                       bare.getInertia() + fixedNeighbours(element)));
+                                       asWeighed(bare.getName(), bare.getInertia() + fixedNeighbours(element))));
     ChainLink link = toLink(data_.kdl->segments.back());
     if (moves(joint)) {
       link.joint = static_cast<int>(data_.joint_names.size());
@@ -222,6 +267,13 @@ std::optional<int> Chain::jointIndex(const std::string& name) const noexcept {
   const auto found = std::find(data_->joint_names.begin(), data_->joint_names.end(), name);
   if (found == data_->joint_names.end()) return std::nullopt;
   return static_cast<int>(found - data_->joint_names.begin());
+}
+
+WeighedLink Chain::body(int index) const {
+  const ChainLink& link = this->link(index);
+  KDL::RigidBodyInertia inertia = data_->kdl->getSegment(static_cast<unsigned>(index - 1)).getInertia();
+  const double about_y = inertia.RefPoint(inertia.getCOG()).getRotationalInertia().data[4];
+  return {link.name, link.body.mass, link.body.p.x(), link.body.p.z(), about_y, 0.0, 0.0};
 }
 
 std::optional<int> Chain::linkIndex(const std::string& name) const noexcept {

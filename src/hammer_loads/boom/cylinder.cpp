@@ -35,6 +35,25 @@ void checkRange(const CylinderParameters& p, std::vector<std::string>& problems)
   check("relief_pressure_Pa", p.relief_pressure, "Pa", 1.0, kMostPressure);
 }
 
+/// Friction, and what is off with sensors.
+void checkOptional(const CylinderParameters& p, std::vector<std::string>& problems) {
+  const auto within = [&](const char* key, double value, const char* unit, double least, double most) {
+    if (value >= least && value <= most) return;
+    problems.push_back(
+        format("%s_%s: %.9g%s, must be from %g to %g%s", p.name.c_str(), key, value, unit, least, most, unit));
+  };
+  constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
+  within("friction_force_N", p.friction_force, " N", 0.0, 1e6);
+  within("friction_force_deviation_N", p.friction_force_deviation, " N", 0.0, 1e6);
+  within("friction", p.friction, "", 0.0, kMostFriction);
+  within("friction_deviation", p.friction_deviation, "", 0.0, kMostFriction);
+  within("stiffness_deviation", p.stiffness_deviation, "", 0.0, 1.0);
+  within("joint_zero_rad", p.joint_zero, " rad", -kMostZero, kMostZero);
+  within("joint_zero_deviation_rad", p.joint_zero_deviation, " rad", 0.0, kMostZero);
+  within("pressure_offset_Pa", p.pressure_offset, " Pa", -1e7, 1e7);
+  within("pressure_offset_deviation_Pa", p.pressure_offset_deviation, " Pa", 0.0, 1e7);
+}
+
 void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems) {
   const char* name = p.name.c_str();
   const auto check = [&](const char* key, double value, const char* unit, bool good, const char* rule) {
@@ -57,6 +76,7 @@ void checkSizes(const CylinderParameters& p, std::vector<std::string>& problems)
   if (!problems.empty()) return;
   checkRange(p, problems);
   if (!problems.empty()) return;
+  checkOptional(p, problems);
   check("rod_diameter_m", p.rod_diameter, "m", p.rod_diameter < p.bore,
         format("< %s_bore_m = %.9g m", name, p.bore).c_str());
   check("closed_length_m", p.closed_length, "m", p.closed_length > p.stroke,

@@ -20,6 +20,16 @@ struct CylinderParameters {
   double bore_hose_volume{};  ///< bore_hose_volume_m3: oil trapped beside the piston's sweep, hose included, > 0
   double rod_hose_volume{};   ///< rod_hose_volume_m3, > 0
   double relief_pressure{};   ///< relief_pressure_Pa: highest pressure that the chambers hold, > 0
+  /// Of the seals, against the rod's motion: friction_force_N and friction times the oil's force [N], [-]; >= 0.
+  double friction_force{}, friction{};
+  double friction_force_deviation{}, friction_deviation{kFrictionDeviation};  ///< standard [N], [-]
+  double stiffness_deviation{kStiffnessDeviation};  ///< standard, of its oil against the common one [-]
+  double joint_zero{}, joint_zero_deviation{};      ///< joint_zero_rad: reading of its joint at the description's zero
+  /// pressure_offset_Pa: of the bore's sensor, as that of both chambers acts on the force [Pa].
+  double pressure_offset{}, pressure_offset_deviation{};
+
+  static constexpr double kFrictionDeviation = 0.03;   ///< where the boom file gives none; seals of 0.5 to 5 %
+  static constexpr double kStiffnessDeviation = 0.1;  ///< likewise; air and hoses of one machine's cylinders
 };
 
 /// Length and leverage at a joint angle.

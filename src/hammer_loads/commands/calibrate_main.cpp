@@ -1,12 +1,15 @@
-/// calibrate: a recording of the hammer at work in, the crank sensor's place and the drive's inertia out.
+/// calibrate: a recording of the hammer at work in, the crank sensor's place and the drive's inertia out; with --boom
+/// one of the boom's free movement in, a weighed boom out.
 #include <console_bridge/console.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
+#include "hammer_loads/calibration/boom_report.h"
 #include "hammer_loads/calibration/report.h"
 #include "hammer_loads/commands/bag_options.h"
+#include "hammer_loads/commands/calibrate_boom.h"
 #include "hammer_loads/commands/output_file.h"
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/ros/bag_runs.h"
@@ -26,7 +29,9 @@ std::string pictureBeside(const std::string& file) { return fs::path(file).repla
 std::string whyFileMustStay(const std::string& name) {
   std::string line;
   std::getline(std::ifstream(name), line);
-  const bool ours = line.rfind(calibration::kYamlBegins, 0) == 0 || line.rfind(calibration::kSvgBegins, 0) == 0;
+  const auto begins = [&](const char* text) { return line.rfind(text, 0) == 0; };
+  const bool ours = begins(calibration::kYamlBegins) || begins(calibration::kSvgBegins) ||
+                    begins(calibration::kBoomYamlBegins) || begins(calibration::kBoomSvgBegins);
   return ours ? "" : "it holds no calibration";
 }
 
@@ -58,7 +63,8 @@ struct Arguments {
   std::vector<std::string> bags, params;
   std::string output, urdf;
   double rocker_deviation{0.02};
-  bool force{};
+  bool force{}, boom{};
+  BoomCalibrationJob boom_job;
 };
 
 void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
@@ -76,6 +82,25 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
       .within(1e-6, 1.0, "")
       .showDefault();
   line.flag("--force", given.force, "replaces files that exist");
+  line.flag(
+      "--boom", given.boom,
+      "weighs the boom instead: from a recording of its free movement without hammering, with cylinder pressures; "
+      "writes a boom file");
+  addTopicOption(line, "--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures)
+      .needs("--boom");
+  line.option("--weight", given.boom_job.weight, "a known weight on the tool [kg]")
+      .within(0.0, 1e5, "kg")
+      .type("KG")
+      .needs("--boom");
+  line.option("--at", given.boom_job.at, "its centre of mass in the tip's frame [m]")
+      .values(2, 2)
+      .type("X Z")
+      .needs("--weight");
+  line["--weight"].needs("--at");
+  line.option("--weighed", given.boom_job.weighed, "recording with that weight; IN.bag are then without it")
+      .type("BAG")
+      .oneEachTime()
+      .needs("--weight");
 }
 
 int fail(const std::vector<std::string>& problems) {
@@ -83,8 +108,9 @@ int fail(const std::vector<std::string>& problems) {
   return kExitFailure;
 }
 
-/// Of the last run in the recording, whose sensor is the one that will be used on.
-Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
+/// Of the last run in the recording, whose sensor is the one that will be used on. crank: it is calibrated.
+Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, bool crank,
+                             std::vector<BagWarning>& warnings) {
   Checked<Settings> result;
   Checked<std::vector<BagRun>> runs;
   try {
@@ -94,7 +120,7 @@ Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::ve
   }
   result.problems = std::move(runs.problems);
   if (!runs.value) return result;
-  if (runs.value->back().settings.pipeline.coupling) {
+  if (crank && runs.value->back().settings.pipeline.coupling) {
     result.problems.emplace_back("shaft: flexible, must be rigid for calibrate");
     return result;
   }
@@ -140,9 +166,30 @@ calibration::Calibration calibrated(const BagInputs& inputs, const Settings& set
   }
 }
 
+CalibrationTexts calibrateCrank(const BagInputs& inputs, const Settings& settings, const Arguments& given,
+                                const std::string& source) {
+  CalibrationTexts result;
+  CrankBag bag;
+  const calibration::Calibration found = calibrated(inputs, settings, given.rocker_deviation, bag);
+  if (!bag.problem.empty()) {
+    result.problems = {bag.problem};
+    return result;
+  }
+  if (!bag.pitch_known && !settings.pipeline.pitch_joints.empty())
+    std::cerr << "note: not every pitch joint is on " << settings.input_topics.joint_states
+              << ": the hull's pitch is taken as hull_pitch_rad\n";
+  result.words = (found.problem.empty() ? "" : given.bags.front() + ": ") + textOf(found);
+  if (found.problem.empty()) result.yaml = yamlOf(found, source);
+  if (!result.yaml.empty()) result.picture = svgOf(found);
+  return result;
+}
+
 int run(int argc, const char* const* argv) {
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
-  CommandLine line("Crank sensor's place and drive's inertia from a recording of the hammer at work", "calibrate");
+  CommandLine line(
+      "Crank sensor's place and drive's inertia from a recording of the hammer at work; or, with --boom, the boom's "
+      "masses and friction from one of its free movement",
+      "calibrate");
   Arguments given;
   BagJob job;
   addOptions(line, given, job);
@@ -150,6 +197,7 @@ int run(int argc, const char* const* argv) {
   const std::string picture = pictureBeside(given.output);
   std::vector<std::string> inputs = given.bags;
   inputs.insert(inputs.end(), given.params.begin(), given.params.end());
+  inputs.insert(inputs.end(), given.boom_job.weighed.begin(), given.boom_job.weighed.end());
   if (picture == given.output) return fail({given.output + ": ends in .svg, must be a name for YAML"});
   endCleanlyOnSignals();
   std::vector<OutputFile> files;
@@ -163,19 +211,16 @@ int run(int argc, const char* const* argv) {
   const Checked<BagInputs> recording = BagInputs::open(given.bags);
   if (!recording.value) return fail(recording.problems);
   std::vector<BagWarning> warnings;
-  const Checked<Settings> settings = settingsOf(*recording.value, job, warnings);
+  const Checked<Settings> settings = settingsOf(*recording.value, job, !given.boom, warnings);
   if (!settings.value) return fail(settings.problems);
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
   for (const std::string& warning : textsOf(warnings)) std::cerr << "warning: " << warning << '\n';
-  CrankBag bag;
-  const calibration::Calibration found = calibrated(*recording.value, *settings.value, given.rocker_deviation, bag);
-  if (!bag.problem.empty()) return fail({bag.problem});
-  if (!bag.pitch_known && !settings.value->pipeline.pitch_joints.empty())
-    std::cerr << "note: not every pitch joint is on " << settings.value->input_topics.joint_states
-              << ": the hull's pitch is taken as hull_pitch_rad\n";
-  const std::string yaml = found.problem.empty() ? yamlOf(found, fs::path(given.bags.front()).filename().string()) : "";
-  (yaml.empty() ? std::cerr : std::cout) << (found.problem.empty() ? "" : given.bags.front() + ": ") << textOf(found);
-  if (yaml.empty() || !write(files, {given.output, picture}, {yaml, svgOf(found)})) return kExitFailure;
+  const std::string source = fs::path(given.bags.front()).filename().string();
+  const CalibrationTexts texts = given.boom ? calibrateBoom(*recording.value, *settings.value, given.boom_job, source)
+                                            : calibrateCrank(*recording.value, *settings.value, given, source);
+  if (!texts.problems.empty()) return fail(texts.problems);
+  (texts.yaml.empty() ? std::cerr : std::cout) << texts.words;
+  if (texts.yaml.empty() || !write(files, {given.output, picture}, {texts.yaml, texts.picture})) return kExitFailure;
   return finishOutput();
 }
 

@@ -27,7 +27,7 @@ BoomDeviations unknownDeviations(int joints) {
 
 BoomFollower::BoomFollower(Boom boom, const PipelineSettings& settings, double striking_distance)
     : boom_(std::move(boom)),
-      joints_(boom_.chain(), settings),
+      joints_(boom_.chain(), settings, boom_.jointZeros()),
       pressures_(settings.joint_max_age),
       observer_(settings.imu.position),
       model_(settings.boom),

@@ -54,7 +54,7 @@ struct BoomState {
   BoomLoads loads;
   SteelLoads steel;           ///< sections and joints as Boom orders them
   BoomDeviations deviations;  ///< of loads and steel; NaN where the crank has no covariance
-  BoomDeviations common;      ///< the part of them that constants of crank sensor and hammer make
+  BoomDeviations common;      ///< the part of them that constants of crank sensor, hammer and boom make
   std::array<std::uint16_t, kMaxJoints> cylinder_flags{};  ///< sum of CylinderFlag, index as in Boom::cylinders()
   bool dead_centre{};               ///< a cylinder does not hold its joint: no modes, taken as rigid
   JointVector frequency;            ///< natural frequencies, per mode [Hz]; none when vibration is not followed
@@ -88,7 +88,8 @@ class BoomFollower {
   }
   /// Gauge pressure [Pa] of a cylinder, index as in Boom::cylinders(). Whether it was taken.
   bool pressure(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept {
-    return pressures_.update(stamp, cylinder, chamber, pressure);
+    const double offset = chamber == Chamber::kBore ? boom_.cylinders()[cylinder].parameters().pressure_offset : 0.0;
+    return pressures_.update(stamp, cylinder, chamber, pressure - offset);
   }
   /// step: since the sample before; without pieces (after a restart or a gap) the boom is at rest. The result is valid
   /// until the next call.
@@ -143,6 +144,7 @@ class BoomFollower {
   void useMeasured() noexcept;
   void followContact(StampNs stamp) noexcept;
   void findContact(double step) noexcept;
+  void addConstantsOfBoom(bool common_known) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
   void addConstants(const BoomSample& sample) noexcept;
   LoadErrors measuredErrors(const Wrench& lasting, bool rigid) const noexcept;

@@ -63,7 +63,8 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
     const std::optional<MeasuredTorques::Torque>& torque = measured_.of(i);
     if (!torque) continue;
     const int joint = boom_.cylinders()[i].joint();
-    deviations.torque[joint] = std::sqrt(square(torque->deviation) + square(lasting_torque[joint]));
+    deviations.torque[joint] =
+        std::sqrt(square(torque->deviation) + square(torque->constant) + square(lasting_torque[joint]));
     deviations.cylinder[i] = deviations.torque[joint] / std::abs(boom_.cylinderPosition(i).arm);
   }
 }
@@ -74,7 +75,8 @@ void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   const auto joints = static_cast<std::size_t>(boom_.chain().joints());
   const auto of = [&](const WrenchSpread& spread) {
     LoadErrors errors(boom_.cylinders());
-    for (int i = 0; i < spread.count && !tip_; ++i) errors.addInPlane(inPlane(spread.part[static_cast<std::size_t>(i)]));
+    for (int i = 0; i < spread.count && !tip_; ++i)
+      errors.addInPlane(inPlane(spread.part[static_cast<std::size_t>(i)]));
     boom_.deviations(errors, state_.common);
     for (std::size_t i = 0; pressuresCount() && i < boom_.cylinders().size(); ++i) {
       if (measured_.of(i)) state_.common.torque[boom_.cylinders()[i].joint()] = state_.common.cylinder[i] = 0.0;
@@ -89,6 +91,29 @@ void BoomFollower::addConstants(const BoomSample& sample) noexcept {
     addVariances(state_.common.joint, joints, all.joint);
   }
   if (sample.constants.count > 0) of(sample.constants);
+  addConstantsOfBoom(sample.of_hammer.count > 0 || sample.constants.count > 0);
+}
+
+/// Of torques that are not measured: masses, centres and zeros. Of measured ones: seals that rub one way, offsets; they
+/// are in the deviation already.
+void BoomFollower::addConstantsOfBoom(bool common_known) noexcept {
+  BoomDeviations &all = state_.deviations, &common = state_.common;
+  JointVector unmeasured = boom_.weightDeviation(), lasting = unmeasured;
+  for (std::size_t i = 0; pressuresCount() && i < boom_.cylinders().size(); ++i) {
+    if (!measured_.of(i)) continue;
+    unmeasured[boom_.cylinders()[i].joint()] = 0.0;
+    lasting[boom_.cylinders()[i].joint()] = measured_.of(i)->lasting;
+  }
+  for (int j = 0; j < unmeasured.size(); ++j) {
+    addVariance(unmeasured[j], all.torque[j]);
+    if (common_known) addVariance(lasting[j], common.torque[j]);
+  }
+  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
+    const int j = boom_.cylinders()[i].joint();
+    const double arm = std::abs(boom_.cylinderPosition(i).arm);
+    addVariance(unmeasured[j] / arm, all.cylinder[i]);
+    if (common_known) addVariance(lasting[j] / arm, common.cylinder[i]);
+  }
 }
 
 LoadErrors BoomFollower::measuredErrors(const Wrench& lasting, bool rigid) const noexcept {
@@ -96,7 +121,7 @@ LoadErrors BoomFollower::measuredErrors(const Wrench& lasting, bool rigid) const
   std::array<double, kMaxJoints> torque{};
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
     double& one = torque[static_cast<std::size_t>(boom_.cylinders()[i].joint())];
-    one = measured_.of(i)->deviation;
+    one = std::sqrt(square(measured_.of(i)->deviation) + square(measured_.of(i)->constant));
     errors.addInPlane(tip_->inPlane(torque));
     one = 0.0;
   }

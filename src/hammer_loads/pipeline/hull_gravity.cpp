@@ -12,11 +12,16 @@ HullGravity::HullGravity(const PipelineSettings& settings, const std::optional<B
   if (chain_) {
     if (!boom && chain_->link(chain_->tip()).name != ChainRequest{}.tip) beyond_ = settings.pitch_offset;
     position_ = JointVector::Zero(chain_->joints());
+    zeros_ = boom ? boom->jointZeros() : position_;
     heard_.resize(static_cast<std::size_t>(chain_->joints()));
     if (!settings.pitch_joints.empty()) {
       const PitchOfChain law = pitchOf(*chain_, settings.pitch_joints);
       pitch_is_of_chain_ = !law.joints.empty();
-      if (pitch_is_of_chain_) pitch_ = HullPitch(law.joints, law.signs, law.offset + beyond_, settings.hull_pitch);
+      double zeros = 0.0;
+      for (std::size_t i = 0; i < law.joints.size(); ++i)
+        zeros += law.signs[i] * zeros_[*chain_->jointIndex(law.joints[i])];
+      if (pitch_is_of_chain_)
+        pitch_ = HullPitch(law.joints, law.signs, law.offset + beyond_ - zeros, settings.hull_pitch);
     }
   }
   find();
@@ -33,7 +38,7 @@ bool HullGravity::takePosition(const std::vector<std::string>& names, const std:
   for (std::size_t i = 0; chain_ && i < names.size() && i < positions.size(); ++i) {
     const std::optional<int> joint = chain_->jointIndex(names[i]);
     if (!joint || !(std::abs(positions[i]) <= HullPitch::kMostAngle)) continue;
-    position_[*joint] = positions[i];
+    position_[*joint] = positions[i] - zeros_[*joint];
     heard_[static_cast<std::size_t>(*joint)] = true;
     taken = true;
   }

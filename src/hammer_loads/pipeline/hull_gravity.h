@@ -33,6 +33,7 @@ class HullGravity {
   Eigen::Vector3d g_B_;  ///< in the root's axes [m/s2]
   std::optional<Chain> chain_;
   double beyond_{};           ///< pitch of the hull against the chain's tip [rad]
+  JointVector zeros_;         ///< what they read at the chain's zeros
   JointVector position_;      ///< of the chain's joints; zero: not heard
   std::vector<bool> heard_;   ///< of each of them
   bool pitch_is_of_chain_{};  ///< the pitch joints are joints of the chain

@@ -18,11 +18,13 @@ double JointBuffer::Track::difference(double from, double to) const noexcept {
   return turns_freely ? std::remainder(to - from, kTwoPi) : to - from;
 }
 
-JointBuffer::JointBuffer(const Chain& chain, const PipelineSettings& settings)
+JointBuffer::JointBuffer(const Chain& chain, const PipelineSettings& settings, const JointVector& zeros)
     : names_(chain.jointNames()),
+      zeros_(names_.size()),
       tracks_(names_.size()),
       max_age_(settings.joint_max_age),
       differentiate_(settings.boom_acceleration == BoomAcceleration::kDifference) {
+  std::copy(zeros.data(), zeros.data() + zeros.size(), zeros_.begin());
   for (int j = 0; j < chain.joints(); ++j) {
     const bool revolute = !chain.link(chain.linkBeyond(j)).prismatic;
     tracks_[static_cast<std::size_t>(j)].turns_freely = revolute && std::isinf(chain.upper()[j]);
@@ -45,9 +47,11 @@ bool JointBuffer::update(StampNs stamp, const std::vector<std::string>& names, c
     if (!std::isfinite(positions[i]) || !std::isfinite(velocity.value_or(0.0))) ++refusals_.not_finite;
     if (!std::isfinite(positions[i])) continue;
     if (velocity && !std::isfinite(*velocity)) velocity.reset();
-    Track& track = tracks_[static_cast<std::size_t>(found - names_.begin())];
-    if (!isInOrder(track, stamp) || jumps(track, stamp, positions[i])) continue;
-    add(track, stamp, positions[i], velocity);
+    const auto joint = static_cast<std::size_t>(found - names_.begin());
+    const double position = positions[i] - zeros_[joint];
+    Track& track = tracks_[joint];
+    if (!isInOrder(track, stamp) || jumps(track, stamp, position)) continue;
+    add(track, stamp, position, velocity);
     taken = true;
   }
   return taken;

@@ -38,7 +38,8 @@ struct JointRefusals {
 /// Neglects: what a joint does between its states (error of the position a'' h^2/8: 3e-5 rad for 0.5 rad/s2 at 50 Hz).
 class JointBuffer {
  public:
-  JointBuffer(const Chain& chain, const PipelineSettings& settings);
+  /// zeros: what the joints read at the chain's zeros; it is taken off. None: zero.
+  JointBuffer(const Chain& chain, const PipelineSettings& settings, const JointVector& zeros = {});
 
   /// Takes what concerns the chain; returns whether anything was taken. Time running back is believed from a joint's
   /// second state on: the first may just be late. No allocation.
@@ -93,6 +94,7 @@ class JointBuffer {
   std::optional<JointFault> fault(int joint, const Bracket& bracket) const noexcept;
 
   std::vector<std::string> names_;
+  std::vector<double> zeros_;
   std::vector<Track> tracks_;
   double max_age_;
   bool differentiate_;

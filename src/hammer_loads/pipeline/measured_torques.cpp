@@ -12,9 +12,27 @@ namespace {
 
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
+constexpr double kSlowRod = 0.002;     // [m/s]: near standstill friction may have either sign (its Stribeck speed)
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
 }  // namespace
+
+/// What seals do between oil and joint, as part of the load's torque on the joint [N m].
+struct Rubbing {
+  double torque{};
+  double deviation{}, lasting{};  ///< standard; the part of it while the operator's motion sets the rod's direction
+};
+
+/// Joint rates by the operator and by the vibration [rad/s].
+Rubbing rubbing(const CylinderParameters& p, double arm, double oil_torque, double driven, double vibrating) noexcept {
+  const double force = std::abs(oil_torque / arm), speed = arm * (driven + vibrating);
+  const double level = p.friction_force + p.friction * force;
+  const double way = speed / std::sqrt(square(speed) + square(kSlowRod));
+  const double of_level = square(p.friction_force_deviation) + square(p.friction_deviation * force);
+  const double one_way = square(arm * driven) / (square(arm) * (square(driven) + square(vibrating)) + square(kSlowRod));
+  return {arm * level * way, std::abs(arm) * std::sqrt(of_level + (1.0 - square(way)) * square(level)),
+          std::abs(arm) * std::sqrt(one_way * of_level)};
+}
 
 /// As a random walk that readings with noise show (Kalman filter): a change over two readings has the walk twice and
 /// the noise once. A jump is the rock's.
@@ -51,7 +69,8 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
 }
 
 void MeasuredTorques::follow(const Boom& boom, const JointVector& position, const JointVector& steady,
-                             const Instant& instant, const CylinderPressures& pressures) noexcept {
+                             const JointVector& motion, const Instant& instant,
+                             const CylinderPressures& pressures) noexcept {
   const StampNs sample = instant.stamp;
   Vibration::OilTorque model = boom.vibration().oilTorque();
   model.now += steady;
@@ -97,7 +116,11 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const double off = std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square).mean() +
                                  (lag + 2.0 * lost) * track.swing.mean() +
                                  (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
-    torque_[i] = Torque{value, off, at};
+    const CylinderParameters& p = cylinder.parameters();
+    const Rubbing seals = rubbing(p, at.arm, value, motion[j], boom.vibration().velocity()[j]);
+    const double offset = square(at.arm * cylinder.boreArea() * p.pressure_offset_deviation);
+    torque_[i] = Torque{value + seals.torque, off, std::sqrt(square(seals.deviation) + offset),
+                        std::sqrt(square(seals.lasting) + offset), at};
   }
   model_ = model, sample_ = sample;
 }

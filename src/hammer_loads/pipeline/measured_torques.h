@@ -23,6 +23,8 @@ class MeasuredTorques {
     double value{};       ///< of the load on the cylinder's joint [N m]
     double deviation{};   ///< standard: how far the last readings were from what was said before them; more where the
                           ///< readings do not fit the vibration (kSurprised) or the next one is overdue [N m]
+    double constant{};    ///< standard deviation by constants, beside it: friction of the seals, offsets [N m]
+    double lasting{};     ///< the part of that which stays while the operator drives the joint one way [N m]
     CylinderPosition at;  ///< as the joint's sensor shows it
   };
 
@@ -31,8 +33,9 @@ class MeasuredTorques {
     double noise{};  ///< standard deviation of the stamp [s]
   };
   /// After the vibration has taken the readings. steady: weight and motion [N m]; position: as joint sensors show it.
-  void follow(const Boom& boom, const JointVector& position, const JointVector& steady, const Instant& instant,
-              const CylinderPressures& pressures) noexcept;
+  /// What seals are known to rub (the boom file's friction) is taken off as the rods move by `motion` and vibration.
+  void follow(const Boom& boom, const JointVector& position, const JointVector& steady, const JointVector& motion,
+              const Instant& instant, const CylinderPressures& pressures) noexcept;
   /// Index as in Boom::cylinders(); nothing without both pressures or at a dead centre.
   const std::optional<Torque>& of(std::size_t cylinder) const noexcept { return torque_[cylinder]; }
 

@@ -30,6 +30,18 @@ constexpr CylinderKey kCylinderKeys[] = {
     {"relief_pressure_Pa", "Pa", &CylinderParameters::relief_pressure},
 };
 
+constexpr CylinderKey kOptionalKeys[] = {
+    {"friction", "", &CylinderParameters::friction},
+    {"friction_deviation", "", &CylinderParameters::friction_deviation},
+    {"friction_force_N", "N", &CylinderParameters::friction_force},
+    {"friction_force_deviation_N", "N", &CylinderParameters::friction_force_deviation},
+    {"stiffness_deviation", "", &CylinderParameters::stiffness_deviation},
+    {"joint_zero_rad", "rad", &CylinderParameters::joint_zero},
+    {"joint_zero_deviation_rad", "rad", &CylinderParameters::joint_zero_deviation},
+    {"pressure_offset_Pa", "Pa", &CylinderParameters::pressure_offset},
+    {"pressure_offset_deviation_Pa", "Pa", &CylinderParameters::pressure_offset_deviation},
+};
+
 CylinderParameters readCylinder(ParameterReader& reader, const std::string& name) {
   CylinderParameters cylinder;
   cylinder.name = name;
@@ -37,7 +49,25 @@ CylinderParameters readCylinder(ParameterReader& reader, const std::string& name
   for (const CylinderKey& key : kCylinderKeys) {
     cylinder.*key.field = reader.number(name + "_" + key.key, key.unit, NumberRule::any());
   }
+  for (const CylinderKey& key : kOptionalKeys) {
+    const std::string whole = name + "_" + key.key;
+    if (reader.given(whole)) cylinder.*key.field = reader.number(whole, key.unit, NumberRule::any());
+  }
   return cylinder;
+}
+
+WeighedLink readWeighed(ParameterReader& reader, const std::string& name) {
+  const auto number = [&](const char* key, const char* unit) {
+    return reader.number(name + "_" + key, unit, NumberRule::any());
+  };
+  WeighedLink link;
+  link.name = name;
+  link.mass = number("mass_kg", "kg");
+  link.com_x = number("com_x_m", "m"), link.com_z = number("com_z_m", "m");
+  link.inertia = number("inertia_kg_m2", "kg m2");
+  link.moment_x_deviation = number("moment_x_deviation_kg_m", "kg m");
+  link.moment_z_deviation = number("moment_z_deviation_kg_m", "kg m");
+  return link;
 }
 
 SectionParameters readSection(ParameterReader& reader, const std::string& name) {
@@ -100,6 +130,12 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
   p.chain.tip = reader.text("tip_link");
   for (const std::string& name : reader.names("cylinders")) p.cylinders.push_back(readCylinder(reader, name));
   readOil(reader, !p.cylinders.empty(), p);
+  if (reader.given("weighed_links"))
+    for (const std::string& name : reader.names("weighed_links")) p.chain.weighed.push_back(readWeighed(reader, name));
+  if (reader.given("link_mass_deviation"))
+    p.link_mass_deviation = reader.number("link_mass_deviation", "", NumberRule::within(0.0, 1.0));
+  if (reader.given("link_com_deviation_m"))
+    p.link_com_deviation = reader.number("link_com_deviation_m", "m", NumberRule::within(0.0, 10.0));
   if (reader.given("sections")) {
     for (const std::string& name : reader.names("sections")) p.sections.push_back(readSection(reader, name));
   }
@@ -108,13 +144,31 @@ BoomParameters readBoomParameters(ParameterReader& reader) {
 }
 
 bool hasBoomKey(const ParameterMap& parameters) {
-  constexpr const char* kKeys[] = {"root_link",         "tip_link",
-                                   "cylinders",         "bulk_modulus_Pa",
-                                   "damping_ratio",     "mode_refresh_angle_rad",
-                                   "rigid_tolerance",   "sections",
-                                   "support_front_x_m", "support_front_half_width_m",
-                                   "support_rear_x_m",  "support_rear_half_width_m"};
+  constexpr const char* kKeys[] = {"root_link",
+                                   "tip_link",
+                                   "cylinders",
+                                   "bulk_modulus_Pa",
+                                   "damping_ratio",
+                                   "mode_refresh_angle_rad",
+                                   "rigid_tolerance",
+                                   "sections",
+                                   "weighed_links",
+                                   "link_mass_deviation",
+                                   "link_com_deviation_m",
+                                   "support_front_x_m",
+                                   "support_front_half_width_m",
+                                   "support_rear_x_m",
+                                   "support_rear_half_width_m"};
   return std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return parameters.count(key) != 0; });
+}
+
+std::string boomYaml(const std::string& parameters) {
+  std::vector<std::string> problems;
+  std::optional<ParameterMap> map = parameterMap(YAML::Load(parameters), {}, problems);
+  if (!map || !hasBoomKey(*map)) return {};
+  ParameterReader reader(*std::move(map));
+  readBoomParameters(reader);
+  return reader.yaml();
 }
 
 }  // namespace hammer_loads

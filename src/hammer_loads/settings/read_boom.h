@@ -1,4 +1,5 @@
-/// The boom file: cylinders, damping, supports, sections. Every key is required but `sections`; with `cylinders: []` so
+/// The boom file: cylinders, damping, supports, sections. Every key is required but `sections`, and those of friction,
+/// sensors' offsets, weighed links and deviations; with `cylinders: []` so
 /// are only `root_link` and `tip_link`, and the keys of the oil and those of the supports each together or not at all.
 #pragma once
 
@@ -20,5 +21,8 @@ BoomParameters readBoomParameters(ParameterReader& reader);
 
 /// Whether any key of a boom file is there that is not a cylinder's own.
 bool hasBoomKey(const ParameterMap& parameters);
+
+/// The boom file's keys of parameters in force, as Settings::yaml has them; one `key: value` a line.
+std::string boomYaml(const std::string& parameters);
 
 }  // namespace hammer_loads

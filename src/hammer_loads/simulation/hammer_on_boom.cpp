@@ -183,12 +183,32 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held) const {
   return K;
 }
 
-Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
+/// BY the oil ON the joints [N m].
+Eigen::Vector3d HammerOnBoom::oil(const State& s, const Hold& hold) const {
   const Coordinates off = s.x - hold.state.x, rate = s.v - hold.state.v;
   return -hold.weight - hold.stiffness.cwiseProduct(off.head<3>()) - damping_ * rate.head<3>();
 }
 
-/// All that is not inertia: weight, oil, motor.
+/// BY the cylinders' seals ON the joints, with the oil's torque [N m].
+Eigen::Vector3d HammerOnBoom::seals(const State& s, const Eigen::Vector3d& oil) const {
+  const SealSettings& seal = machine_.on_boom.seals;
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  if (seal.friction == 0.0) return torque;
+  for (int k = 0; k < 3; ++k) {
+    const double arm = boom_.cylinders[static_cast<std::size_t>(k)].arm(s.x[k]), speed = arm * s.v[k];
+    const double slow = speed / seal.stribeck_speed;
+    const double force = seal.friction * std::abs(oil[k] / arm) * (1.0 + seal.breakaway * std::exp(-slow * slow));
+    torque[k] = -arm * force * std::tanh(speed / seal.smooth_speed);
+  }
+  return torque;
+}
+
+Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
+  const Eigen::Vector3d by_oil = oil(s, hold);
+  return by_oil + seals(s, by_oil);
+}
+
+/// All that is not inertia: weight, cylinders, motor.
 HammerOnBoom::Coordinates HammerOnBoom::force(const State& s, const Bodies& all, const Hold& hold) const {
   Coordinates Q = weight(all);
   Q.head<3>() += holding(s, hold);

@@ -36,7 +36,8 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
 /// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, their
 /// accelerations for the loads by differences in time. Runge-Kutta of order 4.
 /// The operator's valves move the point at which the oil holds each joint along settings.boom; the oil about it is a
-/// linear spring, as stiff as at that place.
+/// linear spring, as stiff as at that place. settings.on_boom.seals rub against the rods: pressures are those of the oil,
+/// what holds the joints is oil and seals.
 ///
 /// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
 /// impulse within the linkage, or with a restitution that is drawn. settings.on_boom.rock holds the hull up where it is
@@ -118,6 +119,8 @@ class HammerOnBoom {
   Coordinates weight(const Bodies& all) const;
   Eigen::Vector3d stiffness(const State& held) const;
   void followOperator();
+  Eigen::Vector3d oil(const State& s, const Hold& hold) const;
+  Eigen::Vector3d seals(const State& s, const Eigen::Vector3d& oil) const;
   Eigen::Vector3d holding(const State& s, const Hold& hold) const;
   PlanePoint footPlace(const State& s) const;
   /// The hull's foot along the tool, from where it stands as the operator holds it.

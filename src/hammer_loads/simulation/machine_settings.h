@@ -137,12 +137,22 @@ struct RockSettings {
   double press_force{};  ///< of the operator on the hull before it works [N], >= 0
 };
 
+/// Seals of the boom's cylinders: against the rod's speed v, force = friction |F| (1 + breakaway e^-(v/stribeck)^2)
+/// tanh(v/smooth), F the oil's force.
+struct SealSettings {
+  double friction{};             ///< [-]; 0: none
+  double breakaway{0.4};         ///< more of it near standstill [-], >= 0
+  double stribeck_speed{0.004};  ///< [m/s], > 0
+  double smooth_speed{5e-4};     ///< below it the force fades through zero [m/s], > 0
+};
+
 /// Hull and boom that move on the oil of their cylinders; all dimensions in oil_boom.h.
 struct OnBoomSettings {
   bool on{};                  ///< else the hull has no motion but its pitch, and no sensors
   double oil_stiffness{1.0};  ///< over that of a bulk modulus of 1e9 Pa [-], > 0
   double damping{0.05};       ///< ratio of every mode [-], in [0, 1)
   double step{4e-4};          ///< longest integration step [s], > 0
+  SealSettings seals;
   RockSettings rock;
   HullImuSensor imu;
   PressureSensors pressures;

@@ -88,7 +88,7 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Mom
 /// One chamber carries what is steady, both what is not.
 void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
   const State& held = hold.state;
-  const Eigen::Vector3d torque = holding(now_, hold);
+  const Eigen::Vector3d torque = oil(now_, hold);
   const double preload = machine_.on_boom.pressures.preload;
   for (std::size_t k = 0; k < 3; ++k) {
     const int j = static_cast<int>(k);

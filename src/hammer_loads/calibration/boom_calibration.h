@@ -1,0 +1,71 @@
+/// A boom that is weighed by its own cylinders: masses, friction and zeros from two minutes of free movement.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/calibration/boom_fit.h"
+#include "hammer_loads/calibration/calibration.h"
+
+namespace hammer_loads::calibration {
+
+/// A recording with what hangs on the tip in it.
+struct WeighedRecording {
+  BoomRecording recording;
+  TipWeight weight;
+};
+
+/// How well the weight of all beyond a joint is known, over the poses of the recording.
+struct JointWeight {
+  std::string joint;
+  double torque{};     ///< static, rms over the poses [N m]
+  double deviation{};  ///< standard, rms likewise [N m]
+  double before{};     ///< by how much the given boom is off from the one found, rms [N m]
+  double part() const { return torque > 0.0 ? deviation / torque : kInfinity; }
+};
+
+/// What is left of a cylinder's force.
+struct CylinderFit {
+  std::string name;
+  std::size_t rows{};
+  double force{};               ///< rms [N]
+  double left{};                ///< rms, with the values found [N]
+  double before{};              ///< rms, with those given [N]
+  double held_out{};            ///< rms of the last quarter with the values of the first three [N]; NaN: no rows there
+  double friction{};            ///< at that force [N]
+  double friction_deviation{};  ///< standard [N]
+};
+
+/// One row as a picture shows it.
+struct BoomResidual {
+  std::size_t cylinder{};
+  double angle{};  ///< of its joint [rad]
+  bool extends{};
+  double before{}, after{};  ///< [N]
+};
+
+struct BoomCalibration {
+  /// A larger part of a joint's static torque leaves it undetermined, and then nothing is written: values belong
+  /// together.
+  static constexpr double kLimit = 0.02;
+
+  std::string problem;  ///< why there is nothing
+  double seconds{};
+  std::size_t points{}, left_out{};
+  std::vector<Estimate> estimates;  ///< of the boom file; limit: not used, see joints
+  std::vector<Correlation> correlations;
+  std::vector<JointWeight> joints;
+  std::vector<CylinderFit> cylinders;
+  std::vector<std::string> remarks;
+  std::vector<BoomResidual> residuals;
+  std::optional<Estimate> weight_check;  ///< the weight on the tip by a boom that was weighed without it [kg]
+  BoomParameters found;                  ///< boom file with everything found and its deviations
+
+  bool determined() const;
+};
+
+BoomCalibration calibrateBoom(const BoomBasis& basis, const std::vector<WeighedRecording>& recordings,
+                              const Progress& progress = {});
+
+}  // namespace hammer_loads::calibration

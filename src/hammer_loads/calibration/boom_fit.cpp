@@ -1,0 +1,191 @@
+#include "hammer_loads/calibration/boom_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace hammer_loads::calibration {
+namespace {
+
+constexpr double kLeastRodSpeed = 0.01;  // [m/s]: slower, seals stick, slip and rub more (Stribeck)
+constexpr double kSurelyMoves = 3.0;     // standard deviations of the speed
+constexpr double kHuber = 3.0;           // standard deviations of what is left
+constexpr int kMostRounds = 15;
+constexpr double kSettled = 1e-3;              // of a standard deviation
+constexpr double kStep = 0.05;                 // of differences, in standard deviations before the recording
+constexpr std::size_t kNeighbouringRows = 10;  // of a row that may be alike
+
+bool isFriction(BoomUnknown kind) {
+  return kind == BoomUnknown::kFrictionForce || kind == BoomUnknown::kFriction || kind == BoomUnknown::kViscous;
+}
+
+/// One way all through the readings of the point.
+bool surelyMoves(const Boom& boom, std::size_t cylinder, const BoomPoint& point) {
+  const int joint = boom.cylinders()[cylinder].joint();
+  const double arm = std::abs(boom.cylinderPosition(cylinder).arm);
+  const double rate = std::abs(point.motion.velocity[joint]);
+  const double least = rate - point.half_width * std::abs(point.motion.acceleration[joint]);
+  return arm * least > kLeastRodSpeed && rate > kSurelyMoves * point.rate_deviation[joint];
+}
+
+/// Variance of a sum of neighbours over that of as many strangers: 1 + 2 sum of the autocorrelation, until that is lost
+/// in noise.
+double alike(const std::vector<double>& left) {
+  double square = 0.0;
+  for (const double r : left) square += r * r;
+  double sum = 1.0;
+  for (std::size_t lag = 1; lag <= kNeighbouringRows && lag + 1 < left.size(); ++lag) {
+    double product = 0.0;
+    for (std::size_t i = lag; i < left.size(); ++i) product += left[i] * left[i - lag];
+    const double correlation = product / square;
+    if (!(correlation > 2.0 / std::sqrt(static_cast<double>(left.size())))) break;
+    sum += 2.0 * correlation;
+  }
+  return sum;
+}
+
+class Fitter {
+ public:
+  Fitter(const BoomModel& model, const std::vector<BoomRow>& rows) : model_(model), rows_(rows) {
+    fit_.x = model.zero();
+    const std::size_t cylinders = model.given().cylinders().size();
+    fit_.noise.assign(cylinders, 0.0), fit_.together.assign(cylinders, 1.0);
+    for (std::size_t k = 0; k < cylinders; ++k) {  // at first: a part of the force itself
+      double square = 0.0, count = 0.0;
+      for (const BoomRow& row : rows)
+        if (row.cylinder == k) square += row.measured * row.measured, count += 1.0;
+      fit_.noise[k] = std::max(1.0, 0.02 * std::sqrt(square / std::max(count, 1.0)));
+    }
+  }
+
+  BoomFit run(const Progress& progress) {
+    for (int round = 0; round < kMostRounds && !fit_.converged; ++round) {
+      const Eigen::VectorXd before = fit_.x;
+      step();
+      findNoise();
+      fit_.converged = round > 2 && (fit_.x - before).cwiseAbs().maxCoeff() < kSettled;
+      report(progress, (round + 1.0) / kMostRounds);
+    }
+    return std::move(fit_);
+  }
+
+ private:
+  Eigen::MatrixXd slopes() const {
+    const auto unknowns = fit_.x.size();
+    Eigen::MatrixXd J(static_cast<Eigen::Index>(rows_.size()), unknowns);
+    for (Eigen::Index i = 0; i < unknowns; ++i) {
+      Eigen::VectorXd up = fit_.x, down = fit_.x;
+      up[i] += kStep, down[i] -= kStep;
+      J.col(i) = (residualsOf(model_, rows_, down) - residualsOf(model_, rows_, up)) / (2.0 * kStep);
+    }
+    return J;
+  }
+
+  Eigen::VectorXd weights(const Eigen::VectorXd& left) const {
+    Eigen::VectorXd weight(left.size());
+    for (Eigen::Index i = 0; i < left.size(); ++i) {
+      const std::size_t k = rows_[static_cast<std::size_t>(i)].cylinder;
+      const double size = std::abs(left[i]) / fit_.noise[k];
+      weight[i] = (size > kHuber ? kHuber / size : 1.0) / (fit_.noise[k] * fit_.noise[k] * fit_.together[k]);
+      if (!std::isfinite(left[i])) weight[i] = 0.0;
+    }
+    return weight;
+  }
+
+  /// Friction that would be below zero is held at zero.
+  void step() {
+    Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x);
+    const Eigen::VectorXd weight = weights(left);
+    left = (weight.array() > 0.0).select(left, 0.0);
+    Eigen::MatrixXd J = slopes();
+    for (Eigen::Index r = 0; r < J.rows(); ++r)
+      if (!(weight[r] > 0.0)) J.row(r).setZero();
+    const Eigen::Index n = fit_.x.size();
+    std::set<Eigen::Index> held;
+    for (bool again = true; again;) {
+      Eigen::MatrixXd N = J.transpose() * weight.asDiagonal() * J + Eigen::MatrixXd::Identity(n, n);
+      Eigen::VectorXd right = J.transpose() * weight.asDiagonal() * left - fit_.x;
+      fit_.covariance = N.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+      for (const Eigen::Index i : held) {
+        const double way = atZero(i) - fit_.x[i];
+        right -= N.col(i) * way;
+        N.row(i).setZero(), N.col(i).setZero(), N(i, i) = 1.0, right[i] = way;
+      }
+      const Eigen::VectorXd next = fit_.x + N.ldlt().solve(right);
+      again = false;
+      for (Eigen::Index i = 0; i < n; ++i)
+        if (isFriction(model_.unknowns()[static_cast<std::size_t>(i)].kind) && next[i] < atZero(i) - 1e-9)
+          again = held.insert(i).second || again;
+      if (!again) move(next);
+    }
+  }
+  /// The entry of an unknown whose value is zero.
+  double atZero(Eigen::Index i) const {
+    const Unknown& u = model_.unknowns()[static_cast<std::size_t>(i)];
+    return -u.given / u.deviation;
+  }
+
+  /// As far as there is such a boom.
+  void move(const Eigen::VectorXd& next) {
+    double part = 1.0;
+    while (part > 1e-3 && !model_.boomAt(fit_.x + part * (next - fit_.x), 0)) part *= 0.5;
+    fit_.x += part * (next - fit_.x);
+  }
+
+  void findNoise() {
+    const Eigen::VectorXd left = residualsOf(model_, rows_, fit_.x);
+    for (std::size_t k = 0; k < fit_.noise.size(); ++k) {
+      std::vector<double> own;
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (rows_[i].cylinder == k && std::isfinite(left[static_cast<Eigen::Index>(i)]))
+          own.push_back(left[static_cast<Eigen::Index>(i)]);
+      if (own.size() < 5) continue;
+      for (double& r : own) r = std::clamp(r, -kHuber * fit_.noise[k], kHuber * fit_.noise[k]);
+      double square = 0.0;
+      for (const double r : own) square += r * r;
+      fit_.noise[k] = std::max(1.0, std::sqrt(square / static_cast<double>(own.size())));
+      fit_.together[k] = alike(own);
+    }
+  }
+
+  const BoomModel& model_;
+  const std::vector<BoomRow>& rows_;
+  BoomFit fit_;
+};
+
+}  // namespace
+
+std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints>& recordings) {
+  std::vector<BoomRow> rows;
+  Boom boom = model.given();
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    for (std::size_t k = 0; k < boom.cylinders().size(); ++k) {
+      for (const BoomPoint& point : recordings[r].points) {
+        model.move(boom, model.zero(), point);
+        if (boom.cylinderPosition(k).dead_centre || !surelyMoves(boom, k, point)) continue;
+        rows.push_back({r, k, &point, model.measuredForce(k, point)});
+      }
+    }
+  }
+  return rows;
+}
+
+BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress) {
+  return Fitter(model, rows).run(progress);
+}
+
+Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x) {
+  Eigen::VectorXd left(static_cast<Eigen::Index>(rows.size()));
+  std::optional<Boom> boom;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const BoomRow& row = rows[i];
+    if (i == 0 || row.recording != rows[i - 1].recording) boom = model.boomAt(x, row.recording);
+    if (!boom) return left.setConstant(std::numeric_limits<double>::quiet_NaN());
+    model.move(*boom, x, *row.point);
+    left[static_cast<Eigen::Index>(i)] = row.measured - model.shownForce(*boom, x, row.cylinder, *row.point);
+  }
+  return left;
+}
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,51 @@
+/// The most probable values of a boom's unknowns, from what its cylinders showed in free movement.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "hammer_loads/calibration/boom_model.h"
+#include "hammer_loads/util/progress.h"
+
+namespace hammer_loads::calibration {
+
+/// One cylinder at one point, where its rod surely moves one way.
+struct BoomRow {
+  std::size_t recording{}, cylinder{};
+  const BoomPoint* point{};
+  double measured{};  ///< force [N]
+};
+
+/// Of the points of all recordings, in the order of recordings, cylinders, times. They must outlive the rows.
+std::vector<BoomRow> rowsOf(const BoomModel& model, const std::vector<BoomPoints>& recordings);
+
+struct BoomFit {
+  Eigen::VectorXd x;             ///< as BoomModel orders it, in standard deviations before the recording
+  Eigen::MatrixXd covariance;    ///< of x
+  std::vector<double> noise;     ///< per cylinder: standard deviation of what is left of a row [N]
+  std::vector<double> together;  ///< per cylinder: so many rows in a row tell as much as one, >= 1 [-]
+  bool converged{};
+};
+
+/// Gauss-Newton on squares of what is left and of the unknowns, each over its variance; what is left is large where it
+/// is beyond three deviations, and counts less (Huber). Noise is that of what is left, per cylinder, and what is left
+/// of neighbours may be alike: then so many of them count as one. Friction is not below zero.
+BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
+
+/// What rows show more than the model with values x says [N].
+Eigen::VectorXd residualsOf(const BoomModel& model, const std::vector<BoomRow>& rows, const Eigen::VectorXd& x);
+
+/// Standard deviation of any function of x; by differences over a tenth of each unknown's deviation.
+template <typename Function>
+Eigen::VectorXd gradientOf(const Function& function, const Eigen::VectorXd& x) {
+  constexpr double kStep = 0.1;
+  Eigen::VectorXd gradient(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Eigen::VectorXd up = x, down = x;
+    up[i] += kStep, down[i] -= kStep;
+    gradient[i] = (function(up) - function(down)) / (2.0 * kStep);
+  }
+  return gradient;
+}
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,237 @@
+#include "hammer_loads/calibration/boom_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "hammer_loads/util/constants.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+Boom boomOrThrow(const BoomBasis& basis) {
+  Checked<Boom> boom = Boom::make(basis.urdf, basis.parameters);
+  if (!boom.value) throw std::invalid_argument(boom.problems.front());
+  return *std::move(boom.value);
+}
+
+int heaviestBeyond(const Chain& chain, int joint) {
+  int heaviest = chain.linkBeyond(joint);
+  for (int i = heaviest + 1; i < chain.links() && chain.link(i).joint < 0; ++i)
+    if (chain.link(i).body.mass > chain.link(heaviest).body.mass) heaviest = i;
+  return heaviest;
+}
+
+/// With a point of mass in it.
+WeighedLink together(WeighedLink link, double mass, double x, double z) {
+  const double all = link.mass + mass, dx = x - link.com_x, dz = z - link.com_z;
+  link.com_x += mass / all * dx, link.com_z += mass / all * dz;
+  link.inertia += link.mass * mass / all * (dx * dx + dz * dz);
+  link.mass = all;
+  return link;
+}
+
+/// As much heavier as its link.
+void scale(PartBeyond& part, double by) { part.mass *= by, part.inertia_y *= by; }
+
+void replace(std::vector<WeighedLink>& links, const WeighedLink& link) {
+  const auto same = std::find_if(links.begin(), links.end(), [&](const WeighedLink& l) { return l.name == link.name; });
+  if (same == links.end())
+    links.push_back(link);
+  else
+    *same = link;
+}
+
+}  // namespace
+
+BoomModel::BoomModel(const BoomBasis& basis, const std::vector<TipWeight>& weights)
+    : basis_(basis), weights_(weights), given_(boomOrThrow(basis)) {
+  for (std::size_t k = 0; k < given_.cylinders().size(); ++k) {
+    const Cylinder& cylinder = given_.cylinders()[k];
+    const CylinderParameters& p = cylinder.parameters();
+    links_.push_back(heaviestBeyond(given_.chain(), cylinder.joint()));
+    const auto add = [&](BoomUnknown kind, double given, double deviation) {
+      if (deviation > 0.0) unknowns_.push_back({kind, k, given, deviation});
+    };
+    add(BoomUnknown::kMass, 0.0, basis.mass_deviation);
+    add(BoomUnknown::kComX, 0.0, basis.com_deviation);
+    add(BoomUnknown::kComZ, 0.0, basis.com_deviation);
+    add(BoomUnknown::kInertia, 0.0, basis.inertia_deviation);
+    add(BoomUnknown::kFrictionForce, p.friction_force, basis.friction_force_deviation * cylinder.greatestPush());
+    add(BoomUnknown::kFriction, p.friction, basis.friction_deviation);
+    add(BoomUnknown::kViscous, 0.0, basis.viscous_deviation * cylinder.greatestPush());
+    add(BoomUnknown::kOffset, p.pressure_offset, basis.offset_deviation);
+    add(BoomUnknown::kGain, 0.0, basis.gain_deviation);
+    add(BoomUnknown::kZero, p.joint_zero, basis.zero_deviation);
+  }
+  for (std::size_t r = 0; r < weights.size(); ++r)
+    if (weights[r].deviation > 0.0)
+      unknowns_.push_back({BoomUnknown::kTipWeight, r, weights[r].mass, weights[r].deviation});
+}
+
+double BoomModel::valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of) const {
+  for (std::size_t i = 0; i < unknowns_.size(); ++i)
+    if (unknowns_[i].kind == kind && unknowns_[i].of == of) return valueOf(x, i);
+  return kNaN;
+}
+
+std::string BoomModel::nameOf(std::size_t unknown) const {
+  const Unknown& u = unknowns_[unknown];
+  if (u.kind == BoomUnknown::kTipWeight) return "weight on the tip";
+  const std::string& cylinder = given_.cylinders()[u.of].parameters().name;
+  const std::string& link = given_.chain().link(links_[u.of]).name;
+  switch (u.kind) {
+    case BoomUnknown::kMass:
+      return link + "_mass_kg";
+    case BoomUnknown::kComX:
+      return link + "_com_x_m";
+    case BoomUnknown::kComZ:
+      return link + "_com_z_m";
+    case BoomUnknown::kInertia:
+      return link + "_inertia_kg_m2";
+    case BoomUnknown::kFrictionForce:
+      return cylinder + "_friction_force_N";
+    case BoomUnknown::kFriction:
+      return cylinder + "_friction";
+    case BoomUnknown::kViscous:
+      return cylinder + "'s friction by speed";
+    case BoomUnknown::kOffset:
+      return cylinder + "_pressure_offset_Pa";
+    case BoomUnknown::kGain:
+      return cylinder + "'s bore and gain of its sensors";
+    case BoomUnknown::kZero:
+      return cylinder + "_joint_zero_rad";
+    case BoomUnknown::kTipWeight:
+      break;
+  }
+  return {};
+}
+
+double BoomModel::massOf(const std::string& link) const {
+  return given_.chain().link(*given_.chain().linkIndex(link)).body.mass;
+}
+
+std::vector<WeighedLink> BoomModel::linksAt(const Eigen::VectorXd& x) const {
+  std::vector<WeighedLink> links;
+  for (const int index : links_) links.push_back(given_.chain().body(index));
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const double value = valueOf(x, i);
+    WeighedLink* link = unknowns_[i].kind == BoomUnknown::kTipWeight ? nullptr : &links[unknowns_[i].of];
+    switch (unknowns_[i].kind) {
+      case BoomUnknown::kMass:
+        link->mass *= std::exp(value);
+        break;
+      case BoomUnknown::kComX:
+        link->com_x += value;
+        break;
+      case BoomUnknown::kComZ:
+        link->com_z += value;
+        break;
+      case BoomUnknown::kInertia:
+        link->inertia *= std::exp(value);
+        break;
+      default:
+        break;
+    }
+  }
+  return links;
+}
+
+/// Sections are left out: a link's part beyond one may be heavier than the link on the way.
+BoomParameters BoomModel::withLinksAt(const Eigen::VectorXd& x) const {
+  BoomParameters parameters = basis_.parameters;
+  parameters.sections.clear();
+  for (const WeighedLink& link : linksAt(x)) replace(parameters.chain.weighed, link);
+  return parameters;
+}
+
+BoomParameters BoomModel::parametersAt(const Eigen::VectorXd& x) const {
+  BoomParameters parameters = withLinksAt(x);
+  parameters.sections = basis_.parameters.sections;
+  for (SectionParameters& section : parameters.sections)
+    for (const WeighedLink& link : linksAt(x))
+      if (section.beyond && section.link == link.name) scale(*section.beyond, link.mass / massOf(link.name));
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].kind == BoomUnknown::kTipWeight) continue;
+    CylinderParameters& cylinder = parameters.cylinders[unknowns_[i].of];
+    const double value = valueOf(x, i);
+    switch (unknowns_[i].kind) {
+      case BoomUnknown::kFrictionForce:
+        cylinder.friction_force = value;
+        break;
+      case BoomUnknown::kFriction:
+        cylinder.friction = value;
+        break;
+      case BoomUnknown::kOffset:
+        cylinder.pressure_offset = value;
+        break;
+      case BoomUnknown::kZero:
+        cylinder.joint_zero = value;
+        break;
+      default:
+        break;
+    }
+  }
+  return parameters;
+}
+
+std::optional<Boom> BoomModel::boomAt(const Eigen::VectorXd& x) const {
+  return Boom::make(basis_.urdf, withLinksAt(x)).value;
+}
+
+std::optional<Boom> BoomModel::boomAt(const Eigen::VectorXd& x, std::size_t recording) const {
+  BoomParameters parameters = withLinksAt(x);
+  const Chain& chain = given_.chain();
+  const TipWeight& weight = weights_[recording];
+  const double hung = valueOf(x, BoomUnknown::kTipWeight, recording);
+  const double mass = std::isnan(hung) ? weight.mass : hung;
+  if (mass != 0.0) {
+    WeighedLink tip = chain.body(chain.tip());
+    for (const WeighedLink& link : parameters.chain.weighed)
+      if (link.name == tip.name) tip = link;
+    replace(parameters.chain.weighed, together(tip, mass, weight.x, weight.z));
+  }
+  return Boom::make(basis_.urdf, parameters).value;
+}
+
+double BoomModel::jointZero(const Eigen::VectorXd& x, std::size_t cylinder) const {
+  const double zero = valueOf(x, BoomUnknown::kZero, cylinder);
+  return std::isnan(zero) ? given_.cylinders()[cylinder].parameters().joint_zero : zero;
+}
+
+void BoomModel::move(Boom& boom, const Eigen::VectorXd& x, const BoomPoint& point) const {
+  JointMotion motion = point.motion;
+  for (std::size_t k = 0; k < boom.cylinders().size(); ++k)
+    motion.position[boom.cylinders()[k].joint()] -= jointZero(x, k);
+  boom.move(motion, basis_.g_B);
+}
+
+double BoomModel::rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoint& point) {
+  return boom.cylinderPosition(cylinder).arm * point.motion.velocity[boom.cylinders()[cylinder].joint()];
+}
+
+/// The rod pushes with the oil's force less what rubs against its motion.
+double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder,
+                             const BoomPoint& point) const {
+  const auto unknown = [&](BoomUnknown kind, double otherwise) {
+    const double value = valueOf(x, kind, cylinder);
+    return std::isnan(value) ? otherwise : value;
+  };
+  const Cylinder& c = boom.cylinders()[cylinder];
+  const CylinderParameters& p = c.parameters();
+  const double force = c.load(boom.cylinderPosition(cylinder), boom.steadyTorque(c.joint())).force;
+  const double speed = rodSpeed(boom, cylinder, point);
+  const double rubbing = unknown(BoomUnknown::kFrictionForce, p.friction_force) +
+                         unknown(BoomUnknown::kFriction, p.friction) * std::abs(force);
+  const double oil = force + (speed < 0.0 ? -rubbing : rubbing) + unknown(BoomUnknown::kViscous, 0.0) * speed;
+  return oil * (1.0 + unknown(BoomUnknown::kGain, 0.0)) +
+         unknown(BoomUnknown::kOffset, p.pressure_offset) * c.boreArea();
+}
+
+double BoomModel::measuredForce(std::size_t cylinder, const BoomPoint& point) const {
+  const auto& p = point.pressure[cylinder];
+  return forceOf(given_.cylinders()[cylinder], {p[0], p[1]});
+}
+
+}  // namespace hammer_loads::calibration

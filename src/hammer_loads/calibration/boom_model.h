@@ -1,0 +1,108 @@
+/// Pressures that a boom's cylinders show in free movement, by everything about it that is not known.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/calibration/boom_recording.h"
+
+namespace hammer_loads::calibration {
+
+/// A weight that hangs on the tip in one recording.
+struct TipWeight {
+  double mass{}, deviation{};  ///< [kg]; a deviation of zero: it is known
+  double x{}, z{};             ///< its centre of mass in the tip's frame [m]
+};
+
+/// What is taken as given, and how far it may be off.
+struct BoomBasis {
+  std::string urdf;
+  BoomParameters parameters;
+  Eigen::Vector3d g_B{0.0, 0.0, -9.80665};  ///< gravity in the root's axes [m/s2]
+  double mass_deviation{0.15};              ///< standard, of each link's mass, relative: a sum of drawn parts [-]
+  double com_deviation{0.10};               ///< of each link's centre of mass in x and z each [m]
+  double inertia_deviation{0.30};           ///< of each link's inertia, relative [-]
+  double zero_deviation{0.005};             ///< of each joint's zero: 0.3 deg [rad]
+  double offset_deviation{5e4};             ///< of a bore's pressure: 0.2 % of a sensor for 25 MPa [Pa]
+  double gain_deviation{0.005};             ///< of a cylinder's force: bore within 0.1 mm, sensor's gain [-]
+  double friction_deviation{0.05};          ///< of the part of friction that goes with the force [-]
+  double friction_force_deviation{0.02};    ///< of the part that does not, over the greatest push [-]
+  double viscous_deviation{0.02};           ///< of friction per speed, over the greatest push: 0.2 % at 0.1 m/s [s/m]
+};
+
+/// What one entry of the vector of unknowns stands for.
+enum class BoomUnknown {
+  kMass,           ///< of a link, logarithm of it over the description's [-]
+  kComX,           ///< of a link, less the description's [m]
+  kComZ,           ///< likewise
+  kInertia,        ///< of a link about its centre of mass, likewise [-]
+  kFrictionForce,  ///< of a cylinder [N]
+  kFriction,       ///< of a cylinder, over its force [-]
+  kViscous,        ///< of a cylinder [N s/m]
+  kOffset,         ///< of a cylinder's bore pressure [Pa]
+  kGain,           ///< of a cylinder's measured force, less one [-]
+  kZero,           ///< of a cylinder's joint [rad]
+  kTipWeight,      ///< of a recording [kg]
+};
+
+struct Unknown {
+  BoomUnknown kind;
+  std::size_t of;      ///< index of cylinder (links: of the cylinder whose joint they hang on) or recording
+  double given{};      ///< the value at which its entry is zero
+  double deviation{};  ///< standard, before the recording
+};
+
+/// A boom with the unknowns at some values. Entries of the vector are in their standard deviations, zero as given.
+class BoomModel {
+ public:
+  /// Basis and weights (one per recording) are those of a boom that Boom::make() accepts.
+  BoomModel(const BoomBasis& basis, const std::vector<TipWeight>& weights);
+
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  Eigen::VectorXd zero() const { return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns_.size())); }
+  double valueOf(const Eigen::VectorXd& x, std::size_t unknown) const {
+    const Unknown& u = unknowns_[unknown];
+    return u.given + u.deviation * x[static_cast<Eigen::Index>(unknown)];
+  }
+  /// By kind and index; not a number where it is none of the unknowns.
+  double valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of) const;
+  /// The link of the chain that stands for all that moves with a cylinder's joint: the heaviest.
+  int linkOf(std::size_t cylinder) const { return links_[cylinder]; }
+  std::string nameOf(std::size_t unknown) const;
+
+  /// Without weights on the tip; nothing where such values make no boom, as a mass below zero.
+  std::optional<Boom> boomAt(const Eigen::VectorXd& x) const;
+  /// Of a recording.
+  std::optional<Boom> boomAt(const Eigen::VectorXd& x, std::size_t recording) const;
+  /// Boom file with these values, weights left out; deviations as in the basis. Parts beyond sections are as much
+  /// heavier as their links.
+  BoomParameters parametersAt(const Eigen::VectorXd& x) const;
+  /// Zero of a cylinder's joint [rad].
+  double jointZero(const Eigen::VectorXd& x, std::size_t cylinder) const;
+  /// Puts the boom where the joints are at a point, zeros allowed for.
+  void move(Boom& boom, const Eigen::VectorXd& x, const BoomPoint& point) const;
+  /// After that: force that the cylinder's pressures show [N]. NaN at a dead centre.
+  double shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder, const BoomPoint& point) const;
+  /// The rod's speed [m/s]: positive as it comes out.
+  static double rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoint& point);
+  /// What pressures show as given, without what the unknowns do to it [N].
+  double measuredForce(std::size_t cylinder, const BoomPoint& point) const;
+
+  const BoomBasis& basis() const { return basis_; }
+  const Boom& given() const { return given_; }
+
+ private:
+  BoomParameters withLinksAt(const Eigen::VectorXd& x) const;
+  double massOf(const std::string& link) const;  ///< as given [kg]
+  std::vector<WeighedLink> linksAt(const Eigen::VectorXd& x) const;
+
+  BoomBasis basis_;
+  std::vector<TipWeight> weights_;
+  Boom given_;
+  std::vector<int> links_;
+  std::vector<Unknown> unknowns_;
+};
+
+}  // namespace hammer_loads::calibration

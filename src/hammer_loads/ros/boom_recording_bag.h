@@ -1,0 +1,23 @@
+/// Joints' angles and cylinders' pressures of a recording.
+#pragma once
+
+#include <string>
+
+#include "hammer_loads/calibration/boom_recording.h"
+#include "hammer_loads/ros/bag_inputs.h"
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/util/progress.h"
+
+namespace hammer_loads {
+
+struct BoomBag {
+  std::string problem;  ///< one line why it could not be read
+  calibration::BoomRecording recording;
+  std::string silent;  ///< joints without a cylinder that were never heard, in one line: taken at zero
+};
+
+/// Topics, joints and cylinders as in the settings, which have a boom. Readings that are no numbers, or not newer than
+/// the one before, are left out.
+BoomBag readBoomBag(const BagInputs& inputs, const Settings& settings, const Progress& progress = {});
+
+}  // namespace hammer_loads

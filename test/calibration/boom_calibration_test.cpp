@@ -1,0 +1,252 @@
+// A boom weighed by its own cylinders, against machines whose equations the estimate does not share.
+#include <gtest/gtest.h>
+
+#include "calibration/free_boom.h"
+#include "hammer_loads/calibration/reading_check.h"
+#include "hammer_loads/calibration/static_torques.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+using test::FreeBoom;
+
+using Pose3 = std::array<double, 3>;
+
+Pose3 anyPose(std::mt19937& random) {
+  return {test::between(random, -0.7, 0.4), test::between(random, 0.6, 2.1), test::between(random, -1.7, -0.1)};
+}
+
+/// Joints' angles as read, of swing, boom, arm and hammer.
+JointVector readAt(const FreeBoom& machine, const Pose3& q) {
+  return test::joints({0.0, q[0] + machine.zero[0], q[1] + machine.zero[1], q[2] + machine.zero[2]});
+}
+
+/// Without flaws of the sensors beside their noise.
+FreeBoom withGoodSensors(FreeBoom machine) {
+  machine.zero = machine.offset = machine.gain = {};
+  return machine;
+}
+
+/// Per joint: rms of a boom's errors over rms of torque, at unseen poses. As a user of the boom file has it.
+Pose3 staticErrors(const FreeBoom& machine, const BoomParameters& parameters, std::mt19937& random) {
+  Boom boom = Boom::make(test::shippedUrdf(), parameters).value.value();
+  Pose3 error{}, torque{};
+  for (int i = 0; i < 40; ++i) {
+    const Pose3 q = anyPose(random), truth = machine.staticTorque(q);
+    JointVector position = readAt(machine, q);
+    for (std::size_t k = 0; k < 3; ++k)
+      position[boom.cylinders()[k].joint()] -= boom.cylinders()[k].parameters().joint_zero;
+    boom.move({position, test::kZero, test::kZero}, test::kLevel);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double off = boom.steadyTorque(boom.cylinders()[k].joint()) - truth[k];
+      error[k] += off * off, torque[k] += truth[k] * truth[k];
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) error[k] = std::sqrt(error[k] / torque[k]);
+  return error;
+}
+
+BoomCalibration calibrated(const FreeBoom& machine, std::mt19937& random, double seconds = 120.0) {
+  return calibrateBoom(test::shippedBasis(), {{machine.record(random, seconds), {}}});
+}
+
+/// What is asked of two minutes: masses some 10 % off, seals unknown.
+TEST(BoomCalibration, WeighsWhatADrawingHasWrong) {
+  std::mt19937 random(1);
+  double given = 0.0;
+  int joints = 0, weight_as_asked = 0, friction_as_asked = 0;
+  for (int i = 0; i < 8; ++i) {
+    const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
+    const BoomCalibration found = calibrated(machine, random);
+    ASSERT_EQ(found.problem, "");
+    EXPECT_TRUE(found.determined());
+    const Pose3 error = staticErrors(machine, found.found, random);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // A hammer that hangs near the vertical weighs little there: beyond 1.5 % it is what it is said to be.
+      EXPECT_LT(error[k], std::max(0.015, 3.0 * found.joints[k].part())) << i << found.joints[k].joint;
+      ++joints, weight_as_asked += error[k] < 0.015;
+      const CylinderFit& cylinder = found.cylinders[k];
+      const double truth = machine.friction_force[k] + machine.friction[k] * cylinder.force;
+      EXPECT_NEAR(cylinder.friction, truth, std::max(0.3 * truth, 3.0 * cylinder.friction_deviation))
+          << i << cylinder.name;
+      friction_as_asked += std::abs(cylinder.friction - truth) < 0.3 * truth;
+      EXPECT_LT(cylinder.held_out, 2.0 * cylinder.left) << i << cylinder.name;
+    }
+    for (const double e : staticErrors(machine, test::shippedBasis().parameters, random)) given = std::max(given, e);
+  }
+  EXPECT_GE(weight_as_asked, static_cast<int>(0.8 * joints)) << joints;
+  EXPECT_GE(friction_as_asked, static_cast<int>(0.9 * joints)) << joints;
+  EXPECT_GT(given, 0.08);  // the test would see a calibration that does nothing
+}
+
+/// Sensors with zeros, offsets and gains of their own, at single poses: within two deviations.
+TEST(BoomCalibration, KnowsHowWellItKnows) {
+  std::mt19937 random(2);
+  int weights = 0, weights_within = 0, seals = 0, seals_within = 0;
+  for (int i = 0; i < 16; ++i) {
+    const FreeBoom machine = FreeBoom::drawn(random);
+    const std::vector<BoomPoints> points{pointsOf(machine.record(random, 120.0))};
+    const BoomModel model(test::shippedBasis(), {TipWeight{}});
+    const BoomFit fit = fitBoom(model, rowsOf(model, points));
+    EXPECT_TRUE(fit.converged);
+    for (int n = 0; n < 4; ++n) {
+      const Pose3 q = anyPose(random), truth = machine.staticTorque(q);
+      const std::vector<StaticTorque> found = staticTorques(model, fit, {readAt(machine, q)}).front();
+      for (std::size_t k = 0; k < 3; ++k)
+        ++weights, weights_within += std::abs(found[k].value - truth[k]) < 2.0 * found[k].deviation;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto of = [&](BoomUnknown kind) { return model.valueOf(fit.x, kind, k); };
+      const double force = 14e6 * 0.2 * machine.cylinders[k].bore_area;
+      const auto friction = [&](const Eigen::VectorXd& x) {
+        return model.valueOf(x, BoomUnknown::kFrictionForce, k) + force * model.valueOf(x, BoomUnknown::kFriction, k);
+      };
+      const Eigen::VectorXd gradient = gradientOf(friction, fit.x);
+      const double deviation = std::sqrt(gradient.dot(fit.covariance * gradient));
+      const double truth = machine.friction_force[k] + force * machine.friction[k];
+      EXPECT_GE(of(BoomUnknown::kFriction), -1e-9);
+      EXPECT_GE(of(BoomUnknown::kFrictionForce), -1e-6);
+      ++seals, seals_within += std::abs(friction(fit.x) - truth) < 2.0 * deviation;
+    }
+  }
+  EXPECT_GE(weights_within, static_cast<int>(0.88 * weights)) << weights;  // 95.4 % of a normal error
+  EXPECT_LE(weights_within, static_cast<int>(0.995 * weights)) << weights;
+  EXPECT_GE(seals_within, static_cast<int>(0.88 * seals)) << seals;
+}
+
+/// The machine of the demo, which vibrates on its oil while it is driven: another one than that of free_boom.h.
+TEST(BoomCalibration, WeighsABoomOnItsOil) {
+  simulation::MachineSettings m = simulation::workingMo100();
+  m.hammer.drive_reaction_ratio = 1.0;
+  m.on_boom.on = true;
+  m.on_boom.seals.friction = 0.02;
+  m.on_boom.pressures = {200.0, 2e4, 6e6};
+  m.joint_rate = 100.0, m.joint_noise = 2e-4;
+  m.drive.start_time = 1e4, m.start_angle = 1e-9;
+  m.crank.rate = 10.0;
+  m.boom[1] = {-0.2, 0.45, 11.0, 0.0}, m.boom[2] = {1.3, 0.6, 7.0, 1.0}, m.boom[3] = {-0.8, 0.7, 5.0, 2.0};
+  m.duration = 120.0;
+  const simulation::Session session = simulation::recordSession(m);
+  BoomRecording recording;
+  recording.joint.resize(4), recording.pressure.resize(3);
+  const auto add = [&](Trace& trace, std::int64_t stamp, double value) {
+    trace.time.push_back(1e-9 * static_cast<double>(stamp - m.start_stamp)), trace.value.push_back(value);
+  };
+  for (const simulation::JointReading& reading : session.joints)
+    for (std::size_t j = 0; j < 4; ++j) add(recording.joint[j], reading.stamp, reading.position[j]);
+  for (const simulation::PressureReading& reading : session.pressures)
+    for (std::size_t k = 0; k < 3; ++k)
+      add(recording.pressure[k][0], reading.stamp, reading.bore[k]),
+          add(recording.pressure[k][1], reading.stamp, reading.rod[k]);
+  const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{recording, {}}});
+  ASSERT_EQ(found.problem, "");
+  EXPECT_TRUE(found.determined());
+  for (const JointWeight& joint : found.joints)
+    EXPECT_LT(joint.before, std::max(0.015 * joint.torque, 2.0 * joint.deviation)) << joint.joint;  // it is as given
+  for (const CylinderFit& cylinder : found.cylinders)
+    EXPECT_NEAR(cylinder.friction, 0.02 * cylinder.force, 0.3 * 0.02 * cylinder.force) << cylinder.name;
+}
+
+/// A boom weighed without a load says what hangs on it.
+TEST(BoomCalibration, FindsAWeightOnTheTip) {
+  constexpr double kLoad = 500.0, kX = -0.2, kZ = -0.9;  // [kg], [m] from D
+  std::mt19937 random(3);
+  int within = 0;
+  for (int i = 0; i < 5; ++i) {
+    const FreeBoom machine = withGoodSensors(FreeBoom::drawn(random));
+    FreeBoom loaded = machine;
+    loaded.hang(kLoad, {kX, kZ});
+    const BoomCalibration found = calibrateBoom(
+        test::shippedBasis(),
+        {{machine.record(random, 120.0), {}}, {loaded.record(random, 60.0), {kLoad, 0.002 * kLoad, kX, kZ}}});
+    ASSERT_EQ(found.problem, "");
+    ASSERT_TRUE(found.weight_check);
+    EXPECT_NEAR(found.weight_check->value, kLoad, 0.02 * kLoad) << i;
+    within += std::abs(found.weight_check->value - kLoad) < 2.0 * found.weight_check->deviation;
+  }
+  EXPECT_GE(within, 4);
+}
+
+/// The weight is the one thing that tells a bore from a mass.
+TEST(BoomCalibration, AKnownWeightSharpensTheCylindersGains) {
+  constexpr double kLoad = 500.0, kX = -0.2, kZ = -0.9;
+  std::mt19937 random(4);
+  FreeBoom machine;
+  FreeBoom loaded = machine;
+  loaded.hang(kLoad, {kX, kZ});
+  const BoomRecording free = machine.record(random, 120.0), hung = loaded.record(random, 120.0);
+  const auto gainDeviation = [](const BoomCalibration& c) {
+    for (const Estimate& e : c.estimates)
+      if (e.key.find("boom_cylinder's bore") == 0) return e.deviation;
+    return kNaN;
+  };
+  BoomBasis basis = test::shippedBasis();
+  basis.gain_deviation = 0.03;  // a bore of another series
+  const double alone = gainDeviation(calibrateBoom(basis, {{free, {}}}));
+  const double beside = gainDeviation(calibrateBoom(basis, {{free, {}}, {hung, {kLoad, 1.0, kX, kZ}}}));
+  EXPECT_LT(beside, 0.5 * alone);
+}
+
+TEST(BoomCalibration, NamesPressuresThatAreOtherwiseThanSaid) {
+  std::mt19937 random(5);
+  const FreeBoom machine = FreeBoom::drawn(random);
+  const BoomRecording good = machine.record(random, 60.0);
+  const BoomModel model(test::shippedBasis(), {TipWeight{}});
+  const auto said = [&](const BoomRecording& r) { return misreadings(model, pointsOf(r)); };
+  EXPECT_TRUE(said(good).empty()) << said(good).front();
+
+  BoomRecording bar = good;
+  for (auto& chambers : bar.pressure)
+    for (Trace& trace : chambers)
+      for (double& p : trace.value) p *= 1e-5;
+  ASSERT_EQ(said(bar).size(), 3U);
+  EXPECT_NE(said(bar)[0].find("in bar"), std::string::npos) << said(bar)[0];
+
+  BoomRecording chambers = good;
+  std::swap(chambers.pressure[0][0], chambers.pressure[0][1]);
+  ASSERT_EQ(said(chambers).size(), 1U);
+  EXPECT_NE(said(chambers)[0].find("bore and rod exchanged"), std::string::npos) << said(chambers)[0];
+
+  BoomRecording cylinders = good;
+  std::swap(cylinders.pressure[0], cylinders.pressure[1]);
+  ASSERT_EQ(said(cylinders).size(), 2U);
+  EXPECT_NE(said(cylinders)[0].find("those of arm_cylinder"), std::string::npos) << said(cylinders)[0];
+
+  BoomRecording degrees = good;
+  for (double& q : degrees.joint[2].value) q *= 180.0 / kPi;
+  ASSERT_EQ(said(degrees).size(), 1U);
+  EXPECT_NE(said(degrees)[0].find("arm_joint"), std::string::npos) << said(degrees)[0];
+}
+
+TEST(BoomCalibration, SaysWhichJointMovedTooLittle) {
+  std::mt19937 random(6);
+  const FreeBoom machine = FreeBoom::drawn(random);
+  EXPECT_EQ(calibrateBoom(test::shippedBasis(), {{machine.record(random, 120.0), {}}}).problem, "");
+  const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{machine.record(random, 20.0), {}}});
+  EXPECT_NE(found.problem.find("_joint: surely moves at"), std::string::npos) << found.problem;
+}
+
+TEST(BoomCalibration, LeavesOutWhatIsHammered) {
+  std::mt19937 random(7);
+  BoomRecording recording = FreeBoom().record(random, 60.0);
+  const BoomPoints whole = pointsOf(recording);
+  EXPECT_EQ(whole.left_out, 0U);
+  for (double t = 20.0; t < 30.0; t += 0.01) recording.working.push_back(t);
+  for (auto& trace : recording.pressure[0]) {  // and a gap
+    const auto from = std::lower_bound(trace.time.begin(), trace.time.end(), 40.0);
+    const auto to = std::lower_bound(trace.time.begin(), trace.time.end(), 45.0);
+    trace.value.erase(trace.value.begin() + (from - trace.time.begin()),
+                      trace.value.begin() + (to - trace.time.begin()));
+    trace.time.erase(from, to);
+  }
+  const BoomPoints part = pointsOf(recording);
+  EXPECT_NEAR(static_cast<double>(part.left_out), 15.0 / whole.points[0].half_width, 5.0);
+  for (const BoomPoint& point : part.points) {
+    EXPECT_FALSE(point.time > 20.0 && point.time < 30.0);
+    EXPECT_FALSE(point.time > 40.2 && point.time < 44.8);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,61 @@
+// Cylinders whose seals rub: torques by measured pressures, and how far they are said to be off.
+#include "pipeline/on_boom_session.h"
+
+namespace hammer_loads {
+namespace {
+
+using accuracy::BoomErrors;
+using test::errorsOf;
+
+simulation::Session rubbingSession(double friction) {
+  simulation::MachineSettings m = test::machineOnBoom(1.0, 100.0);
+  m.on_boom.seals.friction = friction;
+  return simulation::recordSession(m);
+}
+
+std::string knownFriction(double friction, double deviation) {
+  std::string keys = "boom_stiffness: identified\n";
+  for (const char* name : simulation::kBoomCylinders)
+    keys += format("%s_friction: %.9g\n%s_friction_deviation: %.9g\n", name, friction, name, deviation);
+  return keys;
+}
+
+/// Seals of an unknown machine: what is usual covers them, what is said to be exact does not.
+TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
+  const simulation::Session session = rubbingSession(0.02);
+  for (const bool imu : {false, true}) {
+    const accuracy::SensorsOnBoom sensors{imu, true};
+    const BoomErrors usual = errorsOf("usual seals", session, "boom_stiffness: identified\n", sensors);
+    EXPECT_GT(usual.covered(), 0.85) << imu;
+    const BoomErrors none = errorsOf("no seals", session, knownFriction(0.0, 0.0), sensors);
+    EXPECT_LT(none.covered(), usual.covered()) << imu;
+    // Seals that were weighed are taken off.
+    const BoomErrors weighed = errorsOf("weighed seals", session, knownFriction(0.02, 0.004), sensors);
+    EXPECT_LT(weighed.worstTorque(), 0.8 * none.worstTorque()) << imu;
+    EXPECT_GT(weighed.covered(), 0.85) << imu;
+  }
+}
+
+/// What weighing found of the sensors is taken off wherever they are used.
+TEST(RubbingBoom, ZerosAndOffsetsOfTheBoomFileAreTakenOff) {
+  const simulation::Session right = rubbingSession(0.0);
+  simulation::Session wrong = right;
+  constexpr double kZero = 0.02, kOffset = 3e5;  // [rad], [Pa]
+  for (simulation::JointReading& reading : wrong.joints)
+    for (std::size_t k = 1; k < 4; ++k) reading.position[k] += kZero;
+  for (simulation::PressureReading& reading : wrong.pressures)
+    for (double& pressure : reading.bore) pressure += kOffset;
+  std::string keys = "boom_stiffness: identified\n";
+  const std::string without = keys;
+  for (const char* name : simulation::kBoomCylinders)
+    keys += format("%s_joint_zero_rad: %.9g\n%s_pressure_offset_Pa: %.9g\n", name, kZero, name, kOffset);
+  const accuracy::SensorsOnBoom sensors{true, true};
+  const BoomErrors as_right = errorsOf("right", right, without, sensors), told = errorsOf("told", wrong, keys, sensors),
+                   not_told = errorsOf("not told", wrong, without, sensors);
+  EXPECT_NEAR(told.worstTorque(), as_right.worstTorque(), 1e-4);
+  EXPECT_NEAR(told.rmsForce(), as_right.rmsForce(), 1e-4);
+  EXPECT_GT(not_told.worstTorque(), as_right.worstTorque() + 0.01);
+}
+
+}  // namespace
+}  // namespace hammer_loads
