@@ -145,8 +145,10 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.links = linkState(links.here.links, motion);
   result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion);
   result_.wrench = result_.wrench + rod.wrench;
-  result_.pins =
-      pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow, result_.deviation.angle);
+  // Of a rigid rod at every level: what the spring makes of them is not known here.
+  const CrankMotion rigid = elastic_.runs() ? motionOf(crank_.estimate()) : motion;
+  result_.pins = pinForces(model_, elastic_.runs() ? crank_.step().links().links : links.here.links, rigid,
+                           result_.hull.motion, settings_.near_blow, result_.deviation.angle);
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
                 result_.deviation.wrench);
   sampler_.sample(links, result_);
@@ -236,12 +238,11 @@ void Pipeline::followBoom(const LinksBeside& links) noexcept {
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
   const bool uncertain = spread.count > 0;
-  result_.boom = &boom_->sample({result_.stamp, motion, spread,
-                                 uncertain ? constantSpread(result_.load_columns) : WrenchSpread{},
-                                 uncertain && !columns_.isExact() ? hammerSpread(result_.load_columns) : WrenchSpread{},
-                                 hull_.newImuReading(result_.stamp), imu_lost, displaced, stampNoise(),
-                                 at_work ? nominal_force_ : 0.0},
-                                step);
+  result_.boom = &boom_->sample(
+      {result_.stamp, motion, spread, uncertain ? constantSpread(result_.load_columns) : WrenchSpread{},
+       uncertain && !columns_.isExact() ? hammerSpread(result_.load_columns) : WrenchSpread{},
+       hull_.newImuReading(result_.stamp), imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
+      step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);
