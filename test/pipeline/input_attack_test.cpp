@@ -246,7 +246,7 @@ std::vector<Attack> timeAttacks(CrankStamps stamps) {
 std::vector<PipelineSettings> allSettings() {
   std::vector<PipelineSettings> all;
   const PipelineSettings shipped = loadFiles(configDirectory(), {}).value->pipeline;
-  for (const auto& [name, level] : kLevelNames) {
+  for (const auto& [name, level] : kRigidLevelNames) {
     all.push_back(shipped);
     all.back().level = level;
   }

@@ -123,6 +123,22 @@ TEST(HammerParameters, TheDrivesReactionCountsAsOneWithANote) {
   EXPECT_EQ(problemsWith({}, "drive_reaction_ratio: 1e9\n").size(), 1U);
 }
 
+TEST(HammerParameters, TheRodsSpringIsOptional) {
+  const TemporaryFile without(hammerYaml()),
+      with(hammerYaml() + "rod_stiffness_N_m: 1e9\nrod_damping_ratio: 0.3\npin_play_m: 0.0002\nlevel: elastic\n");
+  const Checked<Settings> absent = loadFiles(configDirectory(), {without.path()});
+  const Checked<Settings> given = loadFiles(configDirectory(), {with.path()});
+  ASSERT_TRUE(absent.value && given.value);
+  EXPECT_EQ(absent.value->mechanism.parameters().rod.stiffness, 0.0);
+  const RodSpring& rod = given.value->mechanism.parameters().rod;
+  EXPECT_EQ(rod.stiffness, 1e9);
+  EXPECT_EQ(rod.damping_ratio, 0.3);
+  EXPECT_EQ(rod.play, 2e-4);
+  EXPECT_EQ(given.value->pipeline.level, Level::kElastic);
+  EXPECT_STREQ(nameOf(given.value->pipeline.level), "elastic");
+  EXPECT_EQ(problemsWith({}, "rod_stiffness_N_m: 10\nrod_damping_ratio: -1\npin_play_m: 0.1\n").size(), 3U);
+}
+
 TEST(HammerParameters, RefusesAnImpossibleLinkageWithItsNumbers) {
   const Lines problems = problemsWith({{"rod_length_m", "0.151"}});
   ASSERT_EQ(problems.size(), 1U);

@@ -199,5 +199,14 @@ TEST(ElasticMachine, StrikesOnItsBoomAsHeld) {
   EXPECT_TRUE(b.back().whole_turn);
 }
 
+/// Second touches are chaotic: a look more must not be a machine that is another one.
+TEST(ElasticMachine, MovesTheSameWhoeverLooks) {
+  ElasticMachine seldom(elastic(1e9, 0.2)), often(elastic(1e9, 0.2));
+  seldom.advanceTo(6.0);
+  for (int i = 1; i <= 7000; ++i) often.advanceTo(6.0 * i / 7000.0);
+  EXPECT_EQ(seldom.truth().speed, often.truth().speed);
+  EXPECT_EQ(seldom.truth().load.force_z, often.truth().load.force_z);
+}
+
 }  // namespace
 }  // namespace hammer_loads::simulation

@@ -119,7 +119,7 @@ ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, L
 std::vector<ElasticRow> elasticTable(const Settings& settings) {
   std::vector<ElasticRow> rows;
   for (const ElasticKind& kind : elasticKinds(settings.mechanism.parameters())) {
-    for (const Level level : {Level::kRocker, Level::kLinkage})
+    for (const Level level : {Level::kRocker, Level::kLinkage, Level::kElastic})
       rows.push_back({kind.name, level, elasticErrors(settings, kind, level)});
   }
   return rows;

@@ -42,7 +42,7 @@ struct ElasticKind {
 std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer);
 /// Of one session through the pipeline at a level (seeded: the same on every run).
 ElasticErrors elasticErrors(const Settings& settings, const ElasticKind& kind, Level level);
-/// Every machine at levels rocker and linkage, some ten seconds of computing.
+/// Every machine at levels rocker, linkage and elastic, some twenty seconds of computing.
 std::vector<ElasticRow> elasticTable(const Settings& settings);
 
 /// As a table in Markdown.

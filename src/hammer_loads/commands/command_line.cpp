@@ -15,9 +15,9 @@ void addParamsOption(CommandLine& line, std::vector<std::string>& files) {
 
 void addLevelOption(CommandLine& line, std::optional<Level>& level) {
   std::vector<std::string> words;
-  for (const auto& [word, meaning] : kLevelNames) words.emplace_back(word);
+  for (const auto& [word, meaning] : kRigidLevelNames) words.emplace_back(word);
   const auto take = [&level](const std::string& given) {
-    for (const auto& [word, meaning] : kLevelNames) {
+    for (const auto& [word, meaning] : kRigidLevelNames) {
       if (given == word) level = meaning;
     }
   };

@@ -20,10 +20,10 @@ class ShaftModel {
  public:
   ShaftModel(const Mechanism& mechanism, Level level, const std::optional<Coupling>& coupling = {})
       : mechanism_(&mechanism),
-        level_(level),
-        own_(crankWithinDrive(mechanism, level)),
+        level_(rigid(level)),
+        own_(crankWithinDrive(mechanism, rigid(level))),
         coupling_(coupling),
-        columns_(machineColumns(mechanism, level)) {}
+        columns_(machineColumns(mechanism, rigid(level))) {}
   void setHullMotion(const HullMotion& hull) noexcept { hull_ = hull; }
   const HullMotion& hullMotion() const noexcept { return hull_; }
   /// Nothing: the motor turns with the crank.

@@ -278,6 +278,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     }
     if (!without_contact) learnFrom(innovation, ratio);  // (10)
   }
+  sample_ = sample;
+  angle_fit_ = innovation.logLikelihood();
   before_ = last;
   before_load_ = load_;
   before_hull_ = now_hull_;

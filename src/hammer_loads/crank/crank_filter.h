@@ -94,6 +94,10 @@ class CrankFilter final : public CrankTracker {
   /// filter computes it; what it publishes is multiplied by the consistency where that is above 1.
   const ShaftMatrix& covariance() const noexcept { return now_.covariance; }
   const Encoder& encoder() const noexcept { return encoder_; }
+  /// The last one taken, as it was weighed.
+  const WeighedSample& sample() const noexcept { return sample_; }
+  /// Logarithm of the likelihood of its angle before it was taken, but for a constant.
+  double angleFit() const noexcept { return angle_fit_; }
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
   double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
   bool isProven() const noexcept override { return consistency() < kAgrees; }
@@ -157,6 +161,8 @@ class CrankFilter final : public CrankTracker {
   double first_guess_;      ///< of the drive inertia [kg m2]
   double unlearn_after_{};  ///< time until it may be taken up again [s]
   Encoder encoder_;
+  WeighedSample sample_;
+  double angle_fit_{};
   TimingNoise timing_;
   SupplyRoughness roughness_;
   LearnedSupply supply_;

@@ -5,7 +5,7 @@
 
 namespace hammer_loads {
 
-HullModel::HullModel(const Mechanism& mechanism, Level level) : mechanism_(&mechanism), level_(level) {
+HullModel::HullModel(const Mechanism& mechanism, Level level) : mechanism_(&mechanism), level_(rigid(level)) {
   if (level != Level::kPulse) return;
   const HalfSinePulse nominal = pulseAtConstantSpeed(mechanism, Level::kRocker, 1.0, {}).pulse;
   if (!(nominal.frequency > 0.0)) return;

@@ -16,7 +16,7 @@ struct NominalPulse {
 /// A mechanism and a level; refers to the mechanism, which must outlive it.
 class HullModel {
  public:
-  /// Level pulse works out the nominal turn at level rocker (some 0.2 ms).
+  /// Level pulse works out the nominal turn at level rocker (some 0.2 ms); elastic is linkage here.
   HullModel(const Mechanism& mechanism, Level level);
 
   const Mechanism& mechanism() const noexcept { return *mechanism_; }

@@ -74,22 +74,26 @@ HAMMER_LOADS_INLINE LinkMomentum linkMomentumRocker(const Mechanism& mechanism, 
 /// Level linkage: mass, centre of mass, inertia and weight of crank, rod and rocker. Neglects: friction, inertia of
 /// motor and flywheel. Momentum theorem in the frame turned by a, where hull x = -re and z = im:
 /// sum m a = C1 e^(i phi)(i e - w^2) + C2 e^(i beta)(...) + C3 e^(i psi)(...); see LinkMoments.
-HAMMER_LOADS_INLINE HullWrench hullWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
-                                                 Gravity gravity) noexcept {
+HAMMER_LOADS_INLINE HullWrench hullWrenchOf(const Mechanism& mechanism, const LinkMotion& l, const LinkAccelerations& q,
+                                            Gravity gravity) noexcept {
   const LinkMoments& k = mechanism.moments();
-  const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
   const Planar crank = k.crank * l.phi, rod = k.rod * l.beta;
   const Planar crank_rod = crank * q.crank + rod * q.rod;
   const Planar all = crank_rod + k.rocker * (l.psi * q.rocker);
   const Planar first_moment = k.fixed + crank + rod + k.rocker * l.psi;
   const Planar coupling = linkCoupling(mechanism, l);
   // d/dt of the angular momentum about D; A stands at -pivot.
-  const double momentum_rate = k.crank_inertia * c.acceleration + k.rod_inertia * q.rod.im +
+  const double momentum_rate = k.crank_inertia * q.crank.im + k.rod_inertia * q.rod.im +
                                mechanism.parameters().rocker_inertia_about_pivot * q.rocker.im -
                                (k.pivot.re * crank_rod.im - k.pivot.im * crank_rod.re) +
-                               coupling.re * (q.rod.im + c.acceleration) + coupling.im * (q.rod.re - q.crank.re);
+                               coupling.re * (q.rod.im + q.crank.im) + coupling.im * (q.rod.re - q.crank.re);
   return {k.mass * gravity.x + all.re, k.mass * gravity.z - all.im,
           first_moment.re * gravity.z + first_moment.im * gravity.x - momentum_rate};
+}
+
+HAMMER_LOADS_INLINE HullWrench hullWrenchLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
+                                                 Gravity gravity) noexcept {
+  return hullWrenchOf(mechanism, l, linkAccelerations(l, c.speed, c.acceleration), gravity);
 }
 
 HAMMER_LOADS_INLINE LinkMomentum linkMomentumLinkage(const Mechanism& mechanism, const LinkMotion& l,

@@ -9,6 +9,10 @@ enum class Level {
   kPulse,    ///< P0 (15): half-sine in crank angle (hammer/hull_model.h); elsewhere treated as kRocker
   kRocker,   ///< P0: crank and rod massless; rocker mass, inertia and weight
   kLinkage,  ///< crank and rod with mass, centre of mass and inertia as well
+  kElastic,  ///< a rod that gives as well (linkage/two_bodies.h); where nothing says how far it does, kLinkage
 };
+
+/// What a level is where nothing but the crank's motion is given.
+constexpr Level rigid(Level level) noexcept { return level == Level::kElastic ? Level::kLinkage : level; }
 
 }  // namespace hammer_loads

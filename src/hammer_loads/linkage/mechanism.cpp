@@ -75,7 +75,9 @@ Checked<Mechanism> Mechanism::make(const HammerParameters& p) {
         Rule{"rod_com_across_m", p.rod_com_across, "m", Sign::kAny},
         Rule{"rod_inertia_about_com_kg_m2", p.rod_inertia_about_com, "kg m2", Sign::kNotNegative},
         Rule{"drive_inertia_kg_m2", p.drive_inertia, "kg m2", Sign::kPositive},
-        Rule{"drive_reaction_ratio", p.drive_reaction_ratio, "", Sign::kAny}}) {
+        Rule{"drive_reaction_ratio", p.drive_reaction_ratio, "", Sign::kAny},
+        Rule{"rod_damping_ratio", p.rod.damping_ratio, "", Sign::kNotNegative},
+        Rule{"pin_play_m", p.rod.play, "m", Sign::kNotNegative}}) {
     check(rule, result.problems);
   }
   const double least_inertia = p.rocker_mass * p.rocker_com_distance * p.rocker_com_distance;

@@ -5,6 +5,7 @@
 
 #include "hammer_loads/linkage/crank_rocker.h"
 #include "hammer_loads/linkage/planar.h"
+#include "hammer_loads/linkage/rod_spring.h"
 
 namespace hammer_loads {
 
@@ -30,7 +31,8 @@ struct HammerParameters {
   double rod_inertia_about_com{};       ///< [kg m2], >= 0
   double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
   double drive_reaction_ratio{1.0};     ///< r of DriveReaction [-], finite
-  HammerDeviations deviations{};        ///< what is known of the above; all exact where nothing is said
+  RodSpring rod;                        ///< of level elastic alone; what is 0 in it is learned from a first guess
+  HammerDeviations deviations{};        ///< what is known of the above but the spring; all exact where nothing is said
 };
 
 /// Masses of the links in the form in which they enter momentum and energy. `Seen from the hull`: in the mechanism

@@ -20,7 +20,7 @@ CrankFilterSettings filterSettings(const Mechanism& mechanism, const PipelineSet
   filter.max_speed = s.max_crank_speed;
   const double drive = mechanism.parameters().drive_inertia;
   const double struck = s.coupling ? (1.0 - s.coupling->motor_share) * drive : drive;
-  filter.blow_factor = blowInertia(mechanism, s.level, struck).smoothFactor();
+  filter.blow_factor = blowInertia(mechanism, rigid(s.level), struck).smoothFactor();
   return filter;
 }
 

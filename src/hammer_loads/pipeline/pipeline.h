@@ -9,6 +9,7 @@
 #include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/pipeline/crank_follower.h"
 #include "hammer_loads/pipeline/crank_trust.h"
+#include "hammer_loads/pipeline/elastic_follower.h"
 #include "hammer_loads/pipeline/hull_state.h"
 #include "hammer_loads/pipeline/misuse.h"
 #include "hammer_loads/pipeline/rod_ring.h"
@@ -54,6 +55,7 @@ class Pipeline {
   /// Of SampleResult::load_columns: names of the hammer's, behind those of the sensor.
   std::vector<std::string> hammerColumns() const { return columns_.names(); }
   const CrankTrust& crankTrust() const noexcept { return trust_; }
+  const ElasticFollower& elastic() const noexcept { return elastic_; }
   const HullState& hull() const noexcept { return hull_; }
   const std::optional<BoomFollower>& boom() const noexcept { return boom_; }
   const PipelineSettings& settings() const noexcept { return settings_; }
@@ -82,6 +84,7 @@ class Pipeline {
   CrankTrust trust_;
   HullState hull_;
   RodRing rod_;
+  ElasticFollower elastic_;
   TurnFollower turn_;
   MisuseFollower misuse_;
   WrenchSampler sampler_;

@@ -4,15 +4,10 @@
 #include <array>
 
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/linkage/rod_spring.h"
 #include "hammer_loads/pipeline/crank_step.h"
 
 namespace hammer_loads {
-
-/// Rod, pins and bearings as one spring, and its damping.
-struct RodSpring {
-  double stiffness{};      ///< k along the rod [N/m]
-  double damping_ratio{};  ///< at 200 Hz [-]: damping is 2 ratio k/(2 pi 200 Hz) [N s/m]
-};
 
 /// What rods may be: no source gives any. Those with little damping ring longest, those with much are first.
 inline constexpr std::array<RodSpring, 3> kRods{{{8e8, 0.15}, {8e8, 0.6}}};

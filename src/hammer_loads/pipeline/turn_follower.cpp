@@ -111,8 +111,8 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   const LinkMomentum after = linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter());
   turn_.correctBegin(after);
   RockerBlow& blow = pending_end_.blow;
-  const CrankBlow crank = pending_.take();
-  const double doubt = std::hypot(crank.speed_deviation / crank.speed, crank.factor_deviation / crank.factor);
+  const CrankBlow measured = pending_.take(), crank = rod_.value_or(measured);
+  const double doubt = std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
   errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0});
   blow = measuredBlow(*model_, crank);
   pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);

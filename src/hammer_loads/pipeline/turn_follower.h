@@ -40,6 +40,8 @@ class TurnFollower {
     if (pending_.isWaiting()) pending_.count(true);
     errors_.sample(result.stamp, result.wrench, result.deviation, result.load_columns);
   }
+  /// What a rod that gives says of that blow, instead of the crank's speed alone.
+  void rodSays(const std::optional<CrankBlow>& blow) noexcept { rod_ = blow; }
   bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
   /// Velocity of the hull at that blow; zero until it is given.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
@@ -63,6 +65,7 @@ class TurnFollower {
   TurnRecorder turn_;
   TurnErrors errors_;
   PendingBlow pending_;
+  std::optional<CrankBlow> rod_;
   TurnEnd pending_end_;  ///< of the pending blow
   HullMotion hull_;
   StampNs epoch_{};                   ///< first sample since the last restart by time

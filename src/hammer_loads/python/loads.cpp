@@ -21,7 +21,7 @@ using Outputs = std::array<double*, kAllColumns>;
 Level levelOf(const Hammer& hammer, const std::optional<std::string>& word) {
   if (!word) return hammer.level();
   std::string words;
-  for (const auto& [name, level] : kLevelNames) {
+  for (const auto& [name, level] : kRigidLevelNames) {
     if (*word == name) return level;
     words += (words.empty() ? "" : ",") + std::string(name);
   }

@@ -16,6 +16,8 @@ namespace {
 constexpr NumberRule kLength = NumberRule::within(1e-3, 10.0), kOffset = NumberRule::within(-10.0, 10.0);
 constexpr NumberRule kMass = NumberRule::within(1e-3, 1e5), kMassOrNone = NumberRule::zeroOrWithin(1e-6, 1e5);
 constexpr NumberRule kInertia = NumberRule::within(1e-9, 1e6), kInertiaOrNone = NumberRule::zeroOrWithin(1e-12, 1e6);
+constexpr NumberRule kStiffness = NumberRule::zeroOrWithin(1e6, 1e12), kDampingRatio = NumberRule::within(0.0, 100.0);
+constexpr NumberRule kPlay = NumberRule::within(0.0, 0.01);
 // Matter lies some radii of gyration from the pivot; a lever of less would make any blow's impulse endless.
 constexpr double kLeastLever = 0.1, kMostLever = 10.0;
 
@@ -57,6 +59,13 @@ void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::
   if (!usual.empty()) notes.push_back("standard deviations not given, the usual ones count: " + usual);
 }
 
+/// All optional.
+void readRod(ParameterReader& reader, RodSpring& rod) {
+  if (reader.given("rod_stiffness_N_m")) rod.stiffness = reader.number("rod_stiffness_N_m", "N/m", kStiffness);
+  if (reader.given("rod_damping_ratio")) rod.damping_ratio = reader.number("rod_damping_ratio", "", kDampingRatio);
+  if (reader.given("pin_play_m")) rod.play = reader.number("pin_play_m", "m", kPlay);
+}
+
 }  // namespace
 
 std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std::string>& notes) {
@@ -69,6 +78,8 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   }
   const char* ratio = kHammerConstants[kRatio].key;
   if (reader.given(ratio)) parameters.drive_reaction_ratio = reader.number(ratio, "", kRules[kRatio]);
+
+  readRod(reader, parameters.rod);
 
   std::vector<std::string> of_deviations;
   readDeviations(reader, parameters, of_deviations);  // known keys, whatever else is wrong

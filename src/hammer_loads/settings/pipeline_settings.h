@@ -26,12 +26,16 @@ enum class OutputKind {
 };
 
 /// The words that `level` may be; auto takes the cheapest level within `tolerance`.
-constexpr std::array<std::pair<const char*, std::optional<Level>>, 4> kLevelChoices{
-    {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}, {"auto", std::nullopt}}};
-constexpr std::array<std::pair<const char*, Level>, 3> kLevelNames{
+constexpr std::array<std::pair<const char*, std::optional<Level>>, 5> kLevelChoices{{{"pulse", Level::kPulse},
+                                                                                     {"rocker", Level::kRocker},
+                                                                                     {"linkage", Level::kLinkage},
+                                                                                     {"elastic", Level::kElastic},
+                                                                                     {"auto", std::nullopt}}};
+/// Of rigid links, which a machine without a rod's spring is told by.
+constexpr std::array<std::pair<const char*, Level>, 3> kRigidLevelNames{
     {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
 constexpr const char* nameOf(Level level) noexcept {
-  for (const auto& [name, named] : kLevelNames)
+  for (const auto& [name, named] : kLevelChoices)
     if (named == level) return name;
   return "";
 }

@@ -28,6 +28,7 @@ ElasticMachine::ElasticMachine(const MachineSettings& settings)
   now_[kRocker] = links_.rockerAngle(start);
   contacts_ = contacts(now_);
   rate(now_, slope_, time_);
+  view_ = now_;
 }
 
 double ElasticMachine::pitch(double time) const noexcept {
@@ -96,11 +97,10 @@ int ElasticMachine::contacts(const State& y) const noexcept {
   return ground + (pressed > 0.0 ? 8 : 0) + (pressed < 0.0 ? 16 : 0);
 }
 
-/// Returns how far it came [s].
-double ElasticMachine::step(double longest) {
+void ElasticMachine::step() {
   boost::numeric::odeint::runge_kutta_dopri5<State> stepper;
   const auto system = [this](const State& y, State& slope, double time) { rate(y, slope, time); };
-  double dt = std::min(next_step_, longest);
+  double dt = next_step_;
   for (;;) {
     State next, slope, error;
     stepper.do_step(system, now_, slope_, time_, next, slope, dt, error);
@@ -108,25 +108,38 @@ double ElasticMachine::step(double longest) {
     for (int i = 0; i < kControlled; ++i) worst = std::max(worst, std::abs(error[i]) / kError[i]);
     const double factor = std::clamp(0.9 * std::pow(worst, -0.2), 0.1, 4.0);
     if (worst > 1.0 && dt > kShortest) {
-      next_step_ = dt = dt * factor;
+      dt *= factor;
       continue;
     }
     const int after = contacts(next);
     if (after != contacts_ && dt > kShortest) {
-      next_step_ = dt = std::max(0.25 * dt, 0.9 * kShortest);
+      dt = std::max(0.25 * dt, 0.9 * kShortest);
       continue;
     }
-    next_step_ = std::min(settings_.step, dt < next_step_ ? std::max(next_step_, dt * factor) : dt * factor);
-    accept(next, slope, dt, after);
-    return dt;
+    next_step_ = std::min(settings_.step, dt * factor);
+    return accept(next, slope, dt, after);
   }
+}
+
+/// Within the last step.
+ElasticMachine::State ElasticMachine::stateAt(double time) const {
+  if (time == time_) return now_;
+  boost::numeric::odeint::runge_kutta_dopri5<State> stepper;
+  const auto system = [this](const State& y, State& slope, double t) { rate(y, slope, t); };
+  State view = before_, slope;
+  if (time > before_time_)
+    stepper.do_step(system, before_, before_slope_, before_time_, view, slope, time - before_time_);
+  return view;
 }
 
 void ElasticMachine::advanceTo(double time) {
   while (time_ < time) {
-    const double left = time - time_;
-    if (step(left) == left) time_ = time;
+    before_ = now_, before_slope_ = slope_, before_time_ = time_, view_turn_ = turn_, view_put_back_ = put_back_;
+    step();
   }
+  asked_ = time;
+  view_ = stateAt(time);
+  if (time == time_) view_turn_ = turn_, view_put_back_ = put_back_;
 }
 
 void ElasticMachine::accept(const State& next, const State& slope, double dt, int contacts) {
@@ -155,37 +168,37 @@ void ElasticMachine::passDeadCentre() noexcept {
 }
 
 CrankTruth ElasticMachine::truth() const noexcept {
-  const Acting a = acting(now_, time_);
+  const Acting a = acting(view_, asked_);
   CrankTruth t;
-  t.time = time_;
-  const bool before = now_[kCrank] < 0.0;
-  t.turn = before ? turn_ - 1 : turn_;
-  t.angle = before ? now_[kCrank] + kTwoPi : now_[kCrank];
+  t.time = asked_;
+  const bool before = view_[kCrank] < 0.0;
+  t.turn = before ? view_turn_ - 1 : view_turn_;
+  t.angle = before ? view_[kCrank] + kTwoPi : view_[kCrank];
   if (t.angle >= kTwoPi) t.angle = std::nextafter(kTwoPi, 0.0);
-  t.speed = t.motor_speed = now_[kCrankSpeed];
+  t.speed = t.motor_speed = view_[kCrankSpeed];
   t.acceleration = a.acceleration[0];
   t.net_torque = a.net_torque;
-  t.pressure = now_[kPressure];
-  t.hull_pitch = pitch(time_);
+  t.pressure = view_[kPressure];
+  t.hull_pitch = pitch(asked_);
   t.load = a.load;
   t.drive_reaction_y = -settings_.hammer.drive_reaction_ratio * settings_.drive.inertia * a.acceleration[0];
-  t.rocker_angle = now_[kRocker], t.rocker_speed = now_[kRockerSpeed];
+  t.rocker_angle = view_[kRocker], t.rocker_speed = view_[kRockerSpeed];
   t.rod_force = -a.rod;
   t.tool_force = a.struck.tool, t.retainer_force = a.struck.retainer;
   return t;
 }
 
 ElasticEnergy ElasticMachine::energy() const noexcept {
-  const TwoBodies w = speeds(now_);
-  const ElasticLinks::View view = links_.at(angles(now_), w);
+  const TwoBodies w = speeds(view_);
+  const ElasticLinks::View view = links_.at(angles(view_), w);
   const std::array<double, 3> M = links_.inertia(view);
   ElasticEnergy e;
-  e.motor = now_[kMotor], e.friction = now_[kFriction], e.weight = now_[kWeight];
+  e.motor = view_[kMotor], e.friction = view_[kFriction], e.weight = view_[kWeight];
   e.kinetic = 0.5 * ((M[0] + settings_.drive.inertia) * w[0] * w[0] + M[2] * w[1] * w[1]) + M[1] * w[0] * w[1];
   e.elastic = rod_.energy(view.rod.stretch);
-  e.tool = struck_.energy(striker(now_), tool(now_));
-  e.rod = now_[kRodLoss];
-  e.blow = now_[kBlowLoss] + put_back_;
+  e.tool = struck_.energy(striker(view_), tool(view_));
+  e.rod = view_[kRodLoss];
+  e.blow = view_[kBlowLoss] + view_put_back_;
   return e;
 }
 

@@ -28,7 +28,9 @@ struct ElasticEnergy {
 /// centre nothing is special: without a blow the rocker goes through by its inertia. No rule for a blow: what it does
 /// follows from the contact's force.
 /// Neglects: motion of the hull but its pitch, a flexible coupling, bending of the links.
-/// Dormand-Prince of order 5 with steps by its error; no step runs over a change of contact by more than 10 ns.
+/// Dormand-Prince of order 5 with steps by its error; no step runs over a change of contact by more than 10 ns. A
+/// machine with second touches is chaotic: the steps do not depend on the times that are asked for, so that the same
+/// settings give the same motion.
 /// settings.rod.stiffness > 0. Of BlowTruth: `time` is the first touch, speeds after are those at the last parting,
 /// energy and impulse those through the tool, a turn lasts from one first touch to the next.
 class ElasticMachine {
@@ -38,7 +40,7 @@ class ElasticMachine {
 
   /// time >= now [s].
   void advanceTo(double time);
-  double time() const noexcept { return time_; }
+  double time() const noexcept { return asked_; }
   /// load: as the momentum theorem has it, with what the tool gives and without the drive; the retainer is part of the
   /// hull.
   CrankTruth truth() const noexcept;
@@ -87,7 +89,8 @@ class ElasticMachine {
   Acting acting(const State& y, double time) const noexcept;
   void rate(const State& y, State& slope, double time) const noexcept;
   int contacts(const State& y) const noexcept;
-  double step(double longest);
+  void step();
+  State stateAt(double time) const;
   void accept(const State& next, const State& slope, double dt, int contacts);
   void passDeadCentre() noexcept;
   void followBlow();
@@ -97,11 +100,15 @@ class ElasticMachine {
   ElasticLinks links_;
   RodSpring rod_;
   StruckTool struck_;
-  State now_{}, slope_{};
-  double time_{}, next_step_;
+  State now_{}, slope_{};            ///< at the last step's end
+  State before_{}, before_slope_{};  ///< at its begin
+  double time_{}, before_time_{}, next_step_;
+  double asked_{};  ///< within the last step
+  State view_{};    ///< then
+  std::int64_t view_turn_{};
   int contacts_{};
   std::int64_t turn_{};
-  double put_back_{};  ///< energy of tools that were [J]
+  double put_back_{}, view_put_back_{};  ///< energy of tools that were [J]
 
   struct Turn {
     double start{}, impulse_x{}, impulse_z{};  ///< [s], [N s]

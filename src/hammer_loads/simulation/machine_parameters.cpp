@@ -195,7 +195,7 @@ void readTimes(ParameterReader& reader, MachineSettings& machine) {
 
 MachineSettings readMachine(ParameterReader& reader) {
   MachineSettings machine;
-  machine.level = reader.choice("level", kLevelNames);
+  machine.level = reader.choice("level", kRigidLevelNames);
   machine.drive = readDrive(reader);
   machine.blow = readBlow(reader);
   machine.rod = readRod(reader);

@@ -1,0 +1,184 @@
+#include "hammer_loads/crank/rod_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/estimation/covariance_root.h"
+#include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+// First guess where the hammer file gives none; a rod's stiffness and damping are in no source.
+constexpr double kFirstStiffness = 8e8, kFirstDamping = 0.4;      // [N/m], [-]
+constexpr double kGuessed[] = {0.5, 0.8}, kGiven[] = {0.2, 0.4};  // deviations of their logarithms
+constexpr double kFirstRestitution = 0.16, kRestitutionDeviation = 0.1;
+constexpr double kPlaceDeviation = 5e-3;                                // [rad]: a millimetre
+constexpr double kPlayDeviation = 1e-4;                                 // [m]
+constexpr double kWalks[] = {0.02, 0.005, 0.01, 5e-6, 3e-3};            // of the learned rows from blow to blow
+constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
+constexpr double kLongest = 2.5e-4, kLongestLater = 5e-4;  // [s] of a part: near the blow the lever changes fast
+constexpr double kNear = 0.25;                             // [rad]
+constexpr double kAngleDoubt = 1e-4, kSpeedDoubt = 0.02, kInertiaDoubt = 0.01;  // of a rigid rod's filter
+constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;                        // [rad], [rad/s]
+constexpr double kUnmodelled = 1.0;                                             // [rad/s/sqrt(s)] of the rocker's speed
+constexpr int kEnough = 8;
+constexpr double kAgrees = 2.0, kContradicts = 4.0;  // mean innovation^2 over its variance
+
+}  // namespace
+
+RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(mechanism) {
+  const RodSpring& given = mechanism.parameters().rod;
+  const bool stiffness = given.stiffness > 0.0, damping = given.damping_ratio > 0.0;
+  const double play = pins == Pins::kPlay ? kPlayDeviation : 0.0;
+  learned_.play = pins == Pins::kPlay && given.play > 0.0 ? given.play : play;
+  learned_.restitution = kFirstRestitution;
+  learned_.log_stiffness = std::log(stiffness ? given.stiffness : kFirstStiffness);
+  learned_.log_damping = std::log(damping ? given.damping_ratio : kFirstDamping);
+  Eigen::Matrix<double, kLearned, 1> deviations;
+  deviations << kRestitutionDeviation, (stiffness ? kGiven : kGuessed)[0], (damping ? kGiven : kGuessed)[1], play,
+      kPlaceDeviation;
+  learned_covariance_ = deviations.cwiseAbs2().asDiagonal();
+  first_ = learned_;
+  first_covariance_ = learned_covariance_;
+}
+
+RodSpring RodFilter::rod(const RodMotion& m) const noexcept {
+  return {std::exp(m.log_stiffness), std::exp(m.log_damping), m.play};
+}
+
+TwoBodyDrive RodFilter::drive(const RodMotion& m) const noexcept {
+  return {std::exp(m.log_inertia), m.torque, gravity_};
+}
+
+void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
+  const ShaftState& s = crank.state();
+  gravity_ = gravity;
+  motion_ = learned_;
+  motion_.state = {s.position.angle, s.speed, 0.0, 0.0};
+  motion_.torque = s.torque;
+  motion_.log_inertia = std::log(s.drive_inertia);
+  since_blow_ = ratio_sum_ = fit_ = 0.0;
+  running_ = true;
+  samples_ = 0;
+  constexpr Eigen::Index kOf[] = {kAngle, kSpeed, kTorque, kInertia};
+  const double doubt[] = {kAngleDoubt, kSpeedDoubt, 0.0, kInertiaDoubt};
+  belief_.covariance.setZero();
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    for (Eigen::Index k = 0; k < 4; ++k) belief_.covariance(kOf[i], kOf[k]) = crank.growth() * crank.covariance()(i, k);
+    belief_.covariance(kOf[i], kOf[i]) += square(doubt[i]);
+  }
+  for (Eigen::Index i = 0; i < kLearned; ++i)
+    if (learned_covariance_(i, i) > 0.0) learned_covariance_(i, i) += square(kWalks[i]);
+  belief_.covariance.bottomRightCorner<kLearned, kLearned>() = learned_covariance_;
+  const Belief::Matrix root = covarianceRoot(belief_.covariance);
+  bodies_.settle(rod(motion_), drive(motion_), motion_.state);
+  Belief::Matrix settled;
+  for (Eigen::Index i = 0; i < kSize; ++i) {
+    RodMotion other = displaced(root.col(i));
+    bodies_.settle(rod(other), drive(other), other.state);
+    settled.col(i) = difference(other, motion_);
+  }
+  belief_.covariance = settled * settled.transpose();
+  belief_.addNoise(kBeside, kBeside, square(kSettledX));
+  belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kSettledSpeed));
+}
+
+RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
+  RodMotion m = motion_;
+  m.state.angle.offset += by[kAngle];
+  m.state.speed += by[kSpeed];
+  m.state.beside += by[kBeside];
+  m.state.beside_speed += by[kBesideSpeed];
+  m.torque += by[kTorque];
+  m.log_inertia += by[kInertia];
+  m.restitution += by[kRestitution];
+  m.log_stiffness += by[kStiffness];
+  m.log_damping += by[kDamping];
+  m.play = std::max(0.0, m.play + by[kPlay]);
+  m.place += by[kPlace];
+  return m;
+}
+
+RodFilter::Belief::Vector RodFilter::difference(const RodMotion& of, const RodMotion& from) const noexcept {
+  const TwoBodyState& s = of.state;
+  Belief::Vector d;
+  d << s.angle.offset - from.state.angle.offset, s.speed - from.state.speed, s.beside - from.state.beside,
+      s.beside_speed - from.state.beside_speed, of.torque - from.torque, of.log_inertia - from.log_inertia,
+      of.restitution - from.restitution, of.log_stiffness - from.log_stiffness, of.log_damping - from.log_damping,
+      of.play - from.play, of.place - from.place;
+  return d;
+}
+
+void RodFilter::advance(double dt, const SupplyLaw& supply, bool strikes, RodMotion& m) const noexcept {
+  const RodSpring spring = rod(m);
+  const double longest = std::abs(m.state.angle.offset) < kNear ? kLongest : kLongestLater;
+  const int parts = std::max(1, static_cast<int>(std::ceil(dt / longest)));
+  const double from = m.state.angle.offset;
+  for (int i = 0; i < parts; ++i)
+    if (strikes)
+      bodies_.moveToTool(spring, drive(m), {m.place, m.restitution}, dt / parts, m.state);
+    else
+      bodies_.move(spring, drive(m), dt / parts, m.state);
+  m.torque -= supply.stiffness * supply.lead(m.state.angle.offset - from, dt);
+}
+
+void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexcept {
+  gravity_ = gravity;
+  const Belief::Matrix root = covarianceRoot(belief_.covariance);
+  RodMotion there = motion_;
+  advance(dt, walks.supply, true, there);
+  const bool struck = there.state.angle.side == Side::kAfterBlow;
+  if (!hasStruck())
+    rocker_before_ = bodies_.links(motion_.state.angle).rocker.u * motion_.state.speed + motion_.state.beside_speed;
+  Belief::Matrix moved = root;
+  for (Eigen::Index i = 0; i < kSize; ++i) {
+    if (!(root(i, i) > 0.0)) continue;
+    RodMotion other = displaced(root.col(i));
+    advance(dt, walks.supply, struck, other);
+    if (struck && other.state.angle.side == Side::kBeforeBlow)
+      bodies_.strikeEarly(drive(other), {other.place, other.restitution}, other.state);
+    moved.col(i) = difference(other, there);
+  }
+  if (hasStruck()) since_blow_ += dt;
+  motion_ = there;
+  belief_.covariance.noalias() = moved * moved.transpose();
+  const double torque = square(walks.torque) * dt, b = 1.0 / std::exp(motion_.log_inertia);
+  belief_.addNoise(kTorque, kTorque, torque);
+  belief_.addNoise(kSpeed, kSpeed, square(walks.speed) * dt + torque * square(b * dt) / 3.0);
+  belief_.addNoise(kSpeed, kTorque, 0.5 * torque * b * dt);
+  belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kUnmodelled) * dt);
+}
+
+bool RodFilter::take(const WeighedSample& sample) noexcept {
+  const double innovation = CrankAngle::wrapToPi(sample.angle - motion_.state.angle.offset);
+  const double variance = sample.angleVariance(motion_.state.speed);
+  const double total = belief_.covariance(kAngle, kAngle) + variance;
+  ratio_sum_ += square(innovation) / total;
+  fit_ -= 0.5 * (square(innovation) / total + std::log(total));
+  ++samples_;
+  if (!std::isfinite(ratio_sum_) || exceeds(innovation, growth() * total, gate::kImpossible)) return false;
+  if (samples_ >= kEnough && growth() > kContradicts) return false;
+  motion_ = displaced(belief_.correct(kAngle, variance, Belief::ConstantRow()) * innovation);
+  motion_.restitution = std::clamp(motion_.restitution, 0.0, 1.0);
+  motion_.log_stiffness = std::clamp(motion_.log_stiffness, kLeastLog[0], kMostLog[0]);
+  motion_.log_damping = std::clamp(motion_.log_damping, kLeastLog[1], kMostLog[1]);
+  return belief_.isSound();
+}
+
+double RodFilter::growth() const noexcept { return samples_ < kEnough ? 1.0 : std::max(1.0, ratio_sum_ / samples_); }
+
+RodFilter::Belief::Matrix RodFilter::errors() const noexcept {
+  return std::sqrt(growth()) * covarianceRoot(belief_.covariance);
+}
+
+void RodFilter::learn() noexcept {
+  running_ = false;
+  proven_ = samples_ >= kEnough && hasStruck() && growth() < kAgrees;
+  learned_ = proven_ ? motion_ : first_;
+  learned_covariance_ =
+      proven_ ? Learned(belief_.covariance.bottomRightCorner<kLearned, kLearned>()) : first_covariance_;
+}
+
+}  // namespace hammer_loads

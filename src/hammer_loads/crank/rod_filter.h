@@ -1,0 +1,102 @@
+/// Kalman filter on crank and rocker as two bodies with the rod as a spring, around a blow.
+#pragma once
+
+#include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/crank/crank_state.h"
+#include "hammer_loads/estimation/gaussian_belief.h"
+#include "hammer_loads/linkage/two_bodies.h"
+
+namespace hammer_loads {
+
+/// Everything that decides the motion around a blow.
+struct RodMotion {
+  TwoBodyState state;
+  double torque{};                        ///< net, on the crank [N m]
+  double log_inertia{};                   ///< logarithm of Jc [kg m2]
+  double restitution{};                   ///< of the rocker on the tool [-]
+  double log_stiffness{}, log_damping{};  ///< logarithms of RodSpring's stiffness and damping ratio
+  double play{};                          ///< of the pins [m]
+  double place{};                         ///< psi at which the tool is met [rad]: its contact's depth is part of it
+};
+
+/// A rigid mechanism knows the crank before the blow; from some 15 ms before it until half a turn later the rod's
+/// spring counts. The filter begins with what the crank's filter knows there. Stiffness, damping and restitution are
+/// learned from blow to blow: what the crank's readings show of the ring is little in one blow and enough in ten.
+///
+/// An extended Kalman filter, linearised by differences: of each independent error (a column of the covariance's root)
+/// a machine that is off by it moves beside the estimate.
+class RodFilter {
+ public:
+  enum Row : Eigen::Index {
+    kAngle,
+    kSpeed,
+    kBeside,
+    kBesideSpeed,
+    kTorque,
+    kInertia,
+    kRestitution,
+    kStiffness,
+    kDamping,
+    kPlay,
+    kPlace,
+    kSize
+  };
+  using Belief = GaussianBelief<kSize, 0>;
+
+  /// Pins hold both ways at once, or have play and can only push.
+  enum class Pins { kTight, kPlay };
+  /// Refers to the mechanism, which must outlive it. What its RodSpring leaves at 0 begins at a first guess.
+  RodFilter(const Mechanism& mechanism, Pins pins) noexcept;
+
+  /// From the crank's filter before a blow.
+  void begin(const CrankFilter& crank, Gravity gravity) noexcept;
+  /// By dt [s] > 0; supply, walks: as of the crank's filter.
+  void move(double dt, const CrankWalks& walks, Gravity gravity) noexcept;
+  /// Takes a sample of the crank. False: it contradicts the model.
+  bool take(const WeighedSample& sample) noexcept;
+  bool isRunning() const noexcept { return running_; }
+  /// Nothing is learned.
+  void abandon() noexcept { running_ = false; }
+  /// What it learned of rod and tool counts for the coming blows, if the readings agreed; else it begins anew.
+  void learn() noexcept;
+  /// Logarithm of the likelihood of the samples since the beginning, but for a constant.
+  double fit() const noexcept { return fit_; }
+  /// The last blow's readings agreed: what it says of the rod is worth publishing.
+  bool isProven() const noexcept { return proven_; }
+
+  const RodMotion& motion() const noexcept { return motion_; }
+  bool hasStruck() const noexcept { return motion_.state.angle.side == Side::kAfterBlow; }
+  double sinceBlow() const noexcept { return since_blow_; }        ///< [s]
+  double rockerBefore() const noexcept { return rocker_before_; }  ///< psi' at the tool [rad/s]
+  /// Independent errors of one standard deviation each, columns; innovations larger than expected are in it.
+  Belief::Matrix errors() const noexcept;
+  /// As it would be, were it off by that.
+  RodMotion displaced(const Belief::Vector& by) const noexcept;
+  double deviation(Row row) const noexcept { return std::sqrt(growth() * belief_.covariance(row, row)); }
+
+  RodSpring rod(const RodMotion& motion) const noexcept;
+  TwoBodyDrive drive(const RodMotion& motion) const noexcept;
+  const TwoBodies& bodies() const noexcept { return bodies_; }
+
+ private:
+  void advance(double dt, const SupplyLaw& supply, bool strikes, RodMotion& motion) const noexcept;
+  Belief::Vector difference(const RodMotion& of, const RodMotion& from) const noexcept;
+  double growth() const noexcept;
+
+  TwoBodies bodies_;
+  Gravity gravity_;
+  RodMotion motion_;
+  Belief belief_;
+  static constexpr Eigen::Index kLearned = kSize - kRestitution;  ///< the last rows
+  using Learned = Eigen::Matrix<double, kLearned, kLearned>;
+  RodMotion first_, learned_;  ///< rod, restitution, rod and place alone
+  Learned first_covariance_;
+  Learned learned_covariance_;
+  double fit_{};
+  bool running_{}, proven_{};  ///< the last blow's readings agreed
+  double since_blow_{}, rocker_before_{};
+  double ratio_sum_{};  ///< of innovation^2 over its variance since the beginning
+  int samples_{};
+};
+
+}  // namespace hammer_loads

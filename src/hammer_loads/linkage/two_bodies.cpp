@@ -1,0 +1,188 @@
+#include "hammer_loads/linkage/two_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kReference = kTwoPi * 200.0;  // [rad/s] of the damping ratio
+constexpr double kBallistic = 1e-4;            // [rad]: below, the spring does nothing within a step
+
+/// y'' = pull - square y - 2 decay y' over a time. lasting: integral of the mean of y''.
+void oscillate(double square, double decay, double pull, double time, double& y, double& speed) noexcept {
+  if (!(square * time * time > kBallistic * kBallistic)) {
+    y += time * (speed + 0.5 * time * pull);
+    speed += time * pull;
+    return;
+  }
+  const double rest_at = pull / square, rest = square - decay * decay, from = y - rest_at, v = speed;
+  double cosine, sine;  // sine over the frequency, both with the decay
+  if (rest > 0.0) {
+    const double frequency = std::sqrt(rest), e = std::exp(-decay * time);
+    cosine = e * std::cos(frequency * time), sine = e * std::sin(frequency * time) / frequency;
+  } else {
+    const double s = std::sqrt(-rest);
+    const double slow = std::exp((s - decay) * time), fast = std::exp(-(s + decay) * time);
+    cosine = 0.5 * (slow + fast), sine = s > 0.0 ? 0.5 * (slow - fast) / s : time * slow;
+  }
+  y = from * cosine + (v + decay * from) * sine + rest_at;
+  speed = v * cosine - (square * from + decay * v) * sine;
+}
+
+/// Tension of a rod with play: either side of a pin can only push.
+double pushes(const RodSpring& rod, double damping, double stretch, double rate) noexcept {
+  const double half = 0.5 * rod.play, pressed = stretch - std::clamp(stretch, -half, half);
+  const double both = rod.stiffness * pressed + damping * rate;
+  return pressed > 0.0 ? std::max(0.0, both) : (pressed < 0.0 ? std::min(0.0, both) : 0.0);
+}
+
+/// psi of a rigid rod [rad], of either sign beyond the dead centre.
+double rigidRockerAngle(const LinkMotion& links) noexcept {
+  return std::atan2(links.rocker.sin_psi, links.rocker.cos_psi);
+}
+
+}  // namespace
+
+/// Everything in the equations but x, its rate and the crank's acceleration.
+struct TwoBodies::Local {
+  double reflected{}, coupling{}, own{};  ///< J, B, M22 - B^2/J [kg m2]
+  double on_crank{}, on_rocker{};         ///< F1 without the spring, F2 [N m]
+  double lever{}, secant_lever{};         ///< h = -d(stretch)/dx, -stretch/x [m]
+  double by_crank{};                      ///< d(stretch)/dphi at x [m]
+};
+
+TwoBodies::TwoBodies(const Mechanism& mechanism) noexcept : mechanism_(&mechanism) {
+  const LinkMoments& k = mechanism.moments();
+  const LinkLengths& l = mechanism.linkage().lengths();
+  const double crank = l.crank / l.rod, rocker = l.rocker / l.rod;
+  crank_ = k.crank_inertia + crank * (k.rod_inertia * crank - 2.0 * k.coupling.re);
+  rocker_ = mechanism.parameters().rocker_inertia_about_pivot + k.rod_inertia * rocker * rocker;
+  coupling_ = rocker * (k.coupling - Planar{k.rod_inertia * crank, 0.0});
+  crank_weight_ = k.crank - crank * k.rod;
+  rocker_weight_ = Planar{k.rocker, 0.0} + rocker * k.rod;
+}
+
+TwoBodies::Local TwoBodies::local(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& at,
+                                  const LinkMotion& links) const noexcept {
+  (void)rod;
+  const LinkLengths& l = mechanism_->linkage().lengths();
+  const double u = links.rocker.u, w = at.speed, x = at.beside, v = u * w + at.beside_speed, ww = w * w;
+  const Planar theta = links.psi * conj(links.phi), both = coupling_ * theta;
+  const double slope = -both.im;  // of M12 by theta
+  const auto weight = [&](Planar moment, Planar direction) {
+    const Planar rate = moment * direction;
+    return drive.gravity.z * rate.re + drive.gravity.x * rate.im;
+  };
+  const double on_rocker = weight(rocker_weight_, links.psi);
+  Local a;
+  a.coupling = both.re + u * rocker_;
+  a.reflected = drive.inertia + crank_ + u * (both.re + a.coupling);
+  a.own = rocker_ - a.coupling * a.coupling / a.reflected;
+  a.on_rocker = on_rocker - rocker_ * links.rocker.du * ww + slope * ww;
+  a.on_crank = drive.torque + weight(crank_weight_, links.phi) + u * on_rocker - a.coupling * links.rocker.du * ww -
+               slope * v * v + u * slope * ww;
+  const double curve = l.rocker * (l.rocker / l.rod - links.cos_mu);
+  a.lever = l.rocker * links.sin_mu - curve * x;
+  a.secant_lever = l.rocker * links.sin_mu - 0.5 * curve * x;
+  a.by_crank = -l.rocker * links.cos_mu * links.rocker.cos_half * links.rocker.inv_r * x;
+  return a;
+}
+
+void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& s) const noexcept {
+  TwoBodyState middle = s;
+  middle.angle.offset += 0.5 * dt * s.speed;
+  middle.beside += 0.5 * dt * s.beside_speed;
+  const Local a = local(rod, drive, middle, links(middle.angle));
+  const double damping = 2.0 * rod.damping_ratio * rod.stiffness / kReference;
+  const double stretch = -a.secant_lever * middle.beside, half = 0.5 * rod.play;
+  const double rate = a.by_crank * s.speed - a.lever * s.beside_speed;
+  const bool free = half > 0.0 && (std::abs(stretch) < half || pushes(rod, damping, stretch, rate) == 0.0);
+  // tension = -stiff x - damped x' - apart, at the middle's levers
+  const double stiff = free ? 0.0 : rod.stiffness * a.secant_lever;
+  const double damped = free ? 0.0 : damping * a.lever;
+  const double apart =
+      free ? 0.0 : (half > 0.0 ? rod.stiffness * std::copysign(half, stretch) : 0.0) - damping * a.by_crank * s.speed;
+  const double per = a.lever / a.own,
+               pull = (a.on_rocker - a.coupling / a.reflected * a.on_crank) / a.own - per * apart;
+  const double x = s.beside, y = s.beside_speed;
+  oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.beside, s.beside_speed);
+  const double gained = s.beside_speed - y;
+  const double tension = -stiff * 0.5 * (x + s.beside) - damped * (s.beside - x) / dt - apart;
+  const double force = a.on_crank - tension * a.by_crank, back = a.coupling / a.reflected;
+  s.angle.offset += dt * (s.speed + 0.5 * dt * force / a.reflected) - back * (s.beside - x - dt * y);
+  s.speed += dt * force / a.reflected - back * gained;
+}
+
+void TwoBodies::settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& s) const noexcept {
+  s.beside = s.beside_speed = 0.0;
+  const Local a = local(rod, drive, s, links(s.angle));
+  const double pull = a.on_rocker - a.coupling / a.reflected * a.on_crank;
+  s.beside = pull / (rod.stiffness * a.lever * a.lever) + std::copysign(0.5 * rod.play, pull) / std::abs(a.lever);
+}
+
+/// Onto the branch after the blow; the rocker's speed turns, the crank's momentum stays.
+void TwoBodies::strike(const TwoBodyDrive& drive, double restitution, TwoBodyState& s) const noexcept {
+  const LinkMotion before = links(s.angle);
+  const double v = before.rocker.u * s.speed + s.beside_speed, gained = -(1.0 + restitution) * v;
+  s.speed -= (coupling_ * (before.psi * conj(before.phi))).re / (drive.inertia + crank_) * gained;
+  s.angle.side = Side::kAfterBlow;
+  const LinkMotion after = links(s.angle);
+  s.beside += rigidRockerAngle(before) - rigidRockerAngle(after);
+  s.beside_speed = v + gained - after.rocker.u * s.speed;
+}
+
+void TwoBodies::moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool, double dt,
+                           TwoBodyState& s) const noexcept {
+  const TwoBodyState from = s;
+  move(rod, drive, dt, s);
+  if (s.angle.side == Side::kAfterBlow) return;
+  const double there = links(s.angle).rocker.sin_psi + s.beside - tool.place;
+  if (there > 0.0) return;
+  const double here = links(from.angle).rocker.sin_psi + from.beside - tool.place;
+  const double part = here > 0.0 ? here / (here - there) : 0.0;
+  s = from;
+  if (part > 0.0) move(rod, drive, part * dt, s);
+  strike(drive, tool.restitution, s);
+  if (part < 1.0) move(rod, drive, (1.0 - part) * dt, s);
+}
+
+void TwoBodies::strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBodyState& s) const noexcept {
+  const LinkMotion at = links(s.angle);
+  const double away = at.rocker.sin_psi + s.beside - tool.place, speed = at.rocker.u * s.speed + s.beside_speed;
+  const double time = speed < 0.0 ? -away / speed : 0.0;
+  s.angle.offset += time * s.speed;
+  s.beside += time * s.beside_speed;
+  strike(drive, tool.restitution, s);
+  s.angle.offset -= time * s.speed;
+  s.beside -= time * s.beside_speed;
+}
+
+TwoBodyAccelerations TwoBodies::accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& s,
+                                              const LinkMotion& links) const noexcept {
+  const Local a = local(rod, drive, s, links);
+  const double damping = 2.0 * rod.damping_ratio * rod.stiffness / kReference;
+  const double stretch = -a.secant_lever * s.beside, half = 0.5 * rod.play;
+  const double rate = a.by_crank * s.speed - a.lever * s.beside_speed;
+  const double tension = half > 0.0 ? pushes(rod, damping, stretch, rate) : rod.stiffness * stretch + damping * rate;
+  const double on_crank = a.on_crank - tension * a.by_crank;
+  const double beside = (a.on_rocker + tension * a.lever - a.coupling / a.reflected * on_crank) / a.own;
+  const double crank = (on_crank - a.coupling * beside) / a.reflected;
+  return {crank, links.rocker.u * crank + links.rocker.du * s.speed * s.speed + beside};
+}
+
+LinkAccelerations TwoBodies::linkAccelerations(const TwoBodyState& s, const TwoBodyAccelerations& a,
+                                               const LinkMotion& links) const noexcept {
+  const LinkLengths& l = mechanism_->linkage().lengths();
+  const double v = links.rocker.u * s.speed + s.beside_speed;
+  LinkAccelerations q;
+  q.crank = {-s.speed * s.speed, a.crank};
+  q.rocker = {-v * v, a.rocker};
+  q.rod = conj(links.beta) * ((l.rocker / l.rod) * (links.psi * q.rocker) - (l.crank / l.rod) * (links.phi * q.crank));
+  return q;
+}
+
+}  // namespace hammer_loads

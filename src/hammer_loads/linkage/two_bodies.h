@@ -1,0 +1,79 @@
+/// Crank and rocker as two bodies, the rod between them a spring: how they move after a blow.
+#pragma once
+
+#include "hammer_loads/linkage/hull_motion.h"
+#include "hammer_loads/linkage/link_motion.h"
+#include "hammer_loads/linkage/mechanism.h"
+#include "hammer_loads/linkage/rod_spring.h"
+
+namespace hammer_loads {
+
+/// The crank on a branch or its continuation past the blow, and the rocker beside the place that a rigid rod gives it.
+struct TwoBodyState {
+  CrankAngle angle;
+  double speed{};         ///< w [rad/s]
+  double beside{};        ///< x = psi - psi of a rigid rod [rad]
+  double beside_speed{};  ///< its rate [rad/s]
+};
+
+/// What drives them.
+struct TwoBodyDrive {
+  double inertia{};  ///< Jc [kg m2]
+  double torque{};   ///< net, on the crank [N m]
+  Gravity gravity;
+};
+
+struct TwoBodyAccelerations {
+  double crank{}, rocker{};  ///< [rad/s2]
+};
+
+/// With independent angles phi and psi, a rod whose masses move in proportion between its pins and theta = psi - phi,
+/// kinetic energy is 1/2 (M11 w^2 + 2 M12(theta) w v + M22 v^2), M11 and M22 constant (as BlowInertia). In phi and x
+/// the spring acts on x alone but for terms of second order:
+///
+///     J w' + B x'' = F1,  B w' + M22 x'' = F2 + T h,  J = M11 + 2 u M12 + u^2 M22,  B = M12 + u M22
+///
+/// h = l3 sin(psi - beta) the rod's lever, T = -k h x - c (h x)' its tension. A step solves the oscillator
+/// (M22 - B^2/J) x'' with the lever at its middle in closed form: exact however stiff or dead the rod is; the stiffer
+/// it is, the nearer to the rigid mechanism. Neglects: bending of the links, motion of the hull but its effective
+/// gravity.
+class TwoBodies {
+ public:
+  /// Refers to the mechanism, which must outlive it.
+  explicit TwoBodies(const Mechanism& mechanism) noexcept;
+
+  /// By dt [s] > 0, some quarter of a millisecond, over which levers count as constant.
+  void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state) const noexcept;
+  /// At a state.
+  TwoBodyAccelerations accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& state,
+                                     const LinkMotion& links) const noexcept;
+  /// rod: in LinkAccelerations also its change of length.
+  LinkAccelerations linkAccelerations(const TwoBodyState& state, const TwoBodyAccelerations& a,
+                                      const LinkMotion& links) const noexcept;
+  LinkMotion links(CrankAngle angle) const noexcept { return linkMotion(mechanism_->linkage(), angle); }
+  /// A rod at rest on its spring: x as the motion of the crank asks for, its rate 0.
+  void settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& state) const noexcept;
+  /// Where the tool is and what the rocker keeps of its speed there.
+  struct Tool {
+    double place{};        ///< psi [rad]
+    double restitution{};  ///< [-]
+  };
+  /// As move(), with a blow where the rocker reaches the tool.
+  void moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool, double dt,
+                  TwoBodyState& state) const noexcept;
+  /// Of a state before its blow: as if it had been struck already, by the way back on both sides (saltation).
+  void strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBodyState& state) const noexcept;
+
+ private:
+  void strike(const TwoBodyDrive& drive, double restitution, TwoBodyState& state) const noexcept;
+  struct Local;
+  Local local(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& at,
+              const LinkMotion& links) const noexcept;
+
+  const Mechanism* mechanism_;
+  double crank_, rocker_;                ///< M11 less Jc, M22 [kg m2]
+  Planar coupling_;                      ///< M12 = Re(coupling e^(i theta)) [kg m2]
+  Planar crank_weight_, rocker_weight_;  ///< first moments that turn with the angles [kg m]
+};
+
+}  // namespace hammer_loads

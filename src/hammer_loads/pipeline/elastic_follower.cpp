@@ -1,0 +1,161 @@
+#include "hammer_loads/pipeline/elastic_follower.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/linkage/blow_inertia.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kFrom = -0.30, kFromLatest = -0.05;     // [rad] where it begins: some 15 ms before the blow
+constexpr double kTo = 2.2;                              // [rad]: by then no rod rings
+constexpr double kNeverStruck = 0.1;                     // [rad] beyond the dead centre
+constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
+constexpr double kSlow = 5.0;                            // [rad/s]
+
+constexpr double kEvidenceGain = 0.2, kDecides = 2.0, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
+
+constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
+
+bool isOver(const RodFilter& rod) noexcept {
+  const TwoBodyState& s = rod.motion().state;
+  return s.angle.offset > (rod.hasStruck() ? kTo : kNeverStruck) || !(s.speed > kSlow);
+}
+
+}  // namespace
+
+ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
+    : model_(&model),
+      wanted_(level == Level::kElastic),
+      filters_{RodFilter(model.mechanism(), RodFilter::Pins::kTight),
+               RodFilter(model.mechanism(), RodFilter::Pins::kPlay)} {}
+
+bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept {
+  const CrankPosition& at = crank.estimate().position;
+  return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && at.angle.offset < kFromLatest &&
+         crank.estimate().speed > kSlow && filter.hasSpeed() && filter.isPlausible() && !filter.isDoubtful() &&
+         !filter.belief().motor;
+}
+
+void ElasticFollower::rest() noexcept {
+  runs_ = false;
+  for (RodFilter& filter : filters_) filter.abandon();
+}
+
+void ElasticFollower::begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept {
+  runs_ = true;
+  blow_ = crank.estimate().position.blow;
+  rigid_fit_ = 0.0;
+  for (RodFilter& rod : filters_) rod.begin(filter, gravity);
+}
+
+void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexcept {
+  const CrankFilter* filter = wanted_ ? crank.tracker().filter() : nullptr;
+  if (filter == nullptr) return;
+  if (!runs_) {
+    if (mayBegin(crank, *filter)) begin(crank, *filter, gravity);
+    return;
+  }
+  const double dt = crank.step().length();
+  if (!(dt < kLongestKnown)) return rest();
+  rigid_fit_ += filter->angleFit();
+  for (RodFilter& rod : filters_) {
+    if (!rod.isRunning()) continue;
+    rod.move(dt, filter->walks(), gravity);
+    if (!rod.take(filter->sample()) || isOver(rod)) rod.learn();
+  }
+  if (std::none_of(filters_.begin(), filters_.end(), [](const RodFilter& rod) { return rod.isRunning(); })) judge();
+}
+
+/// A rod stiffer than the rate of the samples shows explains them no better than a rigid one: the level is linkage
+/// then.
+void ElasticFollower::judge() noexcept {
+  runs_ = false;
+  const double held = best_ != nullptr ? evidence_[static_cast<std::size_t>(best_ - filters_.data())] : 0.0;
+  double most = (best_ != nullptr ? held : 0.0) + kDecides;
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    const double gain = filters_[i].isProven() ? filters_[i].fit() - rigid_fit_ : -kGivenUp;
+    evidence_[i] += kEvidenceGain * (std::clamp(gain, -kGivenUp, kGivenUp) - evidence_[i]);
+    if (!(evidence_[i] > most)) continue;
+    most = evidence_[i];
+    best_ = &filters_[i];
+  }
+  if (best_ != nullptr && evidence_[static_cast<std::size_t>(best_ - filters_.data())] < 0.0) best_ = nullptr;
+}
+
+CrankEstimate ElasticFollower::crank(const CrankPosition& position) const noexcept {
+  const RodMotion& m = filter().motion();
+  const TwoBodies& bodies = filter().bodies();
+  const LinkMotion links = bodies.links(m.state.angle);
+  CrankEstimate crank;
+  (void)position;
+  crank.position = {blow_, m.state.angle};
+  crank.speed = m.state.speed;
+  crank.acceleration = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, links).crank;
+  return crank;
+}
+
+Eigen::Vector3d ElasticFollower::beside(const RodMotion& m) const noexcept {
+  const TwoBodies& bodies = filter().bodies();
+  const LinkMotion links = bodies.links(m.state.angle);
+  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, links);
+  const HullWrench elastic = hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), {});
+  const CrankMotion rigid{m.state.angle, m.state.speed, a.crank};
+  return vectorOf(elastic) - vectorOf(hullWrenchLinkage(model_->mechanism(), links, rigid, {}));
+}
+
+Eigen::Vector3d ElasticFollower::variance(const DriveReaction& drive) const noexcept {
+  const TwoBodies& bodies = filter().bodies();
+  const auto all = [&](const RodMotion& m) {
+    const LinkMotion links = bodies.links(m.state.angle);
+    const TwoBodyDrive by = filter().drive(m);
+    const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, links);
+    HullWrench w = hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), by.gravity);
+    w.torque_y += drive.torque(a.crank, 0.0);
+    return vectorOf(w);
+  };
+  const Eigen::Vector3d here = all(filter().motion());
+  const RodFilter::Belief::Matrix errors = filter().errors();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < RodFilter::kSize; ++i)
+    if (errors(i, i) > 0.0) sum += (all(filter().displaced(errors.col(i))) - here).cwiseAbs2();
+  return sum;
+}
+
+ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive) const noexcept {
+  Eigen::Vector3d wrench = beside(filter().motion()), of = variance(drive);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double size = square(wrench[i]), part = size > 0.0 ? size / (size + of[i]) : 0.0;
+    of[i] = square(part) * of[i] + square(1.0 - part) * size;
+    wrench[i] *= part;
+  }
+  return {wrenchOf(wrench), wrenchOf(of.cwiseSqrt())};
+}
+
+std::optional<CrankBlow> ElasticFollower::blow() const noexcept {
+  if (!runs() || !filter().hasStruck()) return std::nullopt;
+  const RodMotion& m = filter().motion();
+  CrankBlow blow;
+  blow.drive_inertia = filter().drive(m).inertia;
+  const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
+  blow.speed = filter().rockerBefore() / inertia.u_before;
+  blow.speed_deviation = filter().deviation(RodFilter::kSpeed);
+  blow.factor = inertia.factor(m.restitution);
+  blow.factor_deviation =
+      std::hypot(filter().deviation(RodFilter::kRestitution), kContactsShare) / inertia.restitutionPerFactor();
+  return blow;
+}
+
+bool ElasticFollower::isBesideBlow() const noexcept {
+  if (filter().hasStruck()) return filter().sinceBlow() < kContact;
+  const RodMotion& m = filter().motion();
+  const LinkMotion links = filter().bodies().links(m.state.angle);
+  const double way = links.rocker.sin_psi + m.state.beside - m.place;
+  const double speed = -(links.rocker.u * m.state.speed + m.state.beside_speed);
+  return way < 2.0 * speed * filter().deviation(RodFilter::kAngle) / m.state.speed;
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,107 @@
+// Machines whose rod gives, at level elastic through the whole pipeline: rods that no constant was set by.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hammer_loads/bench/elastic_table.h"
+#include "hammer_loads/bench/session_player.h"
+#include "support/counting_new.h"
+
+namespace hammer_loads {
+namespace {
+
+const Settings& shipped() {
+  static const Settings settings = *load(configDirectory(), {}).value;
+  return settings;
+}
+
+simulation::MachineSettings machineWith(const simulation::RodSettings& rod, std::uint64_t seed) {
+  simulation::MachineSettings s = simulation::workingMo100();
+  s.hammer = shipped().mechanism.parameters();
+  s.level = Level::kLinkage;
+  s.duration = 13.0;
+  s.drive.stop_time = 11.5;
+  s.rod = rod;
+  s.seed = seed;
+  return s;
+}
+
+accuracy::ElasticErrors errorsOf(const simulation::MachineSettings& machine, Level level) {
+  return accuracy::elasticErrors(shipped(), {"", machine}, level);
+}
+
+/// Issue: 0.40 of the truth, the whole turn 3.5 %. The rigid level shows that the flaw is there.
+TEST(ElasticSession, TheRingAfterTheBlowIsPublished) {
+  std::uint64_t seed = 700;
+  for (const simulation::RodSettings& rod :
+       {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
+    const simulation::MachineSettings machine = machineWith(rod, ++seed);
+    SCOPED_TRACE(rod.stiffness);
+    const accuracy::ElasticErrors e = errorsOf(machine, Level::kElastic);
+    EXPECT_LT(e.after.rms[1], 0.25);
+    EXPECT_GT(e.after.covered[1], 0.85);
+    EXPECT_LT(e.whole.rms[1], 0.035);
+    EXPECT_GT(errorsOf(machine, Level::kLinkage).after.rms[1], 0.6);
+  }
+}
+
+/// Nobody tells it of the pins' play.
+TEST(ElasticSession, PlayIsLearned) {
+  const accuracy::ElasticErrors e = errorsOf(machineWith({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
+  EXPECT_LT(e.after.rms[1], 0.5);
+  EXPECT_GT(e.after.covered[1], 0.80);
+}
+
+std::vector<accuracy::WrenchAt> wrenchesOf(const simulation::MachineSettings& machine, Level level) {
+  PipelineSettings pipeline = shipped().pipeline;
+  pipeline.level = level;
+  return accuracy::runSession(simulation::recordSession(machine), machine.start_stamp, shipped().mechanism, pipeline)
+      .wrenches;
+}
+
+/// A rod stiffer than the readings show is a rigid one: to the bit.
+TEST(ElasticSession, OfARigidMachineItIsLinkage) {
+  const simulation::MachineSettings machine = machineWith({}, 720);
+  const auto elastic = wrenchesOf(machine, Level::kElastic), linkage = wrenchesOf(machine, Level::kLinkage);
+  ASSERT_EQ(elastic.size(), linkage.size());
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < elastic.size(); ++i) others += elastic[i].force_z != linkage[i].force_z;
+  EXPECT_EQ(others, 0U);
+}
+
+TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
+  simulation::MachineSettings machine = machineWith({8e8, 0.3, 0.0}, 730);
+  machine.duration = 6.0;
+  const simulation::Session session = simulation::recordSession(machine);
+  PipelineSettings pipeline = shipped().pipeline;
+  pipeline.level = Level::kElastic;
+  const auto play = [&] {
+    std::vector<double> forces;
+    forces.reserve(session.crank.size());
+    accuracy::SessionPlayer player(shipped().mechanism, pipeline, {}, session);
+    bool ran = false;
+    std::size_t allocated = 0, before = test::allocations;
+    player.playTo(100.0, [&](double, const SampleResult& r) {
+      allocated += test::allocations - before;
+      if (!r.refusal) forces.push_back(r.wrench.force_z);
+      ran = ran || player.pipeline.elastic().runs();
+      before = test::allocations;
+    });
+    EXPECT_TRUE(ran);
+    EXPECT_LT(allocated, 10U);  // the player's own texts
+    return forces;
+  };
+  EXPECT_EQ(play(), play());
+}
+
+/// Without a tool nothing strikes: the rod's model is contradicted, and the machine is a rigid one.
+TEST(ElasticSession, AMissedToolIsNoRing) {
+  simulation::MachineSettings machine = machineWith({1e9, 0.3, 0.0}, 740);
+  machine.blow.blank_share = 0.2;
+  const accuracy::ElasticErrors e = errorsOf(machine, Level::kElastic), rigid = errorsOf(machine, Level::kLinkage);
+  EXPECT_LT(e.whole.rms[1], rigid.whole.rms[1]);
+  EXPECT_GT(e.whole.covered[1], 0.85);
+}
+
+}  // namespace
+}  // namespace hammer_loads

@@ -1,0 +1,140 @@
+// Crank and rocker with a rod that gives, against the simulated machine's own equations, energy and the rigid
+// mechanism.
+#include "hammer_loads/linkage/two_bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/crank/crank_dynamics.h"
+#include "hammer_loads/hammer/hull_wrench.h"
+#include "hammer_loads/simulation/elastic_links.h"
+#include "hammer_loads/simulation/machine_settings.h"
+#include "support/mo100.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kJc = 0.6, kTorque = 150.0;
+constexpr Gravity kWeight{2.0, -9.5};
+
+/// Of a rod whose turning has no inertia of its own: there both models of it are the same.
+HammerParameters heavy() {
+  HammerParameters p = simulation::workingMo100().hammer;
+  p.crank_mass = 6.0, p.crank_com_along = 0.015, p.crank_com_across = 0.004, p.crank_inertia_about_com = 0.01;
+  p.rod_mass = 4.5, p.rod_com_along = 0.070, p.rod_com_across = -0.004;
+  return p;
+}
+
+/// psi of the rocker [rad].
+double rockerOf(const TwoBodies& bodies, const TwoBodyState& s) {
+  const Motion m = bodies.links(s.angle).rocker;
+  return std::atan2(m.sin_psi, m.cos_psi) + s.beside;
+}
+
+TEST(TwoBodies, AccelerationsAndWrenchAreThoseOfFreeLinks) {
+  const Mechanism mechanism = test::mechanismOf(heavy());
+  const TwoBodies bodies(mechanism);
+  const simulation::ElasticLinks links(mechanism.parameters(), Level::kLinkage);
+  const RodSpring rod{1e9, 0.3, 0.0};
+  const simulation::RodSpring spring({rod.stiffness, rod.damping_ratio, 0.0});
+  for (const double offset : {-0.2, -0.03, 0.02, 0.15, 0.7, 1.9}) {
+    TwoBodyState s{CrankAngle::fromOffset(offset), 14.0, 1e-5, 0.8};
+    const LinkMotion l = bodies.links(s.angle);
+    const simulation::TwoBodies angles{offset, rockerOf(bodies, s)},
+        speeds{s.speed, l.rocker.u * s.speed + s.beside_speed};
+    const simulation::ElasticLinks::View view = links.at(angles, speeds);
+    const double tension = spring.tension(view.rod.stretch, view.rod.rate(speeds));
+    const auto weight = links.weight(view, kWeight), inertia = links.inertiaOfSpeeds(view);
+    auto M = links.inertia(view);
+    M[0] += kJc;
+    const double on_crank = kTorque + weight[0] + inertia[0] - tension * view.rod.slope[0];
+    const double on_rocker = weight[1] + inertia[1] - tension * view.rod.slope[1];
+    const double det = M[0] * M[2] - M[1] * M[1];
+    const simulation::TwoBodies expected{(M[2] * on_crank - M[1] * on_rocker) / det,
+                                         (M[0] * on_rocker - M[1] * on_crank) / det};
+    const TwoBodyAccelerations a = bodies.accelerations(rod, {kJc, kTorque, kWeight}, s, l);
+    const double scale = std::abs(expected[0]) + std::abs(expected[1]);
+    EXPECT_NEAR(a.crank, expected[0], 1e-3 * scale) << offset;  // x^2 and x times the speeds are left out
+    EXPECT_NEAR(a.rocker, expected[1], 1e-3 * scale) << offset;
+    const simulation::Load load = links.load(view, angles[1], expected, kWeight, 0.0);
+    const HullWrench wrench = hullWrenchOf(mechanism, l, bodies.linkAccelerations(s, a, l), kWeight);
+    const double force = std::abs(load.force_x) + std::abs(load.force_z);
+    EXPECT_NEAR(wrench.force_x, load.force_x, 2e-3 * force) << offset;
+    EXPECT_NEAR(wrench.force_z, load.force_z, 2e-3 * force) << offset;
+    EXPECT_NEAR(wrench.torque_y, load.torque_y, 2e-3 * std::abs(load.torque_y) + 1e-3 * force) << offset;
+  }
+}
+
+/// No drive, no weight, no damping; energies by the simulated machine's links.
+TEST(TwoBodies, ARingKeepsItsEnergy) {
+  const Mechanism mechanism = test::mechanismOf(heavy());
+  const TwoBodies bodies(mechanism);
+  const simulation::ElasticLinks links(mechanism.parameters(), Level::kLinkage);
+  const RodSpring rod{1e9, 0.0, 0.0};
+  const simulation::RodSpring spring({rod.stiffness, 0.0, 0.0});
+  const auto energy = [&](const TwoBodyState& s) {
+    const LinkMotion l = bodies.links(s.angle);
+    const simulation::TwoBodies angles{s.angle.offset, rockerOf(bodies, s)},
+        v{s.speed, l.rocker.u * s.speed + s.beside_speed};
+    const simulation::ElasticLinks::View view = links.at(angles, v);
+    auto M = links.inertia(view);
+    return 0.5 * ((M[0] + kJc) * v[0] * v[0] + M[2] * v[1] * v[1]) + M[1] * v[0] * v[1] +
+           spring.energy(view.rod.stretch);
+  };
+  const auto drift = [&](double part) {
+    TwoBodyState s{{0.003, Side::kAfterBlow}, 14.0, -2e-3, -1.5};
+    const double before = energy(s);
+    double worst = 0.0;
+    for (double time = 0.0; time < 0.04; time += part) {
+      bodies.move(rod, {kJc, 0.0, {}}, part, s);
+      worst = std::max(worst, std::abs(energy(s) - before));
+    }
+    return worst;
+  };
+  EXPECT_LT(drift(1e-5), 0.15);   // [J] of 70; a stretch of third order in x is left out
+  EXPECT_LT(drift(2.5e-4), 0.3);  // as the filter goes
+}
+
+TEST(TwoBodies, AStiffRodIsTheRigidMechanism) {
+  const Mechanism mechanism = test::mechanismOf(heavy());
+  const TwoBodies bodies(mechanism);
+  const ShaftModel model(mechanism, Level::kLinkage);
+  for (const double ratio : {0.1, 3.0, 300.0}) {
+    const RodSpring rod{1e13, ratio, 0.0};
+    const TwoBodyDrive drive{kJc, kTorque, {}};
+    TwoBodyState s{{0.3, Side::kAfterBlow}, 15.0, 0.0, 0.0};
+    bodies.settle(rod, drive, s);
+    ShaftState rigid;
+    rigid.position = {0, s.angle};
+    rigid.speed = s.speed, rigid.torque = kTorque, rigid.drive_inertia = kJc;
+    for (int i = 0; i < 40; ++i) bodies.move(rod, drive, 5e-4, s);
+    advanceState(model, 0.02, {}, rigid);
+    EXPECT_NEAR(s.angle.offset, rigid.position.angle.offset, 1e-5) << ratio;
+    EXPECT_NEAR(s.speed, rigid.speed, 1e-3) << ratio;
+    EXPECT_LT(std::abs(s.beside), 1e-5) << ratio;
+  }
+}
+
+/// At the tool the rocker's speed turns, the momentum that the crank has stays, and nothing of the place is lost.
+TEST(TwoBodies, ABlowActsOnTheRockerAlone) {
+  const Mechanism mechanism = test::mechanismOf(heavy());
+  const TwoBodies bodies(mechanism);
+  const RodSpring rod{1e9, 0.3, 0.0};
+  const TwoBodyDrive drive{kJc, 0.0, {}};
+  TwoBodyState s{{-1e-4, Side::kBeforeBlow}, 14.0, 0.0, 0.0};
+  const double before = bodies.links(s.angle).rocker.u * s.speed;
+  bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, s);
+  ASSERT_EQ(s.angle.side, Side::kAfterBlow);
+  EXPECT_NEAR(bodies.links(s.angle).rocker.u * s.speed + s.beside_speed, -0.16 * before, 1e-2);
+  EXPECT_NEAR(rockerOf(bodies, s), 0.0, 1e-3);
+  TwoBodyState early{{-1e-4, Side::kBeforeBlow}, 14.0, 0.0, 0.0};
+  bodies.strikeEarly(drive, {0.0, 0.16}, early);
+  bodies.move(rod, drive, 2e-5, early);
+  EXPECT_NEAR(early.angle.offset, s.angle.offset, 1e-9);
+  EXPECT_NEAR(early.beside, s.beside, 1e-7);
+  EXPECT_NEAR(early.speed, s.speed, 1e-4);
+}
+
+}  // namespace
+}  // namespace hammer_loads
