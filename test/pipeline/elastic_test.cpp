@@ -5,19 +5,20 @@
 
 #include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/session_player.h"
+#include "hammer_loads/bench/session_run.h"
 #include "support/counting_new.h"
 
 namespace hammer_loads {
 namespace {
 
-const Settings& shipped() {
+const Settings& drawingOfRods() {
   static const Settings settings = *load(configDirectory(), {}).value;
   return settings;
 }
 
-simulation::MachineSettings machineWith(const simulation::RodSettings& rod, std::uint64_t seed) {
+simulation::MachineSettings machineWithRod(const simulation::RodSettings& rod, std::uint64_t seed) {
   simulation::MachineSettings s = simulation::workingMo100();
-  s.hammer = shipped().mechanism.parameters();
+  s.hammer = drawingOfRods().mechanism.parameters();
   s.level = Level::kLinkage;
   s.duration = 13.0;
   s.drive.stop_time = 11.5;
@@ -26,8 +27,8 @@ simulation::MachineSettings machineWith(const simulation::RodSettings& rod, std:
   return s;
 }
 
-accuracy::ElasticErrors errorsOf(const simulation::MachineSettings& machine, Level level) {
-  return accuracy::elasticErrors(shipped(), {"", machine}, level);
+accuracy::ElasticErrors rodErrors(const simulation::MachineSettings& machine, Level level) {
+  return accuracy::elasticErrors(drawingOfRods(), {"", machine}, level);
 }
 
 /// Issue: 0.40 of the truth, the whole turn 3.5 %. The rigid level shows that the flaw is there.
@@ -35,34 +36,34 @@ TEST(ElasticSession, TheRingAfterTheBlowIsPublished) {
   std::uint64_t seed = 700;
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
-    const simulation::MachineSettings machine = machineWith(rod, ++seed);
+    const simulation::MachineSettings machine = machineWithRod(rod, ++seed);
     SCOPED_TRACE(rod.stiffness);
-    const accuracy::ElasticErrors e = errorsOf(machine, Level::kElastic);
+    const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic);
     EXPECT_LT(e.after.rms[1], 0.25);
     EXPECT_GT(e.after.covered[1], 0.85);
     EXPECT_LT(e.whole.rms[1], 0.035);
-    EXPECT_GT(errorsOf(machine, Level::kLinkage).after.rms[1], 0.6);
+    EXPECT_GT(rodErrors(machine, Level::kLinkage).after.rms[1], 0.6);
   }
 }
 
 /// Nobody tells it of the pins' play.
 TEST(ElasticSession, PlayIsLearned) {
-  const accuracy::ElasticErrors e = errorsOf(machineWith({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
+  const accuracy::ElasticErrors e = rodErrors(machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
   EXPECT_LT(e.after.rms[1], 0.5);
   EXPECT_GT(e.after.covered[1], 0.80);
 }
 
-std::vector<accuracy::WrenchAt> wrenchesOf(const simulation::MachineSettings& machine, Level level) {
-  PipelineSettings pipeline = shipped().pipeline;
+std::vector<accuracy::WrenchAt> rodWrenches(const simulation::MachineSettings& machine, Level level) {
+  PipelineSettings pipeline = drawingOfRods().pipeline;
   pipeline.level = level;
-  return accuracy::runSession(simulation::recordSession(machine), machine.start_stamp, shipped().mechanism, pipeline)
+  return accuracy::runSession(simulation::recordSession(machine), machine.start_stamp, drawingOfRods().mechanism, pipeline)
       .wrenches;
 }
 
 /// A rod stiffer than the readings show is a rigid one: to the bit.
 TEST(ElasticSession, OfARigidMachineItIsLinkage) {
-  const simulation::MachineSettings machine = machineWith({}, 720);
-  const auto elastic = wrenchesOf(machine, Level::kElastic), linkage = wrenchesOf(machine, Level::kLinkage);
+  const simulation::MachineSettings machine = machineWithRod({}, 720);
+  const auto elastic = rodWrenches(machine, Level::kElastic), linkage = rodWrenches(machine, Level::kLinkage);
   ASSERT_EQ(elastic.size(), linkage.size());
   std::size_t others = 0;
   for (std::size_t i = 0; i < elastic.size(); ++i) others += elastic[i].force_z != linkage[i].force_z;
@@ -70,15 +71,15 @@ TEST(ElasticSession, OfARigidMachineItIsLinkage) {
 }
 
 TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
-  simulation::MachineSettings machine = machineWith({8e8, 0.3, 0.0}, 730);
+  simulation::MachineSettings machine = machineWithRod({8e8, 0.3, 0.0}, 730);
   machine.duration = 6.0;
   const simulation::Session session = simulation::recordSession(machine);
-  PipelineSettings pipeline = shipped().pipeline;
+  PipelineSettings pipeline = drawingOfRods().pipeline;
   pipeline.level = Level::kElastic;
   const auto play = [&] {
     std::vector<double> forces;
     forces.reserve(session.crank.size());
-    accuracy::SessionPlayer player(shipped().mechanism, pipeline, {}, session);
+    accuracy::SessionPlayer player(drawingOfRods().mechanism, pipeline, {}, session);
     bool ran = false;
     std::size_t allocated = 0, before = test::allocations;
     player.playTo(100.0, [&](double, const SampleResult& r) {
@@ -96,9 +97,9 @@ TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
 
 /// Without a tool nothing strikes: the rod's model is contradicted, and the machine is a rigid one.
 TEST(ElasticSession, AMissedToolIsNoRing) {
-  simulation::MachineSettings machine = machineWith({1e9, 0.3, 0.0}, 740);
+  simulation::MachineSettings machine = machineWithRod({1e9, 0.3, 0.0}, 740);
   machine.blow.blank_share = 0.2;
-  const accuracy::ElasticErrors e = errorsOf(machine, Level::kElastic), rigid = errorsOf(machine, Level::kLinkage);
+  const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic), rigid = rodErrors(machine, Level::kLinkage);
   EXPECT_LT(e.whole.rms[1], rigid.whole.rms[1]);
   EXPECT_GT(e.whole.covered[1], 0.85);
 }

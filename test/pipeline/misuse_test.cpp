@@ -63,14 +63,14 @@ TEST(Misuse, BlowsWithoutPressForceAreSeenByPressures) {
   EXPECT_FALSE(onRock(0.0, 0.0, false).unpressed()) << "no pressures";
 }
 
-constexpr double kPeriod = 0.2;
+constexpr double kTurnPeriod = 0.2;
 
 /// Seconds at one place, the hull moving by `advance` [m] with each of 300 blows (60 s).
 Counts advancing(double advance) {
   MisuseFollower misuse;
   for (int blow = 0; blow < 300; ++blow) {
     misuse.hullAt({0.0, 0.0, -advance * blow});
-    misuse.blow(kPeriod);
+    misuse.blow(kTurnPeriod);
   }
   return misuse.counts();
 }
@@ -78,16 +78,16 @@ Counts advancing(double advance) {
 TEST(Misuse, HammeringAtOnePlaceCountsBeyondThePatienceOfTheMaker) {
   EXPECT_NEAR(*advancing(0.0).still(), 60.0 - MisuseFollower::kPatience, 1e-9);
   EXPECT_EQ(*advancing(0.001).still(), 0.0) << "20 mm in 4 s";
-  EXPECT_NEAR(advancing(0.0).placed_time, 300 * kPeriod, 1e-9);
+  EXPECT_NEAR(advancing(0.0).placed_time, 300 * kTurnPeriod, 1e-9);
 }
 
 /// A hammer that rests, or that is lifted and set down between two blows, starts anew or does not count.
 TEST(Misuse, PausesAndMovesEndTheTimeAtOnePlace) {
   MisuseFollower misuse;
   const auto hammer = [&](double seconds) {
-    for (int blow = 0; blow < std::lround(seconds / kPeriod); ++blow) {
+    for (int blow = 0; blow < std::lround(seconds / kTurnPeriod); ++blow) {
       misuse.hullAt(Eigen::Vector3d::Zero());
-      misuse.blow(kPeriod);
+      misuse.blow(kTurnPeriod);
     }
   };
   hammer(14.0);
@@ -106,7 +106,7 @@ TEST(Misuse, AHullThatComesBackAfterItsRecoilIsPressed) {
   const auto turn = [&](std::optional<bool> at_first, std::optional<bool> then) {
     misuse.pressed(at_first);
     misuse.pressed(then);
-    misuse.blow(kPeriod);
+    misuse.blow(kTurnPeriod);
   };
   turn(false, true);
   turn(true, false);

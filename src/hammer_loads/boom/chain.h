@@ -34,7 +34,7 @@ struct ChainRequest {
   std::string tip{"hammer_hull"};
   std::vector<std::string> joints;  ///< that must move between root and tip
   bool massless{};                  ///< for directions alone: it need have no mass
-  std::vector<WeighedLink> weighed;  ///< links between root and tip whose bodies are not the description's
+  std::vector<WeighedLink> weighed{};  ///< links between root and tip whose bodies are not the description's
 };
 
 /// One line when the description can be read but does not have root or tip: it is that of another machine. Empty when
