@@ -106,7 +106,7 @@ struct GaussianBelief {
   /// P <- P - K c^T. The corrected covariance is never below K R K^T (Joseph's form): a diagonal that rounding takes
   /// below that is worth nothing.
   void take(const Vector& gain, const Vector& column, double variance, const ConstantRow& seen) noexcept {
-    by_constant.noalias() += gain.lazyProduct(seen);
+    if constexpr (constants > 0) by_constant.noalias() += gain.lazyProduct(seen);  // Eigen 3.3 has no such product
     for (Eigen::Index j = 0; j < variables; ++j) {
       covariance(j, j) = std::max(covariance(j, j) - gain[j] * column[j], variance * gain[j] * gain[j]);
       for (Eigen::Index i = j + 1; i < variables; ++i)
