@@ -142,8 +142,10 @@ TEST(BoomCalibration, WeighsABoomOnItsOil) {
   const BoomCalibration found = calibrateBoom(test::shippedBasis(), {{recording, {}}});
   ASSERT_EQ(found.problem, "");
   EXPECT_TRUE(found.determined());
+  // It is as given, but that the rocker hangs where the crank rests and not at its mean place over a turn, 0.1 m off.
+  const double rocker = 0.1 * m.hammer.rocker_mass * m.gravity;
   for (const JointWeight& joint : found.joints)
-    EXPECT_LT(joint.before, std::max(0.015 * joint.torque, 2.0 * joint.deviation)) << joint.joint;  // it is as given
+    EXPECT_LT(joint.before, 0.015 * joint.torque + rocker) << joint.joint;
   for (const CylinderFit& cylinder : found.cylinders)
     EXPECT_NEAR(cylinder.friction, 0.02 * cylinder.force, 0.3 * 0.02 * cylinder.force) << cylinder.name;
 }
