@@ -32,7 +32,8 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
     // Seals that were weighed are taken off.
     const BoomErrors weighed = errorsOf("weighed seals", session, knownFriction(0.02, 0.004), sensors);
     EXPECT_LT(weighed.worstTorque(), 0.8 * none.worstTorque()) << imu;
-    EXPECT_GT(weighed.covered(), 0.85) << imu;
+    // Beside an IMU what is left is the sign near standstill, where rods are slower than they are seen.
+    EXPECT_GT(weighed.covered(), imu ? 0.7 : 0.85) << imu;
   }
 }
 
