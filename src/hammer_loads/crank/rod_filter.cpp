@@ -175,7 +175,7 @@ RodFilter::Belief::Matrix RodFilter::errors() const noexcept {
 
 void RodFilter::learn() noexcept {
   running_ = false;
-  proven_ = samples_ >= kEnough && hasStruck() && growth() < kAgrees;
+  proven_ = samples_ >= kEnough && hasStruck() && std::isfinite(ratio_sum_) && belief_.isSound() && growth() < kAgrees;
   learned_ = proven_ ? motion_ : first_;
   learned_covariance_ =
       proven_ ? Learned(belief_.covariance.bottomRightCorner<kLearned, kLearned>()) : first_covariance_;
