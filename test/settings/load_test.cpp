@@ -189,7 +189,7 @@ struct BadPair {
 
 TEST(Load, PipelineAndLogKeysGoodAndBadInPairs) {
   const BadPair pairs[] = {
-      {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage, auto"},
+      {"level: linkage", "level: Linkage", "level: Linkage, must be one of pulse, rocker, linkage, elastic, auto"},
       {"level: auto", "tolerance: 0", "tolerance: 0, must be a number in [1.0e-09, 10.0]"},
       {"hull_motion: imu", "hull_motion: model",
        "hull_motion: model, must be fixed or imu without a boom file: its cylinders' oil is the spring"},

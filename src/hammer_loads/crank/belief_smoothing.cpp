@@ -36,8 +36,8 @@ std::optional<Joined> joined(const ShaftModel& model, const FilterStep& step, co
 
 /// A sample only ever makes a variance smaller; where the filter made one larger, the prediction is not what it used.
 bool isWidened(const CrankBelief& predicted, const CrankBelief& now) noexcept {
-  constexpr double kRounding = 1e-6;
-  return (now.covariance.diagonal().array() > (1.0 + kRounding) * predicted.covariance.diagonal().array()).any();
+  constexpr double kRoundingLeft = 1e-6;
+  return (now.covariance.diagonal().array() > (1.0 + kRoundingLeft) * predicted.covariance.diagonal().array()).any();
 }
 
 Vector between(const CrankBelief& a, const CrankBelief& b) noexcept {
