@@ -124,6 +124,8 @@ class Boom {
                   BoomDeviations& result) noexcept;
   /// The same by errors as they are, as where cylinders' forces are measured.
   void deviations(const LoadErrors& errors, BoomDeviations& result) noexcept;
+  /// The same by errors of the load in the boom's plane alone (force x, z, moment y): one standard deviation a column.
+  void deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexcept;
   /// Standard deviations of the weight's torques on the joints by the masses and centres of the links and the zeros of
   /// the joints' sensors [N m]: the same in all samples at a pose. As of the last deviations(), zero before.
   const JointVector& weightDeviation() const noexcept { return weight_deviation_; }

@@ -110,6 +110,15 @@ void Boom::deviations(const LoadErrors& errors, BoomDeviations& result) noexcept
   takeDeviations(result);
 }
 
+void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexcept {
+  findResponse();
+  deviation_.setZero();
+  const auto first = static_cast<Eigen::Index>(cylinders_.size());  // before it: accelerations
+  for (Eigen::Index i = 0; i < in_plane_; ++i)
+    deviation_[rows_in_plane_[i]] = response_in_plane_.row(i).segment<3>(first).lazyProduct(tip).norm();
+  takeDeviations(result);
+}
+
 /// Errors of links are independent of each other. A weighed link's first moment stands for all that it carries: it
 /// turns with it alone, so that links beyond the next joint do not count again.
 JointVector Boom::findWeightDeviation() const noexcept {

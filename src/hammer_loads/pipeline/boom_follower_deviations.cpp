@@ -74,10 +74,9 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
 void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   const auto joints = static_cast<std::size_t>(boom_.chain().joints());
   const auto of = [&](const WrenchSpread& spread) {
-    LoadErrors errors(boom_.cylinders());
-    for (int i = 0; i < spread.count && !tip_; ++i)
-      errors.addInPlane(inPlane(spread.part[static_cast<std::size_t>(i)]));
-    boom_.deviations(errors, state_.common);
+    Eigen::Matrix3d tip = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < 3 && !tip_; ++i) tip.col(i) = inPlane(spread.part[static_cast<std::size_t>(i)]);
+    boom_.deviations(tip, state_.common);
     for (std::size_t i = 0; pressuresCount() && i < boom_.cylinders().size(); ++i) {
       if (measured_.of(i)) state_.common.torque[boom_.cylinders()[i].joint()] = state_.common.cylinder[i] = 0.0;
     }
