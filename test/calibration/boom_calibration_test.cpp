@@ -144,8 +144,7 @@ TEST(BoomCalibration, WeighsABoomOnItsOil) {
   EXPECT_TRUE(found.determined());
   // It is as given, but that the rocker hangs where the crank rests and not at its mean place over a turn, 0.1 m off.
   const double rocker = 0.1 * m.hammer.rocker_mass * m.gravity;
-  for (const JointWeight& joint : found.joints)
-    EXPECT_LT(joint.before, 0.015 * joint.torque + rocker) << joint.joint;
+  for (const JointWeight& joint : found.joints) EXPECT_LT(joint.before, 0.015 * joint.torque + rocker) << joint.joint;
   for (const CylinderFit& cylinder : found.cylinders)
     EXPECT_NEAR(cylinder.friction, 0.02 * cylinder.force, 0.3 * 0.02 * cylinder.force) << cylinder.name;
 }

@@ -263,7 +263,8 @@ TEST(EvaluateCommand, TakesLevelAndMachineFromFilesInOrder) {
   EXPECT_EQ(runEvaluate("--params " + rocker.path() + " --level linkage", input).out,
             runEvaluate("--level linkage", input).out);
   const double force = rowOf(runEvaluate("--level rocker", input).out, 0).at("hull_force_x_N");
-  EXPECT_NEAR(rowOf(runEvaluate("--level rocker --params " + light.path(), input).out, 0).at("hull_force_x_N"), 0.5 * force, 1e-9);
+  EXPECT_NEAR(rowOf(runEvaluate("--level rocker --params " + light.path(), input).out, 0).at("hull_force_x_N"),
+              0.5 * force, 1e-9);
 }
 
 TEST(EvaluateCommand, BadInputIsOneLineEachAndExitCode1) {

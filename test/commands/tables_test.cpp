@@ -1,5 +1,5 @@
-/// process_bag --db as its user runs it: the tables say what the output bag says, the same bytes each time, and the file
-/// is whole or not there.
+/// process_bag --db as its user runs it: the tables say what the output bag says, the same bytes each time, and the
+/// file is whole or not there.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mount.h>
@@ -100,8 +100,8 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
   ASSERT_FALSE(cycles.channel.empty());
   EXPECT_EQ(number("out.sqlite", "SELECT count(*) FROM turn_loads"), static_cast<double>(whole * turn.channel.size()));
   for (std::size_t i = 0; i < turn.channel.size(); ++i) {
-    const std::string where = " FROM turn_loads t JOIN channels USING(run_id, channel) WHERE name = '" + turn.channel[i] +
-                              "' AND turn = " + std::to_string(turn.turn);
+    const std::string where = " FROM turn_loads t JOIN channels USING(run_id, channel) WHERE name = '" +
+                              turn.channel[i] + "' AND turn = " + std::to_string(turn.turn);
     EXPECT_EQ(number("out.sqlite", "SELECT t.maximum" + where), turn.maximum[i]) << turn.channel[i];
     EXPECT_EQ(number("out.sqlite", "SELECT t.mean" + where), turn.mean[i]) << turn.channel[i];
   }
@@ -109,7 +109,8 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
             std::vector<std::string>{"Nm"});
   for (const ChannelCycles& channel : cycles.channel) {
     const auto of_channel = [&](const std::string& table) {
-      return " FROM " + table + " JOIN channels c USING(run_id, channel) WHERE c.counted AND name = '" + channel.name + "'";
+      return " FROM " + table + " JOIN channels c USING(run_id, channel) WHERE c.counted AND name = '" + channel.name +
+             "'";
     };
     EXPECT_EQ(number("out.sqlite", "SELECT samples FROM channels WHERE name = '" + channel.name + "'"),
               static_cast<double>(channel.samples));
@@ -304,9 +305,8 @@ TEST_F(Tables, AFullDiskIsOneLineAndLeavesNothing) {
   ASSERT_EQ(tables(kSession, "whole.sqlite").exit_code, 0);
   const auto blocks = fs::file_size(path("whole.sqlite")) / 512;
   for (const std::uintmax_t limit : {std::uintmax_t{2}, blocks / 2, blocks - 8}) {
-    const test::Outcome outcome =
-        test::runCommand("ulimit -f " + std::to_string(limit) + "; " HAMMER_LOADS_PROCESS_BAG,
-                         "--no-bag " + kSession + " --db " + path("out.sqlite"));
+    const test::Outcome outcome = test::runCommand("ulimit -f " + std::to_string(limit) + "; " HAMMER_LOADS_PROCESS_BAG,
+                                                   "--no-bag " + kSession + " --db " + path("out.sqlite"));
     expectRefused(outcome, {path("out.sqlite"), "cannot be written", "File too large"});
     EXPECT_EQ(names(), std::vector<std::string>{"whole.sqlite"}) << limit;
   }

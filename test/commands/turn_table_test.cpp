@@ -65,7 +65,8 @@ TEST(TurnTable, HasOneRowPerStepAndBothSidesOfTheBlow) {
 
 TEST(TurnTable, RowsAreTheModelsToTwelveDigits) {
   const Settings settings = loadFiles(configDirectory(), {}).value.value();
-  const std::vector<std::string> lines = linesOf(runTurnTable("--level rocker --speed 20 --step-deg 7.3 --pitch 0.3").out);
+  const std::vector<std::string> lines =
+      linesOf(runTurnTable("--level rocker --speed 20 --step-deg 7.3 --pitch 0.3").out);
   ASSERT_EQ(lines.size(), 1U + 50U + 1U);  // 0 to 357.7, and 360
   const double g = settings.pipeline.gravity;
   for (std::size_t i = 1; i < 51; ++i) {
@@ -93,7 +94,8 @@ TEST(TurnTable, TakesParameterFilesInOrder) {
   const std::string mo100 = linesOf(runTurnTable("--summary --level rocker").out).at(0);
   const std::string files = "--params " + light.path() + " --params " + heavy.path();
   EXPECT_EQ(linesOf(runTurnTable("--summary --level rocker " + files).out).at(0), mo100);
-  EXPECT_EQ(linesOf(runTurnTable("--summary --level rocker --params " + light.path()).out).at(0), "amplitude_N: 20279.0197608");
+  EXPECT_EQ(linesOf(runTurnTable("--summary --level rocker --params " + light.path()).out).at(0),
+            "amplitude_N: 20279.0197608");
 }
 
 TEST(TurnTable, PinsAddsTheModelsPinForcesAndDriveTorque) {

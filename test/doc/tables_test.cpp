@@ -43,8 +43,9 @@ Tables made() {
   Tables tables;
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement columns(
-      database, "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c WHERE m.type = 'table' "
-                "ORDER BY m.name, c.cid");
+      database,
+      "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c WHERE m.type = 'table' "
+      "ORDER BY m.name, c.cid");
   while (columns.step()) tables[columns.text(0)].push_back(columns.text(1));
   EXPECT_EQ(database.problem(), "");
   return tables;
@@ -94,8 +95,9 @@ TEST(NumberFields, AreThoseOfTheMessageInTheirOrder) {
 }
 
 TEST(NumberFields, KnowEveryNumberAndRefuseTheRest) {
-  NumberFields fields("Header header # first\nbool a\nint8 b\nuint16 FLAG = 4 # a constant\nuint16 c\nfloat32 d\n\n"
-                      "int64 e # last\n====\nMSG: other\nstring text\n");
+  NumberFields fields(
+      "Header header # first\nbool a\nint8 b\nuint16 FLAG = 4 # a constant\nuint16 c\nfloat32 d\n\n"
+      "int64 e # last\n====\nMSG: other\nstring text\n");
   const std::vector<TableColumn> columns = fields.columns();
   ASSERT_EQ(columns.size(), 5U);
   EXPECT_EQ(columns[3].name, "d");

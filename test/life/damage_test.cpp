@@ -68,7 +68,8 @@ TEST(EquivalentLoad, DeviationIsTheDerivativeWithRespectToAllRanges) {
   for (const double slope : {3.0, 10.0}) {
     const double slope_of_value =
         (equivalentLoad(more, slope, 3.0, kNone).value - equivalentLoad(less, slope, 3.0, kNone).value) / (2.0 * h);
-    EXPECT_NEAR(equivalentLoad(kFigure6, slope, 3.0, {deviation, 0.0, kNaN}).deviation, deviation * slope_of_value, 1e-8);
+    EXPECT_NEAR(equivalentLoad(kFigure6, slope, 3.0, {deviation, 0.0, kNaN}).deviation, deviation * slope_of_value,
+                1e-8);
   }
 }
 

@@ -1,4 +1,6 @@
 // Shares of a budget against machines that are one constant off (JCGM 101: draws, here of one source at a time).
+#include "hammer_loads/pipeline/budget.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/linkage/hammer_constants.h"
-#include "hammer_loads/pipeline/budget.h"
 #include "pipeline/shipped_machine.h"
 #include "support/exact_hammer.h"
 

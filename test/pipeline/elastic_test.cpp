@@ -46,6 +46,16 @@ TEST(ElasticSession, TheRingAfterTheBlowIsPublished) {
   }
 }
 
+/// 1024 counts and stamps that jitter by 0.3 ms: deviations must hold, and they are those of a rigid rod.
+TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
+  simulation::MachineSettings machine = machineWithRod({8e8, 0.3, 0.0}, 731);
+  machine.crank.counts = 1024;
+  machine.crank.jitter = 3e-4;
+  const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic);
+  EXPECT_GT(e.after.covered[1], 0.85);
+  EXPECT_GT(e.whole.covered[1], 0.85);
+}
+
 /// Nobody tells it of the pins' play.
 TEST(ElasticSession, PlayIsLearned) {
   const accuracy::ElasticErrors e = rodErrors(machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
@@ -56,7 +66,8 @@ TEST(ElasticSession, PlayIsLearned) {
 std::vector<accuracy::WrenchAt> rodWrenches(const simulation::MachineSettings& machine, Level level) {
   PipelineSettings pipeline = drawingOfRods().pipeline;
   pipeline.level = level;
-  return accuracy::runSession(simulation::recordSession(machine), machine.start_stamp, drawingOfRods().mechanism, pipeline)
+  return accuracy::runSession(simulation::recordSession(machine), machine.start_stamp, drawingOfRods().mechanism,
+                              pipeline)
       .wrenches;
 }
 

@@ -9,8 +9,8 @@
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
-#include "support/mo100.h"
 #include "support/exact_hammer.h"
+#include "support/mo100.h"
 
 namespace hammer_loads {
 namespace {

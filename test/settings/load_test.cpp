@@ -266,7 +266,8 @@ TEST(Load, LevelAutoIsChosenAtStartAndTold) {
   EXPECT_EQ(strict.pipeline.level, Level::kLinkage);
   EXPECT_EQ(loose.pipeline.level, Level::kRocker);
   ASSERT_EQ(loose.notes.size(), 1U);
-  EXPECT_EQ(loose.notes[0].find("level auto: rocker is the cheapest whose difference to linkage is within 5 of what"), 0U);
+  EXPECT_EQ(loose.notes[0].find("level auto: rocker is the cheapest whose difference to linkage is within 5 of what"),
+            0U);
   EXPECT_TRUE(loaded("{level: rocker}").notes.empty());
 }
 

@@ -20,7 +20,7 @@ struct DrawingRow {
   struct OfTurns {
     double rms{}, covered{};
   };
-  OfTurns energy, impulse, amplitude;      ///< of the blow; of Fz over the turn; its peak
+  OfTurns energy, impulse, amplitude;       ///< of the blow; of Fz over the turn; its peak
   double range_error{}, range_deviation{};  ///< of Fz's damage-equivalent range, relative
 };
 

@@ -166,9 +166,9 @@ class ChainBuilder {
     const KDL::RotationalInertia about_com = described.RefPoint(described.getCOG()).getRotationalInertia();
     const double about_y = about_com.data[4];
     const KDL::Vector com(found->com_x, described.getCOG().y(), found->com_z);
-    const KDL::RotationalInertia inertia =
-        about_y > 0.0 ? KDL::operator*(found->inertia / about_y, about_com)
-                      : KDL::RotationalInertia(found->inertia, found->inertia, found->inertia);
+    const KDL::RotationalInertia inertia = about_y > 0.0
+                                               ? KDL::operator*(found->inertia / about_y, about_com)
+                                               : KDL::RotationalInertia(found->inertia, found->inertia, found->inertia);
     return KDL::RigidBodyInertia(found->mass, com, inertia);
   }
 

@@ -9,8 +9,8 @@
 namespace hammer_loads {
 
 /// Difference of a level's wrench to that of level linkage over what the hammer's constants leave open of the latter
-/// (WrenchColumns): root mean squares over a working turn, the largest of force x, force z and moment [-]. A hammer that
-/// is said to be exact leaves nothing open: then it is infinite, unless there is no difference.
+/// (WrenchColumns): root mean squares over a working turn, the largest of force x, force z and moment [-]. A hammer
+/// that is said to be exact leaves nothing open: then it is infinite, unless there is no difference.
 struct LevelChoice {
   Level level{};  ///< the cheapest within tolerance
   double tolerance{};

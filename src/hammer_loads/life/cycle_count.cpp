@@ -61,7 +61,8 @@ double meanDeviation(const CycleCount& count) {
 
 RangeDeviation rangeDeviation(const CycleCount& count) {
   const SampleTally& t = count.tally;
-  if (t.range_square == 0) return {std::sqrt(2.0) * meanDeviation(count), 0.0, std::numeric_limits<double>::quiet_NaN()};
+  if (t.range_square == 0)
+    return {std::sqrt(2.0) * meanDeviation(count), 0.0, std::numeric_limits<double>::quiet_NaN()};
   const auto square = static_cast<double>(t.range_square);
   return {0.0, static_cast<double>(t.range_own) / square, static_cast<double>(t.range_common) / square};
 }

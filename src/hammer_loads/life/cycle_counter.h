@@ -48,9 +48,7 @@ class CycleCounter {
   /// Range of a turn and its standard deviations [channel's unit]; what is not finite is none.
   void addRange(double range, double own, double common) noexcept {
     if (!(range > 0.0 && own >= 0.0 && common >= 0.0)) return;
-    const auto classes = [&](double value) {
-      return std::fmin(value / grid_.width(), static_cast<double>(classes_));
-    };
+    const auto classes = [&](double value) { return std::fmin(value / grid_.width(), static_cast<double>(classes_)); };
     const double weight = kRangeUnits * classes(range);
     tally_.range_square += static_cast<std::uint64_t>(weight * classes(range) + 0.5);
     tally_.range_own += static_cast<std::uint64_t>(weight * classes(own) + 0.5);

@@ -55,8 +55,8 @@ struct FkmMeanStress {
   Equivalent atAlternating(double amplitude, double mean) const;
 };
 
-/// Sum of n/N over the cycles; with a mean-stress correction the curve must be one for R = -1. Linear propagation of the
-/// ranges' deviations, all erring alike.
+/// Sum of n/N over the cycles; with a mean-stress correction the curve must be one for R = -1. Linear propagation of
+/// the ranges' deviations, all erring alike.
 Figure damage(const std::vector<RangeMean>& cycles, const SnCurve& curve, const std::optional<FkmMeanStress>& mean,
               const RangeDeviation& range);
 

@@ -23,8 +23,8 @@ TurnLoads emptyTurn(std::size_t channels) {
 TurnLoadsRecorder::TurnLoadsRecorder(std::size_t channels)
     : turn_(emptyTurn(channels)), result_(turn_), integrals_(channels) {}
 
-void TurnLoadsRecorder::take(std::int64_t instant, const double* values, const double* deviations,
-                             const double* common, bool sampled) noexcept {
+void TurnLoadsRecorder::take(std::int64_t instant, const double* values, const double* deviations, const double* common,
+                             bool sampled) noexcept {
   if (!started_) {
     started_ = true;
     turn_.start = instant;

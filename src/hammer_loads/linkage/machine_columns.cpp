@@ -28,8 +28,9 @@ MachineColumns::MachineColumns(const Mechanism& mechanism, Level level) : mechan
     const auto other = shifted(p, constant, constant.away * p.deviations[i]);
     if (other) columns_.push_back({*other, level, constant.enters, constant.key});
   }
-  if (level != Level::kLinkage) 
-    columns_.push_back({mechanism, Level::kLinkage, Enters::kLoads, level == Level::kPulse ? "level pulse" : "level rocker"});
+  if (level != Level::kLinkage)
+    columns_.push_back(
+        {mechanism, Level::kLinkage, Enters::kLoads, level == Level::kPulse ? "level pulse" : "level rocker"});
 }
 
 MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravity) const noexcept {

@@ -30,11 +30,11 @@ struct BoomSample {
                              ///< weight, no hull motion
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   WrenchSpread constants{}, of_hammer{};  ///< errors of constants, the same in all samples: of all, of the hammer's
-  std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
-  bool imu_lost{};                  ///< earlier readings cannot be trusted
-  HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
-  double stamp_noise{};             ///< standard deviation of the stamp, from sample to sample [s]
-  double unseen_peak{};             ///< of Fz of a hammer that is at work, should it not have been followed before [N]
+  std::optional<ImuReading> imu{};        ///< a new reading at the sample, in the hull's axes
+  bool imu_lost{};                        ///< earlier readings cannot be trusted
+  HullWrench displaced_links{};           ///< DisplacedLinks, at the sample; counts for a boom that vibrates
+  double stamp_noise{};                   ///< standard deviation of the stamp, from sample to sample [s]
+  double unseen_peak{};  ///< of Fz of a hammer that is at work, should it not have been followed before [N]
 };
 
 /// Why the boom is taken as rigid or compliant.

@@ -13,7 +13,8 @@ constexpr std::size_t kSensor = static_cast<std::size_t>(ConstantErrors::kTable)
 }  // namespace
 
 BudgetRecorder::BudgetRecorder(const Pipeline& pipeline) : pipeline_(&pipeline) {
-  for (std::size_t i = 0; i < kSensor; ++i) names_[i] = kUnknowns[i].key != nullptr ? kUnknowns[i].key : kUnknowns[i].name;
+  for (std::size_t i = 0; i < kSensor; ++i)
+    names_[i] = kUnknowns[i].key != nullptr ? kUnknowns[i].key : kUnknowns[i].name;
   const std::vector<std::string> of_hammer = pipeline.hammerColumns();
   std::copy(of_hammer.begin(), of_hammer.end(), names_.begin() + kSensor);
   names_.back() = "drive_inertia_kg_m2";

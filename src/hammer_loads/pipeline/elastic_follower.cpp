@@ -15,8 +15,13 @@ constexpr double kTo = 2.2;                              // [rad]: by then no ro
 constexpr double kNeverStruck = 0.1;                     // [rad] beyond the dead centre
 constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
 constexpr double kSlow = 5.0;                            // [rad/s]
+/// [rad] of a reading: through noise beyond it the sensor's place is taken for the rod's stiffness, and deviations are
+/// too small. Guarded by ElasticSession.ReadingsTooCoarseForARodLeaveLinkage.
+constexpr double kCoarsest = 3e-3;
 
 constexpr double kEvidenceGain = 0.2, kDecides = 2.0, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
+
+constexpr double kCountsPart = 0.2887;  // standard deviation of a reading, of a count: 1/sqrt(12)
 
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 
@@ -37,7 +42,9 @@ bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& fi
   const CrankPosition& at = crank.estimate().position;
   return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && at.angle.offset < kFromLatest &&
          crank.estimate().speed > kSlow && filter.hasSpeed() && filter.isPlausible() && !filter.isDoubtful() &&
-         !filter.belief().motor;
+         !filter.belief().motor &&
+         std::hypot(filter.timingNoise() * crank.estimate().speed, kCountsPart * crank.tracker().angleResolution()) <
+             kCoarsest;
 }
 
 void ElasticFollower::rest() noexcept {

@@ -36,8 +36,7 @@ void TurnErrors::sample(StampNs stamp, const HullWrench& load, const HullDeviati
   if (!(load.force_z > peak_)) return;
   peak_ = load.force_z;
   at_peak_.columns = columns.row(kZ);
-  at_peak_.own =
-      std::sqrt(std::max(0.0, square(deviation.wrench.force_z) - square(deviation.common.force_z)));
+  at_peak_.own = std::sqrt(std::max(0.0, square(deviation.wrench.force_z) - square(deviation.common.force_z)));
 }
 
 PulseErrors TurnErrors::end(StampNs blow, const HalfSinePulse& pulse, const HullWrench& before_blow) noexcept {

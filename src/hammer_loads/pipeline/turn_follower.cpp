@@ -112,7 +112,8 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   turn_.correctBegin(after);
   RockerBlow& blow = pending_end_.blow;
   const CrankBlow measured = pending_.take(), crank = rod_.value_or(measured);
-  const double doubt = std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
+  const double doubt =
+      std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
   errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0});
   blow = measuredBlow(*model_, crank);
   pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);

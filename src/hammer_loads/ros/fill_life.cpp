@@ -35,8 +35,8 @@ void fillCount(const life::CycleCount& count, ChannelCycles& message) {
 }
 
 void fillFigures(const life::ChannelFigures& figures, ChannelCycles& message) {
-  for (std::vector<double>* values : {&message.equivalent_range, &message.equivalent_range_deviation,
-                                      &message.equivalent_range_common_deviation})
+  for (std::vector<double>* values :
+       {&message.equivalent_range, &message.equivalent_range_deviation, &message.equivalent_range_common_deviation})
     values->clear();
   for (const life::Figure& range : figures.equivalent_range) {
     message.equivalent_range.push_back(range.value);

@@ -56,10 +56,9 @@ void LifeTables::begin(HammerBridge& bridge, std::int64_t run) {
 void LifeTables::takeTurn(const TurnLoads& message) {
   if (!message.whole) return;
   for (std::size_t i = 0; i < message.channel.size(); ++i)
-    writer_->turnLoad(
-        run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i], message.mean[i],
-               message.minimum_deviation[i], message.maximum_deviation[i], message.minimum_common_deviation[i],
-               message.maximum_common_deviation[i]});
+    writer_->turnLoad(run_, {message.turn, static_cast<std::int64_t>(i), message.minimum[i], message.maximum[i],
+                             message.mean[i], message.minimum_deviation[i], message.maximum_deviation[i],
+                             message.minimum_common_deviation[i], message.maximum_common_deviation[i]});
 }
 
 void LifeTables::write(const BudgetFigure& figure) {
@@ -77,13 +76,16 @@ void LifeTables::writeBudget() {
   for (const ChannelCycles& channel : cycles_.channel) {
     if (channel.equivalent_range.empty() || !(channel.equivalent_range.front() > 0.0)) continue;
     BudgetFigure figure{"equivalent_range_" + std::to_string(static_cast<int>(life::kSlopes[0])) + "/" + channel.name,
-                        channel.equivalent_range.front(), channel.equivalent_range_deviation.front(), {}};
+                        channel.equivalent_range.front(),
+                        channel.equivalent_range_deviation.front(),
+                        {}};
     const auto of_hull = std::find(names.begin(), names.end(), channel.name);
     if (of_hull != names.end()) {
       figure.sources = budget_->ofRange(static_cast<std::size_t>(of_hull - names.begin()));
     } else if (channel.range_own_deviation >= 0.0 && channel.range_common_deviation >= 0.0) {
-      figure.sources = {{"constants of hammer and crank sensor", channel.range_common_deviation * channel.range_common_deviation},
-                        {"readings, oil and rock", channel.range_own_deviation * channel.range_own_deviation}};
+      figure.sources = {
+          {"constants of hammer and crank sensor", channel.range_common_deviation * channel.range_common_deviation},
+          {"readings, oil and rock", channel.range_own_deviation * channel.range_own_deviation}};
     }
     write(figure);
   }

@@ -68,8 +68,9 @@ void TableWriter::count(std::int64_t run, std::int64_t channel, const ChannelRec
   Statement(database_, insertSql("channels", 23).c_str())
       .run(run, channel, record.name, record.unit(), std::int64_t{1}, finite(c.least), finite(c.greatest), c.classes,
            c.samples, c.skipped, c.below, c.above, c.gaps, finite(c.minimum), finite(c.maximum),
-           finite(c.mean_deviation), finite(c.range_own_deviation), finite(c.range_common_deviation), finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope),
-           finite(c.sn_slope_below), finite(c.mean_stress_sensitivity));
+           finite(c.mean_deviation), finite(c.range_own_deviation), finite(c.range_common_deviation),
+           finite(c.sn_knee_range), finite(c.sn_knee_cycles), finite(c.sn_slope), finite(c.sn_slope_below),
+           finite(c.mean_stress_sensitivity));
   Statement cycle(database_, insertSql("cycles", 5).c_str());
   for (std::size_t i = 0; i < c.count.size(); ++i) cycle.run(run, channel, c.steps[i], c.low[i], c.count[i]);
   Statement residue(database_, insertSql("residues", 4).c_str());
