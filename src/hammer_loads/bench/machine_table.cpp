@@ -74,6 +74,7 @@ std::vector<Kind> kinds() {
 MachineSettings machineOf(const Settings& settings, const Kind& kind, double rate) {
   MachineSettings machine = simulation::workingMo100();
   machine.hammer = settings.mechanism.parameters();
+  machine.level = settings.pipeline.level;
   machine.duration = kind.calibrated ? 40.0 : 20.0;
   machine.drive.stop_time = machine.duration - 2.0;
   machine.crank.rate = rate;
@@ -95,7 +96,7 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
                        {machine.gravity * std::sin(pitch), -machine.gravity * std::cos(pitch)}});
   }
   const Mechanism mechanism = *Mechanism::make(hammer).value;
-  calibration::CalibrationBasis basis{mechanism, Level::kRocker};
+  calibration::CalibrationBasis basis{mechanism, pipeline.level};
   basis.torque_walk = pipeline.torque_walk * hammer.rocker_inertia_about_pivot;
   basis.torque_deviation = pipeline.initial_torque_deviation * hammer.rocker_inertia_about_pivot;
   CrankSensorPlace place;
@@ -153,6 +154,11 @@ std::string markdown(const std::vector<MachineRow>& rows) {
       "moment | blow instant | energy | blows | missed | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const MachineRow& row : rows) {
     const SessionErrors& e = row.errors;
+    if (std::isnan(e.rms_force)) {
+      text += format("| %s | %.0f | %s | withheld | | | | | %d | %d | |\n", row.machine.c_str(), row.rate,
+                     row.speed ? "measured" : "none", e.blows, e.unseen_blows);
+      continue;
+    }
     text += format(
         "| %s | %.0f | %s | %.2f, %.2f, %.2f, %.2f %% | %.1f, %.1f, %.1f, %.1f %% | %.0f, %.0f, %.0f %% | %.2f ms | "
         "%.1f "
@@ -169,6 +175,11 @@ std::string json(const std::vector<MachineRow>& rows) {
   std::string text = "[";
   for (const MachineRow& row : rows) {
     const SessionErrors& e = row.errors;
+    if (std::isnan(e.rms_force)) {
+      text += format("%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"withheld\": true}",
+                     &row == rows.data() ? "" : ",", row.machine.c_str(), row.rate, row.speed ? "true" : "false");
+      continue;
+    }
     text += format(
         "%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"rms_z\": %.6g, \"worst_z\": %.6g, "
         "\"covered_z\": %.6g, \"rms_force\": %.6g, \"worst_force\": %.6g, \"rms_x\": %.6g, \"worst_x\": %.6g, "

@@ -16,6 +16,7 @@ simulation::MachineSettings machineOf(const Settings& settings, const SessionRow
   simulation::MachineSettings machine = simulation::workingMo100();
   const double drive_inertia = machine.drive.inertia;
   machine.hammer = settings.mechanism.parameters();
+  machine.level = settings.pipeline.level;
   machine.drive.inertia = drive_inertia;
   machine.duration = 15.0;
   machine.drive.stop_time = 13.5;
