@@ -17,7 +17,7 @@ constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
 constexpr double kSlow = 5.0;                            // [rad/s]
 /// [rad] of a reading: through noise beyond it the sensor's place is taken for the rod's stiffness, and deviations are
 /// too small. Guarded by ElasticSession.ReadingsTooCoarseForARodLeaveLinkage.
-constexpr double kCoarsest = 3e-3;
+constexpr double kCoarsest = 1e-3;
 
 constexpr double kEvidenceGain = 0.2, kDecides = 2.0, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
 
