@@ -3,34 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/linkage/oscillator.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kReference = kTwoPi * 200.0;  // [rad/s] of the damping ratio
-constexpr double kBallistic = 1e-4;            // [rad]: below, the spring does nothing within a step
+constexpr double kBallistic = 1e-4;  // [rad]: below, the spring does nothing within a step
 
-/// y'' = pull - square y - 2 decay y' over a time. lasting: integral of the mean of y''.
+/// y'' = pull - square y - 2 decay y' over a time.
 void oscillate(double square, double decay, double pull, double time, double& y, double& speed) noexcept {
   if (!(square * time * time > kBallistic * kBallistic)) {
     y += time * (speed + 0.5 * time * pull);
     speed += time * pull;
     return;
   }
-  const double rest_at = pull / square, rest = square - decay * decay, from = y - rest_at, v = speed;
-  double cosine, sine;  // sine over the frequency, both with the decay
-  if (rest > 0.0) {
-    const double frequency = std::sqrt(rest), e = std::exp(-decay * time);
-    cosine = e * std::cos(frequency * time), sine = e * std::sin(frequency * time) / frequency;
-  } else {
-    const double s = std::sqrt(-rest);
-    const double slow = std::exp((s - decay) * time), fast = std::exp(-(s + decay) * time);
-    cosine = 0.5 * (slow + fast), sine = s > 0.0 ? 0.5 * (slow - fast) / s : time * slow;
-  }
-  y = from * cosine + (v + decay * from) * sine + rest_at;
-  speed = v * cosine - (square * from + decay * v) * sine;
+  const double rest_at = pull / square;
+  y -= rest_at;
+  Oscillator{square, decay}.move(time, y, speed);
+  y += rest_at;
 }
 
 /// Tension of a rod with play: either side of a pin can only push.
@@ -66,9 +58,8 @@ TwoBodies::TwoBodies(const Mechanism& mechanism) noexcept : mechanism_(&mechanis
   rocker_weight_ = Planar{k.rocker, 0.0} + rocker * k.rod;
 }
 
-TwoBodies::Local TwoBodies::local(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& at,
+TwoBodies::Local TwoBodies::local(const TwoBodyDrive& drive, const TwoBodyState& at,
                                   const LinkMotion& links) const noexcept {
-  (void)rod;
   const LinkLengths& l = mechanism_->linkage().lengths();
   const double u = links.rocker.u, w = at.speed, x = at.beside, v = u * w + at.beside_speed, ww = w * w;
   const Planar theta = links.psi * conj(links.phi), both = coupling_ * theta;
@@ -96,8 +87,8 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   TwoBodyState middle = s;
   middle.angle.offset += 0.5 * dt * s.speed;
   middle.beside += 0.5 * dt * s.beside_speed;
-  const Local a = local(rod, drive, middle, links(middle.angle));
-  const double damping = 2.0 * rod.damping_ratio * rod.stiffness / kReference;
+  const Local a = local(drive, middle, links(middle.angle));
+  const double damping = rod.damping();
   const double stretch = -a.secant_lever * middle.beside, half = 0.5 * rod.play;
   const double rate = a.by_crank * s.speed - a.lever * s.beside_speed;
   const bool free = half > 0.0 && (std::abs(stretch) < half || pushes(rod, damping, stretch, rate) == 0.0);
@@ -119,7 +110,7 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
 
 void TwoBodies::settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& s) const noexcept {
   s.beside = s.beside_speed = 0.0;
-  const Local a = local(rod, drive, s, links(s.angle));
+  const Local a = local(drive, s, links(s.angle));
   const double pull = a.on_rocker - a.coupling / a.reflected * a.on_crank;
   s.beside = pull / (rod.stiffness * a.lever * a.lever) + std::copysign(0.5 * rod.play, pull) / std::abs(a.lever);
 }
@@ -163,8 +154,8 @@ void TwoBodies::strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBody
 
 TwoBodyAccelerations TwoBodies::accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& s,
                                               const LinkMotion& links) const noexcept {
-  const Local a = local(rod, drive, s, links);
-  const double damping = 2.0 * rod.damping_ratio * rod.stiffness / kReference;
+  const Local a = local(drive, s, links);
+  const double damping = rod.damping();
   const double stretch = -a.secant_lever * s.beside, half = 0.5 * rod.play;
   const double rate = a.by_crank * s.speed - a.lever * s.beside_speed;
   const double tension = half > 0.0 ? pushes(rod, damping, stretch, rate) : rod.stiffness * stretch + damping * rate;

@@ -67,8 +67,7 @@ class TwoBodies {
  private:
   void strike(const TwoBodyDrive& drive, double restitution, TwoBodyState& state) const noexcept;
   struct Local;
-  Local local(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& at,
-              const LinkMotion& links) const noexcept;
+  Local local(const TwoBodyDrive& drive, const TwoBodyState& at, const LinkMotion& links) const noexcept;
 
   const Mechanism* mechanism_;
   double crank_, rocker_;                ///< M11 less Jc, M22 [kg m2]

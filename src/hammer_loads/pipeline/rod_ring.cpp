@@ -4,48 +4,27 @@
 #include <cmath>
 
 #include "hammer_loads/linkage/blow_inertia.h"
-#include "hammer_loads/util/constants.h"
+#include "hammer_loads/linkage/oscillator.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kLongest = 1e-3;              // [s] in which the lever counts as constant
-constexpr double kReference = kTwoPi * 200.0;  // [rad/s] of the damping ratio
-constexpr double kOver = 0.2;                  // [s]: no rod rings so long
-constexpr double kRestitutionDoubt = 0.05;     // what a rod that gives adds to a measured restitution
-constexpr double kBallistic = 1e-2;            // [rad]: below, the spring does nothing within a part
+constexpr double kLongest = 1e-3;           // [s] in which the lever counts as constant
+constexpr double kOver = 0.2;               // [s]: no rod rings so long
+constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a measured restitution
+constexpr double kBallistic = 1e-2;         // [rad]: below, the spring does nothing within a part
 
-/// y'' = -square y - 2 decay y' over a time.
-struct Oscillator {
-  double square{};  ///< of its free frequency [rad2/s2]
-  double decay{};   ///< [1/s]
-
-  void move(double time, double& y, double& speed) const noexcept {
-    const double rest = square - decay * decay, from = y, v = speed;
-    double cosine, sine;  // sine over the frequency, both with the decay
-    if (rest > 0.0) {
-      const double frequency = std::sqrt(rest), e = std::exp(-decay * time);
-      cosine = e * std::cos(frequency * time), sine = e * std::sin(frequency * time) / frequency;
-    } else {
-      const double s = std::sqrt(-rest);
-      const double slow = std::exp((s - decay) * time), fast = std::exp(-(s + decay) * time);
-      cosine = 0.5 * (slow + fast), sine = s > 0.0 ? 0.5 * (slow - fast) / s : time * slow;
-    }
-    y = from * cosine + (v + decay * from) * sine;
-    speed = v * cosine - (square * from + decay * v) * sine;
-  }
-  /// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
-  double acceleration(double y, double speed) const noexcept {
-    const double now = hammer_loads::square(square * y + 2.0 * decay * speed), rest = square - decay * decay;
-    const double size = rest > 0.0 ? hammer_loads::square(y) + hammer_loads::square(speed + decay * y) / rest : 0.0;
-    return std::sqrt(0.5 * now + std::max(0.5 * now, 0.5 * hammer_loads::square(square) * size));
-  }
-};
+/// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
+double acceleration(const Oscillator& rod, double y, double speed) noexcept {
+  const double now = square(rod.square * y + 2.0 * rod.decay * speed), rest = rod.square - rod.decay * rod.decay;
+  const double size = rest > 0.0 ? square(y) + square(speed + rod.decay * y) / rest : 0.0;
+  return std::sqrt(0.5 * now + std::max(0.5 * now, 0.5 * square(rod.square) * size));
+}
 
 /// Over a time, by a lever^2 over I; the acceleration after it.
 double moved(const RodSpring& spring, double by_lever, double rigid, double time, double& x, double& speed) noexcept {
-  const Oscillator rod{spring.stiffness * by_lever, spring.damping_ratio * spring.stiffness / kReference * by_lever};
+  const Oscillator rod{spring.stiffness * by_lever, 0.5 * spring.damping() * by_lever};
   if (rod.square * square(time) < square(kBallistic)) {
     x += time * (speed - 0.5 * time * rigid);
     speed -= time * rigid;
@@ -55,7 +34,7 @@ double moved(const RodSpring& spring, double by_lever, double rigid, double time
   double y = x - rest_at;
   rod.move(time, y, speed);
   x = y + rest_at;
-  return rod.acceleration(y, speed);
+  return acceleration(rod, y, speed);
 }
 
 }  // namespace
