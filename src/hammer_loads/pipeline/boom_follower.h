@@ -29,12 +29,13 @@ struct BoomSample {
   HullWrench motion_wrench;  ///< where the step's last piece ends; from motion of the links relative to the hull: no
                              ///< weight, no hull motion
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
-  WrenchSpread constants{}, of_hammer{};  ///< errors of constants, the same in all samples: of all, of the hammer's
-  std::optional<ImuReading> imu{};        ///< a new reading at the sample, in the hull's axes
-  bool imu_lost{};                        ///< earlier readings cannot be trusted
-  HullWrench displaced_links{};           ///< DisplacedLinks, at the sample; counts for a boom that vibrates
-  double stamp_noise{};                   ///< standard deviation of the stamp, from sample to sample [s]
-  double unseen_peak{};  ///< of Fz of a hammer that is at work, should it not have been followed before [N]
+  /// Errors of constants, the same in all samples, as constantErrors() and hammerErrors(); zero: exact.
+  Eigen::Matrix3d constants = Eigen::Matrix3d::Zero(), of_hammer = Eigen::Matrix3d::Zero();
+  std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
+  bool imu_lost{};                  ///< earlier readings cannot be trusted
+  HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
+  double stamp_noise{};             ///< standard deviation of the stamp, from sample to sample [s]
+  double unseen_peak{};             ///< of Fz of a hammer that is at work, should it not have been followed before [N]
 };
 
 /// Why the boom is taken as rigid or compliant.

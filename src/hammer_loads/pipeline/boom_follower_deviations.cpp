@@ -72,25 +72,23 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
 /// As loads that do not change: a boom's modes make more of what falls on them, and less of what is above. Into what is
 /// measured they do not enter.
 void BoomFollower::addConstants(const BoomSample& sample) noexcept {
-  const auto joints = static_cast<std::size_t>(boom_.chain().joints());
-  const auto of = [&](const WrenchSpread& spread) {
-    Eigen::Matrix3d tip = Eigen::Matrix3d::Zero();
-    for (int i = 0; i < 3 && !tip_; ++i) tip.col(i) = inPlane(spread.part[static_cast<std::size_t>(i)]);
-    boom_.deviations(tip, state_.common);
+  const bool known = sample.spread.count > 0;
+  const auto of = [&](const Eigen::Matrix3d& errors) {
+    boom_.deviations(tip_ ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : errors, state_.common);
     for (std::size_t i = 0; pressuresCount() && i < boom_.cylinders().size(); ++i) {
       if (measured_.of(i)) state_.common.torque[boom_.cylinders()[i].joint()] = state_.common.cylinder[i] = 0.0;
     }
   };
-  if (sample.of_hammer.count > 0) {
+  if (known && !sample.of_hammer.isZero(0.0)) {
     of(sample.of_hammer);
     BoomDeviations& all = state_.deviations;
     for (Eigen::Index i = 0; i < all.torque.size(); ++i) addVariance(state_.common.torque[i], all.torque[i]);
     addVariances(state_.common.cylinder, boom_.cylinders().size(), all.cylinder);
     addVariances(state_.common.section, boom_.sections().size(), all.section);
-    addVariances(state_.common.joint, joints, all.joint);
+    addVariances(state_.common.joint, static_cast<std::size_t>(boom_.chain().joints()), all.joint);
   }
-  if (sample.constants.count > 0) of(sample.constants);
-  addConstantsOfBoom(sample.of_hammer.count > 0 || sample.constants.count > 0);
+  if (known) of(sample.constants);
+  addConstantsOfBoom(known);
 }
 
 /// Of torques that are not measured: masses, centres and zeros. Of measured ones: seals that rub one way, offsets; they

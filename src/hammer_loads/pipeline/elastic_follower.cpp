@@ -93,12 +93,11 @@ void ElasticFollower::judge() noexcept {
   if (best_ != nullptr && evidence_[static_cast<std::size_t>(best_ - filters_.data())] < 0.0) best_ = nullptr;
 }
 
-CrankEstimate ElasticFollower::crank(const CrankPosition& position) const noexcept {
+CrankEstimate ElasticFollower::crank() const noexcept {
   const RodMotion& m = filter().motion();
   const TwoBodies& bodies = filter().bodies();
   const LinkMotion links = bodies.links(m.state.angle);
   CrankEstimate crank;
-  (void)position;
   crank.position = {blow_, m.state.angle};
   crank.speed = m.state.speed;
   crank.acceleration = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, links).crank;

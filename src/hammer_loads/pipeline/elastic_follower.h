@@ -23,8 +23,8 @@ class ElasticFollower {
   void follow(const CrankFollower& crank, Gravity gravity) noexcept;
   bool runs() const noexcept { return best_ != nullptr && best_->isRunning() && best_->isProven(); }
 
-  /// While it runs: the crank as the two bodies have it; position: of the rigid mechanism.
-  CrankEstimate crank(const CrankPosition& position) const noexcept;
+  /// While it runs: the crank as the two bodies have it.
+  CrankEstimate crank() const noexcept;
   /// What the hull feels beside a rigid rod at that crank, and the standard deviation of the whole wrench by readings
   /// and rod. Of a ring that is known no better than it is large only a part is given (Wiener): its least square error.
   struct Beside {

@@ -42,17 +42,6 @@ HullWrench deviationOf(const Gradient& g, const Eigen::Matrix3d& covariance) noe
   return {deviation(0), deviation(1), deviation(2)};
 }
 
-WrenchSpread spreadOf(const Eigen::Matrix3d& covariance) noexcept {
-  const Eigen::Matrix3d errors = covarianceRoot<3>(covariance);
-  WrenchSpread spread;
-  spread.count = 3;
-  for (int i = 0; i < 3; ++i) {
-    Wrench& part = spread.part[static_cast<std::size_t>(i)];
-    part = {{errors(0, i), 0.0, errors(1, i)}, {0.0, errors(2, i), 0.0}};
-  }
-  return spread;
-}
-
 HullDeviation unknownDeviation() noexcept {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr HullWrench kWrench{kUnknown, kUnknown, kUnknown};
@@ -74,10 +63,7 @@ HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, 
           {},
           std::sqrt(covariance(0, 0)),
           std::sqrt(covariance(1, 1)),
-          std::sqrt(covariance(2, 2)),
-          0.0,
-          0.0,
-          0.0};
+          std::sqrt(covariance(2, 2))};
 }
 
 HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
@@ -144,14 +130,23 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
   const Gradient g =
       gradient(crank, links, [&](const LinksAtAngle& at) { return WrenchAtAngle(model, drive, at_rest, at); });
   const auto of_sensor = columns.leftCols<ConstantErrors::kTable>();
-  return spreadOf(g * own * g.transpose() + of_sensor * of_sensor.transpose());
+  const Eigen::Matrix3d errors = covarianceRoot<3>(g * own * g.transpose() + of_sensor * of_sensor.transpose());
+  WrenchSpread spread;
+  spread.count = 3;
+  for (int i = 0; i < 3; ++i) {
+    Wrench& part = spread.part[static_cast<std::size_t>(i)];
+    part = {{errors(0, i), 0.0, errors(1, i)}, {0.0, errors(2, i), 0.0}};
+  }
+  return spread;
 }
 
-WrenchSpread constantSpread(const LoadColumns& columns) noexcept { return spreadOf(columns * columns.transpose()); }
+Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept {
+  return covarianceRoot<3>(columns * columns.transpose());
+}
 
-WrenchSpread hammerSpread(const LoadColumns& columns) noexcept {
+Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
   const auto of_hammer = columns.middleCols<kMachineColumns>(ConstantErrors::kTable);
-  return spreadOf(of_hammer * of_hammer.transpose());
+  return covarianceRoot<3>(of_hammer * of_hammer.transpose());
 }
 
 }  // namespace hammer_loads

@@ -63,8 +63,9 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                           const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept;
 
-/// Errors of constants likewise: of all of them, or of the hammer's alone.
-WrenchSpread constantSpread(const LoadColumns& columns) noexcept;
-WrenchSpread hammerSpread(const LoadColumns& columns) noexcept;
+/// Errors of constants as three that are independent of each other, one a column (rows as LoadColumns): of all of them,
+/// or of the hammer's alone.
+Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept;
+Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept;
 
 }  // namespace hammer_loads

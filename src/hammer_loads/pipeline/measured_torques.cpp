@@ -15,8 +15,6 @@ constexpr double kLag = 0.4;           // of the swing, by the root of the surpr
 constexpr double kSlowRod = 0.002;     // [m/s]: near standstill friction may have either sign (its Stribeck speed)
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
-}  // namespace
-
 /// What seals do between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
   double torque{};
@@ -33,6 +31,8 @@ Rubbing rubbing(const CylinderParameters& p, double arm, double oil_torque, doub
   return {arm * level * way, std::abs(arm) * std::sqrt(of_level + (1.0 - square(way)) * square(level)),
           std::abs(arm) * std::sqrt(one_way * of_level)};
 }
+
+}  // namespace
 
 /// As a random walk that readings with noise show (Kalman filter): a change over two readings has the walk twice and
 /// the noise once. A jump is the rock's.

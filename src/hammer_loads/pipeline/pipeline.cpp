@@ -33,7 +33,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       hull_(mechanism_.parameters(), settings_, boom),
       rod_(model_),
       elastic_(model_, settings_.level),
-      turn_(model_, columns_, crank_.step(), crank_.tracker()),
+      turn_(model_, columns_, crank_.step(), crank_.tracker(), elastic_),
       sampler_(model_, columns_, crank_.step(), crank_.tracker(), settings_),
       nominal_force_(
           pulseAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
@@ -106,7 +106,6 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
     followHull();
     rod_.follow(crank_.step(), crank_.tracker().blowFactor());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
-    turn_.rodSays(elastic_.blow());
     if (counts) turn_.follow(hull_.motion().motion, result_);
   } else {
     restart(taken == CrankFollower::Taken::kRevised);
@@ -119,35 +118,35 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (crank_.tracker().isDoubtful()) return withhold(Refusal::kUnsettled);
   if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
 
-  if (elastic_.runs()) result_.crank = elastic_.crank(result_.crank.position);
+  const bool gives = elastic_.runs();
+  if (gives) result_.crank = elastic_.crank();
   const CrankMotion motion = motionOf(result_.crank);
-  const LinksBeside links(model_, elastic_.runs() ? linksAt(model_, motion.angle) : crank_.step().links());
+  const LinksBeside links(model_, gives ? linksAt(model_, motion.angle) : crank_.step().links());
   if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion)))
     return withhold(Refusal::kImplausible);
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_deviation_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
-  const HullWrench own = elastic_.runs() ? result_.deviation.common : result_.deviation.wrench;
+  const HullWrench own = gives ? result_.deviation.common : result_.deviation.wrench;
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
   const ElasticFollower::Beside rod =
-      elastic_.runs() ? elastic_.beside(drive) : ElasticFollower::Beside{{}, rod_.wrench(links.here.links)};
+      gives ? elastic_.beside(drive) : ElasticFollower::Beside{{}, rod_.wrench(links.here.links)};
   result_.rod_ring = rod.deviation;
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + vectorOf(rod.deviation).cwiseAbs2()).cwiseSqrt());
   result_.beside_blow =
-      elastic_.runs() ? elastic_.isBesideBlow()
-                      : !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, result_.deviation.angle);
+      gives ? elastic_.isBesideBlow()
+            : !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, result_.deviation.angle);
   followBoom(links);
   hullMovedAtBlow();
   hull_.vibrates(result_.boom);
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
   result_.links = linkState(links.here.links, motion);
-  result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion);
-  result_.wrench = result_.wrench + rod.wrench;
+  result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
   // Of a rigid rod at every level: what the spring makes of them is not known here.
-  const CrankMotion rigid = elastic_.runs() ? motionOf(crank_.estimate()) : motion;
-  result_.pins = pinForces(model_, elastic_.runs() ? crank_.step().links().links : links.here.links, rigid,
-                           result_.hull.motion, settings_.near_blow, result_.deviation.angle);
+  const CrankMotion rigid = gives ? motionOf(crank_.estimate()) : motion;
+  result_.pins = pinForces(model_, crank_.step().links().links, rigid, result_.hull.motion, settings_.near_blow,
+                           result_.deviation.angle);
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
                 result_.deviation.wrench);
   sampler_.sample(links, result_);
@@ -236,10 +235,8 @@ void Pipeline::followBoom(const LinksBeside& links) noexcept {
       wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
-  const bool uncertain = spread.count > 0;
   result_.boom = &boom_->sample(
-      {result_.stamp, motion, spread, uncertain ? constantSpread(result_.load_columns) : WrenchSpread{},
-       uncertain && !columns_.isExact() ? hammerSpread(result_.load_columns) : WrenchSpread{},
+      {result_.stamp, motion, spread, constantErrors(result_.load_columns), hammerErrors(result_.load_columns),
        hull_.newImuReading(result_.stamp), imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
       step);
   boom_follows_ = true;

@@ -111,7 +111,8 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   const LinkMomentum after = linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter());
   turn_.correctBegin(after);
   RockerBlow& blow = pending_end_.blow;
-  const CrankBlow measured = pending_.take(), crank = rod_.value_or(measured);
+  const CrankBlow measured = pending_.take();
+  const CrankBlow crank = elastic_->blow().value_or(measured);  // a rod that gives shows more than the crank's speed
   const double doubt =
       std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
   errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0});

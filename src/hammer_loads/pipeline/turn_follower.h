@@ -6,6 +6,7 @@
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/elastic_follower.h"
 #include "hammer_loads/pipeline/pending_blow.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_errors.h"
@@ -16,8 +17,9 @@ namespace hammer_loads {
 class TurnFollower {
  public:
   /// Refers to them, which must outlive it.
-  TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankTracker& tracker)
-      : model_(&model), columns_(&columns), step_(&step), tracker_(&tracker) {}
+  TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankTracker& tracker,
+               const ElasticFollower& elastic)
+      : model_(&model), columns_(&columns), step_(&step), tracker_(&tracker), elastic_(&elastic) {}
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
@@ -40,8 +42,6 @@ class TurnFollower {
     if (pending_.isWaiting()) pending_.count(true);
     errors_.sample(result.stamp, result.wrench, result.deviation, result.load_columns);
   }
-  /// What a rod that gives says of that blow, instead of the crank's speed alone.
-  void rodSays(const std::optional<CrankBlow>& blow) noexcept { rod_ = blow; }
   bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
   /// Velocity of the hull at that blow; zero until it is given.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
@@ -62,10 +62,10 @@ class TurnFollower {
   const WrenchColumns* columns_;
   const CrankStep* step_;
   const CrankTracker* tracker_;
+  const ElasticFollower* elastic_;
   TurnRecorder turn_;
   TurnErrors errors_;
   PendingBlow pending_;
-  std::optional<CrankBlow> rod_;
   TurnEnd pending_end_;  ///< of the pending blow
   HullMotion hull_;
   StampNs epoch_{};                   ///< first sample since the last restart by time
