@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
@@ -122,14 +123,11 @@ void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexce
 /// Errors of links are independent of each other. A weighed link's first moment stands for all that it carries: it
 /// turns with it alone, so that links beyond the next joint do not count again.
 JointVector Boom::findWeightDeviation() const noexcept {
-  const auto square = [](double x) { return x * x; };
   JointVector variance = JointVector::Zero(chain_.joints());
   for (int i = 1; i < chain_.links(); ++i) {
     const PointMass& body = chain_.link(i).body;
     const Pose& X_BL = pose_.link(i);
-    const WeighedLink* weighed = nullptr;
-    for (const WeighedLink& w : parameters_.chain.weighed)
-      if (w.name == chain_.link(i).name) weighed = &w;
+    const WeighedLink* weighed = findLink(parameters_.chain.weighed, chain_.link(i).name);
     const Eigen::Vector3d x_B = X_BL.linear().col(0), z_B = X_BL.linear().col(2);
     for (int j = 0; j < chain_.joints() && chain_.linkBeyond(j) <= i; ++j) {
       const auto joint = static_cast<std::size_t>(j);

@@ -160,9 +160,8 @@ class ChainBuilder {
 
   /// A weighed link's body; other axes' inertias change with that about y.
   KDL::RigidBodyInertia asWeighed(const std::string& name, KDL::RigidBodyInertia described) const {
-    const auto found = std::find_if(request_.weighed.begin(), request_.weighed.end(),
-                                    [&](const WeighedLink& w) { return w.name == name; });
-    if (found == request_.weighed.end()) return described;
+    const WeighedLink* found = findLink(request_.weighed, name);
+    if (found == nullptr) return described;
     const KDL::RotationalInertia about_com = described.RefPoint(described.getCOG()).getRotationalInertia();
     const double about_y = about_com.data[4];
     const KDL::Vector com(found->com_x, described.getCOG().y(), found->com_z);

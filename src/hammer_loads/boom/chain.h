@@ -19,21 +19,30 @@ namespace hammer_loads {
 /// A link's body as weighed, in place of the description's; with what is fixed to it beside the chain.
 struct WeighedLink {
   std::string name;
-  double mass{};              ///< NAME_mass_kg [kg], > 0
-  double com_x{}, com_z{};    ///< NAME_com_x_m, NAME_com_z_m: centre of mass in the link's frame [m]
-  double inertia{};           ///< NAME_inertia_kg_m2: about the centre of mass, about the link's y [kg m2], > 0
+  double mass{};            ///< NAME_mass_kg [kg], > 0
+  double com_x{}, com_z{};  ///< NAME_com_x_m, NAME_com_z_m: centre of mass in the link's frame [m]
+  double inertia{};         ///< NAME_inertia_kg_m2: about the centre of mass, about the link's y [kg m2], > 0
   /// NAME_moment_x_deviation_kg_m, NAME_moment_z_deviation_kg_m: standard deviations of the first moment, in the link's
   /// frame about its joint, of all that the link carries, with the masses beyond the next joint in that joint [kg m].
   /// It is what weighing shows; mass and centre alone are known less.
   double moment_x_deviation{}, moment_z_deviation{};
 };
 
+/// By its name; null: not among them.
+template <typename Links>
+auto findLink(Links& links, const std::string& name) noexcept -> decltype(links.data()) {
+  for (auto& link : links) {
+    if (link.name == name) return &link;
+  }
+  return nullptr;
+}
+
 /// Which part of the description is the boom.
 struct ChainRequest {
   std::string root{"base_link"};
   std::string tip{"hammer_hull"};
-  std::vector<std::string> joints;  ///< that must move between root and tip
-  bool massless{};                  ///< for directions alone: it need have no mass
+  std::vector<std::string> joints;     ///< that must move between root and tip
+  bool massless{};                     ///< for directions alone: it need have no mass
   std::vector<WeighedLink> weighed{};  ///< links between root and tip whose bodies are not the description's
 };
 

@@ -99,6 +99,7 @@ class Finder {
                      const std::vector<BoomRow>& late) {
     const Eigen::VectorXd after = residualsOf(model, rows, fit.x), before = residualsOf(model, rows, model.zero()),
                           unseen = residualsOf(model, late, held.x);
+    Boom boom = model.given();
     for (std::size_t k = 0; k < fit.noise.size(); ++k) {
       CylinderFit c;
       c.name = model.given().cylinders()[k].parameters().name;
@@ -107,10 +108,10 @@ class Finder {
         if (rows[i].cylinder != k) continue;
         const auto e = static_cast<Eigen::Index>(i);
         force.push_back(rows[i].measured), left.push_back(after[e]), was.push_back(before[e]);
-        const int joint = model.given().cylinders()[k].joint();
-        result_.residuals.push_back({k, rows[i].point->motion.position[joint],
-                                     BoomModel::rodSpeed(boomAt(model, *rows[i].point), k, *rows[i].point) > 0.0,
-                                     before[e], after[e]});
+        const BoomPoint& point = *rows[i].point;
+        model.move(boom, model.zero(), point);
+        result_.residuals.push_back({k, point.motion.position[boom.cylinders()[k].joint()],
+                                     BoomModel::rodSpeed(boom, k, point) > 0.0, before[e], after[e]});
       }
       for (std::size_t i = 0; i < late.size(); ++i)
         if (late[i].cylinder == k) out.push_back(unseen[static_cast<Eigen::Index>(i)]);
@@ -121,11 +122,6 @@ class Finder {
       c.friction = friction(fit.x), c.friction_deviation = deviationOf(fit, gradientOf(friction, fit.x));
       result_.cylinders.push_back(c);
     }
-  }
-  static Boom boomAt(const BoomModel& model, const BoomPoint& point) {
-    Boom boom = model.given();
-    model.move(boom, model.zero(), point);
-    return boom;
   }
 
   void fillJoints(const BoomModel& model, const BoomFit& fit) {
@@ -146,16 +142,21 @@ class Finder {
     }
   }
 
+  static Estimate estimateOf(const BoomModel& model, const BoomFit& fit, std::size_t unknown) {
+    const auto e = static_cast<Eigen::Index>(unknown);
+    Estimate estimate;
+    estimate.key = model.nameOf(unknown), estimate.value = model.valueOf(fit.x, unknown);
+    estimate.limit = model.unknowns()[unknown].deviation;
+    estimate.deviation = estimate.limit * std::sqrt(fit.covariance(e, e));
+    return estimate;
+  }
+
   void fillEstimates(const BoomModel& model, const BoomFit& fit) {
     result_.found = model.parametersAt(fit.x);
     const Boom found = *Boom::make(basis_.urdf, result_.found).value;
     for (std::size_t i = 0; i < model.unknowns().size(); ++i) {
-      const Unknown& u = model.unknowns()[i];
-      const auto e = static_cast<Eigen::Index>(i);
-      Estimate estimate;
-      estimate.key = model.nameOf(i), estimate.value = model.valueOf(fit.x, i);
-      estimate.deviation = u.deviation * std::sqrt(fit.covariance(e, e)), estimate.limit = u.deviation;
-      describe(model, found, u, estimate);
+      Estimate estimate = estimateOf(model, fit, i);
+      describe(model, found, model.unknowns()[i], estimate);
       result_.estimates.push_back(estimate);
     }
     for (std::size_t k = 0; k < fit.noise.size(); ++k) fillMoments(model, fit, k);
@@ -206,8 +207,8 @@ class Finder {
   void fillMoments(const BoomModel& model, const BoomFit& fit, std::size_t cylinder) {
     const std::string& name = model.given().chain().link(model.linkOf(cylinder)).name;
     const Eigen::Vector2d deviation = firstMomentDeviation(model, fit, cylinder);
-    for (WeighedLink& link : result_.found.chain.weighed)
-      if (link.name == name) link.moment_x_deviation = deviation[0], link.moment_z_deviation = deviation[1];
+    if (WeighedLink* link = findLink(result_.found.chain.weighed, name))
+      link->moment_x_deviation = deviation[0], link->moment_z_deviation = deviation[1];
   }
 
   void fillCorrelations(const BoomModel& model, const BoomFit& fit) {
@@ -238,10 +239,8 @@ class Finder {
     const BoomFit fit = fitBoom(model, rowsOf(model, points_), piece(progress, 0.8, 1.0));
     for (std::size_t i = 0; i < model.unknowns().size(); ++i) {
       if (model.unknowns()[i].kind != BoomUnknown::kTipWeight) continue;
-      const auto e = static_cast<Eigen::Index>(i);
-      Estimate& check = result_.weight_check.emplace();
-      check.key = model.nameOf(i), check.unit = "kg", check.value = model.valueOf(fit.x, i);
-      check.deviation = model.unknowns()[i].deviation * std::sqrt(fit.covariance(e, e));
+      Estimate& check = result_.weight_check.emplace(estimateOf(model, fit, i));
+      check.unit = "kg";
       check.meaning = format("given %.6g", hung->mass);
       return;
     }

@@ -36,11 +36,10 @@ WeighedLink together(WeighedLink link, double mass, double x, double z) {
 void scale(PartBeyond& part, double by) { part.mass *= by, part.inertia_y *= by; }
 
 void replace(std::vector<WeighedLink>& links, const WeighedLink& link) {
-  const auto same = std::find_if(links.begin(), links.end(), [&](const WeighedLink& l) { return l.name == link.name; });
-  if (same == links.end())
-    links.push_back(link);
-  else
+  if (WeighedLink* same = findLink(links, link.name))
     *same = link;
+  else
+    links.push_back(link);
 }
 
 }  // namespace
@@ -70,10 +69,10 @@ BoomModel::BoomModel(const BoomBasis& basis, const std::vector<TipWeight>& weigh
       unknowns_.push_back({BoomUnknown::kTipWeight, r, weights[r].mass, weights[r].deviation});
 }
 
-double BoomModel::valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of) const {
+double BoomModel::valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of, double otherwise) const {
   for (std::size_t i = 0; i < unknowns_.size(); ++i)
     if (unknowns_[i].kind == kind && unknowns_[i].of == of) return valueOf(x, i);
-  return kNaN;
+  return otherwise;
 }
 
 std::string BoomModel::nameOf(std::size_t unknown) const {
@@ -149,9 +148,11 @@ BoomParameters BoomModel::withLinksAt(const Eigen::VectorXd& x) const {
 BoomParameters BoomModel::parametersAt(const Eigen::VectorXd& x) const {
   BoomParameters parameters = withLinksAt(x);
   parameters.sections = basis_.parameters.sections;
-  for (SectionParameters& section : parameters.sections)
-    for (const WeighedLink& link : linksAt(x))
-      if (section.beyond && section.link == link.name) scale(*section.beyond, link.mass / massOf(link.name));
+  const std::vector<WeighedLink> links = linksAt(x);
+  for (SectionParameters& section : parameters.sections) {
+    const WeighedLink* link = section.beyond ? findLink(links, section.link) : nullptr;
+    if (link != nullptr) scale(*section.beyond, link->mass / massOf(link->name));
+  }
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     if (unknowns_[i].kind == BoomUnknown::kTipWeight) continue;
     CylinderParameters& cylinder = parameters.cylinders[unknowns_[i].of];
@@ -184,20 +185,17 @@ std::optional<Boom> BoomModel::boomAt(const Eigen::VectorXd& x, std::size_t reco
   BoomParameters parameters = withLinksAt(x);
   const Chain& chain = given_.chain();
   const TipWeight& weight = weights_[recording];
-  const double hung = valueOf(x, BoomUnknown::kTipWeight, recording);
-  const double mass = std::isnan(hung) ? weight.mass : hung;
+  const double mass = valueOf(x, BoomUnknown::kTipWeight, recording, weight.mass);
   if (mass != 0.0) {
     WeighedLink tip = chain.body(chain.tip());
-    for (const WeighedLink& link : parameters.chain.weighed)
-      if (link.name == tip.name) tip = link;
+    if (const WeighedLink* weighed = findLink(parameters.chain.weighed, tip.name)) tip = *weighed;
     replace(parameters.chain.weighed, together(tip, mass, weight.x, weight.z));
   }
   return Boom::make(basis_.urdf, parameters).value;
 }
 
 double BoomModel::jointZero(const Eigen::VectorXd& x, std::size_t cylinder) const {
-  const double zero = valueOf(x, BoomUnknown::kZero, cylinder);
-  return std::isnan(zero) ? given_.cylinders()[cylinder].parameters().joint_zero : zero;
+  return valueOf(x, BoomUnknown::kZero, cylinder, given_.cylinders()[cylinder].parameters().joint_zero);
 }
 
 void BoomModel::move(Boom& boom, const Eigen::VectorXd& x, const BoomPoint& point) const {
@@ -214,10 +212,7 @@ double BoomModel::rodSpeed(const Boom& boom, std::size_t cylinder, const BoomPoi
 /// The rod pushes with the oil's force less what rubs against its motion.
 double BoomModel::shownForce(const Boom& boom, const Eigen::VectorXd& x, std::size_t cylinder,
                              const BoomPoint& point) const {
-  const auto unknown = [&](BoomUnknown kind, double otherwise) {
-    const double value = valueOf(x, kind, cylinder);
-    return std::isnan(value) ? otherwise : value;
-  };
+  const auto unknown = [&](BoomUnknown kind, double otherwise) { return valueOf(x, kind, cylinder, otherwise); };
   const Cylinder& c = boom.cylinders()[cylinder];
   const CylinderParameters& p = c.parameters();
   const double force = c.load(boom.cylinderPosition(cylinder), boom.steadyTorque(c.joint())).force;

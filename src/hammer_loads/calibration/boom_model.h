@@ -7,6 +7,7 @@
 
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/calibration/boom_recording.h"
+#include "hammer_loads/util/constants.h"
 
 namespace hammer_loads::calibration {
 
@@ -66,8 +67,8 @@ class BoomModel {
     const Unknown& u = unknowns_[unknown];
     return u.given + u.deviation * x[static_cast<Eigen::Index>(unknown)];
   }
-  /// By kind and index; not a number where it is none of the unknowns.
-  double valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of) const;
+  /// By kind and index; `otherwise` where it is none of the unknowns.
+  double valueOf(const Eigen::VectorXd& x, BoomUnknown kind, std::size_t of, double otherwise = kNaN) const;
   /// The link of the chain that stands for all that moves with a cylinder's joint: the heaviest.
   int linkOf(std::size_t cylinder) const { return links_[cylinder]; }
   std::string nameOf(std::size_t unknown) const;

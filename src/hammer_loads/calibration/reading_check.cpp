@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "hammer_loads/boom/cylinder_flags.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::calibration {
@@ -44,7 +45,7 @@ double misfit(const BoomModel& model, const std::vector<double>& expected, const
     if (!std::isfinite(expected[i])) continue;
     auto p = recording.points[i].pressure[way.of];
     if (way.exchanged) std::swap(p[0], p[1]);
-    const double difference = way.unit.pascal * (p[0] * c.boreArea() - p[1] * c.rodArea()) - expected[i];
+    const double difference = way.unit.pascal * forceOf(c, {p[0], p[1]}) - expected[i];
     off += difference * difference, all += expected[i] * expected[i];
   }
   return all > 0.0 ? std::sqrt(off / all) : 0.0;
