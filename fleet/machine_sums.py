@@ -57,10 +57,11 @@ def write_channel(store, machine, channel, identity, latest):
     remaining = channel.remaining_hours(damage)[0]
     store.insert("machine_channels",
                  ["machine_channel", "machine", "identity", "name", "unit", "least", "greatest", "classes", "hours",
-                  *TALLY, "mean_deviation", "range_own_deviation", "range_common_deviation", *CURVE, "equivalent_cycles_per_hour", "largest_range", "damage",
-                  "remaining_hours"],
+                  *TALLY, "mean_deviation", "range_own_deviation", "range_common_deviation", *CURVE,
+                  "equivalent_cycles_per_hour", "largest_range", "damage", "remaining_hours"],
                  [(at, machine, identity, channel.name, channel.unit, *count.grid(), channel.hours,
-                   *(getattr(channel, name) for name in TALLY), channel.deviation, *channel.range_deviations, *latest[1:], channel.cycles_per_hour,
+                   *(getattr(channel, name) for name in TALLY), channel.deviation, *channel.range_deviations,
+                   *latest[1:], channel.cycles_per_hour,
                    cycles[-1][0] if cycles else 0.0, damage[0],
                    None if remaining is None or remaining == float("inf") else remaining)])
     store.insert("machine_equivalents", ["machine_channel", "slope", "equivalent_range", "deviation"],

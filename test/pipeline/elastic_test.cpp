@@ -57,7 +57,7 @@ TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
   EXPECT_GT(e.whole.covered[1], 0.85);
 }
 
-/// Nobody tells it of the pins' play.
+/// The pins' play is not given.
 TEST(ElasticSession, PlayIsLearned) {
   const accuracy::ElasticErrors e = rodErrors(machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
   EXPECT_LT(e.after.rms[1], 0.5);

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "hammer_loads/bench/life_error.h"
 #include "hammer_loads/bench/session_player.h"
-#include "hammer_loads/life/damage.h"
 #include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/simulation/normal_noise.h"
@@ -45,38 +45,14 @@ class FigureErrors {
   double count_{}, squares_{}, inside_{};
 };
 
-/// Load cycles of the samples' Fz, as they are found and as they are.
-class RangeErrors {
- public:
-  RangeErrors() : found_(recorder()), truth_(recorder()) {}
-  void sample(const SampleResult& loads, double truth) {
-    const double deviation = loads.deviation.wrench.force_z, common = loads.deviation.common.force_z;
-    found_.sample(loads.stamp, &loads.wrench.force_z, &deviation, &common);
-    truth_.sample(loads.stamp, &truth, nullptr);
-  }
-  void turn() { found_.turn(), truth_.turn(); }
-  /// Relative error of the damage-equivalent range at a slope of 5 and its relative deviation.
-  void finish(DrawingRow& row) {
-    const life::CycleCount found = found_.take().counts[0], truth = truth_.take().counts[0];
-    const auto range = [](const life::CycleCount& count) {
-      return life::equivalentLoad(life::rangesAndMeans(count), 5.0, 1.0, life::rangeDeviation(count));
-    };
-    const life::Figure is = range(truth), was = range(found);
-    row.range_error = was.value / is.value - 1.0;
-    row.range_deviation = was.deviation / was.value;
-  }
-
- private:
-  static life::LifeRecorder recorder() {
-    life::LifeSettings settings;
-    settings.channels = {{kForce, *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
-    settings.period = 1000LL * 1000 * 1000 * 1000;
-    settings.equivalent_cycles_per_hour = 1.0;
-    return *life::LifeRecorder::make(settings, {kForce}).value;
-  }
-  static constexpr const char* kForce = "hull_wrench/force_z_N";
-  life::LifeRecorder found_, truth_;
-};
+/// The samples' Fz as the life of a machine counts it, for what that says of its ranges' deviation.
+life::LifeRecorder forceRecorder() {
+  constexpr const char* kForce = "hull_wrench/force_z_N";
+  life::LifeSettings settings;
+  settings.channels = {{kForce, *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
+  settings.period = 1;
+  return *life::LifeRecorder::make(settings, {kForce}).value;
+}
 
 }  // namespace
 
@@ -95,7 +71,8 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
   std::array<double, 3> peak{}, squares{}, said{}, inside{};
   double count = 0.0;
   FigureErrors energy, impulse, amplitude;
-  RangeErrors ranges;
+  LifeError life;
+  life::LifeRecorder recorder = forceRecorder();
   player.playTo(kInfinity, [&](double, const SampleResult& loads) {
     const auto time = [&](std::int64_t stamp) { return 1e-9 * static_cast<double>(stamp - machine.start_stamp); };
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
@@ -104,7 +81,7 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
         return std::abs(b.time - time(end.stamp)) < 0.05;
       });
       if (near == session.blows.end() || near->time < 3.0) continue;
-      ranges.turn();
+      recorder.turn();
       energy.add(end.blow.energy, near->strike.energy, end.blow.energy_deviation);
       if (!end.pulse || !near->whole_turn) continue;
       impulse.add(end.pulse->turn_impulse_z, near->turn_impulse_z, end.pulse_errors.turn_impulse_z.deviation());
@@ -116,7 +93,9 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
     if (truth == session.truth.end() || std::abs(truth->time - time(loads.stamp)) > 1e-6) return;
     const std::array<double, 3> is{truth->load.force_x, truth->load.force_z,
                                    truth->load.torque_y + truth->drive_reaction_y};
-    ranges.sample(loads, is[1]);
+    life.add(loads.wrench.force_z, is[1]);
+    recorder.sample(loads.stamp, &loads.wrench.force_z, &loads.deviation.wrench.force_z,
+                    &loads.deviation.common.force_z);
     const Eigen::Vector3d found = vectorOf(loads.wrench), deviation = vectorOf(loads.deviation.wrench);
     for (std::size_t k = 0; k < 3; ++k) {
       const double error = found[static_cast<Eigen::Index>(k)] - is[k], d = deviation[static_cast<Eigen::Index>(k)];
@@ -135,7 +114,9 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
   row.energy = energy.result();
   row.impulse = impulse.result();
   row.amplitude = amplitude.result();
-  ranges.finish(row);
+  row.range_error = life.error();
+  const life::RangeDeviation range = life::rangeDeviation(recorder.take().counts[0]);
+  row.range_deviation = std::hypot(range.own, range.common);
   return row;
 }
 

@@ -21,7 +21,7 @@ struct DrawingRow {
     double rms{}, covered{};
   };
   OfTurns energy, impulse, amplitude;       ///< of the blow; of Fz over the turn; its peak
-  double range_error{}, range_deviation{};  ///< of Fz's damage-equivalent range, relative
+  double range_error{}, range_deviation{};  ///< of Fz's damage-equivalent range at kLifeSlope, relative
 };
 
 /// off: times the deviations that the machine is drawn with; the pipeline has the file's.

@@ -10,10 +10,10 @@ constexpr double kLifeSlope = 5.0;  ///< of the S-N line; damage errs about so m
 
 /// Both series sample by sample; cycles counted by ASTM E1049, without a grid.
 struct LifeError {
-  life::ExactCycles told, right;
-  void add(double estimate, double truth) { told.add(estimate), right.add(truth); }
+  life::ExactCycles estimated, right;
+  void add(double estimate, double truth) { estimated.add(estimate), right.add(truth); }
   /// Relative, > 0: too large.
-  double error() const { return equivalentRange(told) / equivalentRange(right) - 1.0; }
+  double error() const { return equivalentRange(estimated) / equivalentRange(right) - 1.0; }
 
  private:
   static double equivalentRange(const life::ExactCycles& cycles) {

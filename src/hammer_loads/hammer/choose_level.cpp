@@ -36,8 +36,6 @@ std::vector<CrankMotion> workingTurn(const Mechanism& mechanism, double turn_rat
   return turn;
 }
 
-using Vectors = std::vector<Eigen::Vector3d>;
-
 Eigen::Vector3d loadOf(const HullModel& model, const CrankMotion& point, Gravity gravity) {
   return vectorOf(hullWrench(model, point, gravity));
 }
@@ -60,16 +58,19 @@ LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double tur
   const HullModel rich(mechanism, Level::kLinkage);
   const Gravity gravity{0.0, -g};
   const Eigen::Vector3d open = openVariance(rich, turn, HullMotion{gravity});
+  std::vector<Eigen::Vector3d> references;
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  for (const CrankMotion& point : turn) {
+    references.push_back(loadOf(rich, point, gravity));
+    size += references.back().cwiseAbs2();
+  }
   LevelChoice choice{Level::kLinkage, tolerance, {}};
   const std::array<Level, 2> poorer{Level::kPulse, Level::kRocker};
   for (std::size_t i = poorer.size(); i-- > 0;) {
     const HullModel model(mechanism, poorer[i]);
-    Eigen::Vector3d squares = Eigen::Vector3d::Zero(), size = Eigen::Vector3d::Zero();
-    for (const CrankMotion& point : turn) {
-      const Eigen::Vector3d reference = loadOf(rich, point, gravity);
-      squares += (loadOf(model, point, gravity) - reference).cwiseAbs2();
-      size += reference.cwiseAbs2();
-    }
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+    for (std::size_t p = 0; p < turn.size(); ++p)
+      squares += (loadOf(model, turn[p], gravity) - references[p]).cwiseAbs2();
     for (int k = 0; k < 3; ++k) {
       if (squares[k] <= kRounding * kRounding * size[k]) continue;
       choice.difference[i] = std::max(choice.difference[i], std::sqrt(squares[k] / open[k]));

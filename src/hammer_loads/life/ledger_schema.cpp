@@ -117,7 +117,7 @@ void beginReading(Database& database) {
   const std::int64_t version = versionOf(database);
   if (version == 0) database.fail("holds no ledger");
   if (version == 1) database.run(kReadVersion1);
-  if (version == 1 || version == 2) database.run(kReadVersion2);
+  if (version <= 2) database.run(kReadVersion2);
 }
 
 }  // namespace hammer_loads::life

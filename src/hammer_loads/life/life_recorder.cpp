@@ -65,11 +65,9 @@ double LifeRecorder::valueOf(std::size_t counter, const double* values) const no
 
 /// Loads of one instant err independently by samples; what constants do to them adds up at most.
 LoadError LifeRecorder::errorOf(std::size_t counter, const double* deviations, const double* common) const noexcept {
-  if (deviations == nullptr) return {};
   double variance = 0.0, alike = 0.0;
   for (std::size_t t = sums_[counter].begin; t < sums_[counter].end; ++t) {
-    const std::size_t input = terms_[t].input;
-    const LoadError error = LoadError::of(deviations[input], common == nullptr ? 0.0 : common[input]);
+    const LoadError error = LoadError::at(terms_[t].input, deviations, common);
     variance += terms_[t].factor * terms_[t].factor * error.own * error.own;
     alike += std::abs(terms_[t].factor) * error.common;
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace hammer_loads::life {
@@ -14,6 +15,10 @@ struct LoadError {
 
   static LoadError of(double deviation, double common) noexcept {
     return {std::sqrt(std::max(0.0, deviation * deviation - common * common)), common};
+  }
+  /// Of one of a row of loads; deviations null: not known, common null: none.
+  static LoadError at(std::size_t i, const double* deviations, const double* common) noexcept {
+    return deviations == nullptr ? LoadError{} : of(deviations[i], common == nullptr ? 0.0 : common[i]);
   }
   double deviation() const noexcept { return std::hypot(own, common); }
 };

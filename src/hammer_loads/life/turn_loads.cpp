@@ -36,18 +36,15 @@ void TurnLoadsRecorder::take(std::int64_t instant, const double* values, const d
       continue;
     }
     Integral& integral = integrals_[i];
-    const auto error = [&] {
-      return deviations == nullptr ? LoadError{} : LoadError::of(deviations[i], common == nullptr ? 0.0 : common[i]);
-    };
     if (!(value >= turn_.minimum[i])) {
       turn_.minimum[i] = value;
       turn_.minimum_instant[i] = instant;
-      turn_.of_minimum[i] = error();
+      turn_.of_minimum[i] = LoadError::at(i, deviations, common);
     }
     if (!(value <= turn_.maximum[i])) {
       turn_.maximum[i] = value;
       turn_.maximum_instant[i] = instant;
-      turn_.of_maximum[i] = error();
+      turn_.of_maximum[i] = LoadError::at(i, deviations, common);
     }
     if (!integral.begun) {
       integral = {instant, instant, value, value, 0.0, true};

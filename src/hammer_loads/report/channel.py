@@ -33,6 +33,12 @@ class Channel:
             self.minimum = row["minimum"] if self.minimum is None else min(self.minimum, row["minimum"])
             self.maximum = row["maximum"] if self.maximum is None else max(self.maximum, row["maximum"])
 
+    def add_sums(self, row):
+        """Tally and deviations of a row of a table of channels; those of older files have no deviations of ranges."""
+        self.add_tally(row)
+        self.add_deviation(row["mean_deviation"], row["samples"])
+        self.add_range_deviations(row.get("range_own_deviation"), row.get("range_common_deviation"), row["samples"])
+
     def add_deviation(self, mean, samples):
         if mean is not None and samples:
             self._deviation_sum += mean * samples

@@ -101,9 +101,7 @@ class Subject:
 
 def add_piece(channel, database, run, row):
     place = (run["run_id"], row["channel"])
-    channel.add_tally(row)
-    channel.add_deviation(row["mean_deviation"], row["samples"])
-    channel.add_range_deviations(row.get("range_own_deviation"), row.get("range_common_deviation"), row["samples"])
+    channel.add_sums(row)
     channel.hours += (run["duration_s"] or 0.0) / 3600.0
     channel.count.add_closed(database.rows(
         "SELECT steps, low, count FROM cycles WHERE run_id = ? AND channel = ?", *place))
@@ -118,9 +116,7 @@ def fleet_channels(subject):
     for row in database.records("SELECT * FROM machine_channels WHERE machine = ? ORDER BY machine_channel",
                                 subject.label):
         channel = Channel.of(row, per_hour)
-        channel.add_tally(row)
-        channel.add_deviation(row["mean_deviation"], row["samples"])
-        channel.add_range_deviations(row.get("range_own_deviation"), row.get("range_common_deviation"), row["samples"])
+        channel.add_sums(row)
         channel.hours = row["hours"]
         at = row["machine_channel"]
         channel.count.add_closed(database.rows("SELECT steps, low, count FROM machine_cycles WHERE machine_channel = ?", at))
