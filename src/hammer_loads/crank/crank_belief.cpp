@@ -77,7 +77,7 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     const double torque_before = state.torque;
     const CrankPosition from = state.position;
     std::optional<ColumnStep> columns;
-    if (!model.isExact()) columns.emplace(model, state, state.drive_inertia, load, by_constant);
+    if (!model.isExact()) columns.emplace(model, state, state.drive_inertia, load);
     state.torque -= 0.5 * supply.stiffness * supply.lead(state.speed * h, h);  // mean of the step
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
     const double lead = supply.lead(difference(state.position, from), h);
@@ -93,9 +93,11 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     by_constant.row(kTorque) += torque_by_constant;
     Base::predict<kAngle, kSpeed>(step.transition);
     by_constant.row(kTorque) += torque_by_constant;
-    if (columns)
-      columns->end(model, state, state.drive_inertia, load, state.torque - state.drive_inertia * load.hull_acceleration,
-                   h, by_constant);
+    if (columns) {
+      const double drive = state.torque - state.drive_inertia * load.hull_acceleration;
+      addWithin<kAngle, kSpeed>(columns->ofSpeed(model, state, state.drive_inertia, load, drive, h, step.blows > 0), h,
+                                by_constant);
+    }
     addNoise(kAngle, kAngle, speed * h * h / 3.0);
     addNoise(kSpeed, kSpeed, speed + torque * square(b * h) / 3.0);
     addNoise(kTorque, kTorque, torque);

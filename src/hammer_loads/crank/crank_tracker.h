@@ -39,6 +39,11 @@ struct CrankUncertainty {
   Eigen::Matrix<double, 4, ConstantErrors::kSize> by_constant{Eigen::Matrix<double, 4, ConstantErrors::kSize>::Zero()};
   double inertia{};  ///< of the drive's inertia, relative, beside the constants
 
+  /// Of the speed where the crank passes an angle, which an error of its angle delays. rate: acceleration over speed
+  /// [1/s].
+  Eigen::Matrix<double, 1, ConstantErrors::kSize> speedAtAngle(double rate) const noexcept {
+    return by_constant.row(kSpeed) - rate * by_constant.row(kAngle);
+  }
   Eigen::Matrix3d covariance() const noexcept {
     return own + by_constant.topRows<3>() * by_constant.topRows<3>().transpose();
   }

@@ -43,12 +43,13 @@ void apply(const FlexibleMatrix& f, Joint& all) noexcept {
 }
 
 /// On the crank acts the coupling's moment.
-void endColumns(const ShaftModel& model, const ShaftState& to, double h, const ColumnStep& columns,
+void endColumns(const ShaftModel& model, const ShaftState& to, double h, bool struck, const ColumnStep& columns,
                 Joint& all) noexcept {
   const CouplingLaw law = lawOf(*model.coupling(), to);
   const ShaftLoad load = model(to.position.angle);
   const double moment = law.moment(to.twist, to.motor_speed, to.speed) - law.crank_inertia * load.hull_acceleration;
-  columns.end(model, to, law.crank_inertia, load, moment, h, all.by_constant);
+  addWithin<Belief::kAngle, Belief::kSpeed>(columns.ofSpeed(model, to, law.crank_inertia, load, moment, h, struck), h,
+                                            all.by_constant);
 }
 
 /// speed: of crank and motor together; torque: of the motor.
@@ -131,8 +132,7 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
     const BlowPrior prior = b.priorOf(drawn);
     std::optional<ColumnStep> columns;
     if (!model.isExact())
-      columns.emplace(model, b.state, lawOf(*model.coupling(), b.state).crank_inertia, model(b.state.position.angle),
-                      all.by_constant);
+      columns.emplace(model, b.state, lawOf(*model.coupling(), b.state).crank_inertia, model(b.state.position.angle));
     FlexibleMatrix f = FlexibleMatrix::Identity();
     const bool struck = advanceFlexible(model, h, {prior.mean, contact}, b.state, &f) > 0;
     if (struck) {
@@ -144,7 +144,7 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
       b.tool_met = false;
     }
     apply(f, all);
-    if (columns) endColumns(model, b.state, h, *columns, all);
+    if (columns) endColumns(model, b.state, h, struck, *columns, all);
     addNoise(walks, lawOf(*model.coupling(), b.state), h, all);
   }
   setJoint(all, b);

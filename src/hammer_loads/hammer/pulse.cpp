@@ -13,9 +13,6 @@
 namespace hammer_loads {
 namespace {
 
-/// A lobe of Fz counts when it reaches this part of the peak.
-constexpr double kLeastLobe = 0.1;
-
 /// mu and t1 from H, S and T; P0 (16).
 void shapeFromImpulse(HalfSinePulse& pulse) noexcept {
   const bool positive = pulse.amplitude > 0.0 && pulse.impulse > 0.0;

@@ -7,11 +7,15 @@
 
 namespace hammer_loads {
 
+/// A rise of Fz through zero counts when the lobe after it reaches this part of the turn's peak, so that ripple near
+/// zero starts no lobe.
+constexpr double kLeastLobe = 0.1;
+
 /// Fz(t) = H sin(mu (t - t1)) for t1 < t < T after the blow that began the turn, 0 before t1.
 /// Deviates: P0 (15) prints sin(mu t); (16) needs the shift (model.md 7).
 ///
-/// A rise through zero counts when the lobe after it reaches a tenth of H, so that ripple near zero starts no lobe.
-/// Without such a rise the lobe begins with the turn. Without a positive lobe (H or S not positive) mu = 0, t1 = T.
+/// The lobe begins with the last rise through zero that counts, without one with the turn. Without a positive lobe (H
+/// or S not positive) mu = 0, t1 = T.
 struct HalfSinePulse {
   double period{};               ///< T [s]
   double amplitude{};            ///< H, peak of Fz [N]

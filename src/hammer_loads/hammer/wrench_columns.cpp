@@ -26,7 +26,8 @@ WrenchColumns::Matrix WrenchColumns::wrench(double drive_inertia, const LinksAtA
   for (std::size_t i = 0; i < models_.size(); ++i) {
     const MachineColumn& column = columns_->columns()[i];
     if (column.enters == HammerConstant::Enters::kBlow) continue;
-    columns.col(static_cast<Eigen::Index>(i)) = load(models_[i], column.linksAt(at.angle, at.links)) - here;
+    columns.col(static_cast<Eigen::Index>(i)) =
+        (load(models_[i], column.linksAt(at.angle, at.links)) - here) / column.step;
   }
   return columns;
 }

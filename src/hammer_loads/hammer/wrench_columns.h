@@ -27,8 +27,9 @@ class WrenchColumns {
                 const HullMotion& hull) const noexcept;
   /// Sources in the columns' order, as MachineColumn::name.
   std::vector<std::string> names() const;
-  /// Hammers in the columns' order.
+  /// Hammers in the columns' order, each a part `step` of its constant's deviation away (MachineColumn).
   const std::vector<HullModel>& models() const noexcept { return models_; }
+  double step(std::size_t i) const noexcept { return columns_->columns()[i].step; }
 
  private:
   const HullModel* model_;

@@ -25,12 +25,12 @@ MachineColumns::MachineColumns(const Mechanism& mechanism, Level level) : mechan
     const HammerConstant& constant = kHammerConstants[i];
     if (!(p.deviations[i] > 0.0) || constant.enters == Enters::kLearned || constant.enters == Enters::kFollows)
       continue;
-    const auto other = shifted(p, constant, constant.away * p.deviations[i]);
-    if (other) columns_.push_back({*other, level, constant.enters, constant.key});
+    const auto other = shifted(p, constant, MachineColumn::kStep * constant.away * p.deviations[i]);
+    if (other) columns_.push_back({*other, level, constant.enters, MachineColumn::kStep, constant.key});
   }
   if (level != Level::kLinkage)
     columns_.push_back(
-        {mechanism, Level::kLinkage, Enters::kLoads, level == Level::kPulse ? "level pulse" : "level rocker"});
+        {mechanism, Level::kLinkage, Enters::kLoads, 1.0, level == Level::kPulse ? "level pulse" : "level rocker"});
 }
 
 MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravity) const noexcept {
@@ -43,6 +43,7 @@ MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravit
     const ShaftLoad there = loadOf(c.mechanism, c.level, c.linksAt(angle, links), gravity);
     effects.col(static_cast<Eigen::Index>(i)) << there.inertia - here.inertia,
         there.half_inertia_slope - here.half_inertia_slope, there.weight_torque - here.weight_torque;
+    effects.col(static_cast<Eigen::Index>(i)) *= 1.0 / c.step;
   }
   return effects;
 }

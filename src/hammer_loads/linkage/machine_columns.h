@@ -14,12 +14,18 @@ namespace hammer_loads {
 constexpr int kMachineColumns = 20;
 
 /// A column is the change of a load, a state or a number by one standard deviation of a constant: columns of one
-/// hammer are independent, and the sum of their squares is a variance (JCGM 100, 5.1.2, with the difference at the
-/// deviation's own size in the place of the derivative). Lengths keep the change point: the rod follows.
+/// hammer are independent, and the sum of their squares is a variance (JCGM 100, 5.1.2). The other hammer is a part
+/// `step` of the deviation away, and what it changes counts 1/step times. Lengths keep the change point: the rod
+/// follows.
 struct MachineColumn {
+  /// A rod whose centre of mass is half its length away bends an energy by a third of its slope; a tenth of that leaves
+  /// a derivative, and 1e-14 of rounding.
+  static constexpr double kStep = 0.1;
+
   Mechanism mechanism;  ///< of the other hammer
   Level level;          ///< likewise: of what a level leaves out, that which has it
   HammerConstant::Enters enters;
+  double step;       ///< kStep, or 1 of what a level leaves out
   std::string name;  ///< key of the constant, or the level that leaves something out
 
   /// links: of the hammer itself at the angle.

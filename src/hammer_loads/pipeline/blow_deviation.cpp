@@ -29,16 +29,17 @@ BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const
     const Eigen::Index of_hammer = i - ConstantErrors::kTable;
     const bool is_hammers = of_hammer >= 0 && of_hammer < static_cast<Eigen::Index>(hammer.models().size());
     if (!is_hammers && columns.col(i).isZero(0.0)) continue;
+    const auto k = static_cast<std::size_t>(of_hammer);
+    const double step = is_hammers ? hammer.step(k) : 1.0;
     CrankBlow other = crank;
-    other.speed += columns(0, i);
-    other.factor += columns(1, i);
-    other.drive_inertia *= 1.0 + columns(2, i);
-    const RockerBlow there =
-        measuredBlow(is_hammers ? hammer.models()[static_cast<std::size_t>(of_hammer)] : model, other);
-    errors.restitution.columns[i] = there.restitution - blow.restitution;
-    errors.energy.columns[i] = there.energy - blow.energy;
-    errors.tool_impulse_z.columns[i] = there.tool_impulse_z - blow.tool_impulse_z;
-    errors.support_impulse_z.columns[i] = there.support_impulse_z - blow.support_impulse_z;
+    other.speed += step * columns(0, i);
+    other.factor += step * columns(1, i);
+    other.drive_inertia *= 1.0 + step * columns(2, i);
+    const RockerBlow there = measuredBlow(is_hammers ? hammer.models()[k] : model, other);
+    errors.restitution.columns[i] = (there.restitution - blow.restitution) / step;
+    errors.energy.columns[i] = (there.energy - blow.energy) / step;
+    errors.tool_impulse_z.columns[i] = (there.tool_impulse_z - blow.tool_impulse_z) / step;
+    errors.support_impulse_z.columns[i] = (there.support_impulse_z - blow.support_impulse_z) / step;
   }
   errors.restitution.own = blow.restitution_deviation;
   errors.energy.own = blow.energy_deviation;

@@ -11,8 +11,7 @@ namespace hammer_loads {
 /// ConstantErrors: rows speed [rad/s], factor [-], drive inertia (relative).
 using BlowColumns = Eigen::Matrix<double, 3, ConstantErrors::kSize>;
 
-/// blow: measuredBlow() of `crank`, whose deviations get the part of constants. Each cause by a difference at its own
-/// size.
+/// blow: measuredBlow() of `crank`, whose deviations get the part of constants. Each cause by a difference.
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
                       const BlowColumns& columns, RockerBlow& blow) noexcept;
 

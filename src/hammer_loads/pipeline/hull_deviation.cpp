@@ -123,6 +123,39 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
   return deviationOf(g, covariance);
 }
 
+MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
+                                const Eigen::Matrix<double, 1, ConstantErrors::kSize>& of_speed) noexcept {
+  MomentumColumns columns = MomentumColumns::Zero();
+  const auto momentum = [&](const HullModel& of, double at) {
+    const LinkMomentum p = linkMomentum(of, angle, at);
+    return Eigen::Vector2d(p.x, p.z);
+  };
+  const Eigen::Vector2d here = momentum(model, speed);
+  const auto hammers = static_cast<Eigen::Index>(hammer.models().size());
+  for (Eigen::Index i = 0; i < ConstantErrors::kSize; ++i) {
+    const Eigen::Index k = i - ConstantErrors::kTable;
+    if (k >= 0 && k < hammers) {
+      const double step = hammer.step(static_cast<std::size_t>(k));
+      columns.col(i) =
+          (momentum(hammer.models()[static_cast<std::size_t>(k)], speed + step * of_speed[i]) - here) / step;
+    } else if (of_speed[i] != 0.0) {
+      columns.col(i) = momentum(model, speed + of_speed[i]) - here;
+    }
+  }
+  return columns;
+}
+
+MomentumColumns weightColumns(const WrenchColumns& hammer, const HullModel& model, Gravity gravity) noexcept {
+  MomentumColumns columns = MomentumColumns::Zero();
+  const double here = movingMass(model.mechanism(), model.level());
+  for (std::size_t i = 0; i < hammer.models().size(); ++i) {
+    const HullModel& other = hammer.models()[i];
+    const double mass = (movingMass(other.mechanism(), other.level()) - here) / hammer.step(i);
+    columns.col(ConstantErrors::kTable + static_cast<Eigen::Index>(i)) << mass * gravity.x, mass * gravity.z;
+  }
+  return columns;
+}
+
 WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                           const LinksBeside& links, const Eigen::Matrix3d& own, const LoadColumns& columns) noexcept {
   if (!(own(1, 1) > 0.0)) return {};

@@ -57,6 +57,16 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
 HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                              const LinksBeside& links, const Eigen::Matrix3d& covariance) noexcept;
 
+/// Errors of the momentum that are independent of each other, one standard deviation each, in the order of LoadColumns.
+/// Rows: x, z [N s].
+using MomentumColumns = Eigen::Matrix<double, 2, kLoadColumns>;
+
+/// Of the momentum of the links where the crank is at an angle with a speed [rad/s]; of_speed: errors of that [rad/s].
+MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
+                                const Eigen::Matrix<double, 1, ConstantErrors::kSize>& of_speed) noexcept;
+/// What errors of masses make of the links' weight [N].
+MomentumColumns weightColumns(const WrenchColumns& hammer, const HullModel& model, Gravity gravity) noexcept;
+
 /// Samples and the sensor's constants as three errors of the load that are independent of each other, from motion of
 /// the links relative to the hull; none where there is no covariance. The boom's filters take them for noise, which an
 /// error of the hammer's constants, alike in all samples, is not: those are not in it.

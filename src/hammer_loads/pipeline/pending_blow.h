@@ -14,8 +14,9 @@ namespace hammer_loads {
 /// radian, or what is known of it when the crank stops before, restarts or strikes again.
 class PendingBlow {
  public:
-  /// time: of the blow [s]; speed of the crank when it reaches the dead centre [rad/s] and how far it may be off.
-  void begin(double time, const CrankPosition& at, double speed, const CrankUncertainty& doubt) noexcept {
+  /// time: of the blow [s]; speed of the crank when it reaches the dead centre [rad/s], its rate there [1/s]
+  /// (acceleration over speed), and how far it may be off.
+  void begin(double time, const CrankPosition& at, double speed, double rate, const CrankUncertainty& doubt) noexcept {
     waiting_ = true;
     time_ = time;
     position_ = at;
@@ -25,7 +26,7 @@ class PendingBlow {
     published_ = withheld_ = 0;
     blow_.speed = speed;
     blow_.speed_deviation = std::sqrt(doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed));
-    columns_.row(0) = doubt.by_constant.row(CrankUncertainty::kSpeed);
+    columns_.row(0) = doubt.speedAtAngle(rate);
   }
   bool isWaiting() const noexcept { return waiting_; }
   /// It was none.
@@ -44,6 +45,11 @@ class PendingBlow {
     BlowColumns columns = columns_;
     if (early_) columns.row(0) = (columns_.row(0) - (blow_.speed / blow_.factor) * columns_.row(1)) / blow_.factor;
     return columns;
+  }
+  /// Of crankSpeedAfter() [rad/s].
+  Eigen::Matrix<double, 1, ConstantErrors::kSize> columnsAfter() const noexcept {
+    if (early_) return columns_.row(0);
+    return blow_.factor * columns_.row(0) + blow_.speed * columns_.row(1);
   }
   /// A sample after it, whose loads were published or withheld: a crank whose readings are not known to agree with the
   /// model, in degrees for instance, has struck none where most of them were withheld.

@@ -9,29 +9,39 @@
 
 namespace hammer_loads {
 
-/// Errors of constants add up over the turn as the load itself; those of samples are in the momenta at its ends.
+/// An impulse is the difference of two momenta and the weight's in between (TurnRecorder): so is its error. The sum of
+/// the samples' errors is not: at each of them readings correct the crank, and its momentum with it.
 class TurnErrors {
  public:
   /// A turn begins with a blow.
   void begin(StampNs blow) noexcept;
-  /// How far the momentum after that blow may be off, by samples [N s]: known some time later.
-  void momentumAfterBlow(const HullWrench& deviation) noexcept { after_blow_ = deviation; }
+  /// The momentum after that blow: how far it may be off, by samples and by constants [N s]. Known some time later.
+  void momentumAfterBlow(const HullWrench& deviation, const MomentumColumns& columns) noexcept {
+    after_blow_ = deviation, at_begin_ = columns;
+  }
+  /// Whether Fz rises through zero with the coming sample: who knows says rose() first.
+  bool rises(double force_z) const noexcept { return last_force_ <= 0.0 && force_z > 0.0; }
+  /// A lobe begins here. There the momentum along z stands still, so that the instant itself does not matter.
+  void rose(StampNs stamp, const MomentumColumns& columns) noexcept { rise_ = {stamp, columns}; }
   /// The load at a sample.
-  void sample(StampNs stamp, const HullWrench& load, const HullDeviation& deviation,
-              const LoadColumns& columns) noexcept;
-  /// At the blow that ends the turn. before_blow: how far the momentum there may be off, by samples [N s].
-  PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const HullWrench& before_blow) noexcept;
+  void sample(double force_z, const HullDeviation& deviation, const LoadColumns& columns) noexcept;
+  /// At the blow that ends the turn. before_blow, at_end: how far the momentum there may be off, by samples and by
+  /// constants [N s]; weight: what constants make of the links' weight [N].
+  PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const HullWrench& before_blow,
+                  const MomentumColumns& at_end, const MomentumColumns& weight) const noexcept;
 
  private:
-  void addUpTo(StampNs stamp, const LoadColumns& columns) noexcept;
+  struct Lobe {
+    StampNs begin{};
+    MomentumColumns columns{MomentumColumns::Zero()};
+  };
 
-  StampNs last_{};
-  LoadColumns columns_{LoadColumns::Zero()}, impulse_{LoadColumns::Zero()};
-  NumberError::Columns lobe_{NumberError::Columns::Zero()};  ///< of Fz since it rose through zero
+  StampNs begin_{};
+  MomentumColumns at_begin_{MomentumColumns::Zero()};
   HullWrench after_blow_;
-  double peak_{};  ///< largest Fz of a sample [N]
+  std::optional<Lobe> rise_, lobe_;  ///< of the last rise; of the last lobe that counts
+  double last_force_{1.0}, peak_{};  ///< Fz of the last sample; its largest [N]
   NumberError at_peak_;
-  bool lobe_open_{}, sampled_{};
 };
 
 }  // namespace hammer_loads

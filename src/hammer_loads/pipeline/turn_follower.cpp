@@ -68,6 +68,14 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
   if (pending_.isMeasured(now, result.crank.position)) finishBlow(result);
 }
 
+void TurnFollower::trackErrors(const SampleResult& result) noexcept {
+  const CrankEstimate& crank = result.crank;
+  if (errors_.rises(result.wrench.force_z))
+    errors_.rose(result.stamp, momentumColumns(*columns_, *model_, crank.position.angle, crank.speed,
+                                               result.doubt.speedAtAngle(crank.acceleration / crank.speed)));
+  errors_.sample(result.wrench.force_z, result.deviation, result.load_columns);
+}
+
 /// The turn ends now; what the blow was shows later.
 void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd& end = pending_end_;
@@ -77,18 +85,21 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const double time = seconds(step_->start() - epoch_) + passage.time;
   const CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
   const CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0);
+  const double rate = before.acceleration / before.speed;
   end.pulse = turn_.end(instant(time, before));
   if (end.pulse) {
     peak_force_ = end.pulse->amplitude;
     const LinksBeside links(*model_, linksAt(*model_, before.position.angle));
     end.pulse_errors = errors_.end(
         end.stamp, *end.pulse,
-        momentumDeviation(*model_, driveReaction(*model_, tracker_->driveInertia()), before, links, doubt.own));
+        momentumDeviation(*model_, driveReaction(*model_, tracker_->driveInertia()), before, links, doubt.own),
+        momentumColumns(*columns_, *model_, before.position.angle, before.speed, doubt.speedAtAngle(rate)),
+        weightColumns(*columns_, *model_, hull_.gravity));
   }
   errors_.begin(end.stamp);
   end.mean_press_force =  // times the impulse, once that is known
       last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();
-  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, doubt);
+  pending_.begin(time, {passage.blow, {0.0, Side::kAfterBlow}}, passage.speed_before, rate, doubt);
   pending_.follow(tracker_->blowFactor());
   last_blow_ = end.stamp;
   turn_.begin(instant(time, step_->besides(passage, Side::kAfterBlow)));
@@ -115,7 +126,9 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   const CrankBlow crank = elastic_->blow().value_or(measured);  // a rod that gives shows more than the crank's speed
   const double doubt =
       std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
-  errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0});
+  errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0},
+                            momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
+                                            pending_.columnsAfter()));
   blow = measuredBlow(*model_, crank);
   pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
   voidImpossible(model_->mechanism(), model_->level(), blow);

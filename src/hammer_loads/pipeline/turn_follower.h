@@ -40,7 +40,7 @@ class TurnFollower {
   /// They are published.
   void published(const SampleResult& result) noexcept {
     if (pending_.isWaiting()) pending_.count(true);
-    errors_.sample(result.stamp, result.wrench, result.deviation, result.load_columns);
+    trackErrors(result);
   }
   bool blowWaits() const noexcept { return pending_.isWaiting(); }  ///< one is still being measured
   /// Velocity of the hull at that blow; zero until it is given.
@@ -56,6 +56,7 @@ class TurnFollower {
   void countBackward(const CrankStep::Passage& passage) noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
+  void trackErrors(const SampleResult& result) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
 
   const HullModel* model_;
