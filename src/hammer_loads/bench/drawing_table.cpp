@@ -31,18 +31,23 @@ HammerParameters drawn(HammerParameters p, std::uint64_t seed, double off) {
   return drawing;
 }
 
-/// Of figures of which there is one a turn.
+/// Of samples or of figures of which there is one a turn.
 class FigureErrors {
  public:
-  void add(double found, double truth, double deviation) {
+  void add(double error, double deviation) {
     ++count_;
-    squares_ += square((found - truth) / truth);
-    inside_ += std::abs(found - truth) <= 2.0 * deviation;
+    squares_ += square(error), said_ += square(deviation);
+    inside_ += std::abs(error) <= 2.0 * deviation;
   }
-  DrawingRow::OfTurns result() const { return {std::sqrt(squares_ / count_), inside_ / count_}; }
+  void addRelative(double found, double truth, double deviation) {
+    add((found - truth) / truth, deviation / std::abs(truth));
+  }
+  DrawingRow::Figure result(double peak = 1.0) const {
+    return {std::sqrt(squares_ / count_) / peak, std::sqrt(said_ / count_) / peak, inside_ / count_};
+  }
 
  private:
-  double count_{}, squares_{}, inside_{};
+  double count_{}, squares_{}, said_{}, inside_{};
 };
 
 /// The samples' Fz as the life of a machine counts it, for what that says of its ranges' deviation.
@@ -68,8 +73,8 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
   SessionPlayer player(settings.mechanism, settings.pipeline, {}, session);
   DrawingRow row;
   row.seed = seed;
-  std::array<double, 3> peak{}, squares{}, said{}, inside{};
-  double count = 0.0;
+  std::array<double, 3> peak{};
+  std::array<FigureErrors, 3> samples;
   FigureErrors energy, impulse, amplitude;
   LifeError life;
   life::LifeRecorder recorder = forceRecorder();
@@ -82,10 +87,10 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
       });
       if (near == session.blows.end() || near->time < 3.0) continue;
       recorder.turn();
-      energy.add(end.blow.energy, near->strike.energy, end.blow.energy_deviation);
+      energy.addRelative(end.blow.energy, near->strike.energy, end.blow.energy_deviation);
       if (!end.pulse || !near->whole_turn) continue;
-      impulse.add(end.pulse->turn_impulse_z, near->turn_impulse_z, end.pulse_errors.turn_impulse_z.deviation());
-      amplitude.add(end.pulse->amplitude, near->turn_peak_force_z, end.pulse_errors.amplitude.deviation());
+      impulse.addRelative(end.pulse->turn_impulse_z, near->turn_impulse_z, end.pulse_errors.turn_impulse_z.deviation());
+      amplitude.addRelative(end.pulse->amplitude, near->turn_peak_force_z, end.pulse_errors.amplitude.deviation());
     }
     if (loads.refusal || loads.beside_blow || time(loads.stamp) < 3.0 || time(loads.stamp) > 13.5) return;
     const auto truth = std::lower_bound(session.truth.begin(), session.truth.end(), time(loads.stamp) - 1e-6,
@@ -98,25 +103,19 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
                     &loads.deviation.common.force_z);
     const Eigen::Vector3d found = vectorOf(loads.wrench), deviation = vectorOf(loads.deviation.wrench);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double error = found[static_cast<Eigen::Index>(k)] - is[k], d = deviation[static_cast<Eigen::Index>(k)];
+      const auto i = static_cast<Eigen::Index>(k);
       peak[k] = std::max(peak[k], std::abs(is[k]));
-      squares[k] += square(error);
-      said[k] += square(d);
-      inside[k] += std::abs(error) <= 2.0 * d;
+      samples[k].add(found[i] - is[k], deviation[i]);
     }
-    ++count;
   });
-  for (std::size_t k = 0; k < 3; ++k) {
-    row.rms[k] = std::sqrt(squares[k] / count) / peak[k];
-    row.said[k] = std::sqrt(said[k] / count) / peak[k];
-    row.covered[k] = inside[k] / count;
-  }
+  for (std::size_t k = 0; k < 3; ++k) row.samples[k] = samples[k].result(peak[k]);
   row.energy = energy.result();
   row.impulse = impulse.result();
   row.amplitude = amplitude.result();
-  row.range_error = life.error();
-  const life::RangeDeviation range = life::rangeDeviation(recorder.take().counts[0]);
-  row.range_deviation = std::hypot(range.own, range.common);
+  const life::RangeDeviation deviation = life::rangeDeviation(recorder.take().counts[0]);
+  FigureErrors range;
+  range.add(life.error(), std::hypot(deviation.own, deviation.common));
+  row.range = range.result();
   return row;
 }
 
@@ -126,23 +125,45 @@ std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings) {
   return rows;
 }
 
-std::string markdown(const std::vector<DrawingRow>& rows) {
+std::vector<DrawingSummary> summary(const std::vector<DrawingRow>& rows) {
+  std::vector<DrawingSummary> all;
+  const auto add = [&](const char* quantity, const auto& figure) {
+    DrawingSummary sum{quantity, {}};
+    for (const DrawingRow& row : rows) {
+      const DrawingRow::Figure one = figure(row);
+      sum.all.rms += square(one.rms), sum.all.said += square(one.said), sum.all.covered += one.covered;
+      sum.least = std::min(sum.least, one.covered);
+    }
+    const auto count = static_cast<double>(rows.size());
+    sum.all = {std::sqrt(sum.all.rms / count), std::sqrt(sum.all.said / count), sum.all.covered / count};
+    all.push_back(sum);
+  };
+  add("Fx, of the peak", [](const DrawingRow& row) { return row.samples[0]; });
+  add("Fz, of the peak", [](const DrawingRow& row) { return row.samples[1]; });
+  add("moment, of the peak", [](const DrawingRow& row) { return row.samples[2]; });
+  add("turn impulse", [](const DrawingRow& row) { return row.impulse; });
+  add("peak of Fz", [](const DrawingRow& row) { return row.amplitude; });
+  add("blow energy", [](const DrawingRow& row) { return row.energy; });
+  add("damage-equivalent range of Fz", [](const DrawingRow& row) { return row.range; });
+  return all;
+}
+
+std::string markdown(const std::vector<DrawingSummary>& rows) {
   std::string text =
-      "| drawing | rms Fx | rms Fz | rms moment | said Fx | said Fz | said moment | within two deviations: Fx | Fz | "
-      "moment | energy, rms | within | impulse, rms | within | peak, rms | within | equivalent range, error | said |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  const auto percent = [&](double part, int places) { text += format(" %.*f %% |", places, 100.0 * part); };
-  for (const DrawingRow& r : rows) {
-    text += format("| %d |", static_cast<int>(r.seed));
-    for (const double rms : r.rms) percent(rms, 2);
-    for (const double said : r.said) percent(said, 2);
-    for (const double covered : r.covered) percent(covered, 0);
-    for (const DrawingRow::OfTurns& figure : {r.energy, r.impulse, r.amplitude})
-      percent(figure.rms, 2), percent(figure.covered, 0);
-    percent(r.range_error, 2), percent(r.range_deviation, 2);
-    text += '\n';
-  }
+      "| | error, rms | said, rms | within two deviations | least of a drawing |\n"
+      "|---|---|---|---|---|\n";
+  for (const DrawingSummary& row : rows)
+    text += format("| %s | %.2f %% | %.2f %% | %.0f %% | %.0f %% |\n", row.quantity, 100.0 * row.all.rms,
+                   100.0 * row.all.said, 100.0 * row.all.covered, 100.0 * row.least);
   return text;
+}
+
+std::string json(const std::vector<DrawingSummary>& rows) {
+  std::string text;
+  for (const DrawingSummary& row : rows)
+    text += format("%s\n    {\"quantity\": \"%s\", \"rms\": %.6g, \"said\": %.6g, \"covered\": %.6g, \"least\": %.6g}",
+                   text.empty() ? "" : ",", row.quantity, row.all.rms, row.all.said, row.all.covered, row.least);
+  return "[" + text + "\n  ]";
 }
 
 }  // namespace hammer_loads::accuracy

@@ -1,6 +1,7 @@
 /// Errors and deviations where the machine is not the one of its drawing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,17 +12,15 @@ namespace hammer_loads::accuracy {
 
 /// One machine whose constants were drawn from the deviations of the hammer file; the file is what the pipeline has.
 struct DrawingRow {
-  static constexpr int kQuantities = 3;  ///< force_x, force_z, torque_y
-  std::uint64_t seed{};
-  double rms[kQuantities]{};      ///< of the peak of each
-  double covered[kQuantities]{};  ///< part of the samples within two deviations
-  double said[kQuantities]{};     ///< root of the mean squared deviation, of the peak
-  /// Root of the mean squared relative error, and the part of the turns within two deviations.
-  struct OfTurns {
-    double rms{}, covered{};
+  struct Figure {
+    double rms{};      ///< root of the mean squared error
+    double said{};     ///< the same of the standard deviation
+    double covered{};  ///< part of the errors within two deviations
   };
-  OfTurns energy, impulse, amplitude;       ///< of the blow; of Fz over the turn; its peak
-  double range_error{}, range_deviation{};  ///< of Fz's damage-equivalent range at kLifeSlope, relative
+  std::uint64_t seed{};
+  std::array<Figure, 3> samples;      ///< of the peak of force_x, force_z, torque_y
+  Figure energy, impulse, amplitude;  ///< relative: of the blow; of Fz over the turn; its peak
+  Figure range;                       ///< relative: of Fz's damage-equivalent range at kLifeSlope
 };
 
 /// off: times the deviations that the machine is drawn with; the pipeline has the file's.
@@ -29,6 +28,15 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off);
 
 std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings);
 
-std::string markdown(const std::vector<DrawingRow>& rows);
+/// A figure over all drawings.
+struct DrawingSummary {
+  const char* quantity;
+  DrawingRow::Figure all;
+  double least{1.0};  ///< of the parts within two deviations, of all drawings
+};
+std::vector<DrawingSummary> summary(const std::vector<DrawingRow>& rows);
+
+std::string markdown(const std::vector<DrawingSummary>& rows);
+std::string json(const std::vector<DrawingSummary>& rows);
 
 }  // namespace hammer_loads::accuracy

@@ -16,9 +16,9 @@ namespace hammer_loads {
 namespace {
 
 constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
-               kBoom[] = "\"boom\": ", kElastic[] = "\"elastic\": ";
+               kBoom[] = "\"boom\": ", kElastic[] = "\"elastic\": ", kDrawn[] = "\"drawings\": ";
 
-constexpr int kDrawings = 20;
+constexpr int kDrawings = 50;
 
 /// Why an existing file must stay; empty: this command wrote it.
 std::string whyFileMustStay(const std::string& name) {
@@ -56,8 +56,9 @@ class JsonFile {
 std::string printTables(const Settings& settings, const std::string& only) {
   std::string json;
   if (only == "drawings") {
-    std::cout << accuracy::markdown(accuracy::drawingTable(settings, kDrawings));
-    return "";
+    const auto drawings = accuracy::summary(accuracy::drawingTable(settings, kDrawings));
+    std::cout << accuracy::markdown(drawings);
+    return kDrawn + accuracy::json(drawings);
   }
   if (only == "life") {
     std::cout << accuracy::lifeMarkdown(accuracy::boomTable(), accuracy::elasticTable(settings));
@@ -77,6 +78,8 @@ std::string printTables(const Settings& settings, const std::string& only) {
     const std::vector<accuracy::SessionRow> sessions = accuracy::sessionTable(settings);
     const std::vector<accuracy::MachineRow> machines = accuracy::machineTable(settings);
     std::cout << "\n### Machines as they are\n\n" << accuracy::markdown(machines);
+    const auto drawings = accuracy::summary(accuracy::drawingTable(settings, kDrawings));
+    std::cout << "\n### Machines of a drawing\n\n" << accuracy::markdown(drawings);
     const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
     std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
     const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
@@ -84,8 +87,8 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << "\n### Damage-equivalent ranges\n\n" << accuracy::lifeMarkdown(boom, elastic);
     std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
     json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
-            (kMachines + accuracy::json(machines)) + ",\n" + (kBoom + accuracy::json(boom)) + ",\n" +
-            (kElastic + accuracy::json(elastic));
+            (kMachines + accuracy::json(machines)) + ",\n" + (kDrawn + accuracy::json(drawings)) + ",\n" +
+            (kBoom + accuracy::json(boom)) + ",\n" + (kElastic + accuracy::json(elastic));
   }
   return json;
 }
