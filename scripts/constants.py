@@ -1,0 +1,113 @@
+"""Hand-set constants of the rooms that estimate, found in their source: for scripts/sensitivity and test/doc."""
+import pathlib
+import re
+
+ROOMS = ("crank", "boom", "pipeline")
+_NUMBER = re.compile(r"(?<![\w.\]])(?:\d[\d']*\.?\d*(?:[eE][-+]?\d+)?)(?![\w.])")
+_UNIT = re.compile(r"kTwoPi / 360\.0|360\.0 / kTwoPi|60\.0 / kTwoPi")
+_STATEMENT = re.compile(
+    r"^([ ]*)((?:static |inline )*constexpr )((?:const )?(?:double|int|std::size_t|std::u?int64_t|Doubt|SwingLimits) )"
+    r"(k[A-Z]\w*[^;()]*?(?:\([^;]*?\)[^;()]*?)*);", re.M)
+_DEFAULT = re.compile(r"^([ ]+)(double|int|std::size_t) ([a-z][a-z0-9_]*[a-z0-9])\{([^{};\n]+)\};", re.M)
+_GUARD = re.compile(r"// Guard: ([\w/]+\.[\w/]+) of ((?:\w+(?:,\s+(?://+ )?)?)+)")
+
+
+class Constant:
+    """One name. spans: where its numbers stand in the text of its file."""
+
+    def __init__(self, path, text, name, spans, position, kind, head):
+        self.path, self.name, self.spans, self.position = path, name, spans, position
+        self.kind, self.head, self.guard = kind, head, None
+        self.line = text.count("\n", 0, position) + 1
+        self.value = ", ".join(text[a:b].strip() for a, b in spans)
+
+    @property
+    def room(self):
+        return self.path.parent.name
+
+    @property
+    def id(self):
+        return f"{self.room}/{self.path.name}:{self.name}:{self.line}"
+
+
+def without_comments(text):
+    """The same length: positions stay."""
+    blank = lambda found: re.sub(r"[^\n]", " ", found.group())
+    return re.sub(r"//[^\n]*|/\*.*?\*/", blank, text, flags=re.S)
+
+
+def _declarators(text, start, end):
+    """(name, begin, end of what follows it) of each, split at commas outside brackets."""
+    depth, begin = 0, start
+    for i in range(start, end + 1):
+        if i == end or (text[i] == "," and depth == 0):
+            name = re.match(r"\s*(\w+)", text[begin:i])
+            yield name.group(1), begin + name.end(), i
+            begin = i + 1
+        elif text[i] in "([{":
+            depth += 1
+        elif text[i] in ")]}":
+            depth -= 1
+
+
+def constants_of(path):
+    text = path.read_text()
+    code = without_comments(text)
+    found = []
+    for statement in _STATEMENT.finditer(code):
+        indent, words, type_name = statement.group(1), statement.group(2), statement.group(3).strip()
+        kind = "local" if indent and "static" not in words else "member" if indent else "global"
+        for name, begin, end in _declarators(code, statement.start(4), statement.end(4)):
+            value = re.compile(r"(?:\[\w*\])?\s*=?\s*").match(code, begin).end()
+            if not _NUMBER.search(code, value, end):
+                continue  # made of others
+            if _UNIT.fullmatch(code[value:end].strip()):
+                continue
+            if code[value] == "{":
+                spans = [m.span() for m in _NUMBER.finditer(code, value, end)]
+            else:
+                spans = [(value, end)]
+            found.append(Constant(path, code, name, spans, statement.start(4), kind, (statement.start(2), type_name)))
+    if path.suffix == ".h":
+        for default in _DEFAULT.finditer(code):
+            if _NUMBER.search(default.group(4)) and float(_number(default.group(4))) not in (0.0, 1.0):
+                found.append(Constant(path, code, default.group(3), [default.span(4)], default.start(3), "default", None))
+    for guard, names in _GUARD.findall(text):
+        for constant in found:
+            if constant.name in re.findall(r"\w+", names):
+                constant.guard = guard
+    return sorted(found, key=lambda constant: constant.position)
+
+
+def _number(text):
+    return _NUMBER.search(text).group().replace("'", "")
+
+
+def sources(root):
+    for room in ROOMS:
+        for path in sorted((pathlib.Path(root) / "src/hammer_loads" / room).iterdir()):
+            if path.suffix in (".h", ".cpp"):
+                yield path
+
+
+def is_size(constant, code_of):
+    """A dimension at compile time: not tuned. code_of: text of each file."""
+    if constant.head is None or constant.head[1] in ("double", "Doubt"):
+        return False
+    seen_by = [constant.path] if constant.path.suffix == ".cpp" else list(code_of)
+    uses = re.compile(r"<[^<>;\n]*\b{0}\b[^;\n]*>|\w\[{0}\]|constexpr[^;\n]*=[^;\n]*\b{0}\b".format(constant.name))
+    return any(uses.search(code_of[path]) for path in seen_by if _sees(path, constant.path, code_of))
+
+
+def _sees(path, header, code_of):
+    return path == header or f"/{header.name}" in path.read_text()
+
+
+def all_constants(root):
+    """(tuned, sizes)"""
+    code_of = {path: without_comments(path.read_text()) for path in sources(root)}
+    tuned, sizes = [], []
+    for path in code_of:
+        for constant in constants_of(path):
+            (sizes if is_size(constant, code_of) else tuned).append(constant)
+    return tuned, sizes
