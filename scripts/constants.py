@@ -1,4 +1,5 @@
 """Hand-set constants of the rooms that estimate, found in their source: for scripts/sensitivity and test/doc."""
+import collections
 import pathlib
 import re
 
@@ -12,13 +13,16 @@ _DEFAULT = re.compile(r"^([ ]+)(double|int|std::size_t) ([a-z][a-z0-9_]*[a-z0-9]
 _GUARD = re.compile(r"// Guard: ([\w/]+\.[\w/]+) of ((?:\w+(?:,\s+(?://+ )?)?)+)")
 
 
+# begin, end: of the names and values of one statement; words: where its `constexpr` begins, and ends
+Head = collections.namedtuple("Head", "begin end kind type words")
+
+
 class Constant:
     """One name. spans: where its numbers stand in the text of its file."""
 
-    def __init__(self, path, text, name, spans, position, kind, head):
-        self.path, self.name, self.spans, self.position = path, name, spans, position
-        self.kind, self.head, self.guard = kind, head, None
-        self.line = text.count("\n", 0, position) + 1
+    def __init__(self, path, text, name, spans, head):
+        self.path, self.name, self.spans, self.head, self.guard = path, name, spans, head, None
+        self.line = text.count("\n", 0, spans[0][0]) + 1
         self.value = ", ".join(text[a:b].strip() for a, b in spans)
 
     @property
@@ -50,33 +54,37 @@ def _declarators(text, start, end):
             depth -= 1
 
 
+def heads_of(code):
+    for found in _STATEMENT.finditer(code):
+        kind = "global"
+        if found.group(1):
+            kind = "member" if "static" in found.group(2) else "local"
+        yield Head(found.start(4), found.end(4), kind, found.group(3).strip(), found.span(2))
+
+
 def constants_of(path):
     text = path.read_text()
     code = without_comments(text)
     found = []
-    for statement in _STATEMENT.finditer(code):
-        indent, words, type_name = statement.group(1), statement.group(2), statement.group(3).strip()
-        kind = "local" if indent and "static" not in words else "member" if indent else "global"
-        for name, begin, end in _declarators(code, statement.start(4), statement.end(4)):
+    for head in heads_of(code):
+        for name, begin, end in _declarators(code, head.begin, head.end):
             value = re.compile(r"(?:\[\w*\])?\s*=?\s*").match(code, begin).end()
-            if not _NUMBER.search(code, value, end):
+            if not _NUMBER.search(code, value, end) or _UNIT.fullmatch(code[value:end].strip()):
                 continue  # made of others
-            if _UNIT.fullmatch(code[value:end].strip()):
-                continue
+            spans = [(value, end)]
             if code[value] == "{":
                 spans = [m.span() for m in _NUMBER.finditer(code, value, end)]
-            else:
-                spans = [(value, end)]
-            found.append(Constant(path, code, name, spans, statement.start(4), kind, (statement.start(2), type_name)))
+            found.append(Constant(path, code, name, spans, head))
     if path.suffix == ".h":
         for default in _DEFAULT.finditer(code):
             if _NUMBER.search(default.group(4)) and float(_number(default.group(4))) not in (0.0, 1.0):
-                found.append(Constant(path, code, default.group(3), [default.span(4)], default.start(3), "default", None))
+                head = Head(default.start(3), default.end(), "default", default.group(2), None)
+                found.append(Constant(path, code, default.group(3), [default.span(4)], head))
     for guard, names in _GUARD.findall(text):
         for constant in found:
             if constant.name in re.findall(r"\w+", names):
                 constant.guard = guard
-    return sorted(found, key=lambda constant: constant.position)
+    return sorted(found, key=lambda constant: constant.spans)
 
 
 def _number(text):
@@ -92,7 +100,7 @@ def sources(root):
 
 def is_size(constant, code_of):
     """A dimension at compile time: not tuned. code_of: text of each file."""
-    if constant.head is None or constant.head[1] in ("double", "Doubt"):
+    if constant.head.kind == "default" or constant.head.type in ("double", "Doubt"):
         return False
     seen_by = [constant.path] if constant.path.suffix == ".cpp" else list(code_of)
     uses = re.compile(r"<[^<>;\n]*\b{0}\b[^;\n]*>|\w\[{0}\]|constexpr[^;\n]*=[^;\n]*\b{0}\b".format(constant.name))
