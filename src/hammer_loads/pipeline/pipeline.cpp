@@ -139,7 +139,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
 }
 
 /// Nothing: the sample may be published as far as the estimate goes.
-std::optional<Refusal> Pipeline::whyWithheld() const noexcept {
+std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   if (const auto distrust = trust_.refusal()) return distrust;
   if (hull_.pitch().looksLikeDegrees()) return Refusal::kDegrees;
   const bool settled = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());

@@ -65,7 +65,7 @@ class Pipeline {
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
   void follow(CrankFollower::Taken taken) noexcept;
-  std::optional<Refusal> whyWithheld() const noexcept;
+  std::optional<Refusal> whyWithheld() noexcept;
   HullWrench weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
   void fill(const LinksBeside& links, const DriveReaction& drive, const HullWrench& rod) noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
