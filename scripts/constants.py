@@ -69,8 +69,8 @@ def constants_of(path):
     for head in heads_of(code):
         for name, begin, end in _declarators(code, head.begin, head.end):
             value = re.compile(r"(?:\[\w*\])?\s*=?\s*").match(code, begin).end()
-            if not _NUMBER.search(code, value, end) or _UNIT.fullmatch(code[value:end].strip()):
-                continue  # made of others
+            if not _NUMBER.search(code, value, end) or _UNIT.fullmatch(code[value:end].strip()) or code[value:end] == "0":
+                continue  # made of others, or nothing to double
             spans = [(value, end)]
             if code[value] == "{":
                 spans = [m.span() for m in _NUMBER.finditer(code, value, end)]
@@ -98,24 +98,33 @@ def sources(root):
                 yield path
 
 
-def is_size(constant, code_of):
-    """A dimension at compile time: not tuned. code_of: text of each file."""
+def is_size(constant, code_of, seen):
+    """A dimension at compile time: not tuned. code_of: text of each file; seen: the headers that it includes."""
     if constant.head.kind == "default" or constant.head.type in ("double", "Doubt"):
         return False
-    seen_by = [constant.path] if constant.path.suffix == ".cpp" else list(code_of)
-    uses = re.compile(r"<[^<>;\n]*\b{0}\b[^;\n]*>|\w\[{0}\]|constexpr[^;\n]*=[^;\n]*\b{0}\b".format(constant.name))
-    return any(uses.search(code_of[path]) for path in seen_by if _sees(path, constant.path, code_of))
+    uses = re.compile(r"\w<[^<>;\n]*\b{0}\b|\w\[[^];\n]*\b{0}\b[^];\n]*\]\S* ?[;{{]|constexpr[^;\n]*=[^;\n]*\b{0}\b".format(constant.name))
+    return any(uses.search(code) for path, code in code_of.items() if path == constant.path or constant.path.name in seen[path])
 
 
-def _sees(path, header, code_of):
-    return path == header or f"/{header.name}" in path.read_text()
+def _includes(code_of):
+    """Names of the headers that each file includes, by whatever way."""
+    direct = {path: set(re.findall(r'#include "hammer_loads/\w+/(\w+\.h)"', path.read_text())) for path in code_of}
+    by_name = {path.name: names for path, names in direct.items()}
+    for names in direct.values():
+        todo = list(names)
+        while todo:
+            more = by_name.get(todo.pop(), set()) - names
+            names |= more
+            todo += more
+    return direct
 
 
 def all_constants(root):
     """(tuned, sizes)"""
     code_of = {path: without_comments(path.read_text()) for path in sources(root)}
+    seen = _includes(code_of)
     tuned, sizes = [], []
     for path in code_of:
         for constant in constants_of(path):
-            (sizes if is_size(constant, code_of) else tuned).append(constant)
+            (sizes if is_size(constant, code_of, seen) else tuned).append(constant)
     return tuned, sizes
