@@ -27,7 +27,7 @@ def soak_pipeline(results):
          f"{f['memory_first_quarter_MB']:.3f}, {f['memory_last_quarter_MB']:.3f} MB"],
         ["rms error of Fz over its peak, at first and at last",
          f"{f['first_rms_error']:.7f}, {f['last_rms_error']:.7f}"],
-        ["worst error likewise", f"{f['first_worst_error']:.6f}, {f['last_worst_error']:.6f}"],
+        ["worst error of them", f"{f['first_worst_error']:.6f}, {f['last_worst_error']:.6f}"],
     ])
 
 

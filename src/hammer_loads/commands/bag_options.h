@@ -1,6 +1,7 @@
 /// What commands that read a recording share: names of topics, and parameter files in place of a run_info.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -9,8 +10,12 @@
 
 namespace hammer_loads {
 
-inline Option addTopicOption(CommandLine& line, const char* option, std::string& name, const std::string& by_default) {
-  return line.option(option, name).type("TOPIC").showDefault("as in run_info, else " + by_default);
+inline Option addTopicOption(CommandLine& line, InputTopics& topics, std::string InputTopics::*topic) {
+  const auto* input =
+      std::find_if(kInputs.begin(), kInputs.end(), [topic](const InputName& one) { return one.topic == topic; });
+  return line.option(input->option, topics.*topic)
+      .type("TOPIC")
+      .showDefault(std::string("as in run_info, else ") + input->recorded);
 }
 
 /// Parameters and robot description of the job; what is wrong with their files, one line each.

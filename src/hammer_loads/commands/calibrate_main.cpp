@@ -76,8 +76,8 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(line, given.urdf);
   line["--urdf"].description("robot description, for the hull's pitch");
-  addTopicOption(line, "--crank-topic", job.topics.crank, kDefaultTopics.crank);
-  addTopicOption(line, "--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
+  addTopicOption(line, job.topics, &InputTopics::crank);
+  addTopicOption(line, job.topics, &InputTopics::joint_states);
   line.option("--rocker-inertia-deviation", given.rocker_deviation, "of the given rocker inertia, relative")
       .within(1e-6, 1.0, "")
       .showDefault();
@@ -86,8 +86,7 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
       "--boom", given.boom,
       "weighs the boom instead: from a recording of its free movement without hammering, with cylinder pressures; "
       "writes a boom file");
-  addTopicOption(line, "--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures)
-      .needs("--boom");
+  addTopicOption(line, job.topics, &InputTopics::cylinder_pressures).needs("--boom");
   line.option("--weight", given.boom_job.weight, "a known weight on the tool [kg]")
       .within(0.0, 1e5, "kg")
       .type("KG")

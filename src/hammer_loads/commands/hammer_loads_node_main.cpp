@@ -1,27 +1,20 @@
 /// hammer_loads_node: the live node.
 #include "hammer_loads/commands/node_usage.h"
+#include "hammer_loads/ros/hammer_outputs.h"
 #include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/ros/run_node.h"
+#include "hammer_loads/settings/input_topics.h"
 
 namespace {
 
-constexpr char kUsage[] =
+constexpr char kBegin[] =
     R"(Loads of a hydraulic hammer on its hull and boom, live. Needs a ROS master.
 Usage: rosrun hammer_loads hammer_loads_node [NAME:=TOPIC]... [_KEY:=VALUE]...
        roslaunch hammer_loads hammer_loads.launch [ARG:=VALUE]...    (--ros-args lists them)
 
 Topics in (remap them with NAME:=TOPIC)
-  crank         sensor_msgs/JointState  angle [rad] and speed [rad/s] of the joint `crank_joint`
-  joint_states  sensor_msgs/JointState  angles [rad] of the boom's joints
-  hull_imu      sensor_msgs/Imu         with hull_motion: imu or boom_stiffness: identified; acceleration less gravity
-                                        [m/s2], turning rate [rad/s]
-  cylinder_pressures  prefix of NAME/bore and NAME/rod, sensor_msgs/FluidPressure per cylinder: gauge [Pa]
-  /tf, /tf_static  where boom_wrench_links names frames outside the boom's chain
-
-Topics out (private: below the node's name)
-  ~hull_wrench ~hull_loads ~boom_wrench/LINK ~joint_loads ~section_loads ~joint_reactions ~boom_vibration
-  ~mechanism ~pin_forces ~pulse ~blow ~turn_loads ~load_cycles (latched) ~run_info (latched)  /diagnostics
-
+)";
+constexpr char kEnd[] = R"(
 Services
   ~log/start ~log/stop ~log/split  std_srvs/Trigger
   ~set_parameters                  dynamic_reconfigure: log_enabled, output_rate_Hz, tolerance, withhold_above
@@ -37,9 +30,41 @@ Parameters (private; SI units, each explained in its file in the package's direc
   -h, --help  print this    --version  print the version
 )";
 
+/// Text in lines of at most so many columns.
+std::string wrapped(const std::vector<std::string>& words) {
+  constexpr std::size_t kColumns = 104;
+  std::string text, line = " ";
+  for (const std::string& word : words) {
+    if (line.size() + 1 + word.size() > kColumns) text += line + "\n", line = " ";
+    line += " " + word;
+  }
+  return text + line + "\n";
+}
+
+std::string usage() {
+  std::string text = kBegin;
+  for (const hammer_loads::InputName& input : hammer_loads::kInputs) {
+    const std::string name = input.name;
+    text += "  " + name + std::string(name.size() < 13 ? 14 - name.size() : 2, ' ') + input.holds + "\n";
+  }
+  text +=
+      "  /tf, /tf_static  where boom_wrench_links names frames outside the boom's chain\n\n"
+      "Topics out (private: below the node's name)\n";
+  hammer_loads::HammerOutputs outputs;
+  outputs.boom_wrench.emplace_back("boom_wrench/LINK");
+  std::vector<std::string> names;
+  outputs.forEach([&names](const auto& output) {
+    using hammer_loads::Delivery;
+    const bool latched = output.delivery() == Delivery::kLatched || output.delivery() == Delivery::kLast;
+    names.push_back("~" + output.name() + (latched ? " (latched)" : ""));
+  });
+  names.push_back("/diagnostics");
+  return text + wrapped(names) + kEnd;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const auto code = hammer_loads::answerUsage(argc, argv, kUsage)) return *code;
+  if (const auto code = hammer_loads::answerUsage(argc, argv, usage().c_str())) return *code;
   return hammer_loads::runNode(argc, argv, "hammer_loads", hammer_loads::makeHammerNode);
 }

@@ -41,10 +41,7 @@ void addOptions(CommandLine& line, Arguments& given, BagJob& job) {
   addParamsOption(line, given.params);
   line["--params"].description("parameters instead of those of a run_info in the bags; may be repeated");
   addUrdfOption(line, given.urdf);
-  addTopicOption(line, "--crank-topic", job.topics.crank, kDefaultTopics.crank);
-  addTopicOption(line, "--joint-states-topic", job.topics.joint_states, kDefaultTopics.joint_states);
-  addTopicOption(line, "--imu-topic", job.topics.hull_imu, kDefaultTopics.hull_imu);
-  addTopicOption(line, "--pressures-topic", job.topics.cylinder_pressures, kDefaultTopics.cylinder_pressures);
+  for (const InputName& input : kInputs) addTopicOption(line, job.topics, input.topic);
   line["--pressures-topic"].description("prefix; the topics below it are NAME/bore and NAME/rod per cylinder");
   line.option("--output-prefix", job.output_prefix, "of every topic written").showDefault();
   line.flag("--smooth", job.smooth, "the crank by later samples as well: more exact than the live node can be")
@@ -108,12 +105,11 @@ struct Output {
 
 std::vector<Output> outputsOf(const Arguments& given, BagJob& job) {
   std::vector<Output> outputs;
-  const auto named = [](const std::string& given_name, const std::string& by_default) {
-    return given_name.empty() ? by_default : given_name;
-  };
-  const std::vector<std::string> topics{named(job.topics.crank, kDefaultTopics.crank),
-                                        named(job.topics.joint_states, kDefaultTopics.joint_states),
-                                        named(job.topics.hull_imu, kDefaultTopics.hull_imu)};
+  std::vector<std::string> topics;
+  for (const InputName& input : kInputs) {
+    const std::string& name = job.topics.*input.topic;
+    topics.push_back(name.empty() ? input.recorded : name);
+  }
   if (!given.tables.empty()) outputs.push_back({given.tables, job.tables, whyTablesMustStay});
   if (!given.no_bag)
     outputs.push_back(

@@ -10,6 +10,7 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/boom/contact_load.h"
 #include "hammer_loads/boom/gravity.h"
+#include "hammer_loads/boom/known.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/held_pose.h"
@@ -112,8 +113,13 @@ class BoomFollower {
 
   const BoomState& state() const noexcept { return state_; }
   bool known() const noexcept { return known_; }  ///< the last sample had no fault
+  /// Where the last sample's loads are from.
+  Known source() const noexcept {
+    if (tip_) return Known::kMeasured;
+    return boom_.vibration().followsReadings() ? Known::kFollowed : Known::kGiven;
+  }
   /// Measured pressures show the rock's force on the hull.
-  bool contactKnown() const noexcept { return known_ && tip_.has_value(); }
+  bool contactKnown() const noexcept { return known_ && source() == Known::kMeasured; }
   const Boom& boom() const noexcept { return boom_; }
   const JointBuffer& joints() const noexcept { return joints_; }
   const CylinderPressures& pressures() const noexcept { return pressures_; }

@@ -50,9 +50,10 @@ WrenchSpread BoomFollower::spreadWithRock(const WrenchSpread& of_crank) const no
 void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexcept {
   BoomDeviations& deviations = state_.deviations;
   const Wrench lasting = pressuresCount() ? trust_.notOfRock(striking_distance_, least_contact_) : Wrench{};
-  if (tip_) {
+  const Known known = source();
+  if (known == Known::kMeasured) {
     boom_.deviations(measuredErrors(lasting, rigid), deviations);
-  } else if (spread.count > 0 && boom_.vibration().followsReadings()) {
+  } else if (spread.count > 0 && known == Known::kFollowed) {
     boom_.deviations(followedErrors(spread, rigid), deviations);
   } else if (spread.count > 0) {
     boom_.deviations(spread_, spread, rigid, deviations);
@@ -74,7 +75,7 @@ void BoomFollower::findDeviations(const WrenchSpread& spread, bool rigid) noexce
 void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   const bool known = sample.spread.count > 0;
   const auto of = [&](const Eigen::Matrix3d& errors) {
-    boom_.deviations(tip_ ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : errors, state_.common);
+    boom_.deviations(source() == Known::kMeasured ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : errors, state_.common);
     for (std::size_t i = 0; pressuresCount() && i < boom_.cylinders().size(); ++i) {
       if (measured_.of(i)) state_.common.torque[boom_.cylinders()[i].joint()] = state_.common.cylinder[i] = 0.0;
     }

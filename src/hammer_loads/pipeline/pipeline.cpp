@@ -90,16 +90,40 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
     if (*refusal == Refusal::kDegrees || *refusal == Refusal::kSpeedUnit) turn_.discard();
     return refuse(*refusal);
   }
-
-  const StampNs stamp = result_.stamp = crank_.stamp();
-  const CrankFollower::Taken taken = crank_.take(hull_.predict(stamp));
+  result_.stamp = crank_.stamp();
+  const CrankFollower::Taken taken = crank_.take(hull_.predict(result_.stamp));
   if (taken == CrankFollower::Taken::kRefused) return refuse(Refusal::kImplausible);
+  follow(taken);
+  crank_.accept();
+  if (const auto refusal = whyWithheld()) return withhold(*refusal);
+
+  // The rod is rigid, or a spring that is followed: then crank, links, deviation and what rings are the spring's.
+  if (elastic_.runs()) result_.crank = elastic_.crank();
+  const CrankMotion motion = motionOf(result_.crank);
+  const LinksBeside links(model_, elastic_.runs() ? linksAt(model_, motion.angle) : crank_.step().links());
+  if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion)))
+    return withhold(Refusal::kImplausible);
+  const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
+  const HullWrench rod = weigh(links, drive);
+  followBoom(links, drive);
+  hullMovedAtBlow();
+  hull_.vibrates(result_.boom);
+  fill(links, drive, rod);
+  sampler_.sample(links, result_);
+  turn_.published(result_);
+  ++counts_.accepted;
+  counts_.beside_blow += result_.beside_blow;
+  followMisuse();
+  return result_;
+}
+
+/// Everything that goes on from sample to sample.
+void Pipeline::follow(CrankFollower::Taken taken) noexcept {
   result_.crank = crank_.estimate();
   result_.consistency = crank_.tracker().consistency();
-  if (taken == CrankFollower::Taken::kBegan) turn_.begin(stamp);
+  if (taken == CrankFollower::Taken::kBegan) turn_.begin(result_.stamp);
   followTrust(taken);
-  const std::optional<Refusal> distrust = trust_.refusal();
-  const bool counts = !distrust && trust_.hasRunUp() && !crank_.suspectsUnit();
+  const bool counts = !trust_.refusal() && trust_.hasRunUp() && !crank_.suspectsUnit();
   if (!counts) turn_.discard();
   if (taken == CrankFollower::Taken::kContinued) {
     passBlows();
@@ -112,23 +136,23 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
     rod_.rest();
     elastic_.rest();
   }
-  crank_.accept();
-  if (distrust) return withhold(*distrust);
-  if (hull_.pitch().looksLikeDegrees()) return withhold(Refusal::kDegrees);
-  if (crank_.tracker().isDoubtful()) return withhold(Refusal::kUnsettled);
-  if (!crank_.isSettled(hull_.motion().motion, turn_.peakForce())) return withhold(Refusal::kUnsettled);
+}
 
+/// Nothing: the sample may be published as far as the estimate goes.
+std::optional<Refusal> Pipeline::whyWithheld() noexcept {
+  if (const auto distrust = trust_.refusal()) return distrust;
+  if (hull_.pitch().looksLikeDegrees()) return Refusal::kDegrees;
+  const bool settled = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
+  return settled ? std::nullopt : std::make_optional(Refusal::kUnsettled);
+}
+
+/// Deviations, and whether the blow's side is certain. Returns what a rod that gives adds to the wrench.
+HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive) noexcept {
   const bool gives = elastic_.runs();
-  if (gives) result_.crank = elastic_.crank();
-  const CrankMotion motion = motionOf(result_.crank);
-  const LinksBeside links(model_, gives ? linksAt(model_, motion.angle) : crank_.step().links());
-  if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion)))
-    return withhold(Refusal::kImplausible);
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_deviation_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
   const HullWrench own = gives ? result_.deviation.common : result_.deviation.wrench;
-  const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
   const ElasticFollower::Beside rod =
       gives ? elastic_.beside(drive) : ElasticFollower::Beside{{}, rod_.wrench(links.here.links)};
   result_.rod_ring = rod.deviation;
@@ -136,25 +160,21 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.beside_blow =
       gives ? elastic_.isBesideBlow()
             : !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, result_.deviation.angle);
-  followBoom(links);
-  hullMovedAtBlow();
-  hull_.vibrates(result_.boom);
+  return rod.wrench;
+}
+
+/// Hull, links, wrench and pin forces.
+void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const HullWrench& rod) noexcept {
+  const CrankMotion motion = motionOf(result_.crank);
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
   result_.links = linkState(links.here.links, motion);
-  result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
+  result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod;
   // Of a rigid rod at every level: what the spring makes of them is not known here.
-  const CrankMotion rigid = gives ? motionOf(crank_.estimate()) : motion;
-  result_.pins = pinForces(model_, crank_.step().links().links, rigid, result_.hull.motion, settings_.near_blow,
-                           result_.deviation.angle);
+  result_.pins = pinForces(model_, crank_.step().links().links, motionOf(crank_.estimate()), result_.hull.motion,
+                           settings_.near_blow, result_.deviation.angle);
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
                 result_.deviation.wrench);
-  sampler_.sample(links, result_);
-  turn_.published(result_);
-  ++counts_.accepted;
-  counts_.beside_blow += result_.beside_blow;
-  followMisuse();
-  return result_;
 }
 
 void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
@@ -223,10 +243,9 @@ CrankLead Pipeline::crankLead(double speed) const noexcept {
   return {by_angle * errors.estimate()[0], by_angle * errors.deviation()[0]};
 }
 
-void Pipeline::followBoom(const LinksBeside& links) noexcept {
+void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) noexcept {
   result_.boom = nullptr;
   if (!boom_) return;
-  const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
   const CrankMotion crank = motionOf(result_.crank);
   const HullWrench motion = hullWrench(model_, drive, links.here.links, crank, Gravity{});
   const HullWrench displaced = displaced_links_.wrench(links.here.links, crank.speed, hull_.motion().motion);

@@ -64,12 +64,16 @@ class Pipeline {
   const SampleResult& refuse(Refusal refusal) noexcept;
   const SampleResult& withhold(Refusal refusal) noexcept;
   void restart(bool revised) noexcept;
+  void follow(CrankFollower::Taken taken) noexcept;
+  std::optional<Refusal> whyWithheld() noexcept;
+  HullWrench weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
+  void fill(const LinksBeside& links, const DriveReaction& drive, const HullWrench& rod) noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
   void followTrust(CrankFollower::Taken taken) noexcept;
   void hullMovedAtBlow() noexcept;
   double stampNoise() const noexcept;
   CrankLead crankLead(double speed) const noexcept;
-  void followBoom(const LinksBeside& links) noexcept;
+  void followBoom(const LinksBeside& links, const DriveReaction& drive) noexcept;
   void followMisuse() noexcept;
   void passBlows() noexcept;
   void followHull() noexcept;
@@ -90,7 +94,6 @@ class Pipeline {
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
   double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; see isPlausible()
-                          ///< that are not recognised yet, for instance
   bool boom_follows_{};   ///< the boom has had every step since the last restart
   SampleCounts counts_;
   SampleResult result_;

@@ -10,7 +10,7 @@
 #include "hammer_loads/ros/bag_warnings.h"
 #include "hammer_loads/ros/bag_writer.h"
 #include "hammer_loads/ros/grapple_bag_processing.h"
-#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
@@ -40,66 +40,39 @@ class HammerRuns {
       end();
       begin();
     }
-    const InputTopics& topics = flow_->settings().input_topics;
-    const std::string& topic = item.connection->topic;
-    if (topic == topics.crank || topic == topics.joint_states) return joints(item);
-    if (topic == "/tf" || topic == "/tf_static") return transforms(item, topic == "/tf_static");
-    if (topic == topics.hull_imu && flow_->needsImu()) {
-      item.to(imu_);
-      flow_->hullImu(imu_, item.time);
-    }
-    for (const HammerBridge::PressureTopic& pressure : pressures_) {
-      if (topic != pressure.name) continue;
-      item.to(pressure_);
-      flow_->cylinderPressure(pressure.cylinder, pressure.chamber, pressure_, item.time);
-    }
+    inputs_->forEach([&](auto& input) {
+      if (item.connection->topic != input.topic || !(input.wanted || input.latched)) return;
+      item.to(input.message);
+      ++input.count;
+      input.take(*flow_, input.message, item.time);
+      if (input.latched)
+        latched_.push_back([take = input.take, message = input.message, time = item.time](HammerBridge& flow) {
+          take(flow, message, time);
+        });
+    });
   }
 
   void end() {
     flow_->end();
     ++report_.runs;
-    report_.samples += samples_;
+    report_.samples += inputs_->crank.count;
     add(flow_->pipeline().counts(), report_.crank);
     report_.wrenches += flow_->outputs().hull_wrench.sent();
     report_.turns += flow_->outputs().blow.sent();
-    warnOfRun(*flow_, joints_came_, static_cast<std::int64_t>(report_.runs), report_.warnings);
+    warnOfRun(*flow_, inputs_->joint_states.count > 0, static_cast<std::int64_t>(report_.runs), report_.warnings);
     flow_->finishCount();
-    if (sinks_.tables != nullptr) sinks_.tables->end(*flow_, samples_);
+    if (sinks_.tables != nullptr) sinks_.tables->end(*flow_, inputs_->crank.count);
   }
 
  private:
-  /// Static transforms are the same in every run.
   void begin() {
-    joints_came_ = false;
-    samples_ = 0;
     const Settings& settings = runs_[next_++].settings;
     flow_.emplace(settings, make_);
-    pressures_ = HammerBridge::pressureTopics(settings, settings.input_topics.cylinder_pressures);
+    inputs_.emplace(settings);
     if (job_.pieces != nullptr) flow_->keepPieces(*job_.pieces);
     if (sinks_.bag != nullptr) attachToBag(flow_->outputs(), *sinks_.bag, job_.output_prefix, job_.pins);
     if (sinks_.tables != nullptr) sinks_.tables->begin(*flow_);
-    for (const auto& [time, message] : statics_) flow_->transforms(*message, true, time);
-  }
-
-  /// Both may be on one topic.
-  void joints(const BagMessage& item) {
-    const InputTopics& topics = flow_->settings().input_topics;
-    item.to(joints_);
-    if (item.connection->topic == topics.joint_states) {
-      joints_came_ = true;
-      flow_->jointStates(joints_, item.time);
-    }
-    if (item.connection->topic != topics.crank) return;
-    ++samples_;
-    flow_->crank(joints_, item.time);
-  }
-
-  void transforms(const BagMessage& item, bool is_static) {
-    if (!is_static && !flow_->needsTransforms()) return;
-    const auto message = boost::make_shared<tf2_msgs::TFMessage>();
-    item.to(*message);
-    if (is_static) statics_.emplace_back(item.time, message);
-    flow_->transforms(*message, is_static, item.time);
+    for (const auto& take : latched_) take(*flow_);
   }
 
   const std::vector<BagRun>& runs_;
@@ -108,14 +81,9 @@ class HammerRuns {
   const TrackerMaker make_;
   BagReport& report_;
   std::size_t next_{};
-  bool joints_came_{};       ///< in this run
-  std::uint64_t samples_{};  ///< messages with crank samples, likewise
   std::optional<HammerBridge> flow_;
-  std::vector<HammerBridge::PressureTopic> pressures_;
-  sensor_msgs::JointState joints_;  ///< memory for messages
-  sensor_msgs::Imu imu_;
-  sensor_msgs::FluidPressure pressure_;
-  std::vector<std::pair<ros::Time, tf2_msgs::TFMessage::ConstPtr>> statics_;
+  std::optional<HammerInputs> inputs_;                       ///< of this run
+  std::vector<std::function<void(HammerBridge&)>> latched_;  ///< messages that are the same in every run
 };
 
 /// The pass ahead of the one that writes: the live filter on the same messages.
@@ -156,13 +124,10 @@ Wanted wantedTopics(const std::vector<BagRun>& runs, bool hammer, const std::str
   if (!slider_topic.empty()) wanted[slider_topic] = typeOf<sensor_msgs::JointState>();
   if (!hammer) return wanted;
   for (const BagRun& run : runs) {
-    const InputTopics& topics = run.settings.input_topics;
-    for (const auto& pressure : HammerBridge::pressureTopics(run.settings, topics.cylinder_pressures))
-      wanted[pressure.name] = typeOf<sensor_msgs::FluidPressure>();
-    if (needsImu(run.settings.pipeline)) wanted[topics.hull_imu] = typeOf<sensor_msgs::Imu>();
-    wanted[topics.crank] = wanted[topics.joint_states] = typeOf<sensor_msgs::JointState>();
-    if (!run.settings.pipeline.boom_wrench_links.empty())
-      wanted["/tf"] = wanted["/tf_static"] = typeOf<tf2_msgs::TFMessage>();
+    HammerInputs(run.settings).forEach([&wanted](const auto& input) {
+      using Message = typename std::decay_t<decltype(input)>::Message;
+      if (input.wanted) wanted.emplace(input.topic, typeOf<Message>());
+    });
   }
   return wanted;
 }

@@ -31,9 +31,6 @@ struct BagJob {
   std::string grapple_prefix{"/grapple"};
 };
 
-inline const InputTopics kDefaultTopics{"/hammer/crank", "/joint_states", "/hammer/hull_imu",
-                                        "/hammer/cylinder_pressures"};
-
 /// Reads the inputs' messages in record order and writes every output at the record time of the input that caused it.
 /// A problem with a file begins with its name in the job.
 /// progress: part done in [0, 1]. Returns what went wrong, one line each; nothing if all is well. Then the report is

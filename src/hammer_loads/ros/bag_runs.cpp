@@ -3,11 +3,10 @@
 #include <hammer_loads/RunInfo.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <map>
 #include <tuple>
 
-#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/hammer_parameters.h"
 #include "hammer_loads/settings/recorded_settings.h"
 #include "hammer_loads/settings/yaml_value.h"
@@ -60,21 +59,13 @@ RunInfos readRunInfos(const BagInputs& inputs, std::vector<BagWarning>& warnings
   return found;
 }
 
-/// The first name that is known.
-std::string firstOf(std::initializer_list<std::string> names) {
-  const auto known = std::find_if(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
-  return known == names.end() ? "" : *known;
-}
-
 /// The job's names go over those of the parameters, these over the recorded ones.
 Settings withTopics(Settings settings, const InputTopics& given, const InputTopics& recorded = {}) {
-  const InputTopics& known = settings.input_topics;
-  const InputTopics topics{
-      firstOf({given.crank, known.crank, recorded.crank, kDefaultTopics.crank}),
-      firstOf({given.joint_states, known.joint_states, recorded.joint_states, kDefaultTopics.joint_states}),
-      firstOf({given.hull_imu, known.hull_imu, recorded.hull_imu, kDefaultTopics.hull_imu}),
-      firstOf({given.cylinder_pressures, known.cylinder_pressures, recorded.cylinder_pressures,
-               kDefaultTopics.cylinder_pressures})};
+  const InputTopics topics = inputTopics([&](const InputName& input) -> std::string {
+    for (const InputTopics& known : {given, settings.input_topics, recorded})
+      if (!(known.*input.topic).empty()) return known.*input.topic;
+    return input.recorded;
+  });
   return withInputTopics(std::move(settings), topics);
 }
 
@@ -108,10 +99,8 @@ Checked<std::vector<BagRun>> runOfJob(const BagJob& job, const RunInfos& infos, 
 
 /// First record time of an input of the run; nothing if there is none.
 std::optional<ros::Time> firstInput(const BagInputs& inputs, const Settings& settings) {
-  const InputTopics& topics = settings.input_topics;
-  std::set<std::string> names{topics.crank, topics.joint_states, topics.hull_imu};
-  for (const auto& pressure : HammerBridge::pressureTopics(settings, topics.cylinder_pressures))
-    names.insert(pressure.name);
+  std::set<std::string> names;
+  HammerInputs(settings).forEachSensor([&names](const auto& input) { names.insert(input.topic); });
   BagMessages messages = inputs.messagesOn(names);
   const BagMessage* first = messages.next();
   return first == nullptr ? std::nullopt : std::make_optional(first->time);

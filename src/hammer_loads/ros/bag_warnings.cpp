@@ -14,17 +14,18 @@
 namespace hammer_loads {
 namespace {
 
-template <typename Message>
-std::pair<const std::string, std::string> definition() {
-  return {typeOf<Message>(), ros::message_traits::md5sum<Message>()};
-}
-
-/// MD5 sum of each type in this version.
+/// MD5 sum of the type of each output in this version. A run_info of another one says so itself.
 const std::map<std::string, std::string>& definitions() {
-  static const std::map<std::string, std::string> known{
-      definition<Blow>(),           definition<BoomVibration>(), definition<HullLoads>(), definition<JointLoads>(),
-      definition<JointReactions>(), definition<SectionLoads>(),  definition<PinForces>(), definition<Pulse>(),
-      definition<TurnLoads>(),      definition<LoadCycles>()};
+  static const std::map<std::string, std::string> known = [] {
+    std::map<std::string, std::string> of_type;
+    HammerOutputs().forEach([&of_type](const auto& output) {
+      using Message = typename std::decay_t<decltype(output)>::Message;
+      const bool own = typeOf<Message>().rfind("hammer_loads/", 0) == 0;
+      if (own && output.delivery() != Delivery::kLatched)
+        of_type[typeOf<Message>()] = ros::message_traits::md5sum<Message>();
+    });
+    return of_type;
+  }();
   return known;
 }
 

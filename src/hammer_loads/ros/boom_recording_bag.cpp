@@ -9,7 +9,7 @@
 #include <set>
 
 #include "hammer_loads/linkage/crank_angle.h"
-#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/settings/yaml_value.h"
 
 namespace hammer_loads {
@@ -41,7 +41,7 @@ class BoomReader {
       crank_ = message.position[i];
     }
   }
-  void pressure(const sensor_msgs::FluidPressure& message, const HammerBridge::PressureTopic& topic) {
+  void pressure(const sensor_msgs::FluidPressure& message, const PressureTopic& topic) {
     add(recording_.pressure[topic.cylinder][static_cast<std::size_t>(topic.chamber)], message.header.stamp,
         message.fluid_pressure);
   }
@@ -65,8 +65,7 @@ class BoomReader {
 };
 
 /// Joints of cylinders and pressures that were never heard are a problem; other joints may rest at zero.
-std::string whatIsMissing(const Settings& settings, const std::vector<HammerBridge::PressureTopic>& topics,
-                          BoomBag& bag) {
+std::string whatIsMissing(const Settings& settings, const std::vector<PressureTopic>& topics, BoomBag& bag) {
   const Chain& chain = settings.boom->chain();
   std::set<int> held;
   for (const Cylinder& cylinder : settings.boom->cylinders()) held.insert(cylinder.joint());
@@ -80,7 +79,7 @@ std::string whatIsMissing(const Settings& settings, const std::vector<HammerBrid
     else
       name(bag.silent, joint);
   }
-  for (const HammerBridge::PressureTopic& topic : topics)
+  for (const PressureTopic& topic : topics)
     if (bag.recording.pressure[topic.cylinder][static_cast<std::size_t>(topic.chamber)].time.empty())
       name(missing, topic.name);
   return missing;
@@ -91,11 +90,10 @@ std::string whatIsMissing(const Settings& settings, const std::vector<HammerBrid
 BoomBag readBoomBag(const BagInputs& inputs, const Settings& settings, const Progress& progress) {
   BoomBag result;
   const std::string &joints = settings.input_topics.joint_states, &crank = settings.input_topics.crank;
-  const std::vector<HammerBridge::PressureTopic> topics =
-      HammerBridge::pressureTopics(settings, settings.input_topics.cylinder_pressures);
-  std::map<std::string, const HammerBridge::PressureTopic*> pressures;
+  const std::vector<PressureTopic> topics = pressureTopics(settings);
+  std::map<std::string, const PressureTopic*> pressures;
   std::set<std::string> wanted{joints, crank};
-  for (const HammerBridge::PressureTopic& topic : topics) pressures[topic.name] = &topic, wanted.insert(topic.name);
+  for (const PressureTopic& topic : topics) pressures[topic.name] = &topic, wanted.insert(topic.name);
   BoomReader reader(settings, result.recording);
   sensor_msgs::JointState state;
   sensor_msgs::FluidPressure pressure;

@@ -111,19 +111,6 @@ void HammerBridge::cylinderPressure(std::size_t cylinder, Chamber chamber, const
   pipeline_->cylinderPressure(stampOf(message.header.stamp), cylinder, chamber, message.fluid_pressure);
 }
 
-std::vector<HammerBridge::PressureTopic> HammerBridge::pressureTopics(const Settings& settings,
-                                                                      const std::string& prefix) {
-  std::vector<PressureTopic> topics;
-  if (!settings.boom) return topics;
-  const std::vector<Cylinder>& cylinders = settings.boom->cylinders();
-  for (std::size_t i = 0; i < cylinders.size(); ++i) {
-    const std::string name = prefix + "/" + cylinders[i].parameters().name;
-    topics.push_back({name + "/bore", i, Chamber::kBore});
-    topics.push_back({name + "/rod", i, Chamber::kRod});
-  }
-  return topics;
-}
-
 void HammerBridge::transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time) {
   if (!frame_wrenches_) return;
   if (!is_static) beginRun(record_time);

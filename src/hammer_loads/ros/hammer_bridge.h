@@ -36,16 +36,6 @@ class HammerBridge {
                         const ros::Time& record_time);
   /// A message of /tf, or of /tf_static. The latter begin no run: they are the same in every run.
   void transforms(const tf2_msgs::TFMessage& message, bool is_static, const ros::Time& record_time);
-  bool needsImu() const { return hammer_loads::needsImu(settings_.pipeline); }
-  /// Topics of the pressures below `prefix`, and whose they are; none without a boom on cylinders.
-  struct PressureTopic {
-    std::string name;
-    std::size_t cylinder{};
-    Chamber chamber{};
-  };
-  static std::vector<PressureTopic> pressureTopics(const Settings& settings, const std::string& prefix);
-  /// Whether some boom_wrench link is a TF frame: then transforms() is needed.
-  bool needsTransforms() const { return frame_wrenches_.has_value(); }
   /// No more inputs come: sends the blow that is still being measured, at the record time of the last crank message.
   void end();
   /// A new run begins with the next input, in the state of a bridge just made; counts go on. For a time that jumped and

@@ -14,9 +14,10 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
     : log_(std::move(log)),
       ledger_(settings.life.ledger.empty() ? nullptr : std::make_unique<life::LedgerThread>(settings.life.ledger)),
       bridge_(settings),
+      inputs_(settings),
       run_info_(private_node.advertise<RunInfo>("run_info", 1, true)),
       config_(configInForce(log_->isRecording())),
-      diagnostics_(node, private_node, bridge_, *log_, ledger_.get()),
+      diagnostics_(node, private_node, bridge_, inputs_, *log_, ledger_.get()),
       reconfigure_(reconfigure_mutex_, private_node),
       log_services_(
           private_node, *log_, [this] { bridge_.finishRun(); }, [this] { beginRun(); }, [this] { logSwitched(); }) {
@@ -25,11 +26,12 @@ HammerLoadsNode::HammerLoadsNode(ros::NodeHandle node, ros::NodeHandle private_n
   announceRun();
   reconfigure_.updateConfig(config_);
   reconfigure_.setCallback([this](HammerLoadsConfig& config, std::uint32_t) { onReconfigure(config); });
-  subscribe(node);
+  inputs_.forEach([this, &node](auto& input) { subscribe(node, input); });
   sayWhatRuns();
 }
 
 HammerLoadsNode::~HammerLoadsNode() {
+  inputs_.forEach([](auto& input) { input.subscriber.shutdown(); });
   bridge_.finishRun();
   if (!ledger_) return;
   const std::optional<std::string> problem = ledger_->close();
@@ -40,40 +42,27 @@ HammerLoadsNode::~HammerLoadsNode() {
   if (!ros::ok()) std::cerr << text << std::endl;  // the console is down
 }
 
-void HammerLoadsNode::subscribe(ros::NodeHandle& node) {
-  const auto no_delay = ros::TransportHints().tcpNoDelay();
-  // Joint states first: where both arrive on one topic, a sample's own pitch counts for it.
-  joint_states_ = node.subscribe("joint_states", kTopicQueue, &HammerLoadsNode::onJointStates, this, no_delay);
-  if (bridge_.needsImu()) hull_imu_ = node.subscribe("hull_imu", kTopicQueue, &HammerLoadsNode::onImu, this, no_delay);
-  subscribePressures(node);
-  const auto transforms = [this](bool is_static) {
-    return boost::function<void(const Event<tf2_msgs::TFMessage>&)>(
-        [this, is_static](const Event<tf2_msgs::TFMessage>& event) { onTransforms(event, is_static); });
-  };
-  using Given = const Event<tf2_msgs::TFMessage>&;
-  // A log stands alone: who replays it needs the static transforms, even if this node does not.
-  tf_static_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf_static", kTopicQueue, transforms(true));
-  if (bridge_.needsTransforms())
-    tf_ = node.subscribe<tf2_msgs::TFMessage, Given>("/tf", kTopicQueue, transforms(false), {}, no_delay);
-  // The crank last: a player of bags that waits for its subscriber then finds all others.
-  crank_ = node.subscribe("crank", kTopicQueue, &HammerLoadsNode::onCrank, this, no_delay);
-  joint_states_topic_ = joint_states_.getTopic();
-  crank_topic_ = crank_.getTopic();
-  hull_imu_topic_ = hull_imu_.getTopic();
-  one_topic_ = joint_states_topic_ == crank_topic_;
-  diagnostics_.watch({&crank_, &joint_states_, &hull_imu_});
+template <typename Message>
+void HammerLoadsNode::subscribe(ros::NodeHandle& node, Input<Message>& input) {
+  using Given = const Event<Message>&;
+  // A log stands alone: who replays it needs the latched messages, even if this node does not.
+  if (!input.wanted && !input.latched) return;
+  const boost::function<void(Given)> arrived = [this, &input](Given event) { take(input, event); };
+  input.subscriber = node.subscribe<Message, Given>(input.topic, kTopicQueue, arrived, {},
+                                                    ros::TransportHints().tcpNoDelay(!input.latched));
+  input.topic = input.subscriber.getTopic();
 }
 
-void HammerLoadsNode::subscribePressures(ros::NodeHandle& node) {
-  const std::string prefix = node.resolveName("cylinder_pressures");
-  pressure_topics_ = HammerBridge::pressureTopics(bridge_.settings(), prefix);
-  using Given = const Event<sensor_msgs::FluidPressure>&;
-  for (std::size_t i = 0; i < pressure_topics_.size(); ++i) {
-    const boost::function<void(Given)> take = [this, i](Given event) { onPressure(i, event); };
-    pressures_.push_back(node.subscribe<sensor_msgs::FluidPressure, Given>(pressure_topics_[i].name, kTopicQueue, take,
-                                                                           {}, ros::TransportHints().tcpNoDelay()));
-    pressure_topics_[i].name = pressures_.back().getTopic();
-  }
+template <typename Message>
+void HammerLoadsNode::take(Input<Message>& input, const Event<Message>& event) {
+  // A message on the topic of both has come as joint states already.
+  const bool again = static_cast<const void*>(&input) == &inputs_.crank && input.topic == inputs_.joint_states.topic;
+  const ros::Time record_time = again ? clock_.last() : recordTime(event.getReceiptTime());
+  const Message& message = *event.getConstMessage();
+  input.arrived = std::chrono::steady_clock::now();
+  if (input.latched) log_->writeLatched(input.topic, record_time, message, event.getPublisherName());
+  if (!input.latched && !again) log_->write(input.topic, record_time, message);
+  input.take(bridge_, message, record_time);
 }
 
 void HammerLoadsNode::sayWhatRuns() const {
@@ -84,8 +73,9 @@ void HammerLoadsNode::sayWhatRuns() const {
            nameOf(settings.pipeline.level), notes.c_str());
   ROS_INFO("log: %s", log_->isRecording() ? ("to " + settings.log.directory).c_str() : "not recording");
   if (ledger_) ROS_INFO("ledger of load cycles: %s", ledger_->path().c_str());
-  ROS_INFO("waits for %s with joint %s, %s%s", crank_topic_.c_str(), settings.pipeline.crank_joint.c_str(),
-           joint_states_topic_.c_str(), bridge_.needsImu() ? (", " + hull_imu_topic_).c_str() : "");
+  const std::string imu = inputs_.hull_imu.wanted ? ", " + inputs_.hull_imu.topic : "";
+  ROS_INFO("waits for %s with joint %s, %s%s", inputs_.crank.topic.c_str(), settings.pipeline.crank_joint.c_str(),
+           inputs_.joint_states.topic.c_str(), imu.c_str());
 }
 
 /// Late subscribers get the latched message; the log gets its own with the first input.
@@ -153,41 +143,6 @@ void HammerLoadsNode::logSwitched() {
   reconfigure_.updateConfig(config_);
 }
 
-void HammerLoadsNode::onJointStates(const Event<JointState>& event) {
-  const ros::Time record_time = recordTime(event.getReceiptTime());
-  diagnostics_.jointStatesArrived();
-  log_->write(joint_states_topic_, record_time, *event.getConstMessage());
-  bridge_.jointStates(*event.getConstMessage(), record_time);
-}
-
-void HammerLoadsNode::onCrank(const Event<JointState>& event) {
-  const ros::Time record_time = one_topic_ ? clock_.last() : recordTime(event.getReceiptTime());
-  diagnostics_.crankArrived();
-  if (!one_topic_) log_->write(crank_topic_, record_time, *event.getConstMessage());
-  bridge_.crank(*event.getConstMessage(), record_time);
-}
-
-void HammerLoadsNode::onImu(const Event<sensor_msgs::Imu>& event) {
-  const ros::Time record_time = recordTime(event.getReceiptTime());
-  log_->write(hull_imu_topic_, record_time, *event.getConstMessage());
-  bridge_.hullImu(*event.getConstMessage(), record_time);
-}
-
-void HammerLoadsNode::onPressure(std::size_t topic, const Event<sensor_msgs::FluidPressure>& event) {
-  const ros::Time record_time = recordTime(event.getReceiptTime());
-  const HammerBridge::PressureTopic& from = pressure_topics_[topic];
-  log_->write(from.name, record_time, *event.getConstMessage());
-  bridge_.cylinderPressure(from.cylinder, from.chamber, *event.getConstMessage(), record_time);
-}
-
-void HammerLoadsNode::onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static) {
-  const ros::Time record_time = recordTime(event.getReceiptTime());
-  const tf2_msgs::TFMessage& message = *event.getConstMessage();
-  if (is_static) log_->writeLatched("/tf_static", record_time, message, event.getPublisherName());
-  if (!is_static) log_->write("/tf", record_time, message);
-  bridge_.transforms(message, is_static, record_time);
-}
-
 ros::Time HammerLoadsNode::recordTime(const ros::Time& arrival) {
   const RecordClock::Tick tick = clock_.next(arrival);
   if (tick.ran_back) {
@@ -204,8 +159,7 @@ std::unique_ptr<LiveNode> makeHammerNode(const ros::NodeHandle& node, const ros:
   if (!settings.value) return nullptr;
   auto log = makeNodeLog(settings.value->log, private_node.getNamespace(), problems);
   if (!log) return nullptr;
-  const InputTopics topics{node.resolveName("crank"), node.resolveName("joint_states"), node.resolveName("hull_imu"),
-                           node.resolveName("cylinder_pressures")};
+  const InputTopics topics = inputTopics([&node](const InputName& input) { return node.resolveName(input.name); });
   return std::make_unique<HammerLoadsNode>(node, private_node, withInputTopics(*settings.value, topics),
                                            std::move(log));
 }

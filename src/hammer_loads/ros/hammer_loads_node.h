@@ -6,7 +6,6 @@
 #include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-#include <ros/subscriber.h>
 
 #include <boost/thread/recursive_mutex.hpp>
 #include <memory>
@@ -16,7 +15,7 @@
 #include "hammer_loads/life/ledger_thread.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/log/record_clock.h"
-#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/hammer_inputs.h"
 #include "hammer_loads/ros/live_node.h"
 #include "hammer_loads/ros/log_services.h"
 #include "hammer_loads/ros/node_diagnostics.h"
@@ -37,10 +36,11 @@ class HammerLoadsNode final : public LiveNode {
  private:
   template <typename Message>
   using Event = ros::MessageEvent<const Message>;
-  using JointState = sensor_msgs::JointState;
 
-  void subscribe(ros::NodeHandle& node);
-  void subscribePressures(ros::NodeHandle& node);
+  template <typename Message>
+  void subscribe(ros::NodeHandle& node, Input<Message>& input);
+  template <typename Message>
+  void take(Input<Message>& input, const Event<Message>& event);
   void sayWhatRuns() const;
   void announceRun();
   void beginRun();
@@ -48,29 +48,20 @@ class HammerLoadsNode final : public LiveNode {
   void switchLog(bool on);
   void logSwitched();
   HammerLoadsConfig configInForce(bool log_enabled) const;
-  void onCrank(const Event<JointState>& event);
-  void onJointStates(const Event<JointState>& event);
-  void onImu(const Event<sensor_msgs::Imu>& event);
-  void onPressure(std::size_t topic, const Event<sensor_msgs::FluidPressure>& event);
-  void onTransforms(const Event<tf2_msgs::TFMessage>& event, bool is_static);
   ros::Time recordTime(const ros::Time& arrival);
 
   // What is used stands before what uses it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
   std::unique_ptr<life::LedgerThread> ledger_;  ///< null: none is kept
   HammerBridge bridge_;
+  HammerInputs inputs_;
   RecordClock clock_;
-  bool one_topic_{};  ///< crank and joint states arrive on the same topic
   ros::Publisher run_info_;
   HammerLoadsConfig config_;  ///< in force
   NodeDiagnostics diagnostics_;
   boost::recursive_mutex reconfigure_mutex_;
   dynamic_reconfigure::Server<HammerLoadsConfig> reconfigure_;
   LogServices log_services_;
-  std::vector<ros::Subscriber> pressures_;
-  std::vector<HammerBridge::PressureTopic> pressure_topics_;  ///< resolved
-  ros::Subscriber joint_states_, crank_, hull_imu_, tf_, tf_static_;
-  std::string joint_states_topic_, crank_topic_, hull_imu_topic_;  ///< resolved
 };
 
 }  // namespace hammer_loads

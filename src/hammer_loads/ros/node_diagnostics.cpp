@@ -16,8 +16,9 @@ using diagnostic_msgs::DiagnosticStatus;
 }  // namespace
 
 NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
-                                 const BagLog& log, const life::LedgerThread* ledger)
+                                 const HammerInputs& inputs, const BagLog& log, const life::LedgerThread* ledger)
     : bridge_(bridge),
+      inputs_(inputs),
       log_(log),
       ledger_(ledger),
       // The name space is the node's own, a nodelet's in a manager as well.
@@ -28,7 +29,7 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
   updater_.add("hull pitch", this, &NodeDiagnostics::describePitch);
   if (bridge.pipeline().boom()) updater_.add("boom", this, &NodeDiagnostics::describeBoom);
   if (bridge.frameWrenches()) updater_.add("frames", this, &NodeDiagnostics::describeFrames);
-  if (bridge.needsImu()) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
+  if (inputs.hull_imu.wanted) updater_.add("hull imu", this, &NodeDiagnostics::describeImu);
   updater_.add("model", this, &NodeDiagnostics::describeModel);
   updater_.add("misuse", this, &NodeDiagnostics::describeMisuse);
   updater_.add("life", [this](Status& status) { describeLife(bridge_.life(), ledger_, status); });
@@ -59,12 +60,11 @@ std::vector<Warning> NodeDiagnostics::warnings() const {
   if (const auto warning = ledgerWarning(ledger_)) warnings.push_back(*warning);
   if (!bridge_.settings().hammer_given)
     warnings.push_back({"hammer", "no hammer file was given: the masses and lengths of the MO-100 are used", true});
-  for (const ros::Subscriber* input : inputs_) {
-    if (input->getNumPublishers() > 1)
-      warnings.push_back(
-          {"publishers",
-           input->getTopic() + ": " + std::to_string(input->getNumPublishers()) + " publishers, must be one", true});
-  }
+  inputs_.forEachSensor([&warnings](const auto& input) {
+    const std::uint32_t count = input.subscriber.getNumPublishers();
+    if (count > 1)
+      warnings.push_back({"publishers", input.topic + ": " + std::to_string(count) + " publishers, must be one", true});
+  });
   return warnings;
 }
 
@@ -82,8 +82,8 @@ void NodeDiagnostics::describeCrank(Status& status) {
   const SampleCounts counts = pipeline.counts();
   const Clock::time_point now = Clock::now();
   const double elapsed = secondsBetween(last_report_, now);
-  const double age = secondsBetween(last_crank_, now);
-  const bool heard = last_crank_ != Clock::time_point{};
+  const double age = secondsBetween(inputs_.crank.arrived, now);
+  const bool heard = inputs_.crank.arrived != Clock::time_point{};
   const std::uint64_t accepted = counts.accepted - last_counts_.accepted;
   const std::uint64_t refused = counts.refusedTotal() - last_counts_.refusedTotal();
   if (!heard) {
@@ -147,14 +147,14 @@ void NodeDiagnostics::describePitch(Status& status) {
   }
   status.add("pitch [rad]", pitch.pitch());
   status.add("refused: not finite", pitch.refused());
-  if (last_joint_states_ != Clock::time_point{})
-    status.add("age of the last joint states [s]", secondsBetween(last_joint_states_, Clock::now()));
+  if (inputs_.joint_states.arrived != Clock::time_point{})
+    status.add("age of the last joint states [s]", secondsBetween(inputs_.joint_states.arrived, Clock::now()));
 }
 
 void NodeDiagnostics::describeImu(Status& status) {
   const ImuCounts& counts = bridge_.pipeline().hull().imuCounts();
   if (bridge_.pipeline().hull().imuTrust().isLost()) {
-    status.summary(DiagnosticStatus::WARN, "not used: no readings of a unit on this hull as the parameters have it");
+    status.summary(DiagnosticStatus::WARN, "not used: readings do not fit an IMU mounted as imu_* says");
   } else if (counts.missed > last_imu_counts_.missed) {
     status.summary(
         DiagnosticStatus::WARN,
@@ -201,7 +201,7 @@ void NodeDiagnostics::describeBoom(Status& status) {
   const BoomFollower& boom = *bridge_.pipeline().boom();
   const BoomState& state = boom.state();
   // Joints are judged at the last crank sample: a crank that has stopped is no fault of theirs.
-  const bool none_yet = last_crank_ == Clock::time_point{};
+  const bool none_yet = inputs_.crank.arrived == Clock::time_point{};
   const auto complaints = state.fault ? boom.joints().complaints(state.stamp) : std::vector<std::string>{};
   if (none_yet) {
     status.summary(DiagnosticStatus::WARN, "waits for crank samples");

@@ -3,7 +3,6 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
-#include <ros/subscriber.h>
 
 #include <chrono>
 #include <cstdint>
@@ -14,7 +13,7 @@
 #include "hammer_loads/life/ledger_thread.h"
 #include "hammer_loads/log/bag_log.h"
 #include "hammer_loads/pipeline/warnings.h"
-#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/ros/hammer_inputs.h"
 
 namespace hammer_loads {
 
@@ -22,16 +21,10 @@ namespace hammer_loads {
 /// model, boom, log health.
 class NodeDiagnostics {
  public:
+  /// inputs: each of a sensor should have one publisher; the age of the crank's decides whether the node is stale.
   /// ledger: null where none is kept.
-  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge, const BagLog& log,
-                  const life::LedgerThread* ledger);
-
-  /// Topics that should have one publisher each; those without a topic are ignored. They must outlive this or its
-  /// reports.
-  void watch(std::vector<const ros::Subscriber*> inputs) { inputs_ = std::move(inputs); }
-  /// An input arrived; its age decides whether the node is stale.
-  void crankArrived() { last_crank_ = Clock::now(); }
-  void jointStatesArrived() { last_joint_states_ = Clock::now(); }
+  NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const HammerBridge& bridge,
+                  const HammerInputs& inputs, const BagLog& log, const life::LedgerThread* ledger);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -49,10 +42,10 @@ class NodeDiagnostics {
   void describeMisuse(Status& status);
 
   const HammerBridge& bridge_;
+  const HammerInputs& inputs_;
   const BagLog& log_;
   const life::LedgerThread* ledger_;
-  std::vector<const ros::Subscriber*> inputs_;
-  Clock::time_point last_crank_{}, last_joint_states_{}, last_report_{Clock::now()};
+  Clock::time_point last_report_{Clock::now()};
   SampleCounts last_counts_;
   ImuCounts last_imu_counts_;
   std::set<std::string> said_;  ///< keys of warnings on the console already

@@ -2,6 +2,7 @@
 /// process_bag finds them in the node's log.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,38 @@ struct InputTopics {
   std::string cylinder_pressures{};  ///< prefix: its topics are /NAME/bore and /NAME/rod below it, per cylinder
 };
 
-/// Takes the keys `input_topic_crank`, `input_topic_joint_states`, `input_topic_hull_imu` and
-/// `input_topic_cylinder_pressures`, none of them required, out of the parameters.
+/// What an input is called where.
+struct InputName {
+  std::string InputTopics::*topic;
+  const char* name;      ///< of a node's topic, to be remapped
+  const char* key;       ///< of the parameters in a run_info
+  const char* recorded;  ///< topic of a bag that says nothing else
+  const char* option;    ///< of the commands that read bags
+  const char* holds;     ///< type of its messages, and what is in them; lines of a usage text
+};
+
+inline constexpr std::array<InputName, 4> kInputs{{
+    {&InputTopics::crank, "crank", "input_topic_crank", "/hammer/crank", "--crank-topic",
+     "sensor_msgs/JointState  angle [rad] and speed [rad/s] of the joint `crank_joint`"},
+    {&InputTopics::joint_states, "joint_states", "input_topic_joint_states", "/joint_states", "--joint-states-topic",
+     "sensor_msgs/JointState  angles [rad] of the boom's joints"},
+    {&InputTopics::hull_imu, "hull_imu", "input_topic_hull_imu", "/hammer/hull_imu", "--imu-topic",
+     "sensor_msgs/Imu         with hull_motion: imu or boom_stiffness: identified; acceleration less gravity\n"
+     "                                        [m/s2], turning rate [rad/s]"},
+    {&InputTopics::cylinder_pressures, "cylinder_pressures", "input_topic_cylinder_pressures",
+     "/hammer/cylinder_pressures", "--pressures-topic",
+     "prefix of NAME/bore and NAME/rod, sensor_msgs/FluidPressure per cylinder: gauge [Pa]"},
+}};
+
+/// What `nameOf` makes of each row of kInputs.
+template <typename NameOf>
+InputTopics inputTopics(const NameOf& nameOf) {
+  InputTopics topics;
+  for (const InputName& input : kInputs) topics.*input.topic = nameOf(input);
+  return topics;
+}
+
+/// Takes the keys of kInputs, none of them required, out of the parameters.
 InputTopics takeInputTopics(ParameterMap& parameters, std::vector<std::string>& problems);
 
 /// The same keys as YAML, one a line; none for a topic that is not known.

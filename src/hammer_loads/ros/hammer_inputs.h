@@ -1,0 +1,81 @@
+/// Every topic that the hammer's loads are computed from: the twin of HammerOutputs.
+#pragma once
+
+#include <ros/subscriber.h>
+#include <sensor_msgs/FluidPressure.h>
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hammer_loads/ros/hammer_bridge.h"
+#include "hammer_loads/settings/load.h"
+
+namespace hammer_loads {
+
+template <typename MessageType>
+struct Input {
+  using Message = MessageType;
+  /// record_time: of the message, passed on to the outputs that it causes.
+  using Take = std::function<void(HammerBridge&, const Message&, const ros::Time& record_time)>;
+
+  std::string topic;  ///< as the settings name it
+  Take take;
+  bool wanted{true};  ///< the settings make use of it
+  bool latched{};     ///< sent once: every run and every file of a log begins with it
+
+  Message message{};                                ///< memory of a reader of bags
+  std::uint64_t count{};                            ///< messages that a reader has taken
+  ros::Subscriber subscriber{};                     ///< of a node
+  std::chrono::steady_clock::time_point arrived{};  ///< the last one, at a node
+};
+
+struct HammerInputs {
+  explicit HammerInputs(const Settings& settings);
+
+  Input<sensor_msgs::JointState> joint_states;
+  Input<sensor_msgs::Imu> hull_imu;
+  std::deque<Input<sensor_msgs::FluidPressure>> pressures;  ///< one per chamber of the boom's cylinders
+  Input<tf2_msgs::TFMessage> tf_static, tf;
+  Input<sensor_msgs::JointState> crank;
+
+  /// Those of sensors. Joint states first: where both are on one topic, a sample's own pitch counts for it. The crank
+  /// last: a player of bags that waits for its subscriber then finds all others.
+  template <typename Visit>
+  void forEachSensor(const Visit& visit) {
+    visitSensors(*this, visit);
+  }
+  template <typename Visit>
+  void forEachSensor(const Visit& visit) const {
+    visitSensors(*this, visit);
+  }
+  template <typename Visit>
+  void forEach(const Visit& visit) {
+    visit(tf_static), visit(tf);
+    forEachSensor(visit);
+  }
+
+ private:
+  template <typename Inputs, typename Visit>
+  static void visitSensors(Inputs& inputs, const Visit& visit) {
+    visit(inputs.joint_states), visit(inputs.hull_imu);
+    for (auto& pressure : inputs.pressures) visit(pressure);
+    visit(inputs.crank);
+  }
+};
+
+/// Topics of the pressures below the settings' prefix, and whose they are; none without a boom on cylinders.
+struct PressureTopic {
+  std::string name;
+  std::size_t cylinder{};
+  Chamber chamber{};
+};
+std::vector<PressureTopic> pressureTopics(const Settings& settings);
+
+}  // namespace hammer_loads

@@ -1,0 +1,44 @@
+// Tests that tuned constants name as their guards: `// Guard: Suite.Test of kName, kName`. Whether they notice is asked
+// by scripts/sensitivity.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+
+namespace hammer_loads {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kGuardRoot = fs::path(HAMMER_LOADS_TEST_DATA) / "../..";
+
+std::string wholeText(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Matches of the files below a folder, the groups joined by a dot.
+std::set<std::string> namesBelow(const fs::path& folder, const std::regex& pattern) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string text = wholeText(entry.path());
+    for (std::sregex_iterator found(text.begin(), text.end(), pattern), end; found != end; ++found)
+      names.insert((*found)[1].str() + "." + (*found)[2].str());
+  }
+  return names;
+}
+
+TEST(Guards, AreTests) {
+  const std::set<std::string> tests =
+      namesBelow(kGuardRoot / "test", std::regex("TEST(?:_[FP])?\\((\\w+),\\s*(\\w+)\\)"));
+  const std::set<std::string> guards =
+      namesBelow(kGuardRoot / "src", std::regex("// Guard: (?:\\w+/)?(\\w+)\\.(\\w+)"));
+  ASSERT_GT(guards.size(), 10U);
+  for (const std::string& guard : guards) EXPECT_EQ(tests.count(guard), 1U) << guard;
+}
+
+}  // namespace
+}  // namespace hammer_loads
