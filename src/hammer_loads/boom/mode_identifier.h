@@ -1,4 +1,4 @@
-/// Frequency and damping of the boom's modes, followed from what sensors see of its vibration.
+/// Stiffness of each cylinder's oil and damping of the boom's modes, followed from what sensors see of its vibration.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@ struct CrankLead {
   double mean{}, deviation{};
 };
 
-/// Extended Kalman filter: per mode displacement, velocity, logarithm of frequency over the given one and of damping
-/// over the given one; per channel an offset. Steps are the same as those of Vibration, between them come readings in
-/// any order. No allocation. Shapes are those of the given stiffness; oilDifference() is by which one factor for all
-/// cylinders it is wrong.
+/// Extended Kalman filter: per mode displacement, velocity and logarithm of damping over the given one; per cylinder the
+/// logarithm of its oil's stiffness over that of the modes given; per channel an offset. Steps are the same as those of
+/// Vibration, between them come readings in any order. No allocation. Of the stiffnesses found, frequencies are to the
+/// second order and shapes are those of the modes given: give modes of what is found, before it is far away.
 ///
-/// First guesses: frequencies wrong by 15 % together (bulk modulus by 30 %) and 5 % each beside, damping by a
-/// factor 1.6. Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
+/// First guesses: stiffnesses wrong by 30 % together and each beside by its own deviation, damping by a factor 1.6.
+/// Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
 ///
 /// At rest nothing is to be learned (keepOil()): no known force shakes the boom then, and noise and the walk of the
 /// rock's force would be taken for a soft oil, by a factor e of frequency in half a minute.
@@ -48,19 +48,22 @@ struct CrankLead {
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
-  /// What an identified mode still lacks of log frequency and log damping: its shape is that of one oil for all
-  /// cylinders, the links move in the hull.
+  /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
 
-  /// learns: frequencies and damping; else they are exact as given, and only the motion is followed.
-  explicit ModeIdentifier(double damping_ratio, bool learns = true);
+  /// learns: stiffnesses and damping; else they are exact as given, and only the motion is followed. own_deviation: of
+  /// each cylinder's oil against the common one, standard [-].
+  explicit ModeIdentifier(double damping_ratio, bool learns = true,
+                          const LogOil& own_deviation = LogOil::Constant(CylinderParameters::kStiffnessDeviation));
 
   /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
-  /// of the joints carry over. stiffer: logarithm of their oil's stiffness over that of the last ones; the frequencies
-  /// found stay.
-  void setModes(const BoomModes& given, double stiffer = 0.0) noexcept;
-  /// Logarithm of the oil's stiffness over that of the modes given, the best for all frequencies found [-].
-  double oilDifference() const noexcept;
+  /// of the joints carry over. stiffer: logarithms of their oil's stiffness over that of the last ones; what is found
+  /// stays.
+  void setModes(const BoomModes& given, const LogOil& stiffer = LogOil::Zero()) noexcept;
+  /// Logarithms of each cylinder's stiffness over that of the modes given [-].
+  LogOil oil() const noexcept;
+  /// Covariance of the logarithms of two cylinders' stiffnesses [-].
+  double oilCovariance(int one, int other) const noexcept { return covariance_(at(one, kOil), at(other, kOil)); }
   /// Over a step [s], as Vibration::advance(), by its modal forces.
   void advance(double step, const TorqueStep& modal) noexcept;
   /// As Vibration::strike().
@@ -126,7 +129,7 @@ class ModeIdentifier {
   static_assert(kMaxStates <= kMostStates);
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
-  enum Part { kX, kV, kFrequency, kDamping, kParts };
+  enum Part { kX, kV, kOil, kDamping, kParts };  ///< of a mode; kOil: of the cylinder of the same number
 
   static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }
   static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
@@ -147,11 +150,16 @@ class ModeIdentifier {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
   }
   double accelerationNow(int mode) const noexcept;
+  using States = std::array<ModeState, kMaxJoints>;
+  LogOil oilTorques(const States& of) const noexcept;
+  double logFrequency(int mode) const noexcept;
+  void advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
+                         const States& next) noexcept;
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
   double rockOn(int mode) const noexcept { return follows_contact_ ? contact_[mode] : 0.0; }
-  void advanceMode(int mode, double step, const ModeForce& force) noexcept;
+  void advanceModes(double step, const TorqueStep& modal) noexcept;
   void walk(int mode, double step) noexcept;
   void walkContact(double step) noexcept;
   void advanceDelays(double step) noexcept;
@@ -187,6 +195,7 @@ class ModeIdentifier {
   double damping_ratio_;
   double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_, keeps_oil_{};
+  LogOil own_deviation_;
   double known_for_{};  ///< so long every frequency has been known, until a delay is followed [s]
   double lost_for_{};   ///< so long one has not been since then [s]
   bool explains_{true};

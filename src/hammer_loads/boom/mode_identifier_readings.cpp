@@ -82,6 +82,9 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
   row.setZero();
   const int offset = offsetAt(reading.channel);
   double predicted = state_[offset], late = 0.0;
+  States then_all;
+  for (int k = 0; k < count_; ++k) then_all[static_cast<std::size_t>(k)] = modes[static_cast<std::size_t>(k)].then.state;
+  const LogOil torque = oilTorques(then_all);
   for (int k = 0; k < count_; ++k) {
     double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
     for (int i = 0; i < count_; ++i) {
@@ -104,7 +107,8 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
     row[kContact] += by_a * seen.rock;
     row[at(k, kX)] = seen.cosine * of_x - seen.stiff * seen.sine * of_v;
     row[at(k, kV)] = seen.cosine * of_v + seen.sine * of_x;
-    row[at(k, kFrequency)] = held * (2.0 * stiff + damped);
+    for (int i = 0; i < count_; ++i)
+      row[at(i, kOil)] += held * (modes_.shape(i, k) * torque[i] + 0.5 * modes_.oil_share(i, k) * damped);
     row[at(k, kDamping)] = held * damped;
   }
   row[offset] = 1.0;
@@ -182,7 +186,7 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
 ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
   Kept kept;
   if (!learns_) return kept;
-  for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kFrequency)), kept.add(at(k, kDamping));
+  for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kOil)), kept.add(at(k, kDamping));
   if (keeps_oil_) kept.add(delayAt(Clock::kImu));
   if (keeps_oil_ || !delayShows(Clock::kPressures)) kept.add(delayAt(Clock::kPressures));
   return kept;
