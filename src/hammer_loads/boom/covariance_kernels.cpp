@@ -10,13 +10,18 @@ void subtractSquare(CovarianceBlock P, const Eigen::Ref<const Eigen::VectorXd>& 
 void replaceTwo(CovarianceBlock P, int first, const TwoOf& of) noexcept {
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
   Column one = Column::Zero(P.rows()), other = one;  // products of P and a row of F
-  for (std::size_t k = 0; k < static_cast<std::size_t>(of.count); ++k) {
-    const auto column = P.col(of.state[k]);
-    one += of.by_one[k] * column, other += of.by_other[k] * column;
+  std::size_t k = 0;
+  for (const auto count = static_cast<std::size_t>(of.count); k + 1 < count; k += 2) {
+    const auto a = P.col(of.state[k]), b = P.col(of.state[k + 1]);
+    one += of.by_one[k] * a + of.by_one[k + 1] * b;
+    other += of.by_other[k] * a + of.by_other[k + 1] * b;
+  }
+  if (k < static_cast<std::size_t>(of.count)) {
+    one += of.by_one[k] * P.col(of.state[k]), other += of.by_other[k] * P.col(of.state[k]);
   }
   const auto times = [&](const Column& column, const std::array<double, TwoOf::kMost>& by) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(of.count); ++k) sum += by[k] * column[of.state[k]];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(of.count); ++i) sum += by[i] * column[of.state[i]];
     return sum;
   };
   const double both = 0.5 * (times(one, of.by_other) + times(other, of.by_one));

@@ -19,8 +19,8 @@ void subtractSquare(CovarianceBlock P, const Eigen::Ref<const Eigen::VectorXd>& 
 struct TwoOf {
   static constexpr int kMost = 16;
   int count{};
-  std::array<int, kMost> state{};
-  std::array<double, kMost> by_one{}, by_other{};
+  std::array<int, kMost> state;
+  std::array<double, kMost> by_one, by_other;
 
   void add(int of, double one, double other) noexcept {
     const auto i = static_cast<std::size_t>(count++);

@@ -59,9 +59,9 @@ JointVector ModeIdentifier::velocity() const noexcept {
 }
 
 JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
-  using Rows = Eigen::Matrix<double, kMaxJoints, Eigen::Dynamic, 0, kMaxJoints, 2 + kParts * kMaxJoints>;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 + kParts * kMaxJoints, kMaxJoints>;
   const int states = end() - kContact, kept = kModes - kContact;
-  Rows rows = Rows::Zero(kMaxJoints, states);  // of the modes' accelerations, from the rock's force on
+  Rows rows = Rows::Zero(states, count_);  // a mode's acceleration by the states from the rock's force on
   States now;
   for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
   const LogOil torque = oilTorques(now);
@@ -70,15 +70,18 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     const ModeState s = stateOf(k);
     const double damped = 2.0 * m.zeta * m.omega;
     const int own = kept + kParts * k;
-    rows(k, 0) = contact_[k];
-    rows(k, own + kX) = -m.omega * m.omega, rows(k, own + kV) = -damped, rows(k, own + kDamping) = -damped * s.v;
+    rows(0, k) = contact_[k];
+    rows(own + kX, k) = -m.omega * m.omega, rows(own + kV, k) = -damped, rows(own + kDamping, k) = -damped * s.v;
     for (int i = 0; i < count_; ++i)
-      rows(k, kept + kParts * i + kOil) =
+      rows(kept + kParts * i + kOil, k) =
           -modes_.shape(i, k) * torque[i] - 0.5 * modes_.oil_share(i, k) * damped * s.v;
   }
-  const Rows by = rows.lazyProduct(covariance_.block(kContact, kContact, states, states));
-  JointMatrix covariance = by.topRows(count_).lazyProduct(rows.topRows(count_).transpose());
-  for (int k = 0; k < count_; ++k) {  // what the mode's shape lacks
+  JointMatrix covariance(count_, count_);
+  for (int k = 0; k < count_; ++k) {
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
+    with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
+    for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
+    // What the mode's shape lacks.
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
     covariance(k, k) +=
@@ -171,6 +174,7 @@ void ModeIdentifier::followContact(const JointVector& torque) noexcept {
 
 void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
+  if (learns_ && !explains_ && !seeks_) seeks_ = explains_ = true, surprise_ = 1.0;
   const double share = std::min(1.0, step / kForceMemory);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];

@@ -30,7 +30,9 @@ struct CrankLead {
 /// rock's force would be taken for a soft oil, by a factor e of frequency in half a minute.
 ///
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
-/// should be, frequencies and damping are those given.
+/// should be, stiffnesses and damping are those given. Before that is said the oil is sought once more from those given,
+/// with modes that follow it at once (seeks()): one cylinder that is much softer makes other shapes. At first they wait
+/// until frequencies are known, since stamps that are late would lead them far away.
 ///
 /// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
 /// From 0.2 s on after the frequencies are known it is followed, and frequencies and damping count as less known again.
@@ -86,8 +88,12 @@ class ModeIdentifier {
   /// its offset; others, and values that are no number, do not count. A reading far off counts less. Three at a time,
   /// but each pressure by itself, are linear about what was known before them.
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
-  /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them.
-  bool explains() const noexcept { return explains_; }
+  /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them, or may yet turn out to be.
+  bool explains() const noexcept { return explains_ || (learns_ && !seeks_); }
+  /// What was found of the oil does not hold: give modes of the oil as given.
+  bool forgets() const noexcept { return !explains_; }
+  /// Give modes of the oil as it is found, known or not.
+  bool seeks() const noexcept { return seeks_; }
   /// Mean square of the errors of predicted oil torques over their variance, of some 1 s [-]: right pressures at 500 Hz
   /// have 0.3 to 0.7, one of 20 machines 1.2 for a moment; those that lag by 5 ms 1.2 and more. 0 where nothing is
   /// learned.
@@ -165,6 +171,7 @@ class ModeIdentifier {
   void advanceDelays(double step) noexcept;
   double findCrankLead() const noexcept;
   bool imuSpeaks() const noexcept;
+  bool waitsForDelay() const noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {
     std::array<int, 2 * kMaxJoints + 2> states;  ///< the first of them
@@ -198,7 +205,7 @@ class ModeIdentifier {
   LogOil own_deviation_;
   double known_for_{};  ///< so long every frequency has been known, until a delay is followed [s]
   double lost_for_{};   ///< so long one has not been since then [s]
-  bool explains_{true};
+  bool explains_{true}, seeks_{};
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]
   BoomModes modes_;

@@ -35,6 +35,7 @@ double lesserOf(double a, double b) noexcept {
 void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (!learns_ || isDelayFollowed(clock) || known_for_ < kDelayBegins || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
+  if (clock == Clock::kImu) surprise_ = 1.0;  // what was not explained may be by this
   for (int k = 0; k < count_; ++k) {
     covariance_(at(k, kOil), at(k, kOil)) += square(kOilWithDelay);
     covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingWithDelay);

@@ -50,7 +50,7 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
   if (swing_.size() != modes_.count) swing_.setZero(modes_.count);
   posed_ = true;
-  if (identifier_) identifier_->setModes(modes_, identifier_->explains() ? stiffer : LogOil(LogOil::Zero()));
+  if (identifier_) identifier_->setModes(modes_, identifier_->forgets() ? LogOil(LogOil::Zero()) : stiffer);
   useIdentified();
   force_ = modalForce(modes_, torque_);
   if (kept) {
@@ -66,7 +66,8 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
 LogOil Vibration::oilToTake() const noexcept {
   const LogOil none = LogOil::Zero();
   if (!identifies() || !known()) return none;
-  if (!identifier_->explains()) return -log_oil_;
+  if (identifier_->forgets()) return -log_oil_;
+  if (!identifier_->identified() && !identifier_->seeks()) return none;
   const LogOil found = identifier_->oil();
   if (!(found.cwiseAbs().maxCoeff() > kOilStep)) return none;
   return (log_oil_ + found).cwiseMax(-kMostOil).cwiseMin(kMostOil) - log_oil_;
@@ -172,6 +173,19 @@ void Vibration::takeMotion() noexcept {
 void Vibration::useIdentified() noexcept {
   if (!identifier_) return;
   for (int k = 0; k < modes_.count; ++k) modes_.omega[k] = modes_.given_omega[k] * identifier_->frequencyRatio(k);
+}
+
+std::optional<Vibration::OilAgainstOthers> Vibration::oilAgainstOthers(std::size_t cylinder) const noexcept {
+  const int count = modes_.count, own = static_cast<int>(cylinder);
+  if (!identifies() || count < 2 || own >= count || !identifier_->identified()) return std::nullopt;
+  LogOil by = LogOil::Zero();
+  by.head(count).setConstant(-1.0 / (count - 1));
+  by[own] = 1.0;
+  double variance = 0.0;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) variance += by[i] * by[j] * identifier_->oilCovariance(i, j);
+  return OilAgainstOthers{by.dot(log_oil_ + identifier_->oil()), std::sqrt(std::max(variance, 0.0)),
+                          by.cwiseProduct(own_oil_).norm()};
 }
 
 void Vibration::restIfNotFinite() noexcept {

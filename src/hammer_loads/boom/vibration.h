@@ -63,6 +63,13 @@ class Vibration {
     reading.channel = channel;
     observe(&reading, 1);
   }
+  /// Of a cylinder's oil against the mean of the others', logarithms of stiffness: as found, its standard deviation, and
+  /// how far that may be by the boom file, standard.
+  struct OilAgainstOthers {
+    double stiffer{}, deviation{}, expected{};
+  };
+  /// Nothing while frequencies are not found, and without other cylinders.
+  std::optional<OilAgainstOthers> oilAgainstOthers(std::size_t cylinder) const noexcept;
   /// What follows the readings, if anything does.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
   /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
