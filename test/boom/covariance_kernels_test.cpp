@@ -52,20 +52,21 @@ TEST(CovarianceKernels, ReplaceTwoIsATransformation) {
   NormalDraw draw;
   const FilterMatrix P = draw.covariance();
   constexpr int kFirst = 8;
-  const std::array<int, 5> of{kFirst, kFirst + 1, kFirst + 2, kFirst + 3, 6};
+  const std::array<int, 6> states{kFirst, kFirst + 1, kFirst + 2, kFirst + 3, 6, 11};
   for (int first : {0, 3, 4}) {
     for (int last : {12, 16, 20}) {
-      std::array<double, 5> one, other;
-      for (double& by : one) by = draw();
-      for (double& by : other) by = draw();
       FilterMatrix F = FilterMatrix::Identity();
       F.row(kFirst).setZero(), F.row(kFirst + 1).setZero();
-      for (std::size_t k = 0; k < 5; ++k) F(kFirst, of[k]) = one[k], F(kFirst + 1, of[k]) = other[k];
+      TwoOf of;
+      for (int k = 0; k < 4 + last % 3; ++k) {  // an odd and an even number of states
+        const int state = states[static_cast<std::size_t>(k)];
+        const double one = draw(), other = draw();
+        of.add(state - first, one, other);
+        F(kFirst, state) += one, F(kFirst + 1, state) += other;  // one may come twice
+      }
       FilterMatrix changed = P;
       const int n = last - first;
-      std::array<int, 5> in_block = of;
-      for (int& i : in_block) i -= first;
-      replaceTwo(changed.block(first, first, n, n), kFirst - first, in_block, one, other);
+      replaceTwo(changed.block(first, first, n, n), kFirst - first, of);
       const Eigen::MatrixXd inner = F.block(first, first, n, n);
       const Eigen::MatrixXd right = inner * P.block(first, first, n, n) * inner.transpose();
       EXPECT_LT((changed.block(first, first, n, n) - right).norm(), kOfKernels * right.norm());

@@ -274,7 +274,7 @@ TEST(ModeIdentifier, AnotherPoseKeepsWhatIsKnown) {
   Session run(0.7, Sensor::kImu);
   run.run(6.0);
   const JointVector x = run.identifier().displacement(), v = run.identifier().velocity(), zero = JointVector::Zero(4);
-  const double deviation = run.identifier().frequencyDeviation(1);
+  const double of_arm = run.identifier().oilCovariance(1, 1), with_hammer = run.identifier().oilCovariance(1, 2);
   Boom right = test::shippedBoom();  // of the machine's oil
   const auto overRight = [&](const JointVector& position) {
     right.moveCompliant({position, zero, zero}, {0.0, 0.0, -kGravity});
@@ -285,7 +285,8 @@ TEST(ModeIdentifier, AnotherPoseKeepsWhatIsKnown) {
   run.boom_->moveCompliant({position, zero, zero}, {0.0, 0.0, -kGravity});
   EXPECT_LT((run.identifier().displacement() - x).norm(), 1e-12);
   EXPECT_LT((run.identifier().velocity() - v).norm(), 1e-11);
-  EXPECT_EQ(run.identifier().frequencyDeviation(1), deviation);
+  EXPECT_EQ(run.identifier().oilCovariance(1, 1), of_arm);
+  EXPECT_EQ(run.identifier().oilCovariance(1, 2), with_hammer);
   EXPECT_LT((overRight(position) - before).cwiseAbs().maxCoeff(), 0.003);
   const JointVector omega = run.boom_->vibration().modes().omega;
   run.boom_->vibration().rest();

@@ -11,14 +11,14 @@ namespace {
 
 void clear(BoomModes& modes) noexcept {
   modes.count = 0;
-  modes.omega.resize(0), modes.given_omega.resize(0), modes.oil_share.resize(0);
-  modes.shape.resize(0, 0), modes.inertia.resize(modes.mass.rows(), 0);
+  modes.omega.resize(0), modes.given_omega.resize(0);
+  modes.oil_share.resize(0, 0), modes.shape.resize(0, 0), modes.inertia.resize(modes.mass.rows(), 0);
 }
 
 }  // namespace
 
 void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
-               const Eigen::Vector3d& g_B, double oil, BoomModes& modes) noexcept {
+               const Eigen::Vector3d& g_B, const LogOil& oil, BoomModes& modes) noexcept {
   modes.count = static_cast<int>(cylinders.size());
   modes.dead_centre = false;
   modes.mass = dynamics.massMatrix(position);
@@ -27,7 +27,7 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
     const Cylinder& cylinder = cylinders[static_cast<std::size_t>(i)];
     const CylinderPosition at = cylinder.at(position[cylinder.joint()]);
     modes.joint[static_cast<std::size_t>(i)] = cylinder.joint();
-    modes.stiffness[i] = oil * cylinder.jointStiffness(at);
+    modes.stiffness[i] = std::exp(oil[i]) * cylinder.jointStiffness(at);
     modes.dead_centre = modes.dead_centre || at.dead_centre;
   }
   if (modes.dead_centre) modes.count = 0;
@@ -58,12 +58,12 @@ void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, 
     clear(modes);
     return;
   }
-  modes.omega.resize(n), modes.oil_share.resize(n), modes.shape.resize(n, n);
+  modes.omega.resize(n), modes.oil_share.resize(n, n), modes.shape.resize(n, n);
   for (int k = 0; k < n; ++k) {
     const double inverse_square = solver.eigenvalues()[n - 1 - k];  // lowest frequency first
     modes.omega[k] = 1.0 / std::sqrt(inverse_square);
     modes.shape.col(k) = solver.eigenvectors().col(n - 1 - k).cwiseProduct(soft) * modes.omega[k];
-    modes.oil_share[k] = modes.shape.col(k).cwiseAbs2().dot(modes.stiffness) * inverse_square;
+    modes.oil_share.col(k) = modes.shape.col(k).cwiseAbs2().cwiseProduct(modes.stiffness) * inverse_square;
   }
   modes.given_omega = modes.omega;
   modes.inertia.noalias() = columns * modes.shape;

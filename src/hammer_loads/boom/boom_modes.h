@@ -22,7 +22,7 @@ struct BoomModes {
   JointMatrix mass;                     ///< M of all joints [kg m2]
   JointVector omega;                    ///< natural frequencies, as identified where they are [rad/s]
   JointVector given_omega;              ///< those of the stiffness given [rad/s]
-  JointVector oil_share;                ///< of the cylinders in omega^2, the rest is the weight's [-]
+  JointMatrix oil_share;                ///< of each cylinder (row) in omega^2, per mode; the rest is the weight's [-]
   JointMatrix shape;                    ///< of the joints that vibrate, per mode; shape^T M shape = 1 [1/sqrt(kg m2)]
   JointMatrix inertia;                  ///< M shape, of all joints, per mode [sqrt(kg m2)]
 };
@@ -33,10 +33,12 @@ struct TorqueStep {
   JointVector mean;      ///< over the step; linear between the ends makes it their mean
 };
 
-/// Modes at a pose; at most one cylinder per joint. g_B: gravity in the root's axes [m/s2]; oil: the cylinders'
-/// stiffness over that of their oil as given [-]. No allocation.
+/// One entry a cylinder, then zeros: logarithms of its oil's stiffness over that given [-].
+using LogOil = Eigen::Matrix<double, kMaxJoints, 1>;
+
+/// Modes at a pose; at most one cylinder per joint. g_B: gravity in the root's axes [m/s2]. No allocation.
 void findModes(ChainDynamics& dynamics, const std::vector<Cylinder>& cylinders, const JointVector& position,
-               const Eigen::Vector3d& g_B, double oil, BoomModes& modes) noexcept;
+               const Eigen::Vector3d& g_B, const LogOil& oil, BoomModes& modes) noexcept;
 
 /// Modal forces of joint torques [N m] and the joint displacements or velocities that modal ones make, of all joints.
 JointVector modalForce(const BoomModes& modes, const JointVector& joint_torque) noexcept;

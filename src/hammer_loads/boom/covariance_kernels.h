@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 
 namespace hammer_loads {
 
@@ -14,9 +15,20 @@ using CovarianceBlock = Eigen::Ref<Eigen::MatrixXd>;
 /// P <- P - column column^T/S. S below 0 gives back.
 void subtractSquare(CovarianceBlock P, const Eigen::Ref<const Eigen::VectorXd>& column, double S) noexcept;
 
-/// P <- F P F^T, where F makes two states, `first` and the one after it, of five states that hold both of them. P stays
-/// symmetric to the last bit.
-void replaceTwo(CovarianceBlock P, int first, const std::array<int, 5>& of, const std::array<double, 5>& by_one,
-                const std::array<double, 5>& by_other) noexcept;
+/// What a step makes two neighbouring states of: a sum over some states that hold both of them.
+struct TwoOf {
+  static constexpr int kMost = 16;
+  int count{};
+  std::array<int, kMost> state;
+  std::array<double, kMost> by_one, by_other;
+
+  void add(int of, double one, double other) noexcept {
+    const auto i = static_cast<std::size_t>(count++);
+    state[i] = of, by_one[i] = one, by_other[i] = other;
+  }
+};
+
+/// P <- F P F^T, where F makes the states `first` and the one after it. P stays symmetric to the last bit.
+void replaceTwo(CovarianceBlock P, int first, const TwoOf& of) noexcept;
 
 }  // namespace hammer_loads

@@ -9,10 +9,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCommonDeviation = 0.15;  // of log frequency, of all modes together
-constexpr double kOwnDeviation = 0.05;     // and of each
+constexpr double kCommonDeviation = 0.3;   // of log stiffness, of all cylinders together
 constexpr double kDampingDeviation = 0.5;  // of log damping
-constexpr double kFrequencyWalk = 0.002;   // of log frequency in a second: oil that warms up, a pose that changes
+constexpr double kOilWalk = 0.004;         // of log stiffness in a second: oil that warms up, a pose that changes
 constexpr double kDampingWalk = 0.01;      // of log damping in a second
 constexpr double kForcePart = 0.05;        // deviation of the modal force over its root mean square
 constexpr double kForceTime = 0.01;        // for which a force stays wrong the same way [s]
@@ -25,11 +24,12 @@ constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 
 }  // namespace
 
-ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns)
+ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns, const LogOil& own_deviation)
     : damping_ratio_(damping_ratio),
       least_damping_(std::log(kLeastDamping / damping_ratio)),
       most_damping_(std::log(kMostDamping / damping_ratio)),
-      learns_(learns) {
+      learns_(learns),
+      own_deviation_(own_deviation) {
   if (learns) setFirstGuesses();
   covariance_(kContact, kContact) = square(kUnknownContact);
   ratio_.fill(1.0);
@@ -40,8 +40,8 @@ ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns)
 void ModeIdentifier::setFirstGuesses() noexcept {
   for (int k = 0; k < kMaxJoints; ++k) {
     for (int l = 0; l < kMaxJoints; ++l)
-      covariance_(at(k, kFrequency), at(l, kFrequency)) =
-          square(kCommonDeviation) + (k == l ? square(kOwnDeviation) : 0);
+      covariance_(at(k, kOil), at(l, kOil)) =
+          square(kCommonDeviation) + (k == l ? square(own_deviation_[k]) : 0.0);
     covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
   }
 }
@@ -59,36 +59,38 @@ JointVector ModeIdentifier::velocity() const noexcept {
 }
 
 JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
-  std::array<Eigen::Matrix<double, kParts, 1>, kMaxJoints> row;  // of a mode's acceleration
-  JointMatrix covariance(count_, count_);
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 + kParts * kMaxJoints, kMaxJoints>;
+  const int states = end() - kContact, kept = kModes - kContact;
+  Rows rows = Rows::Zero(states, count_);  // a mode's acceleration by the states from the rock's force on
+  States now;
+  for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
+  const LogOil torque = oilTorques(now);
   for (int k = 0; k < count_; ++k) {
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
-    const double stiff = m.omega * m.omega, damped = 2.0 * m.zeta * m.omega;
-    row[static_cast<std::size_t>(k)] << -stiff, -damped, -2.0 * stiff * s.x - damped * s.v, -damped * s.v;
+    const double damped = 2.0 * m.zeta * m.omega;
+    const int own = kept + kParts * k;
+    rows(0, k) = contact_[k];
+    rows(own + kX, k) = -m.omega * m.omega, rows(own + kV, k) = -damped, rows(own + kDamping, k) = -damped * s.v;
+    for (int i = 0; i < count_; ++i)
+      rows(kept + kParts * i + kOil, k) =
+          -modes_.shape(i, k) * torque[i] - 0.5 * modes_.oil_share(i, k) * damped * s.v;
   }
-  for (int l = 0; l < count_; ++l) {
-    const auto& by = row[static_cast<std::size_t>(l)];
-    const int of_l = at(l, kX);
-    const double with_contact =
-        contact_[l] * covariance_(kContact, kContact) + covariance_.col(kContact).segment<kParts>(of_l).dot(by);
-    for (int k = l; k < count_; ++k) {
-      const int of_k = at(k, kX);
-      const Eigen::Matrix<double, kParts, 1> with_mode = contact_[l] * covariance_.col(kContact).segment<kParts>(of_k) +
-                                                         covariance_.block<kParts, kParts>(of_k, of_l) * by;
-      covariance(k, l) = covariance(l, k) =
-          contact_[k] * with_contact + row[static_cast<std::size_t>(k)].dot(with_mode);
-    }
+  JointMatrix covariance(count_, count_);
+  for (int k = 0; k < count_; ++k) {
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
+    with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
+    for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
     // What the mode's shape lacks.
-    const Mode m = modeAt(l);
-    const ModeState s = stateOf(l);
-    covariance(l, l) +=
+    const Mode m = modeAt(k);
+    const ModeState s = stateOf(k);
+    covariance(k, k) +=
         square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) + square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
   }
   return covariance;
 }
 
-void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
+void ModeIdentifier::setModes(const BoomModes& given, const LogOil& stiffer) noexcept {
   const bool carries = moving_known_ && count_ == given.count;
   JointMatrix T(given.count, given.count);  // new modal displacements of the old ones, through the joints
   if (carries) {
@@ -107,8 +109,7 @@ void ModeIdentifier::setModes(const BoomModes& given, double stiffer) noexcept {
   } else {
     transform(T);
   }
-  if (stiffer == 0.0) return;
-  for (int k = 0; k < count_; ++k) state_[at(k, kFrequency)] -= 0.5 * modes_.oil_share[k] * stiffer;
+  for (int i = 0; i < count_; ++i) state_[at(i, kOil)] -= stiffer[i];
   useOil();
 }
 
@@ -173,14 +174,14 @@ void ModeIdentifier::followContact(const JointVector& torque) noexcept {
 
 void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
+  if (learns_ && !explains_ && !seeks_) seeks_ = explains_ = true, surprise_ = 1.0;
   const double share = std::min(1.0, step / kForceMemory);
-  history_.begin(step);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];
     power += share * (square(modal.mean[k]) - power);
-    advanceMode(k, step, {modal.from[k], modal.to[k], modal.mean[k]});
-    walk(k, step);
   }
+  advanceModes(step, modal);
+  for (int k = 0; k < count_; ++k) walk(k, step);
   force_.head(count_) = modal.to;
   force_rate_.head(count_) = (modal.to - modal.from) / step;
   for (double& age : age_) age += step;
@@ -192,31 +193,65 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!finite()) startAnew();
 }
 
-/// One mode's state, and P <- F P F^T for its rows and columns. Frequency and damping act as forces that are linear
-/// over the step: their derivatives are off by 3 % at 9 Hz and a step of 10 ms, the state itself is exact.
-void ModeIdentifier::advanceMode(int mode, double step, const ModeForce& force) noexcept {
-  const Mode here = modeAt(mode);
-  const double rock = rockOn(mode);
-  const ModeStep its = stepOf(here, step);
-  const ModeResponse& r = its.r;
-  const ModeState now = stateOf(mode);
-  ModeState next = advanced(its, now, pathOf(force, step));
-  next.x += r.step * rock * state_[kContact], next.v += r.impulse * rock * state_[kContact];
+void ModeIdentifier::advanceModes(double step, const TorqueStep& modal) noexcept {
+  history_.begin(step);
+  std::array<ModeStep, kMaxJoints> steps;
+  States now, then;
+  for (int k = 0; k < count_; ++k) {
+    const auto mode = static_cast<std::size_t>(k);
+    const ModeStep& its = steps[mode] = stepOf(modeAt(k), step);
+    const double rock = rockOn(k) * state_[kContact];
+    const ModeState& before = now[mode] = stateOf(k);
+    ModeState& next = then[mode] = advanced(its, before, pathOf({modal.from[k], modal.to[k], modal.mean[k]}, step));
+    next.x += its.r.step * rock, next.v += its.r.impulse * rock;
+    state_[at(k, kX)] = next.x, state_[at(k, kV)] = next.v;
+    history_.set(k, before, next, modal.from[k], modal.to[k]);
+  }
+  advanceCovariance(step, steps, now, then);
+}
 
-  const double stiff = here.omega * here.omega, damped = 2.0 * here.zeta * here.omega, per_time = 1.0 / step;
-  const auto by = [&](double from, double to) {  // of a force
-    const double slope = (to - from) * per_time;
-    return ModeState{from * r.step + slope * r.ramp, from * r.impulse + slope * r.step};
-  };
-  const ModeState of_frequency = by(-2.0 * stiff * now.x - damped * now.v, -2.0 * stiff * next.x - damped * next.v),
-                  of_damping = by(-damped * now.v, -damped * next.v);
-  const int x = at(mode, kX);
-  state_[x + kX] = next.x, state_[x + kV] = next.v;
-  history_.set(mode, now, next, force.from, force.to);
-  const int first = begin(), its_x = x - first;
-  replaceTwo(block(), its_x, {its_x + kX, its_x + kV, its_x + kFrequency, its_x + kDamping, kContact - first},
-             {its.x_by_x, its.x_by_v, of_frequency.x, of_damping.x, r.step * rock},
-             {its.v_by_x, its.v_by_v, of_frequency.v, of_damping.v, r.impulse * rock});
+/// What a unit of each logarithm of stiffness adds to the oil's torques on the joints [N m].
+LogOil ModeIdentifier::oilTorques(const States& of) const noexcept {
+  LogOil torque = LogOil::Zero();
+  for (int i = 0; i < count_; ++i) {
+    for (int k = 0; k < count_; ++k) torque[i] += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].x;
+    torque[i] *= modes_.stiffness[i];
+  }
+  return torque;
+}
+
+/// P <- F P F^T. Stiffness and damping act as forces that are linear over the step: their derivatives are off by 3 % at 9
+/// Hz and a step of 10 ms, the states themselves are exact.
+void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
+                                       const States& next) noexcept {
+  const LogOil torque_now = oilTorques(now), torque_next = oilTorques(next);
+  const double per_time = 1.0 / step;
+  const int first = begin();
+  for (int k = 0; k < count_; ++k) {
+    const auto mode = static_cast<std::size_t>(k);
+    const ModeStep& own = its[mode];
+    const ModeResponse& r = own.r;
+    const auto by = [&](double from, double to) {  // of a force
+      const double slope = (to - from) * per_time;
+      return ModeState{from * r.step + slope * r.ramp, from * r.impulse + slope * r.step};
+    };
+    const Mode here = modeAt(k);
+    const double damped = 2.0 * here.zeta * here.omega, damped_now = damped * now[mode].v,
+                 damped_next = damped * next[mode].v;
+    const int x = at(k, kX) - first;
+    TwoOf of;
+    of.add(x + kX, own.x_by_x, own.v_by_x);
+    of.add(x + kV, own.x_by_v, own.v_by_v);
+    for (int i = 0; i < count_ && learns_; ++i) {
+      const double shape = modes_.shape(i, k), share = 0.5 * modes_.oil_share(i, k);
+      const ModeState of_oil = by(-shape * torque_now[i] - share * damped_now, -shape * torque_next[i] - share * damped_next);
+      of.add(at(i, kOil) - first, of_oil.x, of_oil.v);
+    }
+    const ModeState of_damping = by(-damped_now, -damped_next);
+    of.add(x + kDamping, of_damping.x, of_damping.v);
+    of.add(kContact - first, r.step * rockOn(k), r.impulse * rockOn(k));
+    replaceTwo(block(), x, of);
+  }
 }
 
 /// P <- P + Q: forces that are wrong, oil that warms up.
@@ -229,7 +264,7 @@ void ModeIdentifier::walk(int mode, double step) noexcept {
   const auto wander = [&](int i, double per_second, double most) {
     if (covariance_(i, i) < most * most) covariance_(i, i) += square(per_second) * step;
   };
-  wander(x + kFrequency, kFrequencyWalk, kCommonDeviation);
+  wander(x + kOil, kOilWalk, kCommonDeviation);
   wander(x + kDamping, kDampingWalk, kDampingDeviation);
 }
 
@@ -270,7 +305,7 @@ bool ModeIdentifier::finite() const noexcept {
 void ModeIdentifier::startAnew() noexcept {
   const BoomModes modes = modes_;
   const bool follows = follows_contact_;
-  *this = ModeIdentifier(damping_ratio_, learns_);
+  *this = ModeIdentifier(damping_ratio_, learns_, own_deviation_);
   follows_contact_ = follows;
   setModes(modes);
 }

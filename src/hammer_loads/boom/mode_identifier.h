@@ -1,4 +1,4 @@
-/// Frequency and damping of the boom's modes, followed from what sensors see of its vibration.
+/// Stiffness of each cylinder's oil and damping of the boom's modes, followed from what sensors see of its vibration.
 #pragma once
 
 #include <array>
@@ -18,19 +18,21 @@ struct CrankLead {
   double mean{}, deviation{};
 };
 
-/// Extended Kalman filter: per mode displacement, velocity, logarithm of frequency over the given one and of damping
-/// over the given one; per channel an offset. Steps are the same as those of Vibration, between them come readings in
-/// any order. No allocation. Shapes are those of the given stiffness; oilDifference() is by which one factor for all
-/// cylinders it is wrong.
+/// Extended Kalman filter: per mode displacement, velocity and logarithm of damping over the given one; per cylinder the
+/// logarithm of its oil's stiffness over that of the modes given; per channel an offset. Steps are the same as those of
+/// Vibration, between them come readings in any order. No allocation. Of the stiffnesses found, frequencies are to the
+/// second order and shapes are those of the modes given: give modes of what is found, before it is far away.
 ///
-/// First guesses: frequencies wrong by 15 % together (bulk modulus by 30 %) and 5 % each beside, damping by a
-/// factor 1.6. Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
+/// First guesses: stiffnesses wrong by 30 % together and each beside by its own deviation, damping by a factor 1.6.
+/// Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
 ///
 /// At rest nothing is to be learned (keepOil()): no known force shakes the boom then, and noise and the walk of the
 /// rock's force would be taken for a soft oil, by a factor e of frequency in half a minute.
 ///
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
-/// should be, frequencies and damping are those given.
+/// should be, stiffnesses and damping are those given. Before that is said the oil is sought once more from those given,
+/// with modes that follow it at once (seeks()): one cylinder that is much softer makes other shapes. At first they wait
+/// until frequencies are known, since stamps that are late would lead them far away.
 ///
 /// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
 /// From 0.2 s on after the frequencies are known it is followed, and frequencies and damping count as less known again.
@@ -48,19 +50,22 @@ struct CrankLead {
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
-  /// What an identified mode still lacks of log frequency and log damping: its shape is that of one oil for all
-  /// cylinders, the links move in the hull.
+  /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
 
-  /// learns: frequencies and damping; else they are exact as given, and only the motion is followed.
-  explicit ModeIdentifier(double damping_ratio, bool learns = true);
+  /// learns: stiffnesses and damping; else they are exact as given, and only the motion is followed. own_deviation: of
+  /// each cylinder's oil against the common one, standard [-].
+  explicit ModeIdentifier(double damping_ratio, bool learns = true,
+                          const LogOil& own_deviation = LogOil::Constant(CylinderParameters::kStiffnessDeviation));
 
   /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
-  /// of the joints carry over. stiffer: logarithm of their oil's stiffness over that of the last ones; the frequencies
-  /// found stay.
-  void setModes(const BoomModes& given, double stiffer = 0.0) noexcept;
-  /// Logarithm of the oil's stiffness over that of the modes given, the best for all frequencies found [-].
-  double oilDifference() const noexcept;
+  /// of the joints carry over. stiffer: logarithms of their oil's stiffness over that of the last ones; what is found
+  /// stays.
+  void setModes(const BoomModes& given, const LogOil& stiffer = LogOil::Zero()) noexcept;
+  /// Logarithms of each cylinder's stiffness over that of the modes given [-].
+  LogOil oil() const noexcept;
+  /// Covariance of the logarithms of two cylinders' stiffnesses [-].
+  double oilCovariance(int one, int other) const noexcept { return covariance_(at(one, kOil), at(other, kOil)); }
   /// Over a step [s], as Vibration::advance(), by its modal forces.
   void advance(double step, const TorqueStep& modal) noexcept;
   /// As Vibration::strike().
@@ -83,8 +88,12 @@ class ModeIdentifier {
   /// its offset; others, and values that are no number, do not count. A reading far off counts less. Three at a time,
   /// but each pressure by itself, are linear about what was known before them.
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
-  /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them.
-  bool explains() const noexcept { return explains_; }
+  /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them, or may yet turn out to be.
+  bool explains() const noexcept { return explains_ || (learns_ && !seeks_); }
+  /// What was found of the oil does not hold: give modes of the oil as given.
+  bool forgets() const noexcept { return !explains_; }
+  /// Give modes of the oil as it is found, known or not.
+  bool seeks() const noexcept { return seeks_; }
   /// Mean square of the errors of predicted oil torques over their variance, of some 1 s [-]: right pressures at 500 Hz
   /// have 0.3 to 0.7, one of 20 machines 1.2 for a moment; those that lag by 5 ms 1.2 and more. 0 where nothing is
   /// learned.
@@ -126,7 +135,7 @@ class ModeIdentifier {
   static_assert(kMaxStates <= kMostStates);
   using State = Eigen::Matrix<double, kMaxStates, 1>;
   using Covariance = Eigen::Matrix<double, kMaxStates, kMaxStates>;
-  enum Part { kX, kV, kFrequency, kDamping, kParts };
+  enum Part { kX, kV, kOil, kDamping, kParts };  ///< of a mode; kOil: of the cylinder of the same number
 
   static constexpr int delayAt(Clock clock) noexcept { return kDelays + static_cast<int>(clock) - 1; }
   static constexpr int at(int mode, Part part) noexcept { return kModes + kParts * mode + part; }
@@ -147,16 +156,22 @@ class ModeIdentifier {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
   }
   double accelerationNow(int mode) const noexcept;
+  using States = std::array<ModeState, kMaxJoints>;
+  LogOil oilTorques(const States& of) const noexcept;
+  double logFrequency(int mode) const noexcept;
+  void advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
+                         const States& next) noexcept;
   void setFirstGuesses() noexcept;
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
   double rockOn(int mode) const noexcept { return follows_contact_ ? contact_[mode] : 0.0; }
-  void advanceMode(int mode, double step, const ModeForce& force) noexcept;
+  void advanceModes(double step, const TorqueStep& modal) noexcept;
   void walk(int mode, double step) noexcept;
   void walkContact(double step) noexcept;
   void advanceDelays(double step) noexcept;
   double findCrankLead() const noexcept;
   bool imuSpeaks() const noexcept;
+  bool waitsForDelay() const noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {
     std::array<int, 2 * kMaxJoints + 2> states;  ///< the first of them
@@ -187,9 +202,10 @@ class ModeIdentifier {
   double damping_ratio_;
   double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_, keeps_oil_{};
+  LogOil own_deviation_;
   double known_for_{};  ///< so long every frequency has been known, until a delay is followed [s]
   double lost_for_{};   ///< so long one has not been since then [s]
-  bool explains_{true};
+  bool explains_{true}, seeks_{};
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]
   BoomModes modes_;

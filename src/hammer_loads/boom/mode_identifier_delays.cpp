@@ -11,7 +11,7 @@ namespace {
 constexpr double kDelayBegins = 0.2;          // so long after the frequencies are known [s]
 constexpr double kDelayDeviation = 2e-3;      // then [s]
 constexpr double kDelayWalk = 2e-5;           // of a delay in a second [s]: clocks drift by some 20 ppm
-constexpr double kFrequencyWithDelay = 0.05;  // deviation of its logarithm, beside what was known without a delay
+constexpr double kOilWithDelay = 0.1;         // deviation of log stiffness, beside what was known without a delay
 constexpr double kDampingWithDelay = 0.5;     // likewise
 constexpr double kLost = 1.0;                 // so long frequencies unknown while a delay is followed [s]
 constexpr double kFreeFor = 1.0;              // [s]: its mean force has no longer memory
@@ -35,8 +35,9 @@ double lesserOf(double a, double b) noexcept {
 void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (!learns_ || isDelayFollowed(clock) || known_for_ < kDelayBegins || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
+  if (clock == Clock::kImu) surprise_ = 1.0;  // what was not explained may be by this
   for (int k = 0; k < count_; ++k) {
-    covariance_(at(k, kFrequency), at(k, kFrequency)) += square(kFrequencyWithDelay);
+    covariance_(at(k, kOil), at(k, kOil)) += square(kOilWithDelay);
     covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingWithDelay);
   }
 }

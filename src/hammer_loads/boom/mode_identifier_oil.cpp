@@ -1,4 +1,4 @@
-// What is known of the oil: frequencies and damping of the modes.
+// What is known of the oil: stiffness of the cylinders, frequencies and damping of the modes.
 #include <algorithm>
 #include <cmath>
 
@@ -10,14 +10,24 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kKnown = 0.03;     // deviation of log frequency of a mode that is known
-constexpr double kOwnOil = 0.005;   // of log frequency: cylinders whose oil differs from the others'
-constexpr double kMostRatio = 1.0;  // of log frequency: e
+constexpr double kMostFound = 2.0;  // of log stiffness: a frequency that is e times that given
 constexpr double kMostEarly = 0.004, kMostLate = 0.01;  // [s]
 
 }  // namespace
 
 double ModeIdentifier::frequencyVariance(int mode) const noexcept {
-  return covariance_(at(mode, kFrequency), at(mode, kFrequency));
+  double variance = 0.0;
+  for (int i = 0; i < count_; ++i)
+    for (int j = 0; j < count_; ++j)
+      variance += 0.25 * modes_.oil_share(i, mode) * modes_.oil_share(j, mode) * oilCovariance(i, j);
+  return std::max(variance, 0.0);
+}
+
+/// Over the given one.
+double ModeIdentifier::logFrequency(int mode) const noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < count_; ++i) sum += 0.5 * modes_.oil_share(i, mode) * state_[at(i, kOil)];
+  return sum;
 }
 
 double ModeIdentifier::dampingVariance(int mode) const noexcept {
@@ -31,15 +41,10 @@ bool ModeIdentifier::identified() const noexcept {
   return count_ > 0;
 }
 
-double ModeIdentifier::oilDifference() const noexcept {
-  double sum = 0.0, weights = 0.0;
-  for (int k = 0; k < count_; ++k) {
-    const double by_oil = 0.5 * modes_.oil_share[k];
-    const double weight = by_oil / (covariance_(at(k, kFrequency), at(k, kFrequency)) + square(kOwnOil));
-    sum += weight * state_[at(k, kFrequency)];
-    weights += weight * by_oil;
-  }
-  return weights > 0.0 ? sum / weights : 0.0;
+LogOil ModeIdentifier::oil() const noexcept {
+  LogOil oil = LogOil::Zero();
+  for (int i = 0; i < count_; ++i) oil[i] = state_[at(i, kOil)];
+  return oil;
 }
 
 void ModeIdentifier::forgetOil() noexcept {
@@ -47,7 +52,7 @@ void ModeIdentifier::forgetOil() noexcept {
   least_delay_ = {};
   known_for_ = lost_for_ = crank_lead_ = 0.0;
   for (int k = 0; k < kMaxJoints; ++k) {
-    forget(at(k, kFrequency), 0.0);
+    forget(at(k, kOil), 0.0);
     forget(at(k, kDamping), 0.0);
   }
   ratio_.fill(1.0), used_frequency_.fill(0.0);
@@ -55,13 +60,17 @@ void ModeIdentifier::forgetOil() noexcept {
   setFirstGuesses();
 }
 
-/// Frequencies, damping and delay of the state, within bounds.
+/// Stiffnesses, damping and delay of the state, within bounds.
 void ModeIdentifier::useOil() noexcept {
   for (int k = 0; k < count_; ++k) {
+    double& oil = state_[at(k, kOil)];
+    oil = std::clamp(oil, -kMostFound, kMostFound);
+  }
+  for (int k = 0; k < count_; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    double &frequency = state_[at(k, kFrequency)], &damping = state_[at(k, kDamping)];
-    frequency = std::clamp(frequency, -kMostRatio, kMostRatio);
+    double& damping = state_[at(k, kDamping)];
     damping = std::clamp(damping, least_damping_, most_damping_);
+    const double frequency = logFrequency(k);
     ratio_[i] *= growth(frequency - used_frequency_[i]), used_frequency_[i] = frequency;
     damping_[i] *= growth(damping - used_damping_[i]), used_damping_[i] = damping;
   }

@@ -58,9 +58,11 @@ ModeState ModeIdentifier::motionAt(int mode, double ahead) const noexcept {
   return momentAt(mode, ahead - crankLead()).state;
 }
 
-/// Of a mode, for readings of one instant.
+/// Of a mode, for readings of one instant. by_oil: what a unit of each logarithm of stiffness takes from its
+/// acceleration.
 struct ModeIdentifier::Seen {
   ModeHistory::Moment then;
+  std::array<double, kMaxJoints> by_oil;
   double acceleration, stiff, damped, rock;
   double cosine, sine;  ///< of what was then: how displacement and velocity of now show in it
 };
@@ -104,7 +106,7 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
     row[kContact] += by_a * seen.rock;
     row[at(k, kX)] = seen.cosine * of_x - seen.stiff * seen.sine * of_v;
     row[at(k, kV)] = seen.cosine * of_v + seen.sine * of_x;
-    row[at(k, kFrequency)] = held * (2.0 * stiff + damped);
+    for (int i = 0; i < count_; ++i) row[at(i, kOil)] += held * seen.by_oil[static_cast<std::size_t>(i)];
     row[at(k, kDamping)] = held * damped;
   }
   row[offset] = 1.0;
@@ -139,8 +141,19 @@ bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
 /// Rows about one state, then one reading after the other.
 void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) noexcept {
   SeenModes seen;
-  for (int k = 0; k < count_; ++k)
-    seen[static_cast<std::size_t>(k)] = see(k, readings->ahead - delayByCrank(readings->clock));
+  States then;
+  for (int k = 0; k < count_; ++k) {
+    const auto mode = static_cast<std::size_t>(k);
+    seen[mode] = see(k, readings->ahead - delayByCrank(readings->clock));
+    then[mode] = seen[mode].then.state;
+  }
+  const LogOil torque = oilTorques(then);
+  for (int k = 0; k < count_; ++k) {
+    Seen& its = seen[static_cast<std::size_t>(k)];
+    for (int i = 0; i < count_; ++i)
+      its.by_oil[static_cast<std::size_t>(i)] =
+          modes_.shape(i, k) * torque[i] + 0.5 * modes_.oil_share(i, k) * its.damped * its.then.state.v;
+  }
   std::array<State, kTogether> row;
   std::array<double, kTogether> difference;  // of the value from what is predicted
   for (std::size_t r = 0; r < count; ++r)
@@ -163,12 +176,21 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
   takeBack(kept, difference / S, S, gain_S);
 }
 
+/// Accelerations may be off as those of an oil not yet found, or of stamps that are late.
+bool ModeIdentifier::waitsForDelay() const noexcept {
+  return learns_ && !(identified() && isDelayFollowed(Clock::kImu));
+}
+
 /// S of a reading, by the variance of what is predicted; 0: it does not count.
 double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
   const double S = predicted + square(reading.noise) + square(reading.neglected);
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
-    explains_ = explains_ ? surprise_ < kSurprised || (learns_ && !identified()) : surprise_ < kCalm;
+    if (explains_) {
+      explains_ = surprise_ < kSurprised || waitsForDelay();
+    } else if (surprise_ < kCalm) {
+      explains_ = true, seeks_ = false;
+    }
     surprise_ +=
         kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
   }
@@ -182,7 +204,7 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
 ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
   Kept kept;
   if (!learns_) return kept;
-  for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kFrequency)), kept.add(at(k, kDamping));
+  for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kOil)), kept.add(at(k, kDamping));
   if (keeps_oil_) kept.add(delayAt(Clock::kImu));
   if (keeps_oil_ || !delayShows(Clock::kPressures)) kept.add(delayAt(Clock::kPressures));
   return kept;

@@ -24,6 +24,8 @@ Vibration::Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const 
       position_(JointVector::Zero(chain.joints())),
       last_(position_),
       torque_(last_) {
+  for (std::size_t i = 0; i < cylinders_.size(); ++i)
+    own_oil_[static_cast<Eigen::Index>(i)] = cylinders_[i].parameters().stiffness_deviation;
   modes_.mass = JointMatrix::Zero(chain.joints(), chain.joints());
   modes_.inertia.resize(chain.joints(), 0);
   rest();
@@ -35,8 +37,8 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   last_ = position;
   const JointVector away = middle - position_;
   const double farthest = away.cwiseAbs().maxCoeff();
-  const double stiffer = oilToTake();
-  if (posed_ && farthest <= 0.5 * settings_.refresh_angle && stiffer == 0.0) return;
+  const LogOil stiffer = oilToTake();
+  if (posed_ && farthest <= 0.5 * settings_.refresh_angle && stiffer.isZero(0.0)) return;
   const bool kept = posed_ && known();
   const JointVector displacement = jointsOf(modes_, x_), velocity = jointsOf(modes_, v_);
   // Ahead of a moving boom, so that the modes are as often early as late and phases do not drift.
@@ -44,11 +46,11 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
   if (posed_ && farthest > 0.0) position_ += 0.5 * std::max(0.0, settings_.refresh_angle - step) / farthest * away;
   if (!position_.allFinite()) position_ = position;
   log_oil_ += stiffer;
-  findModes(dynamics_, cylinders_, position_, g_B, std::exp(log_oil_), modes_);
+  findModes(dynamics_, cylinders_, position_, g_B, log_oil_, modes_);
   if (contact_by_newton_.size() != modes_.count) contact_by_newton_.setZero(modes_.count);
   if (swing_.size() != modes_.count) swing_.setZero(modes_.count);
   posed_ = true;
-  if (identifier_) identifier_->setModes(modes_, identifier_->explains() ? stiffer : 0.0);
+  if (identifier_) identifier_->setModes(modes_, identifier_->forgets() ? LogOil(LogOil::Zero()) : stiffer);
   useIdentified();
   force_ = modalForce(modes_, torque_);
   if (kept) {
@@ -61,12 +63,14 @@ void Vibration::setPose(const JointVector& position, const Eigen::Vector3d& g_B)
 
 /// Logarithm. Shapes and the weight's share are right only with the right oil, and what is found then holds at any
 /// pose.
-double Vibration::oilToTake() const noexcept {
-  if (!identifies() || !known()) return 0.0;
-  if (!identifier_->explains()) return -log_oil_;
-  if (!identifier_->identified()) return 0.0;
-  const double found = identifier_->oilDifference();
-  return std::abs(found) > kOilStep ? std::clamp(log_oil_ + found, -kMostOil, kMostOil) - log_oil_ : 0.0;
+LogOil Vibration::oilToTake() const noexcept {
+  const LogOil none = LogOil::Zero();
+  if (!identifies() || !known()) return none;
+  if (identifier_->forgets()) return -log_oil_;
+  if (!identifier_->identified() && !identifier_->seeks()) return none;
+  const LogOil found = identifier_->oil();
+  if (!(found.cwiseAbs().maxCoeff() > kOilStep)) return none;
+  return (log_oil_ + found).cwiseMax(-kMostOil).cwiseMin(kMostOil) - log_oil_;
 }
 
 void Vibration::rest() noexcept {
@@ -81,8 +85,8 @@ void Vibration::rest() noexcept {
 }
 
 void Vibration::startAnew() noexcept {
-  if (identifier_) identifier_.emplace(settings_.damping_ratio, identifier_->learns());
-  log_oil_ = 0.0;
+  if (identifier_) identifier_.emplace(settings_.damping_ratio, identifier_->learns(), own_oil_);
+  log_oil_.setZero();
   swing_.setZero();
   rest();
 }
@@ -134,7 +138,7 @@ void Vibration::observe(const VibrationReading* readings, std::size_t count) noe
 
 void Vibration::followContact(const JointVector& torque, double least_force) noexcept {
   if (!identifier_) {
-    identifier_.emplace(settings_.damping_ratio, false);
+    identifier_.emplace(settings_.damping_ratio, false, own_oil_);
     identifier_->setModes(modes_);
   }
   identifier_->followContact(torque);
@@ -169,6 +173,19 @@ void Vibration::takeMotion() noexcept {
 void Vibration::useIdentified() noexcept {
   if (!identifier_) return;
   for (int k = 0; k < modes_.count; ++k) modes_.omega[k] = modes_.given_omega[k] * identifier_->frequencyRatio(k);
+}
+
+std::optional<Vibration::OilAgainstOthers> Vibration::oilAgainstOthers(std::size_t cylinder) const noexcept {
+  const int count = modes_.count, own = static_cast<int>(cylinder);
+  if (!identifies() || count < 2 || own >= count || !identifier_->identified()) return std::nullopt;
+  LogOil by = LogOil::Zero();
+  by.head(count).setConstant(-1.0 / (count - 1));
+  by[own] = 1.0;
+  double variance = 0.0;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) variance += by[i] * by[j] * identifier_->oilCovariance(i, j);
+  return OilAgainstOthers{by.dot(log_oil_ + identifier_->oil()), std::sqrt(std::max(variance, 0.0)),
+                          by.cwiseProduct(own_oil_).norm()};
 }
 
 void Vibration::restIfNotFinite() noexcept {

@@ -41,7 +41,7 @@ class Vibration {
   void strike(const JointVector& impulse) noexcept;
 
   /// Frequencies and damping as readings show them, from now on (`boom_stiffness: identified`).
-  void identify() { identifier_.emplace(settings_.damping_ratio); }
+  void identify() { identifier_.emplace(settings_.damping_ratio, true, own_oil_); }
   bool identifies() const noexcept { return identifier_ && identifier_->learns(); }
   /// See ModeIdentifier; nothing without identify().
   void keepOil(bool keep) noexcept {
@@ -63,6 +63,13 @@ class Vibration {
     reading.channel = channel;
     observe(&reading, 1);
   }
+  /// Of a cylinder's oil against the mean of the others', logarithms of stiffness: as found, its standard deviation, and
+  /// how far that may be by the boom file, standard.
+  struct OilAgainstOthers {
+    double stiffer{}, deviation{}, expected{};
+  };
+  /// Nothing while frequencies are not found, and without other cylinders.
+  std::optional<OilAgainstOthers> oilAgainstOthers(std::size_t cylinder) const noexcept;
   /// What follows the readings, if anything does.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
   /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
@@ -103,7 +110,7 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
-  double oilToTake() const noexcept;
+  LogOil oilToTake() const noexcept;
   void useMotion() noexcept;
   void takeMotion() noexcept;
   void followSwing(double step) noexcept;
@@ -112,12 +119,13 @@ class Vibration {
   ChainDynamics dynamics_;
   std::vector<Cylinder> cylinders_;
   VibrationSettings settings_;
+  LogOil own_oil_ = LogOil::Zero();  ///< deviation of each cylinder's oil against the common one
   std::optional<ModeIdentifier> identifier_;
   BoomModes modes_;
   JointVector position_;  ///< where the modes belong
   JointVector last_;      ///< as last given
   bool posed_{};
-  double log_oil_{};  ///< logarithm of the stiffness of the modes' oil over that given
+  LogOil log_oil_ = LogOil::Zero();  ///< logarithms of the stiffness of the modes' oil over that given
   bool follows_readings_{};
   std::array<KeptStep, kMaxJoints> step_;                ///< of each mode
   JointVector x_, v_;                                    ///< modal displacements and velocities

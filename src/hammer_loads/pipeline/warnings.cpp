@@ -6,6 +6,7 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/unknowns.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -183,6 +184,30 @@ bool warnOfClock(const ModeIdentifier& identifier, Clock clock, const char* key,
   return true;
 }
 
+/// The cylinder whose oil differs most from that of the others, where that is more than the boom file has it.
+void warnOfOil(const Boom& boom, std::vector<Warning>& warnings) {
+  const CylinderParameters* unlike = nullptr;
+  Vibration::OilAgainstOthers found;
+  for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
+    const auto one = boom.vibration().oilAgainstOthers(i);
+    if (!one || !exceeds(one->stiffer, square(one->expected) + square(one->deviation), gate::kRare)) continue;
+    if (unlike != nullptr && std::abs(one->stiffer) <= std::abs(found.stiffer)) continue;
+    unlike = &boom.cylinders()[i].parameters(), found = *one;
+  }
+  if (unlike == nullptr) return;
+  const double times = std::exp(std::abs(found.stiffer));
+  const bool soft = found.stiffer < 0.0;
+  warnings.push_back(
+      {"cylinder stiffness",
+       format("%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, %s_stiffness_deviation "
+              "allows for %.0f %%: %s; the boom's loads are those of the stiffness found",
+              unlike->name.c_str(), times, times * found.deviation, soft ? "softer" : "stiffer", unlike->name.c_str(),
+              100.0 * unlike->stiffness_deviation,
+              soft ? "air in its oil, hoses, worn pins or a link that gives"
+                   : "its bore or hose volumes in the boom file, or air in the oil of the others"),
+       true});
+}
+
 void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   const SampleResult& result = pipeline.result();
   if (pipeline.boom() && pipeline.counts().accepted > 0) {
@@ -192,6 +217,7 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                           "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
                           "cylinder_pressures came: as the boom file gives it",
                           true});
+    warnOfOil(pipeline.boom()->boom(), warnings);
     if (vibration.identifier())
       warnOfClock(*vibration.identifier(), Clock::kImu, "imu stamps",
                   "hull_imu: by those of the crank its stamps are some %.2g ms %s; the boom's vibration allows for "

@@ -178,7 +178,8 @@ Eigen::Vector3d HammerOnBoom::stiffness(const State& held) const {
   for (int k = 0; k < 3; ++k) {
     const OilCylinder& c = boom_.cylinders[static_cast<std::size_t>(k)];
     const double angle = held.x[k], arm = c.arm(angle);
-    K[k] = boom_.bulk_modulus * arm * arm * (c.bore_area * c.boreShare(angle) + c.rod_area * c.rodShare(angle));
+    const double oil = boom_.bulk_modulus * machine_.on_boom.cylinder_oil[static_cast<std::size_t>(k)];
+    K[k] = oil * arm * arm * (c.bore_area * c.boreShare(angle) + c.rod_area * c.rodShare(angle));
   }
   return K;
 }

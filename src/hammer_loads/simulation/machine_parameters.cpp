@@ -129,6 +129,8 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   OnBoomSettings s;
   s.on = reader.boolean("hull_on_boom");
   s.oil_stiffness = reader.number("oil_stiffness_factor", "", kPositive);
+  for (std::size_t k = 0; k < s.cylinder_oil.size(); ++k)
+    s.cylinder_oil[k] = reader.number(std::string(kBoomCylinders[k]) + "_oil_factor", "", kPositive);
   s.damping = reader.number("boom_damping_ratio", "", NumberRule::within(0.0, 0.99));
   s.step = reader.number("boom_step_s", "s", kPositive);
   s.seals.friction = reader.number("machine_seal_friction", "", NumberRule::within(0.0, 0.2));

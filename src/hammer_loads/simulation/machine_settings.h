@@ -150,6 +150,7 @@ struct SealSettings {
 struct OnBoomSettings {
   bool on{};                  ///< else the hull has no motion but its pitch, and no sensors
   double oil_stiffness{1.0};  ///< over that of a bulk modulus of 1e9 Pa [-], > 0
+  std::array<double, 3> cylinder_oil{1.0, 1.0, 1.0};  ///< each cylinder's over that [-], > 0
   double damping{0.05};       ///< ratio of every mode [-], in [0, 1)
   double step{4e-4};          ///< longest integration step [s], > 0
   SealSettings seals;

@@ -1,0 +1,53 @@
+// Machines drawn at random whose one flaw is that their seals rub: nothing else may be named.
+#include <random>
+
+#include "hammer_loads/pipeline/warnings.h"
+#include "pipeline/on_boom_session.h"
+
+namespace hammer_loads {
+namespace {
+
+using simulation::MachineSettings;
+
+/// Pose, oil, seals of 0.5 to 2 % of the force; every second one presses its hull on rock.
+MachineSettings rubbingMachine(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  const double boom = between(-0.8, -0.1), arm = between(0.7, 1.7), lean = between(-0.3, 0.3);
+  MachineSettings m = test::machineOnBoom(between(0.75, 1.3), 50.0, {boom, arm, lean - boom - arm});
+  m.seed = 900 + seed;
+  m.on_boom.seals.friction = between(0.005, 0.02);
+  if (seed % 2 == 0) m.on_boom.rock = {between(1e7, 6e7), 3.0, between(3e3, 6e3)};
+  return m;
+}
+
+/// What is said at any time while the machine works, without repetition.
+std::string namesOf(const MachineSettings& machine, const simulation::Session& session, bool imu, bool pressures) {
+  const Settings settings = test::withExactHammer(test::settingsWith(
+      std::string("boom: compliant\nboom_stiffness: identified\nhull_motion: ") + (imu ? "imu\n" : "model\n")));
+  test::Player player(settings, true, session);
+  player.imu_speaks = imu, player.pressures_speak = pressures;
+  std::string names;
+  double next = 0.0;
+  player.playTo(machine.duration, [&](double time, const SampleResult&) {
+    if (time < next) return;
+    next = time + 0.5;
+    for (const Warning& warning : warningsOf(player.pipeline))
+      if (time > 2.5 && names.find(warning.key) == std::string::npos) names += std::string(warning.key) + "; ";
+  });
+  return names;
+}
+
+TEST(FalseNames, SealsThatRubAreNoLateStampNoRockAndNoExchange) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const MachineSettings machine = rubbingMachine(seed);
+    const simulation::Session session = simulation::recordSession(machine);
+    const bool on_rock = machine.on_boom.rock.stiffness > 0.0;
+    EXPECT_EQ(namesOf(machine, session, false, true), "") << seed;
+    EXPECT_EQ(namesOf(machine, session, true, true), "") << seed;
+    EXPECT_EQ(namesOf(machine, session, true, false), on_rock ? "rock; " : "") << seed;
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
