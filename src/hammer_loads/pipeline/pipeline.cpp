@@ -94,6 +94,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   const StampNs stamp = result_.stamp = crank_.stamp();
   const CrankFollower::Taken taken = crank_.take(hull_.predict(stamp));
   if (taken == CrankFollower::Taken::kRefused) return refuse(Refusal::kImplausible);
+  result_.stamp = crank_.stamp();  // readings may show that samples were lost
   result_.crank = crank_.estimate();
   result_.consistency = crank_.tracker().consistency();
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(stamp);
