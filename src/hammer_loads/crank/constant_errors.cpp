@@ -29,6 +29,13 @@ void ConstantErrors::takeSupply(double change) noexcept {
   estimate_[kSupply] += change;
 }
 
+void ConstantErrors::consider(int constant, double deviation) noexcept {
+  if (prior_[constant] == deviation) return;
+  prior_[constant] = deviation;
+  considerPriors();
+  root_ = covarianceRoot(moment_);
+}
+
 ConstantErrors::ConstantErrors(const Vector& prior) noexcept : prior_(prior) {
   fit_.begin(prior_);
   considerPriors();

@@ -58,6 +58,8 @@ class ConstantErrors {
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 
+  /// Standard deviation of a constant that is considered, known better now.
+  void consider(int constant, double deviation) noexcept;
   /// The supply's stiffness has been changed by so much [SupplyLaw::unit].
   void takeSupply(double change) noexcept;
   /// 0 before some turns. deviation: of the sensor's place alone.

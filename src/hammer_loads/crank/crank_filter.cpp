@@ -24,6 +24,7 @@ constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
+constexpr double kPartOfInterval = 0.3;    // of one: what a reading ahead by whole ones may miss them by
 constexpr double kUnexplained = 3.0;       // mean innovation^2 over its variance
 constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
@@ -66,7 +67,7 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   if (sample.speed) sample.speed = encoder_.speed(angle, *reading.speed);
   sample.angle_variance = encoder_.variance() + square(settings_.angle_noise);
   sample.timing_variance = timing_.variance();
-  sample.speed_variance = speed_variance_;
+  sample.speed_variance = speed_trust_.varianceFactor() * speed_variance_;
   return sample;
 }
 
@@ -88,6 +89,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   s.torque = std::clamp(s.torque, -mostTorque(), mostTorque());
   has_speed_ = sample.speed.has_value();
   read_side_.reset();
+  speed_trust_.restart();
   supply_.restart();
   outlier_ = 0.0;
   unexplained_ = 0;
@@ -157,6 +159,15 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   consistency_ = {};
 }
 
+/// (8) As it is without the speed, by the estimate at the angle.
+void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
+  if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed) return speed_trust_.restart();
+  witness_->acceleration =
+      now_.motor ? motorAcceleration(*model_.coupling(), load_, now_.state) : acceleration(load_, now_.state);
+  if (struck && !now_.motor) witness_->jump = now_.state.speed * (1.0 - 1.0 / now_.factor);
+  speed_trust_.follow(dt, *witness_);
+}
+
 /// (8)
 void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
   const Innovation innovation = sample.ofSpeed(now_, model_);
@@ -165,7 +176,8 @@ void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
   if (!innovation.exceeds(gate::kImpossible))
     now_.correctSpeed(innovation.value, innovation.total, innovation.by_error);
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
-  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
+  const double expected = innovation.total - sample.speed_variance + speed_variance_;  // of one speed alone
+  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - expected), floor);
 }
 
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
@@ -174,7 +186,12 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   const CrankPosition &from = last.state.position, &to = now_.state.position;
   if (from.angle.side != Side::kAfterBlow || to.angle.side != Side::kBeforeBlow || to.blow != from.blow + 1) return;
   supply_.endTurn(to);
+  speed_trust_.endTurn();
+  slip_.endTurn();
   if (from.isMirrored() || to.isMirrored()) return;
+  const double ahead = speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0;
+  errors_.consider(ConstantErrors::kLatency,
+                   std::hypot(settings_.constant_deviations[ConstantErrors::kLatency], std::hypot(stamps_off_, ahead)));
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   learnSupply();
   blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_constant.row(Belief::kFactor));
@@ -237,6 +254,10 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   settleSide(last, dt, sample, struck);
   read_side_ = readSide(reading);
   respectCount(last, dt, struck, sample, reading);
+  if (witness_) {
+    witness_->speed = now_.encoderSpeed();
+    witness_->variance = consistency_.growth() * now_.encoderVariance(Belief::kSpeed);
+  }
   if (sample.speed) correctSpeed(sample);
   if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed
   now_.boundFactor();
@@ -247,33 +268,84 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   return rival_.isThere() && rival_.choose(now_, mirrored_);
 }
 
+/// (5) Samples were lost before this one, where they are taken at equal intervals: the reading is whole intervals
+/// ahead.
+double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
+  const double speed = now_.encoderSpeed();
+  if (!(interval_ > 0.0) || std::abs(speed) < kLearnSpeed || !innovation.exceeds(gate::kImpossible)) return 0.0;
+  const double intervals = innovation.value / (speed * interval_);
+  if (intervals < 1.0 - kPartOfInterval || std::abs(innovation.value) > kJump) return 0.0;
+  const double whole = std::nearbyint(intervals);
+  const double rest = (intervals - whole) * speed * interval_;
+  return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
+}
+
+/// (5) Whether a step of the reading could be told from the crank's own.
+bool CrankFilter::mayHaveSlipped(const WeighedSample& sample) const noexcept {
+  const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
+  const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
+  return at_work && !mirrored_ && !rival_.isThere() && nearest > kAtBlow;
+}
+
 /// Steps (1) to (10) are those of model.md 6.
 Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   const CrankBelief last = now_;
+  lost_time_ = 0.0;
   restart_load_ *= std::max(0.0, 1.0 - dt / kForgetRestarts);
   doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
   step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
-  const bool struck = predict(dt, true, now_) > 0;  // (1)
+  bool struck = predict(dt, true, now_) > 0;  // (1)
 
   WeighedSample sample = weighed(reading);  // (2)
   Innovation innovation = sample.ofAngle(now_);
+  if (has_speed_) lost_time_ = timeLost(innovation);
+  if (lost_time_ > 0.0) {
+    now_ = last;
+    dt += lost_time_;
+    struck = predict(dt, true, now_) > 0;
+    innovation = sample.ofAngle(now_);
+  }
+  if (has_speed_) {
+    const double by_torque = 2.0 * square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
+    const bool possible = lost_time_ == 0.0 && mayHaveSlipped(sample);
+    const EncoderSlip::Step step =
+        slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_, possible);
+    if (step == EncoderSlip::Step::kPerhaps) {
+      now_ = last;
+      return Tracking::kOutlier;
+    }
+    if (step == EncoderSlip::Step::kSlipped) {
+      encoder_.slip(slip_.last());
+      sample.angle = CrankAngle::wrapToPi(sample.angle - slip_.last());
+      innovation = sample.ofAngle(now_);
+    }
+  }
   const double ratio = innovation.ratio();
   const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (has_speed_ && !(deviation < kDoubtfulAngle)) {
     if (!now_.isSound(mostSpeed())) now_ = last;
     return begin(sample);
   }
+  witness_.reset();
+  if (sample.speed) witness_.emplace().measured = *sample.speed;
   if (has_speed_) {
+    if (!speed_trust_.isTrusted()) sample.speed.reset();
     fit_ = innovation.logLikelihood();
     timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
     sample.timing_variance = timing_.variance();
-    if (isSpeedOfOtherSide(sample)) sample.speed.reset();
+    if (isSpeedOfOtherSide(sample)) {
+      sample.speed.reset();
+      witness_.reset();
+    }
     const bool without_contact = ratio > square(kToolSeen) && rivalExplains(dt, sample);
     const bool unlike =
         !without_contact && (meetsTool(dt, innovation, sample) || meetsOtherBlow(dt, innovation, sample));
     if (unlike) innovation = sample.ofAngle(now_);                           // (4)
     if (!without_contact && isContradiction(dt, innovation) && !isLost()) {  // (5)
-      if (const auto result = contradict(last, dt, innovation, sample)) return *result;
+      if (const auto result = contradict(last, dt, innovation, sample)) {
+        if (*result == Tracking::kOutlier) lost_time_ = 0.0;
+        return *result;
+      }
       innovation = sample.ofAngle(now_);
     }
     if (!without_contact) learnFrom(innovation, ratio);  // (10)
@@ -293,6 +365,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   rememberBlow(last, dt);
   doubtInertia(dt);
   takeLoad();
+  judgeSpeed(dt, struck);
   const bool continued = has_speed_;
   has_speed_ = true;
   if (!continued) return Tracking::kRestarted;

@@ -10,7 +10,9 @@
 #include "hammer_loads/crank/crank_belief.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
+#include "hammer_loads/crank/encoder_slip.h"
 #include "hammer_loads/crank/estimate_between.h"
+#include "hammer_loads/crank/speed_trust.h"
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/timing_noise.h"
@@ -74,6 +76,11 @@ class CrankFilter final : public CrankTracker {
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }
   double struckInertia() const noexcept override;
 
+  void setInterval(double interval) noexcept override { interval_ = interval; }
+  double lostTime() const noexcept override { return lost_time_; }
+  int slips() const noexcept override { return slip_.count(); }
+  void considerLatency(double deviation) noexcept override { stamps_off_ = deviation; }
+
   const CrankFilter* filter() const noexcept override { return this; }
 
   const ShaftState& state() const noexcept { return now_.state; }
@@ -99,6 +106,8 @@ class CrankFilter final : public CrankTracker {
   /// Logarithm of the likelihood of its angle before it was taken, but for a constant.
   double angleFit() const noexcept { return angle_fit_; }
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
+  /// Whether measured speeds are taken up, and why not.
+  const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
   double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
   bool isProven() const noexcept override { return consistency() < kAgrees; }
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
@@ -106,6 +115,8 @@ class CrankFilter final : public CrankTracker {
   double strikeConsistency() const noexcept override { return strike_consistency_.mean(); }
   /// Errors of crank_zero_rad and of the eccentricity once a turn, as the innovations show them.
   const ConstantErrors& constantErrors() const noexcept { return errors_; }
+  /// Steps of the encoder on its shaft, which the filter has followed.
+  const EncoderSlip& encoderSlip() const noexcept { return slip_; }
   /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Innovations stay far larger than the model explains, whatever the drive inertia.
@@ -113,6 +124,7 @@ class CrankFilter final : public CrankTracker {
 
  private:
   static constexpr double kLearnSpeed = 5.0;  ///< [rad/s]: a slower crank is moved by friction and stopped by the tool
+  static constexpr double kAtBlow = 0.3;  ///< [rad] from the blow: no jitter takes a sample further to the other side
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
@@ -133,6 +145,8 @@ class CrankFilter final : public CrankTracker {
   bool isContradiction(double dt, const Innovation& innovation) const noexcept;
   std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                      const WeighedSample& sample) noexcept;
+  double timeLost(const Innovation& innovation) const noexcept;
+  bool mayHaveSlipped(const WeighedSample& sample) const noexcept;
   bool correct(const CrankBelief& last, double dt, bool struck, const Innovation& innovation,
                const WeighedSample& sample, double reading) noexcept;
   void correctAngle(Innovation innovation) noexcept;
@@ -141,6 +155,7 @@ class CrankFilter final : public CrankTracker {
   void respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
                     double reading) noexcept;
   void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
+  void judgeSpeed(double dt, bool struck) noexcept;
   void correctSpeed(const WeighedSample& sample) noexcept;
   void meetRival(const CrankBelief& belief) noexcept;
   bool rivalExplains(double dt, const WeighedSample& sample) noexcept;
@@ -180,6 +195,12 @@ class CrankFilter final : public CrankTracker {
   bool mirrored_{};                ///< now_ had no contact and is on the mirrored branch
   double fit_{};                   ///< logarithm of the last sample's likelihood by now_
   double speed_variance_;          ///< of measured speeds, as identified [rad2/s2]
+  EncoderSlip slip_;
+  double interval_{};    ///< of the samples, where they are taken at equal ones [s]
+  double lost_time_{};   ///< of the last step, beyond what its stamps say [s]
+  double stamps_off_{};  ///< standard deviation of what all stamps are off alike [s]
+  SpeedTrust speed_trust_;
+  std::optional<SpeedTrust::Witness> witness_;  ///< of the last sample
   std::optional<Side> read_side_;  ///< of the blow, as the last reading shows it
   double outlier_{};               ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down

@@ -38,6 +38,11 @@ class CrankSensor {
   bool isIdentity() const noexcept { return identity_; }
   /// Reading [rad] at a crank angle [rad].
   double reading(double angle) const noexcept;
+  /// It sits elsewhere: readings are larger by that angle of the crank [rad] from now on.
+  void slip(double angle) noexcept {
+    place_.zero += angle / gain_;
+    identity_ = false;
+  }
 
  private:
   double excess(double angle) const noexcept;

@@ -25,12 +25,14 @@ void CrankTrack::setHullMotion(const HullMotion& hull) noexcept {
 
 void CrankTrack::start(const CrankSample& sample) {
   filter_.start(sample);
-  add({Tracking::kRestarted, 0.0, model_.hullMotion(), {}, {}, {}});
+  add({Tracking::kRestarted, 0.0, 0.0, model_.hullMotion(), {}, {}, {}});
 }
 
 Tracking CrankTrack::update(double dt, const CrankSample& sample) {
-  TrackedSample tracked{{}, dt, blend(hull_, model_.hullMotion(), 0.5), filter_.walks(), filter_.blowPrior(), {}};
+  TrackedSample tracked{{}, dt, 0.0, blend(hull_, model_.hullMotion(), 0.5), filter_.walks(), filter_.blowPrior(), {}};
   tracked.tracking = filter_.update(dt, sample);
+  tracked.lost_time = filter_.lostTime();
+  tracked.step += tracked.lost_time;
   add(tracked);
   return tracked.tracking;
 }
@@ -44,6 +46,7 @@ void CrankTrack::add(TrackedSample sample) {
   sample.consistency = filter_.consistency();
   sample.strike_consistency = filter_.strikeConsistency();
   sample.resolution = filter_.angleResolution();
+  sample.slips = filter_.slips();
   sample.has_speed = filter_.hasSpeed();
   sample.is_plausible = filter_.isPlausible();
   sample.is_proven = filter_.isProven();

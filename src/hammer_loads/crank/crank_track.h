@@ -13,6 +13,7 @@ namespace hammer_loads {
 struct TrackedSample {
   Tracking tracking{};  ///< of a beginning: kRestarted
   double step{};        ///< since the last accepted sample [s]; of a beginning: 0
+  double lost_time{};   ///< of the step, beyond what the stamps say [s]
   HullMotion hull;      ///< mean over the step
   CrankWalks walks;     ///< over it
   BlowPrior prior;      ///< for a blow within it
@@ -21,6 +22,7 @@ struct TrackedSample {
   ConstantErrors::Matrix root{ConstantErrors::Matrix::Zero()};  ///< of the sensor's errors
   double consistency{}, strike_consistency{};
   double resolution{};  ///< of the angle sensor [rad]
+  int slips{};          ///< of it, so far
   bool has_speed{}, is_plausible{}, is_proven{}, is_doubtful{};
   bool reading_shows_side{};
   bool is_exact{};   ///< its stamp does not jitter: the encoder decides the side of a blow

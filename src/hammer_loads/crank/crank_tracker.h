@@ -122,6 +122,15 @@ class CrankTracker {
   virtual const CrankFilter* filter() const noexcept { return nullptr; }
   /// One count of the angle sensor [rad], as far as known.
   virtual double angleResolution() const noexcept = 0;
+  /// Samples are taken at equal intervals [s], so that a reading that is whole intervals ahead has lost samples before
+  /// it; 0: not known.
+  virtual void setInterval(double /*interval*/) noexcept {}
+  /// What the last step took longer than was given, by such samples [s].
+  virtual double lostTime() const noexcept { return 0.0; }
+  /// Steps of the encoder on its shaft that were found since the beginning.
+  virtual int slips() const noexcept { return 0; }
+  /// Standard deviation of what all stamps are off alike [s]: no reading shows it.
+  virtual void considerLatency(double /*deviation*/) noexcept {}
   /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.
   virtual void setHullMotion(const HullMotion& /*hull*/) noexcept {}
 };

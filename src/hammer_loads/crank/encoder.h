@@ -27,6 +27,8 @@ class Encoder {
   }
   /// Of the crank [rad/s], at its angle [rad].
   double speed(double angle, double measured) const noexcept { return place_.speed(angle, measured); }
+  /// It has slipped on its shaft: readings are larger by so much of the crank's angle [rad] from now on.
+  void slip(double angle) noexcept { place_.slip(angle); }
   /// Crank angles between which a reading lies; the lower one within half a turn of the blow [rad].
   struct Edges {
     double low, high;
@@ -37,6 +39,8 @@ class Encoder {
     const double low = CrankAngle::wrapToPi(one < other ? one : other);
     return {low, low + std::abs(other - one)};
   }
+
+  const CrankSensor& place() const noexcept { return place_; }  ///< as it sits now
 
   /// Variance of angle() [rad2]: uniform over the count.
   double variance() const noexcept {

@@ -21,6 +21,11 @@ class RecordedCrank final : public CrankTracker {
   Tracking update(double dt, const CrankSample& sample) noexcept override { return track_->update(dt, sample); }
   void setHullMotion(const HullMotion& hull) noexcept override { track_->setHullMotion(hull); }
 
+  void setInterval(double interval) noexcept override { track_->filter().setInterval(interval); }
+  double lostTime() const noexcept override { return filter_.lostTime(); }
+  int slips() const noexcept override { return filter_.slips(); }
+  void considerLatency(double deviation) noexcept override { track_->filter().considerLatency(deviation); }
+
   CrankEstimate estimate() const noexcept override { return filter_.estimate(); }
   CrankEstimate between(double dt) const noexcept override { return filter_.between(dt); }
   bool hasSpeed() const noexcept override { return filter_.hasSpeed(); }

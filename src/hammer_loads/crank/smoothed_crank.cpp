@@ -23,7 +23,10 @@ void SmoothedCrank::setHullMotion(const HullMotion& hull) noexcept { model_.setH
 
 Tracking SmoothedCrank::next() noexcept {
   TrackedSample sample = track_->take();
-  if (sample.tracking == Tracking::kOutlier) return sample.tracking;
+  if (sample.tracking == Tracking::kOutlier) {
+    now_.lost_time = 0.0;
+    return sample.tracking;
+  }
   before_ = std::exchange(now_, sample).belief;
   before_hull_ = std::exchange(now_hull_, model_.hullMotion());
   step_model_.setHullMotion(blend(before_hull_, now_hull_, 0.5));

@@ -35,6 +35,8 @@ class SmoothedCrank final : public CrankTracker {
   double strikeConsistency() const noexcept override { return now_.strike_consistency; }
   /// As it is after the last sample that came into the track.
   const CrankFilter* filter() const noexcept override { return &track_->filter(); }
+  double lostTime() const noexcept override { return now_.lost_time; }
+  int slips() const noexcept override { return now_.slips; }
   double angleResolution() const noexcept override { return now_.resolution; }
 
  private:

@@ -46,7 +46,13 @@ StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) 
   return next(header);
 }
 
+std::int64_t StampSequence::skip(double time) noexcept {
+  fit_.skip(1e9 * time / fit_.interval());
+  return placed_ += static_cast<std::int64_t>(std::llround(1e9 * time));
+}
+
 StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
+  rounding_.add(header - *header_);
   const bool repeats = header == *header_;
   if (uncounted_ && repeats) {  // they were not: stamps come in bursts
     fit_.begin(header);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "hammer_loads/crank/stamp_rounding.h"
 #include "hammer_loads/crank/steady_clock_fit.h"
 
 namespace hammer_loads {
@@ -47,6 +48,16 @@ class StampSequence {
   };
   /// header: stamp of the message that arrives [ns].
   Place place(std::int64_t header, Repeats repeats) noexcept;
+  /// The readings show that samples were lost before the last one: it and the coming ones are so much later [s], whole
+  /// intervals. Its instant [ns].
+  std::int64_t skip(double time) noexcept;
+  /// Interval at which the samples are taken, where stamps are being refitted by it and the last one allows for lost
+  /// samples before it [s]; else 0.
+  double interval() const noexcept {
+    return steady_ && fit_.isKnown() && !fit_.contradictsLoss() ? 1e-9 * fit_.interval() : 0.0;
+  }
+  /// Of what header stamps are whole multiples though the samples are not taken so [s]; 0: of nothing.
+  double rounding() const noexcept { return rounding_.step(); }
   /// Stamps are being refitted by sequence.
   bool isSteady() const noexcept { return steady_; }
   /// Stamps that repeated or changed places since the start.
@@ -68,6 +79,7 @@ class StampSequence {
   bool uncounted_{};  ///< messages passed for duplicates since the beginning of the fit
   bool steady_{};
   SteadyClockFit fit_;
+  StampRounding rounding_;
 };
 
 }  // namespace hammer_loads

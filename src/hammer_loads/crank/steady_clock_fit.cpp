@@ -18,6 +18,7 @@ constexpr double kRegular = 0.1;           // scatter of bursts over the time be
 constexpr double kClip = 4.0;              // root mean squares: a stamp further off counts as that far off
 constexpr double kGap = 6.0;               // root mean squares beyond which samples were lost for certain
 constexpr double kEvidence = 16.0;         // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
+constexpr double kNoLoss = 3.0;            // likewise that none was: 20 to 1
 constexpr double kLeastScatter = 0.15;     // of the interval: a run's beginning is not known better
 constexpr double kGrown = 2.0;             // scatter about the line over that of white jitter with such steps
 
@@ -36,6 +37,10 @@ bool SteadyClockFit::inBursts() const noexcept { return mean_length_ > kBurst; }
 bool SteadyClockFit::explains() const noexcept {
   if (isKnown() && inBursts() && end_square_ < square(kRegular * mean_length_ * interval_)) return true;
   return runs_ >= kWarm && interval_ > 0.0 && end_square_ <= square(kGrown) * 0.5 * step_square_;
+}
+
+bool SteadyClockFit::contradictsLoss() const noexcept {
+  return interval_ / end_square_ * (0.5 * interval_ - residual_) > kNoLoss;
 }
 
 double SteadyClockFit::scatterGain() const noexcept {
@@ -62,6 +67,14 @@ void SteadyClockFit::endRun() noexcept {
   step_square_ += gain * (square(step) - step_square_);
 }
 
+/// The line, by whole intervals.
+void SteadyClockFit::shift(double intervals) noexcept {
+  lost_evidence_ = gained_evidence_ = 0.0;
+  instant_ += intervals * interval_;
+  residual_ -= intervals * interval_;
+  end_residual_ -= intervals * interval_;
+}
+
 /// residual: of a run's first sample. Shifts the line by whole intervals.
 void SteadyClockFit::watchLost(double residual) noexcept {
   if (runs_ < kFirst) {
@@ -82,10 +95,8 @@ void SteadyClockFit::watchLost(double residual) noexcept {
     else if (gained_evidence_ > kEvidence)
       shift = std::min(-1.0, std::nearbyint(off / interval_));
     if (shift != 0.0) {
-      lost_evidence_ = gained_evidence_ = 0.0;
-      instant_ += shift * interval_;
+      this->shift(shift);
       off -= shift * interval_;
-      end_residual_ -= shift * interval_;
     }
     off = std::clamp(off, -kClip * scatter, kClip * scatter);
   }

@@ -15,6 +15,10 @@ class SteadyClockFit {
   void begin(std::int64_t stamp) noexcept;
   /// The next sample's stamp [ns]; its instant on the line so far [ns].
   std::int64_t add(std::int64_t stamp) noexcept;
+  /// Samples were lost before the last one: it and the coming ones are so many intervals later.
+  void skip(double intervals) noexcept { shift(intervals); }
+  /// The last stamp is where it must be without a loss before it, though one would show.
+  bool contradictsLoss() const noexcept;
   double interval() const noexcept { return interval_; }  ///< [ns]
   /// Of stamps about the line, root of mean square [ns].
   double scatter() const noexcept { return std::sqrt(end_square_); }
@@ -28,6 +32,7 @@ class SteadyClockFit {
  private:
   double scatterGain() const noexcept;
   void endRun() noexcept;
+  void shift(double intervals) noexcept;
   void watchLost(double residual) noexcept;
 
   std::int64_t origin_{};  ///< first stamp [ns]; all else relative to it, so that no digits are lost

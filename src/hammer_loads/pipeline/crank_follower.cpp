@@ -74,6 +74,8 @@ std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& m
 CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   const CrankSample sample{measured_.angle, verdict_.speed_is_dead ? std::nullopt : measured_.speed};
   tracker_->setHullMotion(hull);
+  tracker_->setInterval(sequence_.interval());
+  tracker_->considerLatency(0.5 * sequence_.rounding());
   if (verdict_.order == CrankSampleGate::Order::kFirst) {
     tracker_->start(sample);
     restart();
@@ -81,6 +83,7 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
     return Taken::kBegan;
   }
   const Tracking tracking = tracker_->update(verdict_.step, sample);
+  followLostTime();
   if (tracking == Tracking::kOutlier) return Taken::kRefused;
   if (tracking != Tracking::kContinued) {
     restart();
@@ -90,6 +93,18 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
   estimate_ = tracker_->estimate();
   step_.take(*gate_.last(), verdict_.step, last_position_);
   return Taken::kContinued;
+}
+
+/// The readings say more of the step's length than stamps that jitter.
+void CrankFollower::followLostTime() noexcept {
+  if (tracker_->slips() > slips_) {
+    slips_ = tracker_->slips();
+    slipped_ = stamp_;
+  }
+  const double lost = tracker_->lostTime();
+  if (!(lost > 0.0)) return;
+  stamp_ = sequence_.skip(lost);
+  verdict_.step += lost;
 }
 
 void CrankFollower::hullMoved(const HullMotion& hull) noexcept {

@@ -53,6 +53,8 @@ class CrankFollower {
   const CrankTracker& tracker() const noexcept { return *tracker_; }
   const StampSequence& stamps() const noexcept { return sequence_; }
   CrankUnit unit() const noexcept { return unit_check_.unit(); }
+  /// When the encoder slipped last, by its stamp [ns]; nothing: it did not.
+  const std::optional<StampNs>& slipped() const noexcept { return slipped_; }
   bool angleIsFrozen() const noexcept { return gate_.angleIsFrozen(); }
 
  private:
@@ -60,6 +62,7 @@ class CrankFollower {
   std::optional<Refusal> place(StampNs header, const CrankSample& measured) noexcept;
   void checkUnit(StampNs stamp, const CrankSample& measured) noexcept;
   void restart() noexcept;
+  void followLostTime() noexcept;
 
   const HullModel* model_;
   PipelineSettings settings_;
@@ -77,6 +80,8 @@ class CrankFollower {
   CrankSample measured_;
   CrankSampleGate::Verdict verdict_;
 
+  int slips_{};  ///< of the encoder, so far
+  std::optional<StampNs> slipped_;
   CrankPosition last_position_;  ///< at the last accepted sample
   bool unsettled_{};
   bool speed_measured_{};

@@ -119,6 +119,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
 
 /// Everything that goes on from sample to sample.
 void Pipeline::follow(CrankFollower::Taken taken) noexcept {
+  result_.stamp = crank_.stamp();  // readings may show that samples were lost
   result_.crank = crank_.estimate();
   result_.consistency = crank_.tracker().consistency();
   if (taken == CrankFollower::Taken::kBegan) turn_.begin(result_.stamp);

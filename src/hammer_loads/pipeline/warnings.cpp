@@ -7,6 +7,7 @@
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/unknowns.h"
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/pipeline/reading_warnings.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -143,6 +144,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                 pipeline.settings().crank_angle_resolution, filter->encoder().resolution()),
          true});
   warnOfStamps(pipeline.crank(), *filter, warnings);
+  warnOfReadings(pipeline.crank(), *filter, warnings);
   const bool inconsistent = filter->consistency() > CrankTrust::kInconsistent;
   const bool strike = filter->strikeConsistency() > CrankTrust::kInconsistent;
   if (!inconsistent && !strike && !withheld && !filter->isUnexplained())

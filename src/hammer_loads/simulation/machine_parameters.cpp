@@ -98,6 +98,11 @@ void readEncoder(ParameterReader& reader, CrankSensorSettings& s) {
   s.direction = static_cast<int>(reader.integer("encoder_direction", "", -1, 1));
   if (s.direction == 0) reader.addProblem("encoder_direction: 0, must be 1 or -1");
   s.ratio = reader.number("encoder_ratio", "", kPositive);
+  s.angle_lag = reader.number("encoder_lag_s", "s", NumberRule::within(0.0, 1.0));
+  s.slip.amount = reader.number("encoder_slip_rad", "rad", kAny);
+  s.slip.during.from = reader.number("encoder_slip_start_s", "s", kNotNegative);
+  const double slips_for = reader.number("encoder_slip_length_s", "s", kNotNegative);
+  s.slip.during.to = slips_for > 0.0 ? s.slip.during.from + slips_for : kNever;
   s.eccentricity[0].amount = reader.number("encoder_eccentricity_1_rad", "rad", NumberRule::within(0.0, 0.4));
   s.eccentricity[0].phase = reader.number("encoder_eccentricity_1_phase_rad", "rad", kAny);
   s.eccentricity[1].amount = reader.number("encoder_eccentricity_2_rad", "rad", NumberRule::within(0.0, 0.2));
@@ -113,12 +118,16 @@ CrankSensorSettings readCrankSensor(ParameterReader& reader) {
   s.stamp_step = reader.number("stamp_step_s", "s", NumberRule::within(0.0, 1.0));
   s.latency = reader.number("stamp_latency_s", "s", NumberRule::within(0.0, 1.0));
   s.burst = static_cast<int>(reader.integer("stamp_burst", "", 1, kMostBurst));
+  s.stamps_ordered = reader.boolean("stamps_ordered");
   s.duplicate_share = reader.number("duplicate_share", "", NumberRule::within(0.0, 1.0));
+  s.loss_share = reader.number("loss_share", "", NumberRule::within(0.0, 0.99));
   readEncoder(reader, s);
   s.counts = static_cast<int>(reader.integer("encoder_counts", "", 0, kMostCounts));
   s.unwound = reader.boolean("unwound");
   s.speed = reader.boolean("measure_speed");
   s.speed_noise = reader.number("crank_speed_noise_rad_s", "rad/s", kNotNegative);
+  s.speed_lag = reader.number("speed_lag_s", "s", NumberRule::within(0.0, 1.0));
+  s.speed_scale = reader.number("speed_scale", "", kPositive);
   const double from = reader.number("drop_out_start_s", "s", kNotNegative);
   const double length = reader.number("drop_out_length_s", "s", kNotNegative);
   if (length > 0.0) s.drop_outs.push_back({from, from + length});

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "hammer_loads/linkage/level.h"
@@ -79,6 +80,8 @@ struct Eccentricity {
   double amount{}, phase{};  ///< [rad]
 };
 
+constexpr double kNever = std::numeric_limits<double>::infinity();  ///< [s]
+
 /// Crank encoder and the message that carries it.
 struct CrankSensorSettings {
   double rate{};                 ///< [Hz], > 0
@@ -88,11 +91,16 @@ struct CrankSensorSettings {
   double stamp_step{};           ///< stamps are whole multiples of it, rounded down [s]; 0: nanoseconds
   double latency{};              ///< constant part of stamp less instant [s]
   int burst{1};                  ///< so many samples carry the stamp of their last one, >= 1
+  bool stamps_ordered{};         ///< none is before the one before: a late one holds up those behind it
   double duplicate_share{};      ///< of the messages that come twice [-], in [0, 1]
+  double loss_share{};           ///< of the samples that never come [-], in [0, 1)
   int counts{};                  ///< per turn; angle = whole counts passed; 0: continuous
   bool unwound{};                ///< angle grows over the turns instead of staying in [0, 2 pi)
   bool speed{true};              ///< speed is measured too
   double speed_noise{};          ///< standard deviation [rad/s]
+  double speed_lag{};            ///< of a low-pass of first order on the measured speed [s]
+  double speed_scale{1.0};       ///< measured over true speed [-], > 0
+  double angle_lag{};            ///< of a low-pass of first order on the encoder's angle, before it is counted [s]
   double zero{};                 ///< reading at the blow [rad]
   int direction{1};              ///< 1 or -1
   double ratio{1.0};             ///< encoder turns per crank turn [-], > 0
@@ -101,6 +109,11 @@ struct CrankSensorSettings {
     double from{}, to{};  ///< [s]
   };
   std::vector<Interval> drop_outs;  ///< instants in [from, to) give no sample
+  /// The encoder has slipped on its shaft, or its counter has lost its reference, until it is found again.
+  struct Slip {
+    double amount{};                ///< of the encoder's angle [rad]
+    Interval during{0.0, kNever};   ///< [s]
+  } slip;
 };
 
 /// One boom joint: mean + amplitude sin(2 pi t/period + phase).

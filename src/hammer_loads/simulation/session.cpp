@@ -13,6 +13,8 @@ namespace {
 constexpr double kJointLag = 0.005;  // first joint sample [s], so that the two streams do not coincide
 constexpr double kImuLag = 0.0004, kPressureLag = 0.0007;  // theirs, so that no two of them do
 constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9, kJointSeed = 0x94d049bb133111eb;
+constexpr std::uint64_t kLossSeed = 0x2545f4914f6cdd1d;
+constexpr double kSensorStep = 1e-4;  // [s] in which a low-pass takes its input for a straight line
 constexpr std::uint64_t kImuSeed = 0xd6e8feb86659fd93, kPressureSeed = 0xa0761d6478bd642f;
 
 std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machineOf(const MachineSettings& settings) {
@@ -23,7 +25,7 @@ std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machineOf(const Machi
 
 bool isPlain(const CrankSensorSettings& sensor) noexcept {
   return sensor.zero == 0.0 && sensor.direction == 1 && sensor.ratio == 1.0 && sensor.eccentricity[0].amount == 0.0 &&
-         sensor.eccentricity[1].amount == 0.0;
+         sensor.eccentricity[1].amount == 0.0 && sensor.angle_lag == 0.0 && sensor.slip.amount == 0.0;
 }
 
 bool stampsAreInstants(const CrankSensorSettings& sensor) noexcept {
@@ -46,6 +48,11 @@ Encoded encoded(const CrankSensorSettings& sensor, double angle, double speed) n
   return {sensor.zero + factor * seen, factor * slope * speed};
 }
 
+Encoded encodedAt(const CrankSensorSettings& sensor, const CrankTruth& truth) noexcept {
+  const double whole = kTwoPi * static_cast<double>(truth.turn);
+  return encoded(sensor, whole + truth.angle + truth.twist, truth.motor_speed);
+}
+
 }  // namespace
 
 double SessionStream::Ticks::next() const noexcept {
@@ -57,9 +64,12 @@ SessionStream::SessionStream(const MachineSettings& settings)
       machine_(machineOf(settings)),
       noise_(settings.seed),
       message_draws_(settings.seed ^ kMessageSeed),
+      loss_draws_(settings.seed ^ kLossSeed),
       joint_noise_(settings.seed ^ kJointSeed),
       imu_noise_(settings.seed ^ kImuSeed),
       pressure_noise_(settings.seed ^ kPressureSeed),
+      angle_(settings.crank.angle_lag),
+      speed_(settings.crank.speed_lag),
       joints_{kJointLag, settings.joint_rate, 0},
       imu_{kImuLag, settings.on_boom.on ? settings.on_boom.imu.rate : 0.0, 0},
       pressures_{kPressureLag, settings.on_boom.on ? settings.on_boom.pressures.rate : 0.0, 0} {
@@ -78,7 +88,18 @@ void SessionStream::planSample() noexcept {
   speed_error_ = sensor.speed_noise * noise_();
 }
 
+CrankTruth SessionStream::truth() const {
+  return std::visit([](const auto& machine) { return CrankTruth(machine.truth()); }, machine_);
+}
+
 void SessionStream::moveTo(double time) {
+  while ((angle_.isOn() || speed_.isOn()) && sensor_time_ < time) {
+    sensor_time_ = std::min(time, sensor_time_ + kSensorStep);
+    std::visit([&](auto& machine) { machine.advanceTo(sensor_time_); }, machine_);
+    const Encoded now = encodedAt(settings_.crank, truth());
+    angle_.follow(sensor_time_, now.angle);
+    speed_.follow(sensor_time_, now.speed);
+  }
   std::visit([&](auto& machine) { machine.advanceTo(time); }, machine_);
 }
 
@@ -107,7 +128,8 @@ void SessionStream::advanceTo(double time, Session& session) {
 
 void SessionStream::takeCrank(Session& session) {
   const auto& lost = settings_.crank.drop_outs;
-  const bool dropped = std::any_of(lost.begin(), lost.end(), [&](const CrankSensorSettings::Interval& interval) {
+  const bool lost_one = loss_draws_.uniform() < settings_.crank.loss_share;
+  const bool dropped = lost_one || std::any_of(lost.begin(), lost.end(), [&](const CrankSensorSettings::Interval& interval) {
     return next_sample_ >= interval.from && next_sample_ < interval.to;
   });
   if (!dropped) {
@@ -143,7 +165,7 @@ void SessionStream::take(Session& session) {
   burst_.clear();
 }
 
-CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, double speed_error) const noexcept {
+CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, double speed_error) noexcept {
   const CrankSensorSettings& sensor = settings_.crank;
   CrankReading reading;
   reading.stamp = stampAt(truth.time + sensor.latency + stamp_error);
@@ -151,14 +173,17 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
     const auto step = static_cast<std::int64_t>(std::llround(sensor.stamp_step * 1e9));
     reading.stamp -= reading.stamp % step;
   }
+  if (sensor.stamps_ordered) reading.stamp = std::max(reading.stamp, last_stamp_ + 1);
+  last_stamp_ = reading.stamp;
   const std::int64_t turn = sensor.unwound ? truth.turn : 0;
   if (!isPlain(sensor) || truth.twist != 0.0) {
-    const double whole = kTwoPi * static_cast<double>(truth.turn);
-    const Encoded shown = encoded(sensor, whole + truth.angle + truth.twist, truth.motor_speed);
+    const Encoded shown = encodedAt(sensor, truth);
+    const bool slipped = truth.time >= sensor.slip.during.from && truth.time < sensor.slip.during.to;
+    const double angle = (angle_.isOn() ? angle_.output() : shown.angle) + (slipped ? sensor.slip.amount : 0.0);
     const double count = kTwoPi / std::max(sensor.counts, 1);
-    const double seen = sensor.counts > 0 ? std::floor(shown.angle / count) * count : shown.angle;
+    const double seen = sensor.counts > 0 ? std::floor(angle / count) * count : angle;
     reading.angle = sensor.unwound ? seen : seen - kTwoPi * std::floor((seen + 1e-9) / kTwoPi);
-    if (sensor.speed) reading.speed = shown.speed + speed_error;
+    if (sensor.speed) reading.speed = measuredSpeed(shown.speed, speed_error);
     return reading;
   }
   if (sensor.counts > 0) {
@@ -170,14 +195,17 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
   } else {
     reading.angle = static_cast<double>(turn) * kTwoPi + truth.angle;
   }
-  if (sensor.speed) reading.speed = truth.speed + speed_error;
+  if (sensor.speed) reading.speed = measuredSpeed(truth.speed, speed_error);
   return reading;
 }
 
+double SessionStream::measuredSpeed(double shown, double error) const noexcept {
+  return settings_.crank.speed_scale * (speed_.isOn() ? speed_.output() : shown) + error;
+}
+
 OnBoomSensors SessionStream::onBoomAt(double time) {
-  HammerOnBoom& machine = std::get<HammerOnBoom>(machine_);
-  machine.advanceTo(time);
-  return machine.sensors();
+  moveTo(time);
+  return std::get<HammerOnBoom>(machine_).sensors();
 }
 
 /// The sensors of a boom on its oil see it vibrate.

@@ -9,6 +9,7 @@
 
 #include "hammer_loads/simulation/elastic_machine.h"
 #include "hammer_loads/simulation/hammer_on_boom.h"
+#include "hammer_loads/simulation/low_pass.h"
 #include "hammer_loads/simulation/machine_settings.h"
 #include "hammer_loads/simulation/normal_noise.h"
 #include "hammer_loads/simulation/working_machine.h"
@@ -79,10 +80,12 @@ class SessionStream {
   };
 
   void moveTo(double time);
+  CrankTruth truth() const;
   void planSample() noexcept;
   void takeCrank(Session& session);
   void take(Session& session);
-  CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) const noexcept;
+  CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) noexcept;
+  double measuredSpeed(double shown, double error) const noexcept;  ///< both [rad/s]
   OnBoomSensors onBoomAt(double time);  ///< of a hull on its boom, moved there
   JointReading readJoints(double time);
   HullImuReading readImu(double time);
@@ -92,7 +95,10 @@ class SessionStream {
   MachineSettings settings_;
   std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machine_;
   NormalNoise noise_;
-  NormalNoise message_draws_, joint_noise_, imu_noise_, pressure_noise_;
+  NormalNoise message_draws_, loss_draws_, joint_noise_, imu_noise_, pressure_noise_;
+  LowPass angle_, speed_;  ///< of the encoder
+  double sensor_time_{};   ///< up to which they have followed [s]
+  std::int64_t last_stamp_{};
   std::vector<Taken> burst_;
   std::int64_t samples_{};
   Ticks joints_, imu_, pressures_;

@@ -1,0 +1,77 @@
+#include "hammer_loads/crank/speed_trust.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <utility>
+
+#include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kSpeedTurns = 12.0;     // [turns] of lag and scale
+constexpr double kSpeedSamples = 500.0;  // of what is left
+constexpr double kMostLag = 0.1;          // [s]: more is no filter of a drive that is controlled by it
+constexpr double kMostScale = 0.5;
+constexpr double kMostOfOne = 0.999;
+
+}  // namespace
+
+/// b = speed - y by the exact answer to an even acceleration: b' = acceleration - b/lag.
+void SpeedTrust::follow(double dt, const Witness& now) noexcept {
+  const bool continues = std::exchange(begun_, true);
+  const double mean = continues ? 0.5 * (acceleration_ + now.acceleration) : now.acceleration;
+  const double kept = continues && lag_ > 0.0 ? std::exp(-dt / lag_) : 0.0;
+  const double before = behind_ + now.jump;
+  const double settled = lag_ * mean;
+  by_lag_ = mean + kept * (by_lag_ - mean);
+  if (kept > 0.0) by_lag_ += kept * (before - settled) * dt / square(lag_);
+  behind_ = settled + kept * (before - settled);
+  acceleration_ = now.acceleration;
+  const double filtered = now.speed - behind_;
+  double residual = now.measured - (1.0 + scale_) * filtered;
+  if (samples_ > 50) {
+    const double most = gate::kImpossible * std::sqrt(square_);
+    residual = std::clamp(residual, -most, most);
+  }
+  if (continues) {
+    samples_ += samples_ < static_cast<int>(kSpeedSamples);
+    const double gain = 1.0 / samples_;
+    square_ += gain * (square(residual) - square_);
+    product_ += gain * (residual * residual_ - product_);
+    known_ += gain * (now.variance - known_);
+    const Eigen::Vector2d by{-(1.0 + scale_) * by_lag_, filtered};
+    information_.noalias() += by * by.transpose();
+    score_ += residual * by;
+  }
+  residual_ = residual;
+}
+
+double SpeedTrust::memory() const noexcept {
+  const double own = square_ - known_;
+  return own > 0.0 ? std::clamp((product_ - known_) / own, 0.0, kMostOfOne) : 0.0;
+}
+
+void SpeedTrust::endTurn() noexcept {
+  if (samples_ == 0) return;
+  ++turns_;
+  const double determinant = information_.determinant();
+  if (!(determinant > 1e-9 * information_(0, 0) * information_(1, 1))) return;
+  const Eigen::Matrix2d covariance = information_.inverse();
+  Eigen::Vector2d change = covariance * score_;
+  change[0] = std::clamp(lag_ + change[0], -kMostLag, kMostLag) - lag_;
+  change[1] = std::clamp(scale_ + change[1], -kMostScale, kMostScale) - scale_;
+  lag_ += change[0], scale_ += change[1];
+  score_ -= information_ * change;
+  const double rho = std::clamp(product_ / square_, 0.0, kMostOfOne);
+  deviation_ = (square_ * (1.0 + rho) / (1.0 - rho) * covariance.diagonal()).cwiseSqrt();
+  information_ *= 1.0 - 1.0 / kSpeedTurns, score_ *= 1.0 - 1.0 / kSpeedTurns;
+  const auto isSeen = [](double amount, double notable, double deviation, bool before) {
+    return std::abs(amount) > std::max(before ? 0.5 * notable : notable, (before ? 2.0 : 4.0) * deviation);
+  };
+  lags_ = isSeen(lag_, 5e-4, deviation_[0], lags_);
+  out_of_scale_ = isSeen(scale_, 0.01, deviation_[1], out_of_scale_);
+}
+
+}  // namespace hammer_loads
