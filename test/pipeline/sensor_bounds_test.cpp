@@ -23,7 +23,7 @@ namespace {
 
 using test::kMs;
 constexpr double kBelow = 0.8, kAbove = 1.25;
-constexpr double kStep = 1e-3;  // [s] between readings
+constexpr double kReadingStep = 1e-3;  // [s] between readings
 
 TEST(SensorBounds, OfCrankAngles) {
   const CrankSampleGate gate({300.0, 0.25, 0.01, 1.5});
@@ -87,9 +87,9 @@ class ImuOfAHull {
  public:
   /// off: of the mean from the weight's 10 m/s2 [m/s2].
   void run(double time, double off, double rate = 0.0) {
-    for (int i = 0; i < std::lround(time / kStep); ++i) {
+    for (int i = 0; i < std::lround(time / kReadingStep); ++i) {
       const double change = (even_ = !even_) ? 1e-3 : -1e-3;
-      trust_.follow({0.0, 0.0, 10.0 - off + change}, {0.0, rate, 0.0}, kStep);
+      trust_.follow({0.0, 0.0, 10.0 - off + change}, {0.0, rate, 0.0}, kReadingStep);
       trust_.judge({0.0, -10.0});
     }
   }
@@ -146,8 +146,8 @@ TEST(SensorBounds, OfAFrozenImu) {
     imu.stand(step, count);
     return imu.isLost();
   };
-  EXPECT_FALSE(isLost(kStep, 160));
-  EXPECT_TRUE(isLost(kStep, 250));
+  EXPECT_FALSE(isLost(kReadingStep, 160));
+  EXPECT_TRUE(isLost(kReadingStep, 250));
   EXPECT_FALSE(isLost(1.0, 3));
   EXPECT_TRUE(isLost(1.0, 5));
 }
@@ -155,7 +155,7 @@ TEST(SensorBounds, OfAFrozenImu) {
 /// Pressures beside a weight of 10 N on an arm of 1 m.
 class Pressures {
  public:
-  void run(double time, double across, double turning, double step = kStep) {
+  void run(double time, double across, double turning, double step = kReadingStep) {
     for (int i = 0; i < std::lround(time / step); ++i)
       trust_.follow({{across, 0.0, 0.0}, {0.0, turning, 0.0}}, {{0.0, 0.0, -10.0}, {0.0, 0.0, 0.0}}, 1.0, step);
   }
@@ -209,7 +209,7 @@ TEST(SensorBounds, OfASilentSensor) {
 TEST(SensorBounds, OfABlowThatIsMeasured) {
   PendingBlow blow;
   const CrankPosition at{3, {0.0, Side::kAfterBlow}};
-  blow.begin(10.0, at, 30.0, {});
+  blow.begin(10.0, at, 30.0, 0.0, {});
   const auto isMeasured = [&](double time, double angle) {
     CrankPosition now = at;
     now.angle.offset = angle;
@@ -226,7 +226,8 @@ bool knowsSpeed(double turn, double silent) {
   const auto stamp = [](double time) { return static_cast<StampNs>(1e9 * time); };
   speed.add(0, 9.8, 0.0, 0.0);
   speed.struck(stamp(0.001));
-  for (int i = 2; i <= std::lround((turn - silent) / kStep); ++i) speed.add(stamp(kStep * i), 9.8, 0.0, 0.0);
+  for (int i = 2; i <= std::lround((turn - silent) / kReadingStep); ++i)
+    speed.add(stamp(kReadingStep * i), 9.8, 0.0, 0.0);
   speed.struck(stamp(0.001 + turn));
   return speed.atBlow().has_value();
 }
@@ -266,14 +267,14 @@ bool looksWrong(double time, double dt, double rate, double speed) {
 TEST(SensorBounds, OfUnits) {
   constexpr double kRpm = 60.0 / 6.283185307179586, kDegrees = 360.0 / 6.283185307179586;
   // Degrees: a vote in each millisecond, but 0.2 s of suspicion are required.
-  EXPECT_FALSE(looksWrong(kBelow * 0.2, kStep, 20.0 * kDegrees, 20.0));
-  EXPECT_TRUE(looksWrong(kAbove * 0.2, kStep, 20.0 * kDegrees, 20.0));
+  EXPECT_FALSE(looksWrong(kBelow * 0.2, kReadingStep, 20.0 * kDegrees, 20.0));
+  EXPECT_TRUE(looksWrong(kAbove * 0.2, kReadingStep, 20.0 * kDegrees, 20.0));
   // Rpm: eight votes, each of a radian that is predicted: 8 rad/4.77 rad/s = 1.68 s.
-  EXPECT_FALSE(looksWrong(kBelow * 1.68, kStep, 0.5, 0.5 * kRpm));
-  EXPECT_TRUE(looksWrong(kAbove * 1.68, kStep, 0.5, 0.5 * kRpm));
+  EXPECT_FALSE(looksWrong(kBelow * 1.68, kReadingStep, 0.5, 0.5 * kRpm));
+  EXPECT_TRUE(looksWrong(kAbove * 1.68, kReadingStep, 0.5, 0.5 * kRpm));
   // The ratio may be off by a factor of 1.4, samples 0.25 s apart.
-  EXPECT_TRUE(looksWrong(5.0, kStep, 1.25 * 0.5, 0.5 * kRpm));
-  EXPECT_FALSE(looksWrong(5.0, kStep, 1.6 * 0.5, 0.5 * kRpm));
+  EXPECT_TRUE(looksWrong(5.0, kReadingStep, 1.25 * 0.5, 0.5 * kRpm));
+  EXPECT_FALSE(looksWrong(5.0, kReadingStep, 1.6 * 0.5, 0.5 * kRpm));
   EXPECT_TRUE(looksWrong(20.0, kBelow * 0.25, 0.5, 0.5 * kRpm));
   EXPECT_FALSE(looksWrong(20.0, kAbove * 0.25, 0.5, 0.5 * kRpm));
 }

@@ -12,6 +12,7 @@
 #include "hammer_loads/crank/encoder.h"
 #include "hammer_loads/crank/encoder_slip.h"
 #include "hammer_loads/crank/estimate_between.h"
+#include "hammer_loads/crank/rod_evidence.h"
 #include "hammer_loads/crank/speed_trust.h"
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
@@ -108,7 +109,7 @@ class CrankFilter final : public CrankTracker {
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
   /// Whether measured speeds are taken up, and why not.
   const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
-  double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
+  double timingNoise() const noexcept { return timing_.deviation(); }  ///< of stamps, identified [s]
   bool isProven() const noexcept override { return consistency() < kAgrees; }
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
   double consistency() const noexcept override { return consistency_.mean(); }
@@ -117,6 +118,8 @@ class CrankFilter final : public CrankTracker {
   const ConstantErrors& constantErrors() const noexcept { return errors_; }
   /// Steps of the encoder on its shaft, which the filter has followed.
   const EncoderSlip& encoderSlip() const noexcept { return slip_; }
+  /// Whether and where innovations say that the rod gives.
+  const RodEvidence& rodEvidence() const noexcept { return rod_evidence_; }
   /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Innovations stay far larger than the model explains, whatever the drive inertia.
@@ -183,26 +186,27 @@ class CrankFilter final : public CrankTracker {
   LearnedSupply supply_;
   Consistency consistency_;
   StrikeConsistency strike_consistency_;
+  RodEvidence rod_evidence_;
   ConstantErrors errors_;
   BlowHistory blows_;
-  CrankBelief now_;                ///< at the last sample, corrected by it
-  ShaftLoad load_;                 ///< there, with now_hull_
-  bool hull_moved_{true};          ///< since then
-  CrankBelief before_;             ///< at the last but one sample
-  ShaftLoad before_load_;          ///< there, with before_hull_
-  double step_{};                  ///< between these two [s]
-  ContactRival rival_;             ///< the same samples with contact where now_ has none, or the other way round
-  bool mirrored_{};                ///< now_ had no contact and is on the mirrored branch
-  double fit_{};                   ///< logarithm of the last sample's likelihood by now_
-  double speed_variance_;          ///< of measured speeds, as identified [rad2/s2]
+  CrankBelief now_;        ///< at the last sample, corrected by it
+  ShaftLoad load_;         ///< there, with now_hull_
+  bool hull_moved_{true};  ///< since then
+  CrankBelief before_;     ///< at the last but one sample
+  ShaftLoad before_load_;  ///< there, with before_hull_
+  double step_{};          ///< between these two [s]
+  ContactRival rival_;     ///< the same samples with contact where now_ has none, or the other way round
+  bool mirrored_{};        ///< now_ had no contact and is on the mirrored branch
+  double fit_{};           ///< logarithm of the last sample's likelihood by now_
+  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
   EncoderSlip slip_;
   double interval_{};    ///< of the samples, where they are taken at equal ones [s]
   double lost_time_{};   ///< of the last step, beyond what its stamps say [s]
   double stamps_off_{};  ///< standard deviation of what all stamps are off alike [s]
   SpeedTrust speed_trust_;
   std::optional<SpeedTrust::Witness> witness_;  ///< of the last sample
-  std::optional<Side> read_side_;  ///< of the blow, as the last reading shows it
-  double outlier_{};               ///< innovation of the outlier just seen [rad], 0: none
+  std::optional<Side> read_side_;               ///< of the blow, as the last reading shows it
+  double outlier_{};                            ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late
   double restart_load_{};  ///< beginnings since long, forgotten within some 2 s
