@@ -106,6 +106,21 @@ TEST(CountCycles, AFailedRunLeavesTheStateAsItWas) {
   EXPECT_EQ(state.files(), 1U);
 }
 
+/// Each waits for those before it: a row of equal swings has as many half cycles as swings, whatever the order.
+TEST(CountCycles, RunsAtOnceOnOneStateLoseNothing) {
+  constexpr int kRuns = 16;
+  const State state;
+  ASSERT_EQ(runCountCycles("--exact --state " + state.path(), "0\n8\n0\n").exit_code, 0);
+  std::string script;
+  for (int i = 0; i < kRuns; ++i)
+    script += "printf '8\\n0\\n' | " + std::string(HAMMER_LOADS_COUNT_CYCLES) + " --state " + state.path() +
+              " > /dev/null || echo failed &\n";
+  const TemporaryFile all(script + "wait\n", ".sh");
+  EXPECT_EQ(test::runCommand("sh", all.path()).out, "");
+  EXPECT_EQ(runCountCycles("--state " + state.path(), "").out,
+            "range,mean,count\n8,4," + std::to_string(kRuns + 1) + "\n");
+}
+
 TEST(CountCycles, AnythingElseInTheStatesPlaceIsRefused) {
   const State state;
   ASSERT_EQ(runCountCycles("--full-scale 0 10 --classes 10 --state " + state.path(), "1\n5\n2\n").exit_code, 0);
