@@ -215,7 +215,7 @@ LogOil ModeIdentifier::oilTorques(const States& of) const noexcept {
   LogOil torque = LogOil::Zero();
   for (int i = 0; i < count_; ++i) {
     for (int k = 0; k < count_; ++k) torque[i] += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].x;
-    torque[i] *= modes_.stiffness[i];
+    torque[i] *= modes_.stiffness[i] * stiffness_ratio_[i];
   }
   return torque;
 }

@@ -130,6 +130,7 @@ class ModeIdentifier {
   JointMatrix accelerationCovariance() const noexcept;
 
  private:
+  static constexpr double kDelayDeviation = 2e-3;  ///< of a delay that is not known, standard [s]
   static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
   static_assert(kMaxStates <= kMostStates);
@@ -172,6 +173,7 @@ class ModeIdentifier {
   double findCrankLead() const noexcept;
   bool imuSpeaks() const noexcept;
   bool waitsForDelay() const noexcept;
+  double byDelay(Clock clock, const State& row) const noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {
     std::array<int, 2 * kMaxJoints + 2> states;  ///< the first of them
@@ -228,6 +230,7 @@ class ModeIdentifier {
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
   std::array<double, kMaxJoints> ratio_{}, damping_{};                ///< of state_
+  LogOil stiffness_ratio_ = LogOil::Ones(), used_oil_ = LogOil::Zero();  ///< likewise; logarithms of it
   std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};  ///< logarithms of these
   int channels_{};                                                    ///< in use
   std::array<int, kMaxChannels> slot_{};    ///< state of each channel's offset; -1: not in use

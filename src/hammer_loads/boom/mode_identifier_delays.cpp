@@ -9,7 +9,6 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kDelayBegins = 0.2;          // so long after the frequencies are known [s]
-constexpr double kDelayDeviation = 2e-3;      // then [s]
 constexpr double kDelayWalk = 2e-5;           // of a delay in a second [s]: clocks drift by some 20 ppm
 constexpr double kOilWithDelay = 0.1;         // deviation of log stiffness, beside what was known without a delay
 constexpr double kDampingWithDelay = 0.5;     // likewise

@@ -55,6 +55,7 @@ void ModeIdentifier::forgetOil() noexcept {
     forget(at(k, kOil), 0.0);
     forget(at(k, kDamping), 0.0);
   }
+  stiffness_ratio_.setOnes(), used_oil_.setZero();
   ratio_.fill(1.0), used_frequency_.fill(0.0);
   damping_.fill(damping_ratio_), used_damping_.fill(0.0);
   setFirstGuesses();
@@ -65,6 +66,7 @@ void ModeIdentifier::useOil() noexcept {
   for (int k = 0; k < count_; ++k) {
     double& oil = state_[at(k, kOil)];
     oil = std::clamp(oil, -kMostFound, kMostFound);
+    stiffness_ratio_[k] *= growth(oil - used_oil_[k]), used_oil_[k] = oil;
   }
   for (int k = 0; k < count_; ++k) {
     const auto i = static_cast<std::size_t>(k);

@@ -165,11 +165,18 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
       correct(readings[r], row[r], difference[r] - inUse(row[r]).dot(inUse(state_) - inUse(before)), kept);
 }
 
+/// Variance of what is predicted by a delay that is not followed yet: noise, so that the oil is not made what would have
+/// such stamps.
+double ModeIdentifier::byDelay(Clock clock, const State& row) const noexcept {
+  if (!learns_ || clock == Clock::kCrank || isDelayFollowed(clock)) return 0.0;
+  return square(kDelayDeviation * row[delayAt(clock)]);
+}
+
 void ModeIdentifier::correct(const VibrationReading& reading, const State& row, double difference,
                              const Kept& kept) noexcept {
   State gain_S;
   gain_S.segment(begin(), states()).noalias() = block() * inUse(row);
-  const double S = weigh(reading, inUse(row).dot(inUse(gain_S)), difference);
+  const double S = weigh(reading, inUse(row).dot(inUse(gain_S)) + byDelay(reading.clock, row), difference);
   if (!(S > 0.0)) return;
   state_.segment(begin(), states()) += difference / S * inUse(gain_S);
   subtractSquare(block(), inUse(gain_S), S);
