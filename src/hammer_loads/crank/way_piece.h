@@ -13,6 +13,7 @@ constexpr int kMaxSteps = 4096;         ///< bounds the work for absurd speeds; 
 constexpr double kCreeping = 1.0;
 /// So often in one way: then both sides push it back to the other, and it stays at the blow.
 constexpr int kMostCreepingPasses = 8;
+// Guard: FlexibleShaft.WhereBothSidesPushItBackItPassesAFewTimesOnly of kMostCreepingPasses
 
 /// Of the way.
 struct WayPiece {
