@@ -13,8 +13,10 @@ constexpr double kMemorySamples = 4096.0;  // samples
 constexpr double kScatterSamples = 300.0;  // over which scatter is learned, but no fewer than kWarm runs
 constexpr int kWarm = 20;                  // runs from which on the line is good enough to judge by
 constexpr int kFirst = 4;                  // runs until there is a line
-constexpr int kKnown = 6;                  // runs until regular bursts show themselves
-constexpr double kBurst = 2.0;             // samples in the mean
+// Guard: StampSequence.WholeMillisecondsAndBurstsGetTheirInstantsBack of kScatterSamples, kFirst
+constexpr int kKnown = 6;       // runs until regular bursts show themselves
+constexpr double kBurst = 2.0;  // samples in the mean
+// Guard: StampSequence.EqualStampsOfIrregularSamplesOnlyStepOn of kBurst
 constexpr double kRegular = 0.1;           // scatter of bursts over the time between them
 constexpr double kClip = gate::kVeryRare;  // root mean squares: a stamp further off counts as that far off
 constexpr double kGap = 6.0;               // root mean squares beyond which samples were lost for certain
