@@ -31,7 +31,7 @@ class Constant:
 
     @property
     def id(self):
-        return f"{self.room}/{self.path.name}:{self.name}:{self.line}"
+        return f"{self.room}/{self.path.name}:{self.name}"
 
 
 def without_comments(text):

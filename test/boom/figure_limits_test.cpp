@@ -93,5 +93,13 @@ TEST_F(FigureLimits, OfDescriptions) {
   expectAbout(1e18, "inertia of link arm_link: must be finite", urdfWith("iyy=\"86.03\"", "iyy=\"", "\""));
 }
 
+TEST_F(FigureLimits, OfTheModesAngle) {
+  expectAbout(0.05, "mode_refresh_angle_rad: ", [this](double figure) {
+    BoomParameters p = test::shippedBoomParameters();
+    p.vibration.refresh_angle = figure;
+    return Boom::make(urdf_, p).problems;
+  });
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -10,8 +10,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kStep = 1e-3;     // [s]
-constexpr double kMeasured = 7.0;  // acceleration of the joint by its sensor [rad/s2]
+constexpr double kPoseStep = 1e-3;  // [s]
+constexpr double kMeasured = 7.0;   // acceleration of the joint by its sensor [rad/s2]
 
 /// One joint, by its angle and rate.
 class OneJoint {
@@ -19,9 +19,9 @@ class OneJoint {
   HeldPose held;
 
   void run(double time, double rate = 0.0) {
-    for (int i = 0; i < std::lround(time / kStep); ++i) {
-      angle_ += rate * kStep;
-      follow(kStep);
+    for (int i = 0; i < std::lround(time / kPoseStep); ++i) {
+      angle_ += rate * kPoseStep;
+      follow(kPoseStep);
     }
   }
   void jump(double angle) { angle_ += angle; }
@@ -66,8 +66,8 @@ TEST(PoseAndTrust, AJointThatWindsBeginsAnew) {
     joint.follow(step);
     return joint.held.slowAngle()[0] == jump;
   };
-  EXPECT_FALSE(beginsAnew(0.8 * 0.5, kStep));
-  EXPECT_TRUE(beginsAnew(1.25 * 0.5, kStep));
+  EXPECT_FALSE(beginsAnew(0.8 * 0.5, kPoseStep));
+  EXPECT_TRUE(beginsAnew(1.25 * 0.5, kPoseStep));
   EXPECT_FALSE(beginsAnew(0.8 * 0.03, 0.7));
   EXPECT_TRUE(beginsAnew(1.25 * 0.03, 0.7));
 }
@@ -87,7 +87,7 @@ TEST(PoseAndTrust, AJointIsDrivenAboveARateAndForSomeTimeAfterIt) {
 TEST(PoseAndTrust, ACrankThatContradictsTheModelIsRefused) {
   for (const double part : {0.8, 1.25}) {
     CrankTrust trust{CrankSensor{}};
-    trust.follow(0.0, part * 4.0, kStep);
+    trust.follow(0.0, part * 4.0, kPoseStep);
     EXPECT_EQ(trust.isInconsistent(), part > 1.0);
   }
 }
@@ -95,7 +95,7 @@ TEST(PoseAndTrust, ACrankThatContradictsTheModelIsRefused) {
 TEST(PoseAndTrust, ACrankHasRunUpAfterARadian) {
   for (const double part : {0.8, 1.25}) {
     CrankTrust trust{CrankSensor{}};
-    for (int i = 0; i <= 100; ++i) trust.follow(0.01 * part * i, 1.0, kStep);
+    for (int i = 0; i <= 100; ++i) trust.follow(0.01 * part * i, 1.0, kPoseStep);
     EXPECT_EQ(trust.hasRunUp(), part > 1.0);
   }
 }
@@ -105,8 +105,8 @@ std::optional<double> slowBehind(double turns) {
   CrankTrust trust{CrankSensor{}};
   double angle = 0.0;
   while (angle < turns * kTwoPi) {
-    angle += kStep * (30.0 - 8.0 * std::cos(angle - 0.94));
-    trust.follow(angle, 1.0, kStep);
+    angle += kPoseStep * (30.0 - 8.0 * std::cos(angle - 0.94));
+    trust.follow(angle, 1.0, kPoseStep);
   }
   return trust.slowBehind();
 }

@@ -6,7 +6,7 @@
 
 namespace hammer_loads::accuracy {
 
-constexpr double kLifeSlope = 5.0;  ///< of the S-N line; damage errs about so many times as much
+constexpr double kLifeSlope = 5.0;  ///< of the S-N line; damage errs about this many times as much
 
 /// Both series sample by sample; cycles counted by ASTM E1049, without a grid.
 struct LifeError {

@@ -36,7 +36,7 @@ struct SessionErrors {
   int unseen_blows{}, false_blows{};                  ///< nothing near them; nothing there
 };
 
-/// What is judged: [from, to], without the two turns after each drop-out.
+/// The judged time: [from, to], without the two turns after each drop-out.
 struct Judged {
   double from{}, to{};
   std::vector<double> drop_outs;  ///< ends of drop-outs [s]

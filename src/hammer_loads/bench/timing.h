@@ -1,4 +1,4 @@
-/// What a call costs, with care: processor time of this thread, warm-up, many repeats, their median.
+/// The cost of a call, with care: processor time of this thread, warm-up, many repeats, their median.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ struct Cost {
   double spread{};  ///< distance of the quartiles over the median [-]
 };
 
-constexpr double kLeastRepeat = 2e6;  ///< a repeat lasts at least so long [ns of processor time]
+constexpr double kLeastRepeat = 2e6;  ///< a repeat lasts at least this long [ns of processor time]
 constexpr double kTogether = 1.5e8;   ///< all repeats of a long pass, unless their least number takes longer [ns]
 constexpr int kMostRepeats = 25, kLeastRepeats = 7;
 constexpr int kWarmUps = 3;  ///< repeats before the first that counts

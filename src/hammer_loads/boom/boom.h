@@ -26,11 +26,12 @@ struct BoomParameters {
   std::vector<SectionParameters> sections;  ///< where the steel's load is wanted; may be empty
   double link_mass_deviation{0.03};         ///< standard, of each link that is not weighed, relative [-]
   double link_com_deviation{0.02};          ///< standard, of its centre of mass in x and z each [m]
-  double rigid_tolerance{};                 ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
+  // Guard: BoomBounds.DeviationsWhereAFileGivesNone of link_mass_deviation, link_com_deviation
+  double rigid_tolerance{};  ///< largest rigidError() for which the boom may be taken as rigid [-], > 0
 };
 
 /// Torques of the loads on the joints [N m] ([N] for a prismatic one), about the joints' axes; positive drives the
-/// joint forward. What holds the joint - a cylinder - gives the opposite of the total.
+/// joint forward. The part that holds the joint - a cylinder - gives the opposite of the total.
 struct BoomLoads {
   JointVector hammer;                             ///< J^T w, as on a rigid boom
   JointVector weight;                             ///< of the links
@@ -110,7 +111,7 @@ class Boom {
   bool loads(const Wrench& w_tip, bool rigid, BoomLoads& result) const noexcept {
     return loads(w_tip, rigid, chainLoads(rigid), result);
   }
-  /// What the steel carries, likewise and with the same cylinders' forces.
+  /// What the steel carries, as above and with the same cylinders' forces.
   bool steelLoads(const Wrench& w_tip, const ChainLoads& links, SteelLoads& result) const noexcept;
   bool steelLoads(const Wrench& w_tip, bool rigid, SteelLoads& result) const noexcept {
     return steelLoads(w_tip, chainLoads(rigid), result);
@@ -137,7 +138,7 @@ class Boom {
   HoldDown holdDown(const Wrench& w_mean) const noexcept;
 
   const Chain& chain() const noexcept { return chain_; }
-  /// What joints read at the description's zeros [rad], [m].
+  /// Readings of the joints at the description's zeros [rad], [m].
   JointVector jointZeros() const noexcept;
   /// Where a cylinder stands at this pose.
   const CylinderPosition& cylinderPosition(std::size_t cylinder) const noexcept { return at_[cylinder]; }

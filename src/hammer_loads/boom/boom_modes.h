@@ -47,7 +47,7 @@ JointVector jointsOf(const BoomModes& modes, const JointVector& modal) noexcept;
 /// Modal displacements or velocities of those of the joints; held joints do not count.
 JointVector modalOf(const BoomModes& modes, const JointVector& joints) noexcept;
 
-/// What the hull is like to a force on it: it moves at first like a free mass, and yields at rest like a spring.
+/// The hull's response to a force on it: it moves at first like a free mass, and yields at rest like a spring.
 struct ReducedHull {
   double mass{};       ///< 1/(d^T J M^-1 J^T d) [kg]
   double stiffness{};  ///< 1/(d^T J K^-1 J^T d) [N/m]

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "hammer_loads/boom/figure_limits.h"
 #include "hammer_loads/boom/urdf_text.h"
 #include "hammer_loads/boom/urdf_tree.h"
 #include "hammer_loads/util/constants.h"
@@ -12,9 +13,6 @@
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kMostWeighed = 1e9;  // [kg], [kg m2]: no product of figures overflows
-constexpr double kMostCom = 1e3;      // [m]
 
 bool moves(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
@@ -86,7 +84,7 @@ class ChainBuilder {
     bool found = true;
     for (const std::string& name : {request_.root, request_.tip}) {
       if (model_.getLink(name)) continue;
-      result_.problems.push_back(format("robot_description: link %s: not in the model, must be there", name.c_str()));
+      result_.problems.push_back(format("robot_description: link %s: not in the model, is required", name.c_str()));
       found = false;
     }
     if (!found) return false;
@@ -141,10 +139,11 @@ class ChainBuilder {
       if (!named.insert(w.name).second) refuse(", given twice, must be different links");
       if (there.count(w.name) == 0)
         refuse(format(", must be a link between %s and %s", request_.root.c_str(), request_.tip.c_str()));
-      checkNumber(w.name + "_mass_kg", w.mass, " kg", w.mass > 0.0 && w.mass <= kMostWeighed, "> 0 and at most 1e9 kg");
-      checkNumber(w.name + "_com_x_m", w.com_x, " m", std::abs(w.com_x) <= kMostCom, "within 1000 m");
-      checkNumber(w.name + "_com_z_m", w.com_z, " m", std::abs(w.com_z) <= kMostCom, "within 1000 m");
-      checkNumber(w.name + "_inertia_kg_m2", w.inertia, " kg m2", w.inertia > 0.0 && w.inertia <= kMostWeighed,
+      checkNumber(w.name + "_mass_kg", w.mass, " kg", w.mass > 0.0 && w.mass <= figure::kMostMass,
+                  "> 0 and at most 1e9 kg");
+      checkNumber(w.name + "_com_x_m", w.com_x, " m", std::abs(w.com_x) <= figure::kMostLength, "within 1000 m");
+      checkNumber(w.name + "_com_z_m", w.com_z, " m", std::abs(w.com_z) <= figure::kMostLength, "within 1000 m");
+      checkNumber(w.name + "_inertia_kg_m2", w.inertia, " kg m2", w.inertia > 0.0 && w.inertia <= figure::kMostMass,
                   "> 0 and at most 1e9 kg m2");
       checkNumber(w.name + "_moment_x_deviation_kg_m", w.moment_x_deviation, " kg m", w.moment_x_deviation >= 0.0,
                   "a finite number >= 0");
@@ -209,7 +208,7 @@ class ChainBuilder {
     return KDL::RigidBodyInertia(link.inertial->mass, KDL::Vector(p.x, p.y, p.z));
   }
 
-  /// What hangs on a link by fixed joints beside the chain, in the link's frame.
+  /// Bodies on a link by fixed joints beside the chain, in the link's frame.
   KDL::RigidBodyInertia fixedNeighbours(const KDL::SegmentMap::const_iterator& element) {
     KDL::RigidBodyInertia sum = KDL::RigidBodyInertia::Zero();
     for (const KDL::SegmentMap::const_iterator& child : GetTreeElementChildren(element->second)) {

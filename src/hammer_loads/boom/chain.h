@@ -77,7 +77,7 @@ struct ChainLink {
 /// A chain that can carry loads: at most kMaxJoints revolute or prismatic joints, mass beyond the last of them. Built
 /// once; copies share the data, whose address stays (KDL's solvers keep a reference to the chain).
 ///
-/// What is fixed to a chain link beside the chain counts with that link. What moves beside the chain does not count:
+/// Bodies fixed to a chain link beside the chain count with that link. Bodies that move beside the chain do not:
 /// a note names it. The mechanism's moving links belong to the hull's mass in the description, so that they count once.
 class Chain {
  public:

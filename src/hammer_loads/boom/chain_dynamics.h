@@ -1,4 +1,4 @@
-/// What moving masses demand of the joints.
+/// Torques of moving masses on the joints.
 #pragma once
 
 #include <memory>

@@ -33,7 +33,8 @@ Jacobian tipJacobian(const ChainPose& pose) noexcept;
 Wrench wrenchAtLink(const ChainPose& pose, int link, const Wrench& w_tip) noexcept;
 
 /// J^T w of a load on the tip: what it does per joint rate, so torque of the load on the joint about its axis, positive
-/// when it drives the joint forward [N m] ([N] for a prismatic joint). What holds the joint gives the opposite.
+/// when it drives the joint forward [N m] ([N] for a prismatic joint). The part that holds the joint gives the
+/// opposite.
 HAMMER_LOADS_INLINE JointVector jointTorqueOfTipLoad(const Jacobian& tip, const Wrench& w_tip) noexcept {
   JointVector torque(tip.cols());
   withCount<4>(static_cast<int>(tip.cols()), [&](auto joints) {
@@ -46,7 +47,7 @@ inline JointVector jointTorqueOfTipLoad(const ChainPose& pose, const Wrench& w_t
   return jointTorqueOfTipLoad(tipJacobian(pose), w_tip);
 }
 
-/// Likewise of the links' weight, with g_B the gravity in the root's axes [m/s2].
+/// The same of the links' weight, with g_B the gravity in the root's axes [m/s2].
 JointVector jointTorqueOfWeight(const Chain& chain, const ChainPose& pose, const Eigen::Vector3d& g_B) noexcept;
 
 /// All links from `first` to the tip as one body in the root's frame.

@@ -1,4 +1,4 @@
-/// What a Kalman filter whose number of states varies does with its covariance.
+/// Covariance of a Kalman filter whose number of states varies.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@ namespace hammer_loads {
 
 constexpr int kMostStates = 64;
 
-/// What is in use of a covariance: a square block on its diagonal, of at most kMostStates.
+/// The part of a covariance in use: a square block on its diagonal, of at most kMostStates.
 using CovarianceBlock = Eigen::Ref<Eigen::MatrixXd>;
 
 /// P <- P - column column^T/S. S below 0 gives back.

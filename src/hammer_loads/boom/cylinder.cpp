@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/boom/figure_limits.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
@@ -11,7 +12,7 @@ namespace hammer_loads {
 namespace {
 
 /// Beyond these no figure of a cylinder lies, and no product of figures overflows.
-constexpr double kMostLength = 1e3, kLeastLength = 1e-6;   // [m]
+constexpr double kLeastLength = 1e-6;                      // [m]
 constexpr double kMostVolume = 1e6, kLeastVolume = 1e-12;  // [m3]
 constexpr double kMostPressure = 1e12;                     // [Pa]
 
@@ -24,11 +25,11 @@ void checkRange(const CylinderParameters& p, std::vector<std::string>& problems)
   };
   for (const auto& [key, value] : {std::pair{"base_x_m", p.base_x}, std::pair{"base_z_m", p.base_z},
                                    std::pair{"rod_x_m", p.rod_x}, std::pair{"rod_z_m", p.rod_z}}) {
-    check(key, value, "m", -kMostLength, kMostLength);
+    check(key, value, "m", -figure::kMostLength, figure::kMostLength);
   }
   for (const auto& [key, value] : {std::pair{"bore_m", p.bore}, std::pair{"rod_diameter_m", p.rod_diameter},
                                    std::pair{"closed_length_m", p.closed_length}, std::pair{"stroke_m", p.stroke}}) {
-    check(key, value, "m", kLeastLength, kMostLength);
+    check(key, value, "m", kLeastLength, figure::kMostLength);
   }
   check("bore_hose_volume_m3", p.bore_hose_volume, "m3", kLeastVolume, kMostVolume);
   check("rod_hose_volume_m3", p.rod_hose_volume, "m3", kLeastVolume, kMostVolume);
@@ -43,6 +44,7 @@ void checkOptional(const CylinderParameters& p, std::vector<std::string>& proble
         format("%s_%s: %.9g%s, must be from %g to %g%s", p.name.c_str(), key, value, unit, least, most, unit));
   };
   constexpr double kMostFriction = 0.5, kMostZero = 0.5;  // [-], [rad]
+  // Guard: FigureLimits.OfCylinders of kLeastLength, kMostVolume, kLeastVolume, kMostPressure, kMostFriction, kMostZero
   within("friction_force_N", p.friction_force, " N", 0.0, 1e6);
   within("friction_force_deviation_N", p.friction_force_deviation, " N", 0.0, 1e6);
   within("friction", p.friction, "", 0.0, kMostFriction);

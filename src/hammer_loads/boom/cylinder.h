@@ -28,8 +28,9 @@ struct CylinderParameters {
   /// pressure_offset_Pa: of the bore's sensor, as that of both chambers acts on the force [Pa].
   double pressure_offset{}, pressure_offset_deviation{};
 
-  static constexpr double kFrictionDeviation = 0.03;   ///< where the boom file gives none; seals of 0.5 to 5 %
-  static constexpr double kStiffnessDeviation = 0.1;  ///< likewise; air and hoses of one machine's cylinders
+  static constexpr double kFrictionDeviation = 0.03;  ///< where the boom file gives none; seals of 0.5 to 5 %
+  static constexpr double kStiffnessDeviation = 0.1;  ///< as above; air and hoses of one machine's cylinders
+  // Guard: BoomBounds.DeviationsWhereAFileGivesNone of kFrictionDeviation, kStiffnessDeviation
 };
 
 /// Length and leverage at a joint angle.
@@ -39,7 +40,7 @@ struct CylinderPosition {
   bool dead_centre{};  ///< the arm is so short that no finite force holds the joint
 };
 
-/// What the cylinder carries. At a dead centre force and pressure are NaN.
+/// Load of the cylinder. At a dead centre force and pressure are NaN.
 struct CylinderLoad {
   double force{};     ///< BY the cylinder ON both anchors [N], positive pushes them apart
   double pressure{};  ///< in the chamber that carries it, above the other chamber's, >= 0 [Pa]
@@ -58,6 +59,7 @@ class Cylinder {
   /// Arms below this share of the triangle's shorter fixed side are a dead centre: the force would be 50 times the
   /// torque over that side.
   static constexpr double kDeadCentreRatio = 0.02;
+  // Guard: BoomBounds.OfADeadCentre of kDeadCentreRatio
 
   /// Problems, one line each, beginning with the key: signs, rod against bore, joint not in the chain, and a triangle
   /// that needs the cylinder shorter than closed or longer than open within the joint's limits. bulk_modulus: of oil
@@ -74,7 +76,7 @@ class Cylinder {
   /// dF/dL of the oil trapped in both chambers, B (Ab^2/Vb + Ar^2/Vr) [N/m]; beyond the stroke as at its end.
   double stiffness(double length) const noexcept;
   OilVolumes volumes(double length) const noexcept;  ///< beyond the stroke as at its end
-  /// What that gives about the joint [N m/rad]: stiffness times arm^2; zero at a dead centre, nothing is divided.
+  /// Its stiffness about the joint [N m/rad]: stiffness times arm^2; zero at a dead centre, nothing is divided.
   /// Neglects the pre-load's share, force times d2L/dq2.
   double jointStiffness(const CylinderPosition& position) const noexcept;
 

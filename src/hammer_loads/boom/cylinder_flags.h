@@ -1,4 +1,4 @@
-/// What goes wrong in a cylinder, so that its linear figures must be read with care.
+/// Faults of a cylinder with which its linear figures must be read with care.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct ChamberPressures {
 ChamberPressures chamberPressures(const Cylinder& cylinder, const CylinderPosition& position, double steady_torque,
                                   double total_torque) noexcept;
 
-/// What pressures in both chambers, as measured, push with [N]; positive pushes the anchors apart.
+/// Force of measured pressures in both chambers [N]; positive pushes the anchors apart.
 inline double forceOf(const Cylinder& cylinder, const ChamberPressures& p) noexcept {
   return p.bore * cylinder.boreArea() - p.rod * cylinder.rodArea();
 }

@@ -32,7 +32,7 @@ constexpr auto kInverseFactorial = [] {
   return inverse;
 }();
 
-/// ramp/t^3 and parabola/t^4 by so many terms of their power series sum d_k/(k+3)! and sum d_k/(k+4)!, with x = omega
+/// ramp/t^3 and parabola/t^4 by this many terms of their power series sum d_k/(k+3)! and sum d_k/(k+4)!, with x = omega
 /// t, d_0 = 1, d_1 = -2 zeta x, d_k = -2 zeta x d_(k-1) - x^2 d_(k-2); |d_k| <= (k + 1) x^k.
 template <std::size_t terms>
 inline ModeResponse seriesOf(double x, double zeta) noexcept {

@@ -9,7 +9,7 @@
 
 namespace hammer_loads {
 
-/// One entry a mode; zero for modes that there are not.
+/// One entry a mode; zero for unused modes.
 using ModeVector = Eigen::Matrix<double, kMaxJoints, 1>;
 
 /// The last steps of all modes, each from its begin to its end: between two of them blows and readings change what is
@@ -30,11 +30,11 @@ class ModeHistory {
   void strike(int mode, double jump) noexcept { steps_[newest_].jump[mode] += jump; }
 
   struct Place {
-    std::size_t newer{};  ///< so many steps are newer than its own
+    std::size_t newer{};  ///< this many steps are newer than its own
     double ago{};         ///< [s]
     double since{};       ///< its step's begin [s]
   };
-  /// So long before the present [s]. False: that is too long.
+  /// This long before the present [s]. False: that is too long.
   bool find(double ago, Place& place) const noexcept;
   /// A mode at an instant, with the force of the hammer, modal, and that by the second.
   struct Moment {

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/boom/figure_limits.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
-
-constexpr double kMostDistance = 1e3;  // [m], of no machine
 
 void checkNumbers(const SectionParameters& p, std::vector<std::string>& problems) {
   const auto check = [&](const char* key, double value, const char* unit, double least, double most) {
@@ -18,10 +17,10 @@ void checkNumbers(const SectionParameters& p, std::vector<std::string>& problems
   };
   constexpr const char* kOrigin[] = {"x_m", "y_m", "z_m"};
   constexpr const char* kCom[] = {"com_beyond_x_m", "com_beyond_y_m", "com_beyond_z_m"};
-  for (int i = 0; i < 3; ++i) check(kOrigin[i], p.origin[i], "m", -kMostDistance, kMostDistance);
+  for (int i = 0; i < 3; ++i) check(kOrigin[i], p.origin[i], "m", -figure::kMostLength, figure::kMostLength);
   check("pitch_rad", p.pitch, "rad", -7.0, 7.0);
   if (!p.beyond) return;
-  for (int i = 0; i < 3; ++i) check(kCom[i], p.beyond->com[i], "m", -kMostDistance, kMostDistance);
+  for (int i = 0; i < 3; ++i) check(kCom[i], p.beyond->com[i], "m", -figure::kMostLength, figure::kMostLength);
   check("inertia_beyond_kg_m2", p.beyond->inertia_y, "kg m2", 0.0, 1e12);
 }
 

@@ -32,7 +32,7 @@ struct SectionParameters {
   std::optional<PartBeyond> beyond;                  ///< nothing: the link counts as a uniform bar
 };
 
-/// A plane across a link, x normal to it and towards the hammer. What is on the side x > 0 is beyond the cut.
+/// A plane across a link, x normal to it and towards the hammer. The side x > 0 is beyond the cut.
 ///
 /// Neglects: how the part beyond is spread across the link where only its inertia about y is known: it counts as a
 /// slender bar along x, so about z as about y and nothing about x.

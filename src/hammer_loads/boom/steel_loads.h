@@ -1,4 +1,4 @@
-/// What the steel of the boom carries: loads of its sections, reactions of its joints, forces of its cylinders' pins.
+/// Loads of the boom's steel: loads of its sections, reactions of its joints, forces of its cylinders' pins.
 #pragma once
 
 #include <array>

@@ -8,6 +8,7 @@
 #include <exception>
 #include <set>
 
+#include "hammer_loads/boom/figure_limits.h"
 #include "hammer_loads/boom/urdf_limits.h"
 #include "hammer_loads/util/format.h"
 
@@ -45,8 +46,8 @@ class Errors : public console_bridge::OutputHandler {
 
 /// Beyond these no figure of a machine lies, and no product of figures overflows.
 constexpr double kMostOffset = 1e6;    // [m]
-constexpr double kMostMass = 1e9;      // [kg]
 constexpr double kMostInertia = 1e18;  // [kg m2]
+// Guard: FigureLimits.OfDescriptions of kMostOffset, kMostInertia
 
 bool within(double value, double most) { return std::abs(value) <= most; }  // false for NaN
 
@@ -55,9 +56,9 @@ bool within(const urdf::Vector3& p, double most) { return within(p.x, most) && w
 void checkInertia(const urdf::Link& link, std::vector<std::string>& problems) {
   const urdf::Inertial& body = *link.inertial;
   const char* name = link.name.c_str();
-  if (!(body.mass >= 0.0 && body.mass <= kMostMass)) {
+  if (!(body.mass >= 0.0 && body.mass <= figure::kMostMass)) {
     problems.push_back(format("robot_description: mass of link %s: %.9g kg, must be >= 0 and at most %.0e kg", name,
-                              body.mass, kMostMass));
+                              body.mass, figure::kMostMass));
   }
   if (!within(body.origin.position, kMostOffset)) {
     problems.push_back(

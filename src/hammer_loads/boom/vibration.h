@@ -89,7 +89,7 @@ class Vibration {
   JointVector displacementAfter(double step) const noexcept;
   JointVector acceleration() const noexcept;  ///< [rad/s2]
   /// -M q'': what vibration adds to the static torque of the load, so that hammer + vibration = what the cylinders hold
-  /// (K q + C q') for the joints that they hold, and likewise for the held ones [N m].
+  /// (K q + C q') for the joints that they hold, and as above for the held ones [N m].
   JointVector torque() const noexcept;
   /// What the oil carries, K q + C q', and how fast that changes; of the readings where they are followed [N m, N m/s].
   /// With the weight's share of K: the torque beside that of the weight where the vibration has taken it.
@@ -97,7 +97,7 @@ class Vibration {
     JointVector now, rate;
   };
   OilTorque oilTorque() const noexcept;
-  /// So long [s] after the present, or before it [N m].
+  /// This long [s] after the present, or before it [N m].
   JointVector oilTorqueAt(double ahead) const noexcept;
   /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
   double energy() const noexcept;

@@ -1,4 +1,4 @@
-/// What sensors read of the boom's vibration, as rows over its joints.
+/// Readings of the boom's vibration, as rows over its joints.
 #pragma once
 
 #include "hammer_loads/boom/boom_modes.h"

@@ -12,6 +12,7 @@ namespace hammer_loads {
 struct OilDeviation {
   double frequency{0.15};  ///< bulk modulus +-30 %: what a file can know of oil with air in it [-]
   double damping{0.5};     ///< [-]
+  // Guard: BoomBounds.DeviationsWhereAFileGivesNone of frequency, damping
 };
 
 /// Errors of the hammer's load that are independent of each other, one standard deviation each; they last, as that of

@@ -14,7 +14,7 @@ struct Wrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
-/// What of it lies in the boom's plane: force x, z, moment y.
+/// The part in the boom's plane: force x, z, moment y.
 inline Eigen::Vector3d inPlane(const Wrench& w) noexcept { return {w.force.x(), w.force.z(), w.torque.y()}; }
 
 /// The same load at the origin of Q: f_Q = R f_P, t_Q = R t_P + p x f_Q with X_QP = (R, p).

@@ -11,7 +11,7 @@ namespace hammer_loads::calibration {
 constexpr int kNodesBeside = 4;  ///< of the torque, on either side of the blow
 constexpr int kLocals = 4 + 2 * kNodesBeside;
 
-/// What belongs to one blow alone: instant [s], speeds before and after [rad/s], net torque [N m] in nodes at the blow
+/// Parameters of one blow alone: instant [s], speeds before and after [rad/s], net torque [N m] in nodes at the blow
 /// and at equal steps before (odd ones) and after it (even ones), linear in between.
 using Locals = Eigen::Matrix<double, kLocals, 1>;
 enum LocalIndex : Eigen::Index { kInstant, kSpeedBefore, kSpeedAfter, kTorqueAtBlow, kTorques };
@@ -43,7 +43,8 @@ struct ShotPoint {
   double offset{}, speed{}, acceleration{};
 };
 
-/// What moves one side: speed at the blow, torques in the nodes, logarithm of the drive inertia, the law's two numbers.
+/// Parameters of one side: speed at the blow, torques in the nodes, logarithm of the drive inertia, the law's two
+/// numbers.
 enum HalfIndex : Eigen::Index {
   kOwnSpeed,
   kOwnTorques,

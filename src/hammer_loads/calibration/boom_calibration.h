@@ -20,12 +20,12 @@ struct WeighedRecording {
 struct JointWeight {
   std::string joint;
   double torque{};     ///< static, rms over the poses [N m]
-  double deviation{};  ///< standard, rms likewise [N m]
+  double deviation{};  ///< standard, rms as above [N m]
   double before{};     ///< by how much the given boom is off from the one found, rms [N m]
   double part() const { return torque > 0.0 ? deviation / torque : kInfinity; }
 };
 
-/// What is left of a cylinder's force.
+/// Residual of a cylinder's force.
 struct CylinderFit {
   std::string name;
   std::size_t rows{};

@@ -23,13 +23,13 @@ struct BoomFit {
   Eigen::VectorXd x;             ///< as BoomModel orders it, in standard deviations before the recording
   Eigen::MatrixXd covariance;    ///< of x
   std::vector<double> noise;     ///< per cylinder: standard deviation of what is left of a row [N]
-  std::vector<double> together;  ///< per cylinder: so many rows in a row tell as much as one, >= 1 [-]
+  std::vector<double> together;  ///< per cylinder: this many rows in a row tell as much as one, >= 1 [-]
   bool converged{};
 };
 
 /// Gauss-Newton on squares of what is left and of the unknowns, each over its variance; what is left is large where it
 /// is beyond three deviations, and counts less (Huber). Noise is that of what is left, per cylinder, and what is left
-/// of neighbours may be alike: then so many of them count as one. Friction is not below zero.
+/// of neighbours may be alike: then this many of them count as one. Friction is not below zero.
 BoomFit fitBoom(const BoomModel& model, const std::vector<BoomRow>& rows, const Progress& progress = {});
 
 /// What rows show more than the model with values x says [N].

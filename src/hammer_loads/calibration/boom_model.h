@@ -17,7 +17,7 @@ struct TipWeight {
   double x{}, z{};             ///< its centre of mass in the tip's frame [m]
 };
 
-/// What is taken as given, and how far it may be off.
+/// Given parameters, and how far they may be off.
 struct BoomBasis {
   std::string urdf;
   BoomParameters parameters;
@@ -33,12 +33,12 @@ struct BoomBasis {
   double viscous_deviation{0.02};           ///< of friction per speed, over the greatest push: 0.2 % at 0.1 m/s [s/m]
 };
 
-/// What one entry of the vector of unknowns stands for.
+/// Meaning of one entry of the vector of unknowns.
 enum class BoomUnknown {
   kMass,           ///< of a link, logarithm of it over the description's [-]
   kComX,           ///< of a link, less the description's [m]
-  kComZ,           ///< likewise
-  kInertia,        ///< of a link about its centre of mass, likewise [-]
+  kComZ,           ///< as above
+  kInertia,        ///< of a link about its centre of mass, as above [-]
   kFrictionForce,  ///< of a cylinder [N]
   kFriction,       ///< of a cylinder, over its force [-]
   kViscous,        ///< of a cylinder [N s/m]

@@ -1,4 +1,4 @@
-/// What a recording of the boom's free movement holds, and the instants that it is fitted at.
+/// A recording of the boom's free movement, and the instants that it is fitted at.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct BoomRecording {
   std::vector<double> working;                 ///< times at which the hammer's crank turned [s]
 };
 
-/// What all sensors say of one instant, from a parabola in time through the readings around it: joints and pressures
+/// All sensors at one instant, from a parabola in time through the readings around it: joints and pressures
 /// are smoothed alike, so that the one fits the other.
 struct BoomPoint {
   double time{};                                             ///< [s]

@@ -15,7 +15,7 @@ std::string textOf(const BoomCalibration& calibration);
 /// A whole boom file: the keys given, one `key: value` a line, with those found in place of theirs or after them. Empty
 /// where weights of joints are not determined.
 std::string yamlOf(const BoomCalibration& calibration, const std::string& given, const std::string& source);
-/// What is left of each cylinder's force over its joint's angle, before and after.
+/// Residual of each cylinder's force over its joint's angle, before and after.
 std::string svgOf(const BoomCalibration& calibration);
 
 }  // namespace hammer_loads::calibration

@@ -8,7 +8,7 @@
 
 namespace hammer_loads::calibration {
 
-/// What is taken as given.
+/// Given parameters.
 struct CalibrationBasis {
   const Mechanism& mechanism;
   Level level;

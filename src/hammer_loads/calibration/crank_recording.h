@@ -1,4 +1,4 @@
-/// What a recording holds of the crank's sensor, and how it is cut into pieces around the blows.
+/// A recording of the crank's sensor, and how it is cut into pieces around the blows.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct RecordedSample {
   Gravity gravity;              ///< in hull axes [m/s2]
 };
 
-/// What the readings and stamps say of themselves.
+/// Properties of the readings and stamps.
 struct SensorFacts {
   double count{};         ///< largest whole part of a turn that all readings are multiples of [rad]; 0: none
   double period{};        ///< median of the stamps' steps [s]
@@ -29,7 +29,7 @@ struct SensorFacts {
 struct CrankPoint {
   double time{};                ///< [s]
   double seen{};                ///< reading at mid-count, unwrapped and divided by direction and ratio [rad]
-  std::optional<double> speed;  ///< likewise [rad/s]
+  std::optional<double> speed;  ///< as above [rad/s]
   Gravity gravity;
 };
 

@@ -74,7 +74,7 @@ void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& global
   }
 }
 
-/// What a blow says of the shared parameters once its own are eliminated.
+/// Information of a blow on the shared parameters once its own are eliminated.
 struct Reduced {
   GlobalMatrix matrix;
   Globals score;
@@ -84,7 +84,7 @@ struct Reduced {
   double angle_freedom, speed_freedom;                 ///< locals that the angles, that the speeds decide
 };
 
-/// Residuals that are free where so many are given.
+/// Residuals that are free where this many are given.
 double freeOf(double given, double decided) { return std::max(given - decided, 0.3 * given); }
 
 Reduced reduce(const NormalEquations& e) {
@@ -251,7 +251,7 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Fr
   return covariance;
 }
 
-/// Until nothing changes any more, at least so many times.
+/// Until nothing changes any more, at least this many times.
 void settle(JointFit& joint, const SegmentModel& model, const Globals& start, const Free& free, int least,
             const Progress& progress) {
   for (int i = 0; i < kMostIterations && !joint.fits.empty(); ++i) {

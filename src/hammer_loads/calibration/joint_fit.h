@@ -39,7 +39,7 @@ JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel
 void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count,
                 const Progress& progress = {});
 
-/// What belongs to each blow alone, the shared parameters given.
+/// Parameters of each blow alone, the shared parameters given.
 std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
                                     const Globals& globals, const Noise& noise, const Progress& progress = {});
 

@@ -11,8 +11,8 @@
 
 namespace hammer_loads::calibration {
 
-/// What all blows share. seen = zero + offset + sum over n of c_n sin(n offset) + s_n (cos(n offset) - 1): c_n + i s_n
-/// is the eccentricity a_n e^(i phase_n).
+/// Parameters that all blows share. seen = zero + offset + sum over n of c_n sin(n offset) + s_n (cos(n offset) - 1):
+/// c_n + i s_n is the eccentricity a_n e^(i phase_n).
 constexpr int kGlobals = 8;
 using Globals = Eigen::Matrix<double, kGlobals, 1>;
 enum GlobalIndex : Eigen::Index { kZero, kSine1, kCosine1, kSine2, kCosine2, kLogInertia, kStiffness, kDrag };

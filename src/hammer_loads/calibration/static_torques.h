@@ -1,4 +1,4 @@
-/// What the weight of a fitted boom does to its joints, and how well that is known.
+/// Torques by the weight of a fitted boom, and how well that is known.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// What commands that read a recording share: names of topics, and parameter files in place of a run_info.
+/// Shared by the commands that read a recording: names of topics, and parameter files in place of a run_info.
 #pragma once
 
 #include <algorithm>

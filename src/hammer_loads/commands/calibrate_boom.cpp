@@ -11,7 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-/// A weight's own mass is known to so much, by any scale [-].
+/// A weight's own mass is known to this much, by any scale [-].
 constexpr double kKnownWeight = 0.002;
 
 calibration::TipWeight weightOf(const BoomCalibrationJob& job) {

@@ -1,4 +1,4 @@
-/// What the commands share: options in, one line per error on stderr, exit codes.
+/// Shared by the commands: options in, one line per error on stderr, exit codes.
 #pragma once
 
 #include <optional>

@@ -30,7 +30,7 @@ Parameters (private; SI units, each explained in its file in the package's direc
   -h, --help  print this    --version  print the version
 )";
 
-/// Text in lines of at most so many columns.
+/// Text in lines of at most this many columns.
 std::string wrapped(const std::vector<std::string>& words) {
   constexpr std::size_t kColumns = 104;
   std::string text, line = " ";

@@ -161,7 +161,7 @@ void OutputFile::withdraw() {
 void endCleanlyOnSignals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
-    // What the caller ignores (nohup) stays ignored.
+    // A signal that the caller ignores (nohup) stays ignored.
     if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) continue;
     action = {};
     action.sa_handler = removeUnfinished;

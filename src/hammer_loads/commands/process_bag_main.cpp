@@ -79,7 +79,7 @@ int printRecordings(const std::vector<std::string>& bags) {
   return finishOutput();
 }
 
-/// What the command line alone shows to be wrong; empty: nothing.
+/// Errors that the command line alone shows; empty: nothing.
 std::string usageProblem(const Arguments& given) {
   if (given.recordings) return {};
   if (given.no_bag && given.tables.empty() && given.ledger.empty())
@@ -117,7 +117,7 @@ std::vector<Output> outputsOf(const Arguments& given, BagJob& job) {
   return outputs;
 }
 
-/// What went wrong; runs that are not counted again are warnings.
+/// Problems; runs that are not counted again are warnings.
 std::vector<std::string> writeLedger(life::LedgerBatch& ledger, BagReport& report) {
   std::vector<std::string> known;
   const std::string problem = ledger.write(known);
@@ -126,7 +126,7 @@ std::vector<std::string> writeLedger(life::LedgerBatch& ledger, BagReport& repor
   return {problem};
 }
 
-/// Takes the files, processes, gives them their names. What went wrong, one line each.
+/// Takes the files, processes, gives them their names. Returns the problems, one line each.
 std::vector<std::string> process(const Arguments& given, BagJob& job, BagReport& report) {
   const std::vector<Output> outputs = outputsOf(given, job);
   std::vector<OutputFile> files;

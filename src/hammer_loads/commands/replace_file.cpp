@@ -37,7 +37,7 @@ mode_t permissions(const std::string& path) {
   return 0666 & ~mask;
 }
 
-/// What a rename needs to outlast a power cut.
+/// Syncs that a rename needs to outlast a power cut.
 void syncDirectory(const fs::path& directory) {
   const int file = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;

@@ -23,7 +23,7 @@ std::string whyMcapMustStay(const std::string& name) {
   return ours ? "" : "it is no MCAP of this command";
 }
 
-/// What a connection says of its messages' publisher and type (profile ros1).
+/// Publisher and type of a connection's messages (profile ros1).
 McapWriter::Metadata metadataOf(const rosbag::ConnectionInfo& connection) {
   McapWriter::Metadata metadata{{"md5sum", connection.md5sum}};
   if (!connection.header) return metadata;

@@ -1,4 +1,4 @@
-/// What this machine's blows have done to the crank so far, as the prior of the next one.
+/// Factors of this machine's blows so far, as the prior of the next one.
 #pragma once
 
 #include <algorithm>
@@ -38,6 +38,7 @@ class BlowHistory {
   static constexpr double kFirstCounts = 0.1, kLength = 10.0 + kFirstCounts;
   static constexpr double kLeast = 0.01;  // deviation
   static constexpr double kMost = 0.3;
+  // Guard: LearnedNumbers.TheBlowsOfTenTurns of kFirstCounts, kLength, kLeast, kMost
   BlowPrior first_;
   RunningMean<> mean_, variance_;
   RunningMean<ConstantErrors::Row> by_error_;

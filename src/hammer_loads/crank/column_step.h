@@ -1,4 +1,4 @@
-/// What the constants of the hammer do to the crank within a step.
+/// Effect of the hammer's constants on the crank within a step.
 #pragma once
 
 #include <algorithm>

@@ -8,22 +8,24 @@
 
 namespace hammer_loads {
 
+constexpr double kMostSurprise = 100.0;  ///< that one sample counts for: a single outlier is no alarm
+
 /// Running mean of innovation^2 over its variance: 1 for a model that holds. Some 500 samples long.
 class Consistency {
  public:
   void add(double squared_over_variance) noexcept {
     if (!std::isfinite(squared_over_variance)) return;
     if (samples_ < kLength) ++samples_;
-    mean_ += (std::min(squared_over_variance, kMost) - mean_) / samples_;
+    mean_ += (std::min(squared_over_variance, kMostSurprise) - mean_) / samples_;
   }
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
-  /// What variances are to be multiplied with: never below 1.
+  /// The factor of variances: never below 1.
   double growth() const noexcept { return samples_ < kEnough ? 1.0 : std::max(1.0, mean_); }
 
  private:
   static constexpr int kLength = 500, kEnough = 200;
-  static constexpr double kMost = 100.0;  // of one sample: a single outlier is no alarm
+  // Guard: LearnedNumbers.ConsistencyIsAMeanOfFiveHundred of kMostSurprise, kLength
   int samples_{};
   double mean_{};
 };
@@ -34,7 +36,7 @@ class StrikeConsistency {
  public:
   void add(double squared_over_variance) noexcept {
     if (!std::isfinite(squared_over_variance)) return;
-    sum_ += std::min(squared_over_variance, kMost);
+    sum_ += std::min(squared_over_variance, kMostSurprise);
     ++samples_;
   }
   /// The blow was passed.
@@ -49,7 +51,6 @@ class StrikeConsistency {
   double mean() const noexcept { return before_ < last_ ? before_ : (before_ >= last_ ? last_ : before_); }
 
  private:
-  static constexpr double kMost = 100.0;  // of one sample, as above
   double sum_{};
   int samples_{};
   double before_{std::numeric_limits<double>::quiet_NaN()}, last_{before_};

@@ -10,12 +10,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr int kFirstTurns = 4;          // the drive inertia is learned first
-constexpr int kTurnsToKnow = 6;         // nothing is concluded before
+constexpr int kFirstTurns = 4;   // the drive inertia is learned first
+constexpr int kTurnsToKnow = 6;  // nothing is concluded before
+// Guard: Unknowns.OfTheSensorsPlaceDoWhatTheFilterSays of kTurnsToKnow
 constexpr double kMemoryTurns = 300.0;  // turns: a minute at work
 constexpr double kUnmodelledCounts =
     0.5;  // what a clean machine shows, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
-constexpr double kUnmodelledDeviations = 2.5;  // likewise, where it is seen less well
+constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well
 constexpr double kUnseenDeviations = 0.6;      // of what is not seen: 88 to 99 % of the wrench's errors
                                                // then lie within two deviations (simulated machines)
 constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a supply that follows the crank's

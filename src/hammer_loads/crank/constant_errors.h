@@ -60,7 +60,7 @@ class ConstantErrors {
 
   /// Standard deviation of a constant that is considered, known better now.
   void consider(int constant, double deviation) noexcept;
-  /// The supply's stiffness has been changed by so much [SupplyLaw::unit].
+  /// The supply's stiffness has been changed by this much [SupplyLaw::unit].
   void takeSupply(double change) noexcept;
   /// 0 before some turns. deviation: of the sensor's place alone.
   const Vector& estimate() const noexcept { return estimate_; }

@@ -14,7 +14,7 @@ struct Coupling {
   double motor_share{};          ///< of the drive inertia [-], in (0, 1)
   double damping{};              ///< of critical, of the same oscillation [-], >= 0
   double stiffness_deviation{};  ///< standard deviation of the stiffness, relative [-], >= 0; 0: it is not learned
-  double share_deviation{};      ///< likewise of the motor's share [-]
+  double share_deviation{};      ///< as above of the motor's share [-]
 };
 
 /// Of the logarithm of the odds, motor's over crank's inertia; standard [-].

@@ -11,9 +11,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kNoiseStep = 2e-3;  // [s] step over which the process noise is spread
-constexpr double kMaxInertiaChange =
-    0.3;                               // of the logarithm by one sample: beyond it the linearisation is worth nothing
 constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
 constexpr double kMostDoubt = 1.0;     // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
@@ -123,7 +120,7 @@ void CrankBelief::correct(Row row, double innovation, double variance,
   if (motor)
     return correctFlexible(row == kAngle ? kMotorAngle : kMotorSpeed, innovation, variance, measured_by_error, *this);
   Vector change = Base::correct(row, variance, measured_by_error) * innovation;
-  change[kInertia] = std::clamp(change[kInertia], -kMaxInertiaChange, kMaxInertiaChange);
+  change[kInertia] = std::clamp(change[kInertia], -kMostInertiaChange, kMostInertiaChange);
   move(change);
 }
 

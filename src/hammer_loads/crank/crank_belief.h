@@ -13,7 +13,11 @@
 
 namespace hammer_loads {
 
-/// What is not measured, as random walks, and what is known of the torque's way.
+constexpr double kNoiseStep = 2e-3;  ///< [s] over which the process noise is spread
+/// Of the inertia's logarithm by one sample: beyond it the linearisation is worth nothing.
+constexpr double kMostInertiaChange = 0.3;
+
+/// Random walks of the variables that are not measured, and the law of the torque.
 struct CrankWalks {
   double torque{};   ///< of the net torque [N m/sqrt(s)]
   double speed{};    ///< of the speed [rad/s/sqrt(s)]
@@ -21,7 +25,7 @@ struct CrankWalks {
   SupplyLaw supply;
 };
 
-/// What is known of a blow before it comes: the factor on the crank's speed is drawn anew each time.
+/// The prior of a blow: the factor on the crank's speed is drawn anew each time.
 struct BlowPrior {
   double mean{1.0};    ///< [-], > 0
   double deviation{};  ///< [-]
@@ -37,7 +41,7 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   ShaftState state;
   double factor{1.0};              ///< of the last blow
   double least_inertia{};          ///< bounds of the drive inertia [kg m2]
-  double most_inertia{};           ///< likewise
+  double most_inertia{};           ///< as above
   bool tool_met{};                 ///< before the dead centre: nothing strikes there any more
   bool struck_early{};             ///< the last blow's factor acted before the dead centre
   std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
@@ -110,7 +114,7 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
 CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& load, const CrankBelief& belief,
                                    double growth, const ConstantErrors::Matrix& root, double torque_part) noexcept;
 
-/// What the hammer's constants make of the acceleration [rad/s2] at the state itself.
+/// Derivatives by the hammer's constants of the acceleration [rad/s2] at the state itself.
 void addAcceleration(const ShaftModel& model, const ShaftState& state, double acceleration, double inverse_inertia,
                      CrankUncertainty& result) noexcept;
 

@@ -68,7 +68,7 @@ struct ShaftState {
   double twist{};          ///< angle of the motor less that of the crank [rad]
   double motor_speed{};    ///< [rad/s]
   double log_stiffness{};  ///< as in CouplingLaw
-  double log_odds{};       ///< likewise
+  double log_odds{};       ///< as above
 };
 
 /// Whether the tool may be met within a step of length dt [s]: 3.4 deg or 1.5 steps around the dead centre.
@@ -89,21 +89,21 @@ using ShaftMatrix = Eigen::Matrix<double, 5, 5>;
 /// blow factor counts only where a blow is passed in between.
 using ShaftTransition = Eigen::Matrix<double, 2, 5>;
 
-/// What happens where the crank turns forward through the dead centre.
+/// The blow, where the crank turns forward through the dead centre.
 struct Passing {
   double factor{1.0};  ///< crank speed after over before the blow [-], > 0
   bool contact{true};  ///< false: no tool, the rocker goes on smoothly onto the mirrored branch
 };
 
-/// What a step did beside moving the state.
+/// Events of a step beside the motion.
 struct Advance {
   ShaftTransition transition;
-  int blows{};  ///< passed forward, with contact; back in time likewise
+  int blows{};  ///< passed forward, with contact; back in time as above
 };
 
 /// Passes the blow where the state stands on the way before it, at offset 0 or a little past it: what would have
 /// happened had it been passed when it was reached (first order). Position and, but for the factor, speed are
-/// continuous, the acceleration jumps; a path that reaches the blow later by d(angle)/w has the old ones for so much
+/// continuous, the acceleration jumps; a path that reaches the blow later by d(angle)/w has the old ones for this much
 /// longer (saltation). Turning backward the factor is 1; back in time it is undone.
 void passBlow(const ShaftModel& model, double factor, ShaftState& state, ShaftLoad& load,
               ShaftTransition& total) noexcept;

@@ -54,6 +54,7 @@ class CrankTrack {
   static constexpr double kWindow = 20.0;  ///< [s] smoothed at once
   static constexpr double kOverlap =
       10.0;  ///< [s] after it, whose samples are used: what changes slowly is known by then
+  // Guard: CrankTrack.GivesEverySampleOnceAndSomeSecondsLater of kWindow, kOverlap
 
   void add(TrackedSample sample);
   void revise() noexcept;

@@ -1,4 +1,4 @@
-/// What is known of the crank at an instant, and the common face of the ways to know it.
+/// The estimate of the crank at an instant, and the interface of all trackers.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@ struct CrankEstimate {
   CrankPosition position;
   double speed{};         ///< [rad/s]
   double acceleration{};  ///< [rad/s2]
-  /// What a flexible coupling makes of the drive: mean speed [rad/s] and acceleration [rad/s2] of motor and flywheel,
+  /// The drive behind a flexible coupling: mean speed [rad/s] and acceleration [rad/s2] of motor and flywheel,
   /// by inertia, less the crank's.
   double drive_lead_speed{}, drive_lead_acceleration{};
 };
@@ -54,7 +54,7 @@ struct CrankWays {
   CrankEstimate forward, back;
 };
 
-/// What a blow did to the crank: its speed after over its speed before. Deviations are beside the constants.
+/// A blow's factor on the crank: its speed after over its speed before. Deviations are beside the constants.
 struct BlowFactor {
   double mean{1.0};                                            ///< [-]
   double deviation{std::numeric_limits<double>::quiet_NaN()};  ///< [-]

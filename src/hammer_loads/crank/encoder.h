@@ -1,4 +1,4 @@
-/// What an encoder's reading says about the angle.
+/// From an encoder's reading to the angle.
 #pragma once
 
 #include <cmath>
@@ -59,12 +59,16 @@ class Encoder {
 
  private:
   static constexpr double kUsual = kTwoPi / 4096.0;
+  // Guard: EncoderCount.SurvivesSinglePrecisionAndAZeroOfItsOwn of kUsual
   static constexpr double kFinest = kTwoPi / 65536.0;
+  // Guard: EncoderCount.IsReadOffTheReadings of kFinest
   static constexpr double kMultipleTolerance = 1e-3;  // of a count; single-precision sensors round by 4e-4 of 2 pi/4096
   static constexpr int kEnough = 2;
   static constexpr double kSame = kMultipleTolerance * kFinest;
   static constexpr int kEnoughStrays = 4;
+  // Guard: EncoderCount.OutlivesAReadingThatFitsNothing of kEnoughStrays
   static constexpr int kEnoughToKnow = 24;  // differences: all even or all multiples of three by chance: 1e-7
+  // Guard: JointBounds.OfAnEncodersCount of kMultipleTolerance, kEnoughToKnow
 
   static bool isMultiple(double difference, double count) noexcept {
     const double counts = difference / count, whole = std::nearbyint(counts);

@@ -13,9 +13,7 @@ namespace {
 using Belief = CrankBelief;
 using Joint = GaussianBelief<kFlexibleVariables, ConstantErrors::kSize>;
 
-constexpr double kFlexibleNoiseStep = 2e-3;   // [s] step over which the process noise is spread
-constexpr double kMostInertiaChange = 0.3;    // of a logarithm by one sample
-constexpr double kMostStiffnessChange = 0.1;  // likewise
+constexpr double kMostStiffnessChange = 0.1;  // of a logarithm by one sample
 constexpr double kMostLogStiffness = 1.4;     // a factor of two of the frequency either way
 constexpr double kMostTwist = 1.0;            // [rad]: more is a diverged filter
 
@@ -124,7 +122,7 @@ void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) no
 
 int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
                     double most_speed, double dt, Belief& b) noexcept {
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kFlexibleNoiseStep)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
   Joint all = joint(b);
   int blows = 0;

@@ -1,4 +1,4 @@
-/// What a prediction, a measurement and a blow do to a belief with a flexible coupling.
+/// Prediction, measurement and blow of a belief with a flexible coupling.
 #pragma once
 
 #include "hammer_loads/crank/crank_belief.h"

@@ -9,6 +9,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMaxStepPhase = 0.4;  // [rad] of the coupling's oscillation
+// Guard: FlexibleShaft.ItsLinearisationFollowsFiniteDifferences of kMaxStepPhase
 
 /// Crank angle from the blow, h = sqrt(Jk + J) w, twist and motor speed within one half turn: rates of these have no
 /// derivative of the links' inertia, so that their linearisation needs none of second order.

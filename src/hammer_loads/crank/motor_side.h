@@ -1,4 +1,4 @@
-/// What is known of the motor beyond a flexible coupling, beside a CrankBelief.
+/// The estimate of the motor beyond a flexible coupling, beside a CrankBelief.
 #pragma once
 
 #include "hammer_loads/crank/constant_errors.h"

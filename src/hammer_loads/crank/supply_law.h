@@ -9,7 +9,7 @@
 namespace hammer_loads {
 
 /// A pump of constant flow feeds the motor through oil and hoses that give: where the crank leads a uniform rotation,
-/// it has taken more oil than came, and the torque falls by so much per lead. What else the torque does is a random
+/// it has taken more oil than came, and the torque falls by this much per lead. What else the torque does is a random
 /// walk.
 struct SupplyLaw {
   double stiffness{};   ///< [N m/rad]
@@ -26,7 +26,7 @@ class LearnedSupply {
   /// unit: largest stiffness [N m/rad], > 0.
   explicit LearnedSupply(double unit) noexcept { law_.unit = unit; }
   const SupplyLaw& law() const noexcept { return law_; }
-  /// What lies before is not known.
+  /// The time before is not known.
   void restart() noexcept {
     law_.mean_speed = 0.0;
     turn_time_ = std::numeric_limits<double>::quiet_NaN();

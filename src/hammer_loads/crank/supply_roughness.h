@@ -29,6 +29,7 @@ class SupplyRoughness {
  private:
   static constexpr double kGain = 0.005, kFading = 0.85;  // some 7 samples are looked at, some 300 learned from
   static constexpr double kLeast = 0.25, kMost = 3.0;     // a sudden supply is still followed within some samples
+  // Guard: LearnedNumbers.TheSupplysWalk of kGain, kFading, kLeast, kMost
   double factor_{1.0}, sum_{};
 };
 

@@ -8,11 +8,13 @@
 namespace hammer_loads {
 
 constexpr double kMaxStepAngle = 0.04;  ///< [rad] of the crank in one piece
-constexpr int kMaxSteps = 4096;         ///< bounds the work for absurd speeds; steps get longer beyond it
+// Guard: CrankDynamics.PassesTheBlowInOneStepAsInMany of kMaxStepAngle
+constexpr int kMaxSteps = 4096;  ///< bounds the work for absurd speeds; steps get longer beyond it
 /// [rad/s]: a crank that creeps over the blow has no defined instant of passing it.
 constexpr double kCreeping = 1.0;
 /// So often in one way: then both sides push it back to the other, and it stays at the blow.
 constexpr int kMostCreepingPasses = 8;
+// Guard: FlexibleShaft.WhereBothSidesPushItBackItPassesAFewTimesOnly of kMostCreepingPasses
 
 /// Of the way.
 struct WayPiece {

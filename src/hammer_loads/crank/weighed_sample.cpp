@@ -10,7 +10,7 @@ Innovation WeighedSample::ofAngle(const CrankBelief& belief) const noexcept {
           ConstantErrors::ofAngle({offset, belief.encoderSpeed(), 0.0})};
 }
 
-/// What is wrong with the stamp counts by the acceleration.
+/// An error of the stamp counts by the acceleration.
 Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept {
   const ShaftState& state = belief.state;
   const ShaftLoad load = model(state.position.angle);

@@ -9,7 +9,7 @@
 
 namespace hammer_loads {
 
-/// What a measurement says beyond the prediction.
+/// A measurement less its prediction.
 struct Innovation {
   double value{};                                             ///< measured less predicted
   double total{};                                             ///< its variance

@@ -1,4 +1,4 @@
-/// What innovations say of the constants that a filter considers: weighted least squares, gathered.
+/// Estimate of the constants that a filter considers, from its innovations: weighted least squares, gathered.
 #pragma once
 
 #include <Eigen/LU>
@@ -28,9 +28,9 @@ class ConstantFit {
     score_ += (weight * innovation) * by_constant.transpose();
     return weight;
   }
-  /// One of the given constants has been changed by so much.
+  /// One of the given constants has been changed by this much.
   void take(int constant, double change) noexcept { score_ += information_.col(constant) * change; }
-  /// What came before counts for this part of itself.
+  /// Earlier measurements count for this part of themselves.
   void fade(double part) noexcept { information_ *= part, score_ *= part; }
 
   const Matrix& information() const noexcept { return information_; }

@@ -16,12 +16,12 @@ constexpr double kVeryRare = 4.0;    ///< 6 in 100 000: some four times a minute
 constexpr double kImpossible = 5.0;  ///< 6 in 10 million: twice an hour
 }  // namespace gate
 
-/// Whether an innovation of that variance is beyond so many deviations. One that is no number is not.
+/// Whether an innovation of that variance is beyond this many deviations. One that is no number is not.
 constexpr bool exceeds(double innovation, double variance, double deviations) noexcept {
   return square(innovation) > square(deviations) * variance;
 }
 
-/// Weight of an innovation: 1 within so many deviations; beyond, its square counts as that of the gate.
+/// Weight of an innovation: 1 within this many deviations; beyond, its square counts as that of the gate.
 inline double weightWithin(double deviations, double innovation, double variance) noexcept {
   const double ratio = square(innovation) / variance, most = square(deviations);
   return ratio > most ? most / ratio : 1.0;

@@ -90,9 +90,9 @@ struct GaussianBelief {
     forget(i, variance);
     by_constant.row(i) = effect;
   }
-  /// What is known of a variable stays; coming measurements of the others teach nothing of it, nor the other way round.
+  /// The belief about a variable stays; coming measurements of the others teach nothing of it, nor the other way round.
   void decouple(Eigen::Index i) noexcept { forget(i, covariance(i, i)); }
-  /// Deviations are so much larger, variable by variable.
+  /// Deviations are this much larger, variable by variable.
   void widen(const Vector& by) noexcept { covariance = (by.asDiagonal() * covariance * by.asDiagonal()).eval(); }
 
   /// Covariance of the variables where that of the constants is as given; growth: what noise is to be multiplied with.

@@ -3,7 +3,7 @@
 
 namespace hammer_loads {
 
-/// What hovers about one level does not flicker. Where the level is no number it is released.
+/// A value that hovers about one level does not make it flicker. Where the level is no number it is released.
 class Latch {
  public:
   /// releases <= engages.

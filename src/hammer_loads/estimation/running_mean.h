@@ -10,7 +10,7 @@ namespace hammer_loads {
 template <typename Value = double>
 class RunningMean {
  public:
-  /// length > 0; first: counts as so many values, in [0, length].
+  /// length > 0; first: counts as this many values, in [0, length].
   explicit RunningMean(double length, const Value& first = Value(), double first_counts = 0.0) noexcept
       : length_(length), count_(first_counts), mean_(first) {}
 

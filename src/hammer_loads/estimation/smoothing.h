@@ -8,7 +8,7 @@
 
 namespace hammer_loads {
 
-/// What joins a belief with the one a step later.
+/// The link of a belief to the one a step later.
 template <int variables, int constants>
 struct Smoothed {
   using Belief = GaussianBelief<variables, constants>;

@@ -1,4 +1,4 @@
-/// What a designer asks of the grapple: opening, scoop height, how straight the path of the jaw edge is.
+/// A designer's figures of the grapple: opening, scoop height, how straight the path of the jaw edge is.
 ///
 /// The paper gives "80 %" and "3 %" without a definition. Here, for the path of P between two slider positions, closed
 /// and open, with arc length l measured from the closed one and total length L:

@@ -1,4 +1,4 @@
-/// What the command grapple_table prints: rows of the jaw edge's path, or its design figures.
+/// The output of grapple_table: rows of the jaw edge's path, or its design figures.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-/// What the grapple needs of plane vectors beyond linkage/planar.h.
+/// Plane vectors for the grapple, beyond linkage/planar.h.
 ///
 /// Grapple frame: origin = pivot O on the axis of symmetry, +x (re) towards the right jaw, +y (im) up, angles
 /// counter-clockwise.

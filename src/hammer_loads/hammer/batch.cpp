@@ -109,7 +109,7 @@ using Block = std::array<double, kBlock>;
 /// Input, intermediate and output of one block, where nothing else can alias them.
 struct Workspace {
   alignas(64) std::array<Block, kInputs> in{};     ///< of a block that is filled up
-  alignas(64) std::array<Block, kAllOutputs> out;  ///< likewise
+  alignas(64) std::array<Block, kAllOutputs> out;  ///< as above
   alignas(64) Block sine, cosine;                  ///< of half the crank angle; the cosine is negative before the blow
   alignas(64) Block r, cos_psi, sin_psi_over_s, u, du_over_s, inv_r;
 };

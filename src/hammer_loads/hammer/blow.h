@@ -11,7 +11,7 @@ namespace hammer_loads {
 /// Angular speeds are psi' (positive about hull +y); axes of hammer_hull.
 struct RockerBlow {
   double crank_speed_before{};   ///< [rad/s]; 0 of blowInSupport
-  double crank_speed_after{};    ///< likewise [rad/s]
+  double crank_speed_after{};    ///< as above [rad/s]
   double rocker_speed_before{};  ///< [rad/s], < 0 for a real blow
   double rocker_speed_after{};   ///< [rad/s]
   double restitution{};          ///< R = -after/before [-]
@@ -20,11 +20,11 @@ struct RockerBlow {
   double tool_impulse_x{};       ///< BY the tool ON the rocker [N s]
   double tool_impulse_z{};       ///< BY the tool ON the rocker [N s], > 0 for a real blow
   double support_impulse_x{};    ///< BY the links ON the hull [N s]; of blowInSupport: BY the rocker at D
-  double support_impulse_z{};    ///< likewise [N s]
-  double support_impulse_y{};    ///< likewise, about D [N m s]; 0 of blowInSupport
+  double support_impulse_z{};    ///< as above [N s]
+  double support_impulse_y{};    ///< as above, about D [N m s]; 0 of blowInSupport
   double drive_impulse_y{};      ///< BY the drive's rotor ON the hull about +y [N m s]; 0 where nothing is known of it
   double restitution_deviation{std::numeric_limits<double>::quiet_NaN()};  ///< standard, where R was measured [-]
-  double energy_deviation{std::numeric_limits<double>::quiet_NaN()};       ///< likewise [J]
+  double energy_deviation{std::numeric_limits<double>::quiet_NaN()};       ///< as above [J]
   /// restitution or energy are what no blow has, by more than two deviations: both are NaN
   bool impossible{};
 };
@@ -83,7 +83,7 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
 /// Blow of a crank that does not keep its speed: [rad/s] before, > 0, and after.
 RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept;
 
-/// What no blow has, by more than two deviations: a restitution outside [0, 1], or an energy outside [0, what the
+/// Impossible by more than two deviations: a restitution outside [0, 1], or an energy outside [0, what the
 /// rocker had]. Restitution and energy of such a one are NaN, and it is impossible. Does nothing to one without
 /// deviations.
 void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) noexcept;

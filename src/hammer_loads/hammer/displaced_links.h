@@ -1,4 +1,4 @@
-/// What the moving links add to a hull whose mass holds them where they are on average.
+/// Load that the moving links add to a hull whose mass holds them where they are on average.
 #pragma once
 
 #include "hammer_loads/hammer/hammer_model.h"

@@ -146,7 +146,7 @@ HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, const Moti
   return wrench;
 }
 
-/// Level linkage, likewise.
+/// Level linkage, as above.
 HAMMER_LOADS_INLINE HullWrench hullWrench(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& crank,
                                           const HullMotion& hull) noexcept {
   HullWrench wrench = hullWrenchLinkage(mechanism, l, crank, hull.gravity);

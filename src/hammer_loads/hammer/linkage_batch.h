@@ -10,8 +10,8 @@
 
 namespace hammer_loads {
 
-/// What does not change with the state. Hull axes: a constant C seen from the hull (LinkMoments) times e^(i angle) has
-/// x + i z = (-Re C + i Im C) e^(-i angle).
+/// The parts that do not change with the state. Hull axes: a constant C seen from the hull (LinkMoments) times e^(i
+/// angle) has x + i z = (-Re C + i Im C) e^(-i angle).
 struct LinkageConstants {
   LinkageConstants(const Mechanism& mechanism, Gravity g) {
     const LinkMoments& m = mechanism.moments();

@@ -33,7 +33,7 @@ struct TurnPoint {
   double time{};       ///< after the turn's start [s]
   double force_z{};    ///< [N]
   double impulse_x{};  ///< of the wrench since the turn's start, by the momentum difference [N s]
-  double impulse_z{};  ///< likewise [N s]
+  double impulse_z{};  ///< as above [N s]
 };
 
 /// Pulse from the points of one whole turn, in order of strictly growing time, first at time 0 and last at the blow;

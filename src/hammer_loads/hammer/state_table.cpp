@@ -86,8 +86,8 @@ Places placesOf(const Cells& header, std::vector<std::string>& problems) {
     for (std::size_t i = 0; i < header.size(); ++i) {
       if (header[i] == kStateColumns[c]) places[c] = i, ++found;
     }
-    if (found != 1)
-      problems.push_back(format("header: %s: found %zu times, must be there once", kStateColumns[c], found));
+    if (found == 0) problems.push_back(format("header: %s: is required, not found", kStateColumns[c]));
+    if (found > 1) problems.push_back(format("header: %s: found %zu times, must be once", kStateColumns[c], found));
   }
   return places;
 }

@@ -27,7 +27,7 @@ struct TableState {
 /// Crank angle from its decimal text, sized at most 1e15 rad. Digits beyond a double's count.
 ///
 /// Offset = text - 2 pi n, rounded to a double once. Of a text with more digits than a double's 17, 2 pi n rounded to
-/// the text's last digit is subtracted: 2 pi n + offset written to so many digits gives the offset back, as when 1e-9
+/// the text's last digit is subtracted: 2 pi n + offset written to this many digits gives the offset back, as when 1e-9
 /// rad before the blow is written 6.2831853061795864769. Either way the offset is right to one unit of that digit.
 std::optional<CrankAngle> crankAngleFromText(const std::string& text);
 

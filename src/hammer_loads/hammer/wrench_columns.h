@@ -1,4 +1,4 @@
-/// What is not known of a hammer, on its loads.
+/// Errors of a hammer's constants, on its loads.
 #pragma once
 
 #include <Eigen/Core>

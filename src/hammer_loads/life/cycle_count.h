@@ -20,7 +20,7 @@ struct ClosedCycles {
   bool operator<(const ClosedCycles& o) const { return steps != o.steps ? steps < o.steps : low < o.low; }
 };
 
-/// What came in.
+/// Inputs so far.
 struct SampleTally {
   std::uint64_t counted{};  ///< samples with a value; saturated ones are among them
   std::uint64_t skipped{};  ///< not a number or infinite: the series goes on without them
@@ -31,7 +31,7 @@ struct SampleTally {
   /// pieces add exactly.
   std::uint64_t deviations{}, deviation_sum{};
   /// Ranges of turns and their standard deviations, weighed by the range: sums of R^2, R own and R common in
-  /// 1/kRangeUnits of a class width squared, whole numbers likewise.
+  /// 1/kRangeUnits of a class width squared, whole numbers as above.
   std::uint64_t range_square{}, range_own{}, range_common{};
 
   void add(const SampleTally& o) {

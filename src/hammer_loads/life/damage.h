@@ -1,4 +1,4 @@
-/// What counted cycles cost: damage-equivalent loads, and damage by an S-N curve (Palmgren-Miner).
+/// The cost of counted cycles: damage-equivalent loads, and damage by an S-N curve (Palmgren-Miner).
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 /// Rainflow count of ASTM E1049-85 by the 4-point rule: turning points on a stack, a cycle closed as soon as it can be.
 ///
 /// Of four turning points A, B, C, D in a row the pair (B, C) is a cycle when both lie within [A, D] or [D, A]; it is
-/// taken out. What never closes is the residue; counted as half cycles it makes the count that of ASTM E1049-85
+/// taken out. Cycles that never close are the residue; counted as half cycles it makes the count that of ASTM E1049-85
 /// (McInnes & Meehan, Int. J. Fatigue 30 (2008) 547-559). Only comparisons, no difference: exact for any numbers.
 ///
 /// The newest point is the running end of the series: it moves on while the series does not turn. So the residue always

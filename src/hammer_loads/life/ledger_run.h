@@ -19,7 +19,7 @@ struct LedgerChannel {
   std::optional<FkmMeanStress> mean_stress;
 };
 
-/// What the counts belong to. Another identity or other channels or grids begin a new epoch: counts of different
+/// The machine of the counts. Another identity or other channels or grids begin a new epoch: counts of different
 /// machines never mix. Curves and equivalent cycles only judge them: those of the last run hold.
 struct LedgerMachine {
   std::string identity;  ///< of hammer and boom, such as a hash of their parameters; no path, host or time
@@ -106,7 +106,7 @@ class LedgerRun {
   std::unique_ptr<LedgerLock> lock_;
   std::vector<LifePiece> waiting_;
   std::uint64_t messages_{};         ///< of all pieces given
-  std::vector<std::int64_t> marks_;  ///< likewise
+  std::vector<std::int64_t> marks_;  ///< as above
   std::size_t marks_written_{};
   std::size_t attempted_{};  ///< of waiting_, those that the last attempt may have written
   std::uint64_t attempted_messages_{};

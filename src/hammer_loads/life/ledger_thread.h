@@ -15,7 +15,7 @@
 namespace hammer_loads::life {
 
 /// Has a thread of its own, which alone touches the file; begin(), add() and end() only put down what is to be done.
-/// What cannot be written is kept and tried again each second; runs are written in their order.
+/// A piece that cannot be written is kept and tried again each second; runs are written in their order.
 class LedgerThread final : public PieceSink {
  public:
   explicit LedgerThread(std::string path);
@@ -58,7 +58,7 @@ class LedgerThread final : public PieceSink {
 
   const std::string path_;
   std::deque<Run> runs_;  ///< the thread's own
-  std::string refusal_;   ///< likewise: of runs that ended; it stays, for what they counted is in no ledger
+  std::string refusal_;   ///< as above: of runs that ended; it stays, for what they counted is in no ledger
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::vector<Job> jobs_;  ///< this and the rest under the mutex

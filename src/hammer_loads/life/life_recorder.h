@@ -12,7 +12,7 @@
 
 namespace hammer_loads::life {
 
-/// What a period adds: of each channel what closed since the last piece, and the residue since the count began.
+/// The piece of a period: of each channel what closed since the last piece, and the residue since the count began.
 struct LifePiece {
   std::int64_t stamp{};             ///< of the last sample [ns]; of the first piece without one: 0
   std::uint64_t duration{};         ///< time between its samples, gaps left out [ns]

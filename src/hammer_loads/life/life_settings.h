@@ -1,4 +1,4 @@
-/// What is counted, and what its cycles are judged by.
+/// The counted channels, and the S-N lines of their cycles.
 #pragma once
 
 #include <cstdint>

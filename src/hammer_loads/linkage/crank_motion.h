@@ -1,4 +1,4 @@
-/// What a load needs to know of the crank.
+/// The crank's motion, as far as a load needs it.
 #pragma once
 
 #include "hammer_loads/linkage/crank_angle.h"

@@ -1,4 +1,4 @@
-/// What the hull feels of the motor's rotor and the flywheel, whose stator is part of it.
+/// The hull's reaction to the motor's rotor and the flywheel, whose stator is part of it.
 #pragma once
 
 #include "hammer_loads/linkage/level.h"

@@ -1,4 +1,4 @@
-/// What the frame of the mechanism does: weight and the hull's own motion.
+/// Motion of the mechanism's frame: weight and the hull's own motion.
 #pragma once
 
 namespace hammer_loads {

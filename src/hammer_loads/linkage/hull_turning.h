@@ -1,4 +1,4 @@
-/// What a turning hull adds to the motion of the links: Coriolis, centrifugal and Euler acceleration (model.md 3).
+/// Accelerations that a turning hull adds to the links: Coriolis, centrifugal and Euler acceleration (model.md 3).
 ///
 /// A mass at r from D that moves at r' relative to the hull gets r (i alpha - Omega^2) + 2 i Omega r' beside the
 /// acceleration of D, which is part of the effective gravity. The loads are linear in it: everything here is added.

@@ -12,7 +12,7 @@ enum class Level {
   kElastic,  ///< a rod that gives as well (linkage/two_bodies.h); where nothing says how far it does, kLinkage
 };
 
-/// What a level is where nothing but the crank's motion is given.
+/// A level's name where nothing but the crank's motion is given.
 constexpr Level rigid(Level level) noexcept { return level == Level::kElastic ? Level::kLinkage : level; }
 
 }  // namespace hammer_loads

@@ -60,7 +60,7 @@ HAMMER_LOADS_INLINE LinkMotion linkMotion(const CrankRocker& linkage, CrankAngle
 /// Rod angle beta [rad] in (-pi, pi].
 inline double rodAngle(const LinkMotion& l) noexcept { return std::atan2(l.beta.im, l.beta.re); }
 
-/// What turns each link's direction into its second time derivative.
+/// The factor that turns each link's direction into its second time derivative.
 struct LinkAccelerations {
   Planar crank, rod, rocker;  ///< i angle'' - angle'^2 [1/s2]
 };

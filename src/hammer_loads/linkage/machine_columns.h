@@ -1,4 +1,4 @@
-/// What is not known of a hammer, as hammers: the same with one constant a standard deviation off.
+/// Errors of a hammer's constants, as hammers: the same with one constant a standard deviation off.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +23,7 @@ struct MachineColumn {
   static constexpr double kStep = 0.1;
 
   Mechanism mechanism;  ///< of the other hammer
-  Level level;          ///< likewise: of what a level leaves out, that which has it
+  Level level;          ///< as above: of what a level leaves out, that which has it
   HammerConstant::Enters enters;
   double step;       ///< kStep, or 1 of what a level leaves out
   std::string name;  ///< key of the constant, or the level that leaves something out

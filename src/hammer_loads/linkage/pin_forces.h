@@ -50,7 +50,7 @@ constexpr double kLeastSine = kTwoPi * std::numeric_limits<double>::epsilon();
 constexpr double kNoSine = 1e-290;
 constexpr double kNoRest = 1e-200;  ///< more than kNoSine leaves of a finite part, less than any rest
 
-/// What s divides, by s: the part with s in it and a rest. NaN where s is none and a rest is left.
+/// The part that s divides, by s: the part with s in it and a rest. NaN where s is none and a rest is left.
 HAMMER_LOADS_INLINE double overSine(double divided, double s) noexcept {
   const bool lost = s == kNoSine && std::abs(divided) > kNoRest;
   return lost ? std::numeric_limits<double>::quiet_NaN() : divided / s;

@@ -1,4 +1,4 @@
-/// What gives between crank and rocker.
+/// The spring between crank and rocker.
 #pragma once
 
 #include "hammer_loads/util/constants.h"

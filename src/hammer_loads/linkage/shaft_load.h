@@ -1,4 +1,4 @@
-/// What the mechanism's moving links are to the crank's shaft: a variable inertia and a torque by weight and hull.
+/// The mechanism's moving links as a load of the crank's shaft: a variable inertia and a torque by weight and hull.
 #pragma once
 
 #include "hammer_loads/linkage/crank_angle.h"

@@ -16,7 +16,7 @@ struct TwoBodyState {
   double beside_speed{};  ///< its rate [rad/s]
 };
 
-/// What drives them.
+/// The loads that drive them.
 struct TwoBodyDrive {
   double inertia{};  ///< Jc [kg m2]
   double torque{};   ///< net, on the crank [N m]

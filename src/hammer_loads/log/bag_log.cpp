@@ -102,7 +102,7 @@ std::vector<std::string> BagLog::start() {
   if (!writer_.post(std::move(order))) return refuse(LogState::kFailed, "log: too many orders wait for the disk");
   session_ = ++last_session_;
   gapNoted();
-  // What could not be latched meanwhile is missing from the start.
+  // A message that could not be latched meanwhile is missing from the start.
   for (const LogTopic& topic : topics_) has_gap_ |= topic.latched && topic.refused > 0 && !topic.is_remembered;
   return {};
 }

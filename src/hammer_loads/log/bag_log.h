@@ -51,7 +51,7 @@ class BagLog {
   template <typename Message>
   void writeLatched(const std::string& topic, const ros::Time& time, const Message& message,
                     const std::string& caller = {});
-  /// What has been latched there holds no longer: later bags begin without it.
+  /// Messages latched there hold no longer: later bags begin without it.
   void forgetLatched(const std::string& topic, const std::string& caller = {});
 
   /// Bags of earlier runs with this prefix that were not closed: `rosbag reindex` recovers them (recoveryHint).

@@ -212,7 +212,7 @@ std::optional<LogFault> LogFile::close() {
   struct stat found {};
   if (fstat(name_.descriptor(), &found) == 0) {
     size_ = static_cast<std::uint64_t>(found.st_size);
-    // What was taken ahead is given back.
+    // Space taken ahead is given back.
     if (ftruncate(name_.descriptor(), found.st_size) != 0) allocated_ = 0;
   }
   const std::string problem = name_.publish();

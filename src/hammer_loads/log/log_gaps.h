@@ -1,4 +1,4 @@
-/// What a bag says about messages that its log lost.
+/// Messages that a log lost, as its bag says.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticStatus.h>

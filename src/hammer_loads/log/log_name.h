@@ -1,4 +1,4 @@
-/// What a bag is called.
+/// Names of bags.
 #pragma once
 
 #include <string>

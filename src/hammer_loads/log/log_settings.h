@@ -10,13 +10,13 @@ namespace hammer_loads {
 /// Sizes are in bytes here and in MB = 1e6 bytes in the file.
 struct LogSettings {
   bool enabled{};
-  std::string directory;           ///< as given; a leading ~/ means the home directory of the node's user
-  std::string prefix;              ///< file names begin with it; without /; empty: name of the node
-  std::string node;                ///< name of the node that logs, not from a file: see forNode()
-  std::uint64_t split_size{};      ///< a bag larger than this is closed and a new one begun [byte], > 0
-  std::uint64_t total_size{};      ///< of all bags together; beyond it the oldest is deleted [byte], 0: no limit
-  bool prune_earlier_runs{};       ///< bags of earlier runs with this prefix count for total_size and are deleted first;
-                                   ///< without it only the unclosed ones count, and none is deleted
+  std::string directory;       ///< as given; a leading ~/ means the home directory of the node's user
+  std::string prefix;          ///< file names begin with it; without /; empty: name of the node
+  std::string node;            ///< name of the node that logs, not from a file: see forNode()
+  std::uint64_t split_size{};  ///< a bag larger than this is closed and a new one begun [byte], > 0
+  std::uint64_t total_size{};  ///< of all bags together; beyond it the oldest is deleted [byte], 0: no limit
+  bool prune_earlier_runs{};   ///< bags of earlier runs with this prefix count for total_size and are deleted first;
+                               ///< without it only the unclosed ones count, and none is deleted
   std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
   /// Messages waiting for the disk, and again as much for latched ones; beyond it they are dropped and counted [byte],
   /// > 0.
@@ -29,7 +29,7 @@ inline LogSettings forNode(LogSettings settings, const std::string& node) {
   return settings;
 }
 
-/// What file names begin with: the prefix, or the node's name with _ for /, so that two nodes have names of their own.
+/// The beginning of file names: the prefix, or the node's name with _ for /, so that two nodes have names of their own.
 inline std::string filePrefix(const LogSettings& settings) {
   if (!settings.prefix.empty()) return settings.prefix;
   std::string name = settings.node.substr(std::min(settings.node.find_first_not_of('/'), settings.node.size()));

@@ -15,7 +15,7 @@ enum class LogState {
   kFailed,     ///< stopped by itself: the disk or rosbag reported an error
 };
 
-/// What has reached the disk. Brought up to date once a second and at every change of state or file.
+/// The part that has reached the disk. Brought up to date once a second and at every change of state or file.
 struct LogStatus {
   LogState state{LogState::kOff};
   std::string reason;             ///< why the log stopped by itself or could not start; empty otherwise

@@ -8,7 +8,7 @@
 
 namespace hammer_loads {
 
-/// What a bag must know about a message type: from ros::message_traits, which keeps the texts for ever.
+/// The properties of a message type that a bag needs: from ros::message_traits, which keeps the texts for ever.
 struct LogType {
   const char* datatype;    ///< e.g. geometry_msgs/WrenchStamped
   const char* md5sum;      ///< 32 hexadecimal digits

@@ -192,7 +192,7 @@ void LogWriter::begin(LogName name) {
   report(LogState::kRecording, "");
 }
 
-/// On request. What is latched stands in the file in any case.
+/// On request. A latched message stands in the file in any case.
 void LogWriter::end() {
   if (repeat_) repeatLatched(nullptr);
   if (!file_) return;

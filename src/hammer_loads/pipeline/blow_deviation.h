@@ -7,7 +7,7 @@
 
 namespace hammer_loads {
 
-/// What independent errors of constants make of a CrankBlow, one standard deviation each, in the order of
+/// Errors of a CrankBlow by independent errors of constants, one standard deviation each, in the order of
 /// ConstantErrors: rows speed [rad/s], factor [-], drive inertia (relative).
 using BlowColumns = Eigen::Matrix<double, 3, ConstantErrors::kSize>;
 

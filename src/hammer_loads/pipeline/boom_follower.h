@@ -49,7 +49,7 @@ struct BoomChoice {
   double rigid_tolerance{};   ///< [-]
 };
 
-/// What one crank sample gave. Void but for stamp and fault when there is a fault.
+/// Results of one crank sample. Void but for stamp and fault when there is a fault.
 struct BoomState {
   StampNs stamp{};
   std::optional<JointFault> fault;

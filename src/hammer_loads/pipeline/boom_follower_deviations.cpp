@@ -26,7 +26,7 @@ void addVariances(const List& others, std::size_t count, List& deviations) noexc
 
 }  // namespace
 
-/// What hammer and oil as given do not make of the hull's acceleration is a force on its mass.
+/// The part of the hull's acceleration that hammer and oil as given do not explain is a force on its mass.
 void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noexcept {
   const ModeIdentifier& identifier = *boom_.vibration().identifier();
   state_.contact_unknown = !identifier.explains() && identifier.learns() && !identifier.followsContact();

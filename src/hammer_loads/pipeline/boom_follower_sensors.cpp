@@ -1,4 +1,4 @@
-// What sensors show of the boom's motion and loads: readings, their trust, the rock's force.
+// The boom's motion and loads by sensors: readings, their trust, the rock's force.
 #include <algorithm>
 
 #include "hammer_loads/pipeline/boom_follower.h"

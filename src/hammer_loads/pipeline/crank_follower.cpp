@@ -2,15 +2,16 @@
 
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/pipeline/hull_deviation.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr int kSettlingSamples = 5;       // without measured speeds: until then they are known from linearised steps
-constexpr double kSettledDeviations = 3;  // predicted error = so many standard deviations
-constexpr double kFrozenCounts = 5;       // a crank that turned further gives another angle
-constexpr double kFrozenDeviations = 5;   // of a sensor's noise, likewise
+constexpr int kSettlingSamples = 5;  // without measured speeds: until then they are known from linearised steps
+constexpr double kSettledDeviations = gate::kRare;       // that the predicted error has
+constexpr double kFrozenCounts = 5;                      // a crank that turned further gives another angle
+constexpr double kFrozenDeviations = gate::kImpossible;  // of a sensor's noise, as well
 
 /// resolution: of the angle sensor [rad].
 double frozenTurn(const PipelineSettings& s, double resolution) noexcept {

@@ -22,7 +22,7 @@ class CrankFollower {
   CrankFollower(const CrankFollower&) = delete;
   CrankFollower& operator=(const CrankFollower&) = delete;
 
-  /// What became of a sample.
+  /// The fate of a sample.
   enum class Taken {
     kRefused,    ///< not taken: refusal() says why
     kBegan,      ///< taken as the first one after a start, a gap or a time that ran back
@@ -68,7 +68,7 @@ class CrankFollower {
   PipelineSettings settings_;
   UnitCheck unit_check_;
   std::optional<StampNs> last_raw_stamp_;  ///< of the last sample, taken or not
-  CrankSample last_raw_;                   ///< likewise
+  CrankSample last_raw_;                   ///< as above
   StampNs latency_;                        ///< of header stamps
   StampSequence sequence_;
   std::unique_ptr<CrankTracker> tracker_;

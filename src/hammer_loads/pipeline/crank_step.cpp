@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "hammer_loads/crank/way_piece.h"
+
 namespace hammer_loads {
 namespace {
 
-constexpr double kAside = 1e-7;     // [s] before and after the blow, where its two sides are looked at
-constexpr double kBlowSpeed = 1.0;  // [rad/s] of the crank: slower, it creeps over the blow and nothing strikes
+constexpr double kBlowSpeed = kCreeping;  // of the crank: slower, it creeps over the blow and nothing strikes
 
 bool isEarlier(const CrankStep::Passage& passage, Side side) noexcept {
   return (side == Side::kBeforeBlow) == passage.forward;
@@ -44,7 +45,8 @@ CrankStep::Passage CrankStep::passageOf(std::int64_t blow, bool forward) const n
   p.time = timeOfBlow(blow);
   p.blow = blow;
   p.forward = forward;
-  const CrankEstimate before = at(std::max(0.0, p.time - kAside)), after = at(std::min(length_, p.time + kAside));
+  const CrankEstimate before = at(std::max(0.0, p.time - kBesideBlow)),
+                      after = at(std::min(length_, p.time + kBesideBlow));
   p.smooth = before.position.isMirrored() || after.position.isMirrored();
   p.speed_before = before.speed;
   p.speed_after = after.speed;
@@ -79,7 +81,7 @@ double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
 }
 
 double CrankStep::timeBesides(const Passage& passage, Side side) const noexcept {
-  return isEarlier(passage, side) ? std::max(0.0, passage.time - kAside) : passage.time + kAside;
+  return isEarlier(passage, side) ? std::max(0.0, passage.time - kBesideBlow) : passage.time + kBesideBlow;
 }
 
 CrankEstimate CrankStep::besides(const Passage& passage, Side side) const noexcept {

@@ -12,7 +12,10 @@
 
 namespace hammer_loads {
 
-/// What a load needs to know of an estimate.
+constexpr double kPulseStep = 1.25e-3;  ///< [s] between points of a path at most: 15 of them in the MO-100's pulse
+constexpr double kBesideBlow = 1e-7;    ///< [s] before and after the blow where its two sides are looked at
+
+/// The part of an estimate that a load needs.
 inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {
   return {crank.position.angle, crank.speed, crank.acceleration, crank.drive_lead_acceleration};
 }
@@ -26,7 +29,7 @@ class CrankStep {
     std::int64_t blow{};  ///< index as in CrankPosition
     bool forward{};
     double speed_before{};  ///< of the crank there, in the order of time [rad/s]
-    double speed_after{};   ///< likewise
+    double speed_after{};   ///< as above
     bool smooth{};          ///< onto the mirrored branch or back from it: nothing jumps
     bool may_strike{};      ///< as strikes, or onto the mirrored branch, which may turn out wrong
     bool strikes{};         ///< forward, for the first time, and not creeping: the rocker hits the tool
@@ -34,7 +37,7 @@ class CrankStep {
 
   CrankStep(const CrankTracker& tracker, const HullModel& model) : tracker_(&tracker), model_(&model) {}
 
-  /// What lies before the last sample, in position `at`, is not known.
+  /// The time before the last sample, in position `at`, is not known.
   void forget(const CrankPosition& at) noexcept;
   /// A step of `length` [s] that began at stamp `start` in position `from`; finds its passages.
   void take(StampNs start, double length, const CrankPosition& from) noexcept;
@@ -42,7 +45,7 @@ class CrankStep {
   bool known() const noexcept { return known_; }
   StampNs start() const noexcept { return start_; }
   double length() const noexcept { return length_; }
-  /// Of an instant so long after the start [s].
+  /// Of an instant this long after the start [s].
   StampNs stampAt(double time) const noexcept {
     return start_ + static_cast<StampNs>(std::llround(time / kSecondsPerNs));
   }
@@ -55,7 +58,7 @@ class CrankStep {
     return angle == links_before_.angle ? links_before_.links : hammer_loads::linksAt(*model_, angle).links;
   }
   double driveInertia() const noexcept { return tracker_->driveInertia(); }    ///< at its end [kg m2]
-  double struckInertia() const noexcept { return tracker_->struckInertia(); }  ///< likewise
+  double struckInertia() const noexcept { return tracker_->struckInertia(); }  ///< as above
   /// In order of time; of more than the array holds (some 30 turns a step) the last are left out.
   const Passage* begin() const noexcept { return passage_.data(); }
   const Passage* end() const noexcept { return passage_.data() + passages_; }

@@ -21,6 +21,7 @@ class CrankTrust {
   /// a crank that turns backward 6.5, with a zero 2 deg off 2.5, on machines whose rod gives below 2
   /// (crank_trust_test).
   static constexpr double kMost = 4.0;
+  // Guard: PoseAndTrust.ACrankThatContradictsTheModelIsRefused of kMost
   /// Of CrankTracker::consistency(), what is said, but not withheld; a clean machine has 0.9, a zero 2 deg off 2.
   static constexpr double kInconsistent = 3.0;
   static constexpr double kSlowestKnown = 0.2;  ///< slowBehind() of a right zero is less [rad] (crank_trust_test)
@@ -56,10 +57,12 @@ class CrankTrust {
 
  private:
   static constexpr double kRunUp = 1.0;  ///< [rad]: noise of readings is less, a blow's way more
+  // Guard: PoseAndTrust.ACrankHasRunUpAfterARadian of kRunUp
   static constexpr double kTurns = 5.0;  ///< over which it is looked where the crank is slow
   /// [rad] after the blow: 0.85 to 1.05 on all machines of the recordings that their drive keeps at work, whatever
   /// their rod, rock and boom (crank_trust_test).
   static constexpr double kSlowest = 0.94;
+  // Guard: PoseAndTrust.ACrankIsSlowWhereSuchAreWithinFiveTurns of kTurns, kSlowest
   static constexpr double kWindow = 0.3;  ///< [rad] over which a speed is taken: jitter of stamps counts little
 
   /// A hammer that stops falls back on its tool, by less than half a turn: the rocker passes the dead centre no other

@@ -45,6 +45,7 @@ class CylinderPressures {
 
  private:
   static constexpr double kLeastJump = 5e6;  // [Pa]: a fifth of the working pressure
+  // Guard: SensorBounds.OfPressures of kLeastJump
 
   struct Reading {
     StampNs stamp{};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/inline.h"
 #include "hammer_loads/util/square.h"
 
@@ -15,13 +16,13 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 constexpr double kSteadyBegin = 0.2, kSteadyMemory = 2.0;  // [s]: a turn or less; of the signal's mean, which is weight
-constexpr double kBlowPart = 0.3;             // of a blow's impulse, which is known when the crank has turned on
-constexpr double kMemoryOfReadings = 1000.0;  // readings
-constexpr double kFarOff = 9.0;               // of variances: a reading that is farther off counts as this
-constexpr double kComplianceWalk = 0.02;      // of the first guess's deviation in a second: a pose that changes
-constexpr double kUnknownSlope = 1e3;         // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
-constexpr double kLeastNoise = 1e-3;          // of the first guess: a logarithm is taken of it
-constexpr double kUnknownSignal = 1e3;        // of the noise: smooth part at the start
+constexpr double kBlowPart = 0.3;                // of a blow's impulse, which is known when the crank has turned on
+constexpr double kMemoryOfReadings = 1000.0;     // readings
+constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
+constexpr double kComplianceWalk = 0.02;         // of the first guess's deviation in a second: a pose that changes
+constexpr double kUnknownSlope = 1e3;            // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
+constexpr double kLeastNoise = 1e-3;             // of the first guess: a logarithm is taken of it
+constexpr double kUnknownSignal = 1e3;           // of the noise: smooth part at the start
 
 /// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it
 /// the slope counts.

@@ -14,7 +14,7 @@ namespace hammer_loads {
 /// Kalman filter: integral of the signal (a rate that is read), the smooth part, its slope, which walks at random, and
 /// three compliances, which are learned from all that the load does. The smooth part is what the oil pulls with, so
 /// that it is bent by the hull's own acceleration: three stiffnesses and three dampings over inertia are learned
-/// likewise. How strongly the slope walks against the noise of a reading is that of some candidates which foretells the
+/// as above. How strongly the slope walks against the noise of a reading is that of some candidates which foretells the
 /// readings best, and the noise is what these foretellings miss (maximum likelihood over some thousand readings), so
 /// that no sensor's noise need be given.
 class DrivenSignal {
@@ -63,7 +63,7 @@ class DrivenSignal {
   struct Swing {
     double velocity{}, way{};
   };
-  /// What is known, carried on from the last reading without another one.
+  /// The state, carried on from the last reading without another one.
   class Future {
    public:
     explicit Future(const DrivenSignal& signal) noexcept : signal_(signal), x_(signal.best().x), P_(signal.best().P) {}

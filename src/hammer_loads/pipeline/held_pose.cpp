@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/pipeline/hull_speed.h"
 #include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
 
@@ -11,10 +12,12 @@ namespace {
 
 constexpr double kMemory = 0.5, kLost = 0.5;  // of each filter [s]; of an angle that winds or came back [rad]
 constexpr double kStill = 0.03;               // [rad]: after a gap, of a boom that vibrates where it was to be
-constexpr double kFast = 0.05, kRest = 2.0;   // [rad/s]: its acceleration hides the vibration; [s] to wait then
-constexpr double kTurnAtMost = 1.0;           // from blow to blow [s]
-constexpr double kStart = 1.0;                // [s] until a boom that is driven at the start is seen to be
-constexpr double kSettles = 2.5;              // [s]: so long what was no slow motion is seen as an acceleration
+// Guard: PoseAndTrust.AJointThatWindsBeginsAnew of kMemory, kLost, kStill
+constexpr double kFast = 0.05, kRest = 2.0;  // [rad/s]: its acceleration hides the vibration; [s] to wait then
+// Guard: PoseAndTrust.AJointIsDrivenAboveARateAndForSomeTimeAfterIt of kFast, kRest
+constexpr double kStart = 1.0;    // [s] until a boom that is driven at the start is seen to be
+constexpr double kSettles = 2.5;  // [s]: this long what was no slow motion is seen as an acceleration
+// Guard: PoseAndTrust.AJointCountsAsDrivenAtTheStart of kStart, kSettles
 
 }  // namespace
 
@@ -55,7 +58,7 @@ void HeldPose::goOn(double step) noexcept {
 }
 
 void HeldPose::struck() noexcept {
-  const bool turned = at_blow_.size() == angle_.size() && since_blow_ > 0.0 && since_blow_ < kTurnAtMost;
+  const bool turned = at_blow_.size() == angle_.size() && since_blow_ > 0.0 && since_blow_ < kLongestTurn;
   if (turned) {
     const JointVector rate = (angle_ - at_blow_) / since_blow_;
     of_turn_ = of_turn_before_.size() > 0 ? JointVector(1.5 * rate - 0.5 * of_turn_before_) : rate;
@@ -68,7 +71,7 @@ void HeldPose::struck() noexcept {
 
 JointVector HeldPose::slowRate() const noexcept { return (first_ - slow_) / kMemory; }
 
-/// What three filters show, brought forward by their delay with what four show of its change.
+/// The acceleration by three filters, brought forward by their delay with what four show of its change.
 JointVector HeldPose::slowAcceleration() const noexcept {
   const JointVector late = first_ - 2.0 * slow_ + slowest_, change = late - (slow_ - 2.0 * slowest_ + last_);
   return (late + 3.0 * change) / square(kMemory);

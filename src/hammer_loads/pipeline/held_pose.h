@@ -7,7 +7,7 @@ namespace hammer_loads {
 
 /// Joint angles by three filters of the first order in a row, 0.5 s each (Brown's triple exponential smoothing): a
 /// joint that is driven at a constant acceleration is followed without lag; of a vibration of 3.4 Hz 28 % is left, of
-/// one of 9 Hz 10 %. What a sensor of 50 Hz takes of a vibration is no motion of the boom: as a pose for the modes and
+/// one of 9 Hz 10 %. A vibration as a sensor of 50 Hz shows it is no motion of the boom: as a pose for the modes and
 /// as a velocity it spoils joint torques by several per cent.
 ///
 /// Error: 0.125 s^3 times the rate of the operator's acceleration; so while he drives a joint faster than 0.05 rad/s,
@@ -37,8 +37,8 @@ class HeldPose {
   JointVector at_blow_, of_turn_, of_turn_before_;  ///< angles; rates of the last turn drawn on, and of it [rad/s]
   double since_blow_{};                             ///< [s]
   JointVector first_, slow_, slowest_, last_;       ///< angles through one to four filters [rad]
-  double unrest_{};    ///< so long the operator's last fast move, or its not being known, still counts [s]
-  double settling_{};  ///< so long the acceleration is not known [s]
+  double unrest_{};    ///< this long the operator's last fast move, or its not being known, still counts [s]
+  double settling_{};  ///< this long the acceleration is not known [s]
   JointMotion motion_;
 };
 

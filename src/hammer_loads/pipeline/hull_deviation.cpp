@@ -101,11 +101,10 @@ void addHullMotion(const HullModel& model, const DriveReaction& drive, const Lin
   if (covariance.isZero(0.0)) return;
   const auto load = [&](const HullMotion& h) { return vectorOf(frameWrench(model, links, crank_speed, h)); };
   const HullMotion still{{0.0, 0.0}, hull.rate, 0.0};
-  constexpr double kRateStep = 1e-5;  // [rad/s]
   const Eigen::Vector3d here = load(still);
   Eigen::Matrix<double, 3, 4> by;
   by.col(0) = load({{1.0, 0.0}, hull.rate, 0.0}) - here, by.col(1) = load({{0.0, 1.0}, hull.rate, 0.0}) - here;
-  by.col(2) = (load({{0.0, 0.0}, hull.rate + kRateStep, 0.0}) - here) / kRateStep;
+  by.col(2) = (load({{0.0, 0.0}, hull.rate + kSpeedStep, 0.0}) - here) / kSpeedStep;
   by.col(3) = load({{0.0, 0.0}, hull.rate, 1.0}) - here;
   by(2, 3) -= drive.by_hull;
   const Eigen::Vector3d variance = (by * covariance * by.transpose()).diagonal().cwiseMax(0.0);

@@ -28,7 +28,7 @@ struct LinksBeside {
 };
 
 /// covariance of (angle, speed, acceleration), linearised at the estimate (differences, good to some 1e-5), the drive's
-/// reaction included. What the model leaves out is not in it. Some 0.3 us.
+/// reaction included. The model's own error is not in it. Some 0.3 us.
 HullDeviation hullDeviation(const HullModel& model, const DriveReaction& drive, const CrankEstimate& crank,
                             const LinksBeside& links, const HullMotion& hull,
                             const Eigen::Matrix3d& covariance) noexcept;

@@ -44,7 +44,7 @@ class HullImu {
   /// How D moved at the last blow, where that is known.
   std::optional<TipVelocity> speedAtBlow() const noexcept { return speed_.atBlow(); }
 
-  /// What the unit reads at a stamp, in axes of hammer_hull: on the line through the last two readings, also one
+  /// The unit's reading at a stamp, in axes of hammer_hull: on the line through the last two readings, also one
   /// interval beyond them at most; where a blow lies between, the nearest reading on the stamp's side. Nothing before
   /// the second reading in a row or when the last is more than max_age away.
   std::optional<ImuReading> reading(StampNs stamp) const noexcept;
@@ -65,6 +65,7 @@ class HullImu {
   // Many times what a blow makes of a hull on its boom, 30 m/s2 and 0.1 rad/s, for steel that rings too.
   static constexpr double kLeastForceJump = 200.0;  // [m/s2]
   static constexpr double kLeastRateJump = 3.0;     // [rad/s]
+  // Guard: SensorBounds.OfImuReadings of kLeastForceJump, kLeastRateJump
 
   /// In axes of hammer_hull.
   struct Sample {

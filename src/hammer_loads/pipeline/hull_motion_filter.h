@@ -41,10 +41,6 @@ class HullMotionFilter {
   /// Of the last reading used [ns].
   StampNs last() const noexcept { return last_.stamp; }
 
-  const DrivenSignal& alongX() const noexcept { return x_; }
-  const DrivenSignal& alongZ() const noexcept { return z_; }
-  const DrivenSignal& turning() const noexcept { return turning_; }
-
  private:
   struct Reading {
     StampNs stamp{};

@@ -5,8 +5,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLongestTurn = 1.0;  // [s]: over a longer one the hull's velocity has a mean
-constexpr double kSilent = 0.02;      // [s] before the blow without a reading: then it is not known
+constexpr double kSilent = 0.02;  // [s] before the blow without a reading: then it is not known
+// Guard: SensorBounds.OfTheHullsSpeedAtABlow of kSilent
 
 }  // namespace
 

@@ -10,6 +10,9 @@
 
 namespace hammer_loads {
 
+constexpr double kLongestTurn = 1.0;  ///< from blow to blow [s]: over a longer one the hull's velocity has a mean
+// Guard: SensorBounds.OfTheHullsSpeedAtABlow of kLongestTurn
+
 /// The hull comes back each turn: from blow to blow its velocity has no trend, and no mean. That takes weight, offsets
 /// and the jump at the blow out of the integral of the unit's readings; what is left at both ends is the velocity at
 /// the blow, mean of before and after it. Nothing before the second blow in a row, or after a pause of the unit.

@@ -1,4 +1,4 @@
-/// What is known of the hull: its pitch, its own motion and where that comes from.
+/// The hull's state: its pitch, its own motion and where that comes from.
 #pragma once
 
 #include <array>
@@ -52,11 +52,11 @@ class HullState {
   std::optional<TipVelocity> speedAtBlow() const noexcept {
     return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
   }
-  /// What the IMU reads at the sample in the hull's axes, if a reading has come since the last call.
+  /// The IMU's reading at the sample in the hull's axes, if a reading has come since the last call.
   std::optional<ImuReading> newImuReading(StampNs stamp) noexcept;
   /// After it: the vibration of the boom at the sample; null: not known.
   void vibrates(const BoomState* boom) noexcept;
-  /// What follows is not continuous with what was: the boom is at rest.
+  /// Coming samples are not continuous with those before: the boom is at rest.
   void rest() noexcept { vibration_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }

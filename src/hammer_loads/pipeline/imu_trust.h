@@ -7,6 +7,7 @@
 
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/trust_times.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -23,7 +24,7 @@ class ImuTrust {
     varies_ = varies_ || (!same && mean_.count() > 0.0);
     force_ = force, rate_ = rate;
     if (!(step > 0.0)) return;
-    const double lasts = std::min(step, kLongest);
+    const double lasts = std::min(step, trust::kLongest);
     same_for_ = same ? std::min(same_for_ + lasts, kFrozen) : 0.0;
     mean_.add(force, lasts);
     const Eigen::Vector3d off = force - mean();
@@ -35,7 +36,7 @@ class ImuTrust {
   }
   /// weight: by the joint angles, in the plane of the hull.
   void judge(const Gravity& weight) noexcept {
-    if (mean_.count() < kLeastTime) return;
+    if (mean_.count() < trust::kLeastTime) return;
     const double off_square = square(mean().x() + weight.x) + square(mean().z() + weight.z);
     const double limit = (is_lost_ ? kBack : 1.0) * kMostPart;
     is_off_ =
@@ -55,15 +56,17 @@ class ImuTrust {
   double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]
 
  private:
-  static constexpr double kMemory = 2.0, kLeastTime = 0.5;  // [s]
-  static constexpr double kLongest = 0.05;                  // that one reading counts for, over a gap as well [s]
-  static constexpr double kMostPart = 0.5, kBack = 0.8;     // of the weight; of that: trusted again
-  static constexpr double kMostRate = 3.0;                  // [rad/s]
-  static constexpr double kOffFor = 0.3;                    // [s]: not because of one damaged joint angle
-  static constexpr double kFrozen = 0.2;                    // of one reading again and again [s]
+  static constexpr double kMostPart = 0.5, kBack = 0.8;  // of the weight; of that: trusted again
+  static constexpr double kMostRate = 3.0;               // [rad/s]
+  // Guard: SensorBounds.OfAnImusMean of kMostRate
+  static constexpr double kOffFor = 0.3;  // [s]: not because of one damaged joint angle
+  // Guard: SensorBounds.OfAnImusTimes of kMostPart, kBack, kOffFor
+  static constexpr double kFrozen = 0.2;  // of one reading again and again [s]
+  // Guard: SensorBounds.OfAFrozenImu of kFrozen
 
-  RunningMean<Eigen::Vector3d> mean_{kMemory, Eigen::Vector3d::Zero()}, power_{kMemory, Eigen::Vector3d::Zero()};
-  RunningMean<> rate_square_{kMemory}, turning_{kMemory};
+  RunningMean<Eigen::Vector3d> mean_{trust::kMemory, Eigen::Vector3d::Zero()},
+      power_{trust::kMemory, Eigen::Vector3d::Zero()};
+  RunningMean<> rate_square_{trust::kMemory}, turning_{trust::kMemory};
   double off_for_{}, same_for_{}, last_rate_{};
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), rate_ = force_;  ///< of the last reading
   bool varies_{}, is_off_{}, is_lost_{};

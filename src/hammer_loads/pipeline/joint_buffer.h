@@ -66,7 +66,7 @@ class JointBuffer {
     StampNs stamp{};
     double position{}, velocity{};
     double acceleration{};  ///< mean since the state before it
-    double velocity_age{};  ///< velocity belongs to so long before the stamp [s]
+    double velocity_age{};  ///< velocity belongs to this long before the stamp [s]
   };
   /// Some 0.6 s at 100 Hz: how far a crank sample may lie behind the joint states.
   static constexpr std::uint64_t kKept = 64;

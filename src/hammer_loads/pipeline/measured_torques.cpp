@@ -15,7 +15,7 @@ constexpr double kLag = 0.4;           // of the swing, by the root of the surpr
 constexpr double kSlowRod = 0.002;     // [m/s]: near standstill friction may have either sign (its Stribeck speed)
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
-/// What seals do between oil and joint, as part of the load's torque on the joint [N m].
+/// Friction of the seals between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
   double torque{};
   double deviation{}, lasting{};  ///< standard; the part of it while the operator's motion sets the rod's direction

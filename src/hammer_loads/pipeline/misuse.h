@@ -1,4 +1,4 @@
-/// What wears a hammer without breaking rock, counted from what is measured.
+/// Misuse that wears a hammer without breaking rock, counted from measurements.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace hammer_loads {
 
-/// Since the start. What nothing measures is not counted: `judged_blows` and `placed_time` say of how much the counts
-/// beside them speak; none of it: not known, which is not zero.
+/// Since the start. Misuse that nothing measures is not counted: `judged_blows` and `placed_time` say of how much the
+/// counts beside them speak; none of it: not known, which is not zero.
 struct MisuseCounts {
   double work_time{};             ///< over accepted samples, gaps left out [s]
   std::uint64_t blank_strokes{};  ///< the rocker went through where the tool should have been
@@ -44,6 +44,7 @@ class MisuseFollower {
   static constexpr double kPatience = 15.0;  // [s]
   /// The hull has moved: two deviations of a tip 6 m away by joint sensors of 0.1 deg.
   static constexpr double kMoved = 0.02;  // [m]
+  // Guard: SensorBounds.OfAHullThatStands of kPatience, kMoved
 
   /// Where the hull's origin is, at a sample [m]; any frame that stands still.
   void hullAt(const Eigen::Vector3d& place) noexcept {

@@ -1,4 +1,4 @@
-/// What sensors see of the boom's vibration, as readings for its ModeIdentifier.
+/// Sensors of the boom's vibration, as readings for its ModeIdentifier.
 #pragma once
 
 #include <array>

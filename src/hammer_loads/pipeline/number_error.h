@@ -14,7 +14,7 @@ struct NumberError {
   using Columns = Eigen::Matrix<double, 1, kLoadColumns>;
 
   Columns columns{Columns::Zero()};  ///< unit of the number
-  double own{};                      ///< standard deviation, likewise
+  double own{};                      ///< standard deviation, as above
 
   double common() const noexcept { return columns.norm(); }
   double deviation() const noexcept { return std::hypot(own, common()); }

@@ -14,6 +14,7 @@ inline double overdue(double since, double interval) noexcept {
 /// Part of what the last reading showed that is no longer true, 0 to 1. overdue: as above [s].
 inline double forgottenPart(double overdue) noexcept {
   constexpr double kHeldFor = 0.01;  // [s]: boom and hull vibrate at 2 to 40 Hz
+  // Guard: SensorBounds.OfASilentSensor of kIntervals, kHeldFor
   return overdue > 0.0 ? -std::expm1(-overdue / kHeldFor) : 0.0;
 }
 

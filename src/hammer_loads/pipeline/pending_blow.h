@@ -10,7 +10,7 @@
 
 namespace hammer_loads {
 
-/// What a blow did to the crank shows in the samples after it: its factor is taken when the crank has turned on by a
+/// A blow shows in the samples after it: its factor is taken when the crank has turned on by a
 /// radian, or what is known of it when the crank stops before, restarts or strikes again.
 class PendingBlow {
  public:
@@ -40,7 +40,7 @@ class PendingBlow {
     early_ = factor.early;
     columns_.bottomRows<2>() = factor.by_constant;
   }
-  /// What independent errors of constants make of take(): speed [rad/s], factor [-], inertia (relative).
+  /// Errors of take() by independent errors of constants: speed [rad/s], factor [-], inertia (relative).
   BlowColumns columns() const noexcept {
     BlowColumns columns = columns_;
     if (early_) columns.row(0) = (columns_.row(0) - (blow_.speed / blow_.factor) * columns_.row(1)) / blow_.factor;
@@ -76,6 +76,7 @@ class PendingBlow {
  private:
   static constexpr double kFarEnough = 1.0;   // [rad]: some 50 ms
   static constexpr double kLongEnough = 0.2;  // [s]
+  // Guard: SensorBounds.OfABlowThatIsMeasured of kFarEnough, kLongEnough
   bool waiting_{};
   double time_{};
   CrankPosition position_;

@@ -7,12 +7,13 @@
 #include "hammer_loads/boom/wrench.h"
 #include "hammer_loads/estimation/latch.h"
 #include "hammer_loads/estimation/running_mean.h"
+#include "hammer_loads/pipeline/trust_times.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
-/// Rock bears on the hull along the tool. What three cylinders show beyond weight, motion and blows is a load on the
-/// tip in its plane: across the tool, and about the tool's axis, there must be next to none in the mean of 2 s.
+/// Rock bears on the hull along the tool. The force that three cylinders show beyond weight, motion and blows is a load
+/// on the tip in its plane: across the tool, and about the tool's axis, there must be next to none in the mean of 2 s.
 /// Pressures in bar, chambers or cylinders that are exchanged show 13 to 220 % of the weight there, right ones 4 %;
 /// what a lag of their stamps makes has no mean and is not seen.
 class PressureTrust {
@@ -22,8 +23,8 @@ class PressureTrust {
   void follow(const Wrench& beyond, const Wrench& weight, double arm, double step) noexcept {
     if (!(step > 0.0) || !std::isfinite(beyond.force.x() + beyond.force.z() + beyond.torque.y())) return;
     mean_.add({beyond.force.x(), beyond.force.z(), beyond.torque.y() - arm * beyond.force.z()},
-              std::min(step, kLongest));
-    if (mean_.count() < kLeastTime) return;
+              std::min(step, trust::kLongest));
+    if (mean_.count() < trust::kLeastTime) return;
     const double size = std::abs(along()) + std::sqrt(square(weight.force.x()) + square(weight.force.z()));
     const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
     lost_.follow(off);
@@ -39,14 +40,14 @@ class PressureTrust {
   double along() const noexcept { return mean_.mean()[1]; }   ///< [N]
 
  private:
-  static constexpr double kMemory = 2.0, kLeastTime = 0.5;  // [s]
-  static constexpr double kLongest = 0.05;                  // that one sample counts for, over a gap as well [s]
-  static constexpr double kAcross = 0.1, kTurning = 0.3;    // of the load along the tool and the weight; with its arm
-  static constexpr double kBack = 0.5;                      // of that: trusted again
+  static constexpr double kAcross = 0.1, kTurning = 0.3;  // of the load along the tool and the weight; with its arm
+  // Guard: SensorBounds.OfPressuresMean of kTurning
+  static constexpr double kBack = 0.5;  // of that: trusted again
+  // Guard: SensorBounds.OfPressuresTimes of kAcross, kBack
 
   double turning() const noexcept { return mean_.mean()[2]; }
 
-  RunningMean<Eigen::Vector3d> mean_{kMemory, Eigen::Vector3d::Zero()};
+  RunningMean<Eigen::Vector3d> mean_{trust::kMemory, Eigen::Vector3d::Zero()};
   Latch lost_{1.0, kBack};
 };
 

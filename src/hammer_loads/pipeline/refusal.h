@@ -20,7 +20,7 @@ enum class Refusal : std::size_t {
   kDuplicate,     ///< as old as the last accepted sample
   kBadStamp,      ///< beyond the last time that a message can carry
   kDegrees,       ///< crank or boom are recognised to send degrees: withheld until that is over
-  kSpeedUnit,     ///< likewise, the crank's speed in rpm or in turns a second
+  kSpeedUnit,     ///< as above, the crank's speed in rpm or in turns a second
   kBackward,      ///< the crank turns backward: withheld until it has made half a turn forward
   kInconsistent,  ///< readings contradict the model, and have for some time: withheld until they agree
   kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)

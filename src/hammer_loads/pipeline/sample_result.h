@@ -46,7 +46,7 @@ struct SampleResult {
   StampNs sample_stamp{};          ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
   /// Which side of the blow the sample is on is not known: what belongs to its instant is of the likelier side, and not
-  /// published. What adds up over steps goes on.
+  /// published. Sums over steps go on.
   bool beside_blow{};
   CrankEstimate crank;
   CrankUncertainty doubt;    ///< of the crank's motion; zero where the estimator has none

@@ -18,7 +18,7 @@ PartEnd endAt(const CrankStep& step, const CrankEstimate& crank) noexcept {
   return {crank, step.linksAt(crank.position.angle)};
 }
 
-/// What a change of momentum has given to the hull.
+/// The impulse of a change of momentum on the hull.
 LoadImpulse change(const HullModel& model, const DriveReaction& drive, const PartEnd& from_end,
                    const PartEnd& to_end) noexcept {
   const CrankEstimate &a = from_end.crank, &b = to_end.crank;
@@ -75,7 +75,6 @@ LoadImpulse motionImpulse(const HullModel& model, const DriveReaction& drive, co
 
 LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, const CrankStep& step,
                          const HullPath& hull, double from, double to) noexcept {
-  constexpr double kLongest = 1.25e-3;  // [s]
   const double node = std::sqrt(0.6);
   const struct { double place, weight; } nodes[] = {{-node, 5.0 / 18.0}, {0.0, 8.0 / 18.0}, {node, 5.0 / 18.0}};
   LoadImpulse impulse;
@@ -88,7 +87,7 @@ LoadImpulse addedImpulse(const HullModel& model, const DriveReaction& drive, con
     impulse.drive_y += drive_y;
   };
   forEachSmoothPart(step, from, to, [&](double start, const CrankEstimate&, double end, const CrankEstimate&) {
-    const int parts = std::max(1, static_cast<int>(std::ceil((end - start) / kLongest)));
+    const int parts = std::max(1, static_cast<int>(std::ceil((end - start) / kPulseStep)));
     const double half = 0.5 * (end - start) / parts;
     for (int i = 0; i < parts; ++i) {
       const double middle = start + (2 * i + 1) * half;

@@ -12,7 +12,7 @@
 
 namespace hammer_loads {
 
-/// What the wrench needs beside the crank's motion.
+/// Inputs of the wrench beside the crank's motion.
 struct StepLoad {
   const HullModel& model;
   const DriveReaction& drive;
@@ -54,10 +54,9 @@ struct StepPlace {
 template <typename OnWrench, typename OnTurn>
 void forEachStepWrench(const StepLoad& load, const CrankStep& step, const OnWrench& wrench,
                        const OnTurn& turn) noexcept {
-  constexpr double kLongest = 1.25e-3;  // [s]: 15 of them in the MO-100's pulse
   const auto alongSpan = [&](const SmoothSpan& span) {
     if (!(span.to > span.from)) return;
-    const int count = std::max(1, static_cast<int>(std::ceil((span.to - span.from) / kLongest)));
+    const int count = std::max(1, static_cast<int>(std::ceil((span.to - span.from) / kPulseStep)));
     SmoothSpan part{span.from, span.from, span.begin, span.begin};
     for (int i = 1; i <= count; ++i) {
       const bool last = i == count;

@@ -7,12 +7,7 @@
 #include "hammer_loads/pipeline/crank_trust.h"
 
 namespace hammer_loads {
-namespace {
-
-constexpr double kTrackStep = 1.25e-3;  // [s] between points of a turn at most: 15 of them in the MO-100's pulse
-constexpr double kSideOfBlow = 1e-7;    // [s] before and after the blow where its two sides are looked at
-
-}  // namespace
+namespace {}  // namespace
 
 void TurnFollower::restart() noexcept {
   turn_.abandon();
@@ -37,7 +32,7 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
 void TurnFollower::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
   const double origin = seconds(step_->start() - epoch_);
-  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kTrackStep)));
+  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kPulseStep)));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
     turn_.add(instant(origin + time, step_->at(time)));
@@ -57,10 +52,10 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
     if (!passage.forward) turn_.abandon();
     countBackward(passage);
     if (!passage.may_strike) continue;
-    recordTo(from, std::max(from, passage.time - kSideOfBlow));
+    recordTo(from, std::max(from, passage.time - kBesideBlow));
     finishBlow(result);
     endTurn(passage);
-    from = passage.time + kSideOfBlow;
+    from = passage.time + kBesideBlow;
   }
   recordTo(from, step_->length());
   if (pending_.isWaiting()) pending_.follow(tracker_->blowFactor());
@@ -84,7 +79,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   end.turn = ++turns_;
   const double time = seconds(step_->start() - epoch_) + passage.time;
   const CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
-  const CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kSideOfBlow), 1.0);
+  const CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
   const double rate = before.acceleration / before.speed;
   end.pulse = turn_.end(instant(time, before));
   if (end.pulse) {

@@ -23,7 +23,7 @@ class TurnFollower {
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
-  /// What came before does not belong to the coming turn.
+  /// Earlier samples do not belong to the coming turn.
   void restart() noexcept;
   /// Neither the present turn nor the blow that is being measured count.
   void discard() noexcept;

@@ -14,7 +14,7 @@ struct TurnInstant {
   HullWrench wrench;      ///< weight included where the published wrench includes it
   LinkMomentum momentum;  ///< relative to the hull
   double weight_x{};      ///< weight within the wrench from here to the next instant [N]
-  double weight_z{};      ///< likewise [N]
+  double weight_z{};      ///< as above [N]
 };
 
 /// Keeps the force and the exact impulses of the present turn in a track of bounded size: a turn with too many instants
@@ -27,7 +27,7 @@ class TurnRecorder {
   void begin(const TurnInstant& after_blow) noexcept;
   /// The momentum just after the blow is better known by now than when the turn began.
   void correctBegin(const LinkMomentum& after_blow) noexcept;
-  /// What follows is not known to belong to the turn: its pulse is not given.
+  /// Coming samples may not belong to the turn: its pulse is not given.
   void abandon() noexcept { recording_ = false; }
   bool recording() const noexcept { return recording_; }
   void add(const TurnInstant& instant) noexcept;

@@ -17,6 +17,7 @@ constexpr double kMoves = 1.0;               // [rad/s]: a slower angle says not
 constexpr double kSlowTime = 2.0;            // [s] of motion within the bound that calms who was too fast
 constexpr double kLeastTime = 0.2;           // [s] of suspicion: some bad samples are no unit
 constexpr int kEnough = 8;                   // votes more for another unit than against
+// Guard: SensorBounds.OfUnits of kTolerance, kStretch, kLongestStep, kLeastTime, kEnough
 
 bool isNear(double ratio, double factor) noexcept { return ratio > factor / kTolerance && ratio < factor * kTolerance; }
 

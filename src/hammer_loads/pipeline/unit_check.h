@@ -7,7 +7,7 @@
 
 namespace hammer_loads {
 
-/// What a crank sends.
+/// The units of a crank's messages.
 enum class CrankUnit {
   kRadians,
   kDegrees,       ///< angle, speed or both
@@ -15,7 +15,7 @@ enum class CrankUnit {
   kSpeedInTurns,  ///< turns a second
 };
 
-/// What to say of it.
+/// The text of its warning.
 constexpr const char* textOf(CrankUnit unit) noexcept {
   switch (unit) {
     case CrankUnit::kDegrees:

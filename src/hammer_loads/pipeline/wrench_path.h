@@ -18,7 +18,7 @@ class WrenchPath {
   struct Instant {
     Eigen::Vector3d load;
     Eigen::Vector3d impulse, blows;  ///< from the first step on: all, and that of the blows alone
-    Eigen::Vector3d lasting;         ///< the impulse's integral likewise [N s2, N s2, N m s2]
+    Eigen::Vector3d lasting;         ///< the impulse's integral as above [N s2, N s2, N m s2]
   };
 
   void forget() noexcept { count_ = 0; }

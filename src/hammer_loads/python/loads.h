@@ -15,7 +15,7 @@ struct Weight {
   std::optional<double> gravity;
 };
 
-/// What may be left out.
+/// Arguments that may be left out.
 struct LoadOptions {
   Weight weight;
   std::optional<std::string> level;

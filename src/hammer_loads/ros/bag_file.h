@@ -17,7 +17,7 @@
 
 namespace hammer_loads {
 
-/// What one publisher sent on one topic.
+/// Messages of one publisher on one topic.
 struct BagConnection {
   std::string topic, type, md5sum;
   std::string publisher;  ///< name of the node; empty where the bag does not say
@@ -48,8 +48,8 @@ struct BagMessage {
 
 /// Place, times and content of a chunk, as the bag's end lists them.
 struct BagChunk {
-  std::uint64_t position{};  ///< in the file
-  ros::Time first, last;     ///< record times of its messages
+  std::uint64_t position{};                       ///< in the file
+  ros::Time first, last;                          ///< record times of its messages
   std::map<std::uint32_t, std::uint32_t> counts;  ///< messages by connection
 };
 

@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-/// What the bags hold under one name.
+/// A topic of the bags.
 struct BagTopic {
   std::set<std::string> types;        ///< as `sensor_msgs/JointState`
   std::set<std::string> definitions;  ///< MD5 sums of the types
@@ -42,7 +42,7 @@ class BagInputs {
   std::pair<ros::Time, ros::Time> span(const std::string& topic = {}) const;
   /// The files' names, in one line.
   const std::string& names() const { return names_; }
-  /// What the query takes of every bag, in record order. One reader at a time.
+  /// Messages of every bag that the query takes, in record order. One reader at a time.
   BagMessages messages(const BagQuery& query, const ChunkQuery& chunks = {}) const { return {bags_, query, chunks}; }
   BagMessages messagesOn(const std::set<std::string>& topics) const;
 

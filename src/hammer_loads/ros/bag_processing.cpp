@@ -16,7 +16,7 @@
 namespace hammer_loads {
 namespace {
 
-/// What is read, and as which type.
+/// Topics to read, and their types.
 using Wanted = std::map<std::string, std::string>;
 
 /// Where results go; null: not wanted.

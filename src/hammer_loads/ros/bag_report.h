@@ -1,4 +1,4 @@
-/// What process_bag says at its end.
+/// The report of process_bag.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace hammer_loads {
 
 struct BagWarning {
-  std::string key;   ///< the same for the same cause
-  std::string text;  ///< one line: what is missing or suspicious
+  std::string key;     ///< the same for the same cause
+  std::string text;    ///< one line: what is missing or suspicious
   std::int64_t run{};  ///< 1 for the first; 0: of the recording
 };
 
@@ -37,7 +37,7 @@ std::vector<std::string> textsOf(const std::vector<BagWarning>& warnings);
 
 void add(const SampleCounts& counts, SampleCounts& sum);
 
-/// What a user should know of the samples that gave nothing, one line each.
+/// Reasons of the samples that gave nothing, one line each.
 std::string textOf(const BagReport& report);
 
 /// One line: samples, turns, what was written.

@@ -22,7 +22,7 @@ std::string withoutPaths(const std::string& yaml) {
   return kept;
 }
 
-/// What is known when the run begins.
+/// The run's record at its beginning.
 RunRecord recordOf(const Settings& settings, const std::string& input_sha256) {
   RunRecord record;
   const std::string yaml = withoutPaths(settings.yaml);
@@ -52,7 +52,7 @@ void addCounts(const SampleCounts& counts, RunRecord& record) {
   record.refusals.push_back({"beside the blow", counts.beside_blow});
 }
 
-/// What the filter has learned of sensor and machine by the end of the run.
+/// Numbers that the filter has learned by the end of the run.
 void addLearned(const CrankTracker& tracker, RunRecord& record) {
   record.consistency = tracker.consistency();
   record.angle_resolution = tracker.angleResolution();

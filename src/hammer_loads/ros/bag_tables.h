@@ -20,7 +20,7 @@ class BagTables {
 
   /// A run begins; the bridge must outlive it.
   void begin(HammerBridge& bridge);
-  /// It has ended after so many messages with crank samples.
+  /// It has ended after this many messages with crank samples.
   void end(const HammerBridge& bridge, std::uint64_t samples);
   /// After the last run; warnings: of all runs and of the recording.
   void finish(const std::vector<BagWarning>& warnings);

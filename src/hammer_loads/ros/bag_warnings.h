@@ -1,4 +1,4 @@
-/// What of a recording is missing or suspicious. Each function adds its lines to `warnings`, none twice.
+/// Missing or suspicious parts of a recording. Each function adds its lines to `warnings`, none twice.
 #pragma once
 
 #include <set>
@@ -13,14 +13,14 @@ namespace hammer_loads {
 
 class HammerBridge;
 
-/// What the pipeline's state says at the end of a run: wrong units, joints that never came.
+/// Warnings by the pipeline's state at the end of a run: wrong units, joints that never came.
 /// joints_came: there were messages on their topic. run: its number.
 void warnOfRun(const HammerBridge& bridge, bool joints_came, std::int64_t run, std::vector<BagWarning>& warnings);
 
 /// Several nodes on one of these topics. Transforms come from several as a rule.
 void warnOfPublishers(const BagInputs& inputs, const std::set<std::string>& topics, std::vector<BagWarning>& warnings);
 
-/// What the log that made the bags could not keep.
+/// Messages that the log of these bags could not keep.
 void warnOfLostMessages(const BagInputs& inputs, std::vector<BagWarning>& warnings);
 
 /// Messages of another version of this package: their definition differs.

@@ -68,7 +68,7 @@ class BagWriter {
   std::map<std::string, std::uint32_t> numbers_;  ///< of the connections, by topic
   std::vector<ChunkInfo> chunks_;                 ///< the last one is being filled
   std::string chunk_, packed_;                    ///< bytes of that one
-  std::map<std::uint32_t, Places> index_;         ///< likewise, by connection
+  std::map<std::uint32_t, Places> index_;         ///< as above, by connection
 };
 
 }  // namespace hammer_loads

@@ -56,7 +56,7 @@ class Pieces {
 
   /// With gaps of less than half a piece between them nothing is saved.
   bool areWhole() const { return part_ < 1.5 * pieces_.length; }
-  /// Whether they have something of a time from `from` to `to`, each begun so much earlier [s].
+  /// Whether they have something of a time from `from` to `to`, each begun this much earlier [s].
   bool touch(const ros::Time& from, const ros::Time& to, double earlier) const {
     if (areWhole()) return true;
     const double begin = (from - first_).toSec(), end = (to - first_).toSec();

@@ -25,7 +25,7 @@ void fillHullLoads(const SampleResult& result, const WrenchOutput& output, HullL
 void fillMechanism(const SampleResult& result, sensor_msgs::JointState& message);
 void fillPinForces(const SampleResult& result, PinForces& message);
 void fillBlow(const TurnEnd& end, Blow& message);
-/// end.pulse must be there.
+/// end.pulse is required.
 void fillPulse(const TurnEnd& end, Pulse& message);
 
 }  // namespace hammer_loads

@@ -12,7 +12,7 @@
 
 namespace hammer_loads {
 
-/// What became of the wrenches for a frame.
+/// The fate of the wrenches for a frame.
 struct FrameWrenchCounts {
   std::uint64_t published{};
   std::uint64_t dropped{};  ///< no transform at their stamp: none within the wait, or TF began later

@@ -7,7 +7,7 @@
 
 namespace hammer_loads {
 
-/// What a user should know of the samples that gave no jaw edge, one line each; empty if all did.
+/// Reasons of the samples that gave no jaw edge, one line each; empty if all did.
 std::string refusalReport(const GrappleFlow& flow);
 
 }  // namespace hammer_loads

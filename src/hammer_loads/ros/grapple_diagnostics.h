@@ -1,4 +1,4 @@
-/// What the grapple node says of its own health on /diagnostics.
+/// The grapple node's own health on /diagnostics.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>

@@ -31,7 +31,7 @@ class GrappleNode final : public LiveNode {
   void beginRun();
   void onJointStates(const ros::MessageEvent<const sensor_msgs::JointState>& event);
 
-  // What is used stands before what uses it: the last members are destroyed first.
+  // A member stands before those that use it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
   GrappleFlow flow_;
   RecordClock clock_;

@@ -32,7 +32,7 @@ HammerBridge::HammerBridge(const Settings& settings, TrackerMaker make)
   reset();
 }
 
-/// What stays the same in every message.
+/// The parts that stay the same in every message.
 void HammerBridge::prepareOutputs() {
   const std::string frame = hullFrame(settings_);
   for (std_msgs::Header* header :

@@ -21,7 +21,7 @@
 
 namespace hammer_loads {
 
-/// Owns the pipeline and the outputs. What it sends depends on its inputs and settings alone. record_time: of an
+/// Owns the pipeline and the outputs. Its outputs depend on its inputs and settings alone. record_time: of an
 /// input, passed on to the outputs that it causes.
 class HammerBridge {
  public:

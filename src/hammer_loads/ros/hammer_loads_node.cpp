@@ -91,7 +91,7 @@ void HammerLoadsNode::beginRun() {
   log_->forgetLatched(run_info_.getTopic());
 }
 
-/// What is in force, for the server: it does not know the shipped parameter files.
+/// The configuration in force, for the server: it does not know the shipped parameter files.
 HammerLoadsConfig HammerLoadsNode::configInForce(bool log_enabled) const {
   const PipelineSettings& now = bridge_.settings().pipeline;
   HammerLoadsConfig config = HammerLoadsConfig::__getDefault__();

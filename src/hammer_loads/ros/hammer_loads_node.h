@@ -50,7 +50,7 @@ class HammerLoadsNode final : public LiveNode {
   HammerLoadsConfig configInForce(bool log_enabled) const;
   ros::Time recordTime(const ros::Time& arrival);
 
-  // What is used stands before what uses it: the last members are destroyed first.
+  // A member stands before those that use it: the last members are destroyed first.
   std::unique_ptr<BagLog> log_;
   std::unique_ptr<life::LedgerThread> ledger_;  ///< null: none is kept
   HammerBridge bridge_;

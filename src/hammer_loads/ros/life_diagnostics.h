@@ -1,4 +1,4 @@
-/// What a node reports of its load cycles.
+/// A node's report of its load cycles.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>

@@ -33,7 +33,7 @@ class Digest {
 
 constexpr std::uint64_t kDigestStart = 14695981039346656037ULL;
 
-/// What the sensor said, whatever the parameters make of it.
+/// The sensor's reading, whatever the parameters make of it.
 std::uint64_t digestOf(const sensor_msgs::JointState& message, std::uint64_t from) {
   Digest digest(from);
   digest.add(stampOf(message.header.stamp));

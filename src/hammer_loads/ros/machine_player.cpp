@@ -140,7 +140,7 @@ double MachinePlayer::elapsed() const {
   return source_ == TimeSource::kOwnClock ? steady * settings_.play.clock_factor : steady;
 }
 
-/// What stands before a crank sample in time, then the sample.
+/// Readings before a crank sample in time, then the sample.
 void MachinePlayer::publish(const Session& session) {
   auto joints = session.joints.begin();
   auto imu = session.imu.begin();

@@ -39,7 +39,7 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
       node.createWallTimer(ros::WallDuration(updater_.getPeriod()), [this](const ros::WallTimerEvent&) { report(); });
 }
 
-/// Each warning on the console when it is new; a log that stops by itself likewise.
+/// Each warning on the console when it is new; a log that stops by itself as above.
 void NodeDiagnostics::report() {
   std::set<std::string> present;
   for (const Warning& warning : warnings()) {

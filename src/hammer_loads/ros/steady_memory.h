@@ -1,4 +1,4 @@
-/// What keeps the memory of a process that logs all day from creeping.
+/// Keeps the memory of a process that logs all day from creeping.
 #pragma once
 
 #include <malloc.h>

@@ -1,4 +1,4 @@
-/// What was built.
+/// Version and revision of the build.
 #pragma once
 
 namespace hammer_loads {

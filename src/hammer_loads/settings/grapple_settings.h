@@ -1,4 +1,4 @@
-/// What the grapple node and process_bag --grapple work with, from parameters.
+/// Settings of the grapple node and of process_bag --grapple, from parameters.
 #pragma once
 
 #include <string>

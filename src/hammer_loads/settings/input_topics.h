@@ -16,7 +16,7 @@ struct InputTopics {
   std::string cylinder_pressures{};  ///< prefix: its topics are /NAME/bore and /NAME/rod below it, per cylinder
 };
 
-/// What an input is called where.
+/// The names of an input.
 struct InputName {
   std::string InputTopics::*topic;
   const char* name;      ///< of a node's topic, to be remapped
@@ -39,7 +39,7 @@ inline constexpr std::array<InputName, 4> kInputs{{
      "prefix of NAME/bore and NAME/rod, sensor_msgs/FluidPressure per cylinder: gauge [Pa]"},
 }};
 
-/// What `nameOf` makes of each row of kInputs.
+/// Names by `nameOf` of each row of kInputs.
 template <typename NameOf>
 InputTopics inputTopics(const NameOf& nameOf) {
   InputTopics topics;

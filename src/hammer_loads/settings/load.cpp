@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What model, boom file and robot description demand of each other; empty when they agree.
+/// Conflicts between model, boom file and robot description; empty when they agree.
 std::string boomConflict(BoomModel model, bool boom_file, bool description) {
   if (description && model == BoomModel::kCompliant && !boom_file)
     return "boom: compliant, must be none, rigid or auto without a boom file: its cylinders' oil is the spring";
@@ -35,7 +35,7 @@ std::string boomConflict(BoomModel model, bool boom_file, bool description) {
   return "robot_description: missing, must be given (a URDF), or boom must be none or auto";
 }
 
-/// What a boom that vibrates, or does not, demands of the other keys; empty when they agree.
+/// Conflicts of the other keys with a boom that vibrates, or does not; empty when they agree.
 std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, bool vibrates) {
   if (vibrates && pipeline.boom_acceleration == BoomAcceleration::kDifference)
     return "boom_acceleration: difference, must be none with a boom that may be compliant: where the joints' sensors "

@@ -13,7 +13,7 @@
 
 namespace hammer_loads {
 
-/// What a number may be. NaN and infinity never are.
+/// Bounds of a number. NaN and infinity never are.
 struct NumberRule {
   enum class Kind { kAny, kPositive, kNotNegative, kWithin, kZeroOrWithin };
   Kind kind{Kind::kAny};

@@ -19,7 +19,7 @@ namespace hammer_loads {
 
 class ParameterReader;
 
-/// What the published hull wrench is.
+/// The kind of the published hull wrench.
 enum class OutputKind {
   kInstantaneous,  ///< at the stamp
   kMean,           ///< over the time since the output before: no impulse is lost at any rate
@@ -52,7 +52,7 @@ enum class BoomModel {
   kAuto,       ///< compliant unless rigid is within rigid_tolerance for the last turn's pulse
 };
 
-/// What lies between the crank sensor and the crank.
+/// Gear between the crank sensor and the crank.
 enum class Shaft {
   kRigid,     ///< nothing that gives
   kFlexible,  ///< the sensor sits on the motor, beyond a coupling that twists
@@ -61,7 +61,7 @@ enum class Shaft {
 constexpr std::array<std::pair<const char*, Shaft>, 2> kShaftNames{
     {{"rigid", Shaft::kRigid}, {"flexible", Shaft::kFlexible}}};
 
-/// What the boom's own acceleration is taken for.
+/// Source of the boom's own acceleration.
 enum class BoomAcceleration {
   kNone,        ///< zero
   kDifference,  ///< of the joints' velocities
@@ -82,7 +82,7 @@ constexpr std::array<std::pair<const char*, BoomModel>, 4> kBoomModelNames{{{"no
 constexpr std::array<std::pair<const char*, BoomAcceleration>, 2> kBoomAccelerationNames{
     {{"none", BoomAcceleration::kNone}, {"difference", BoomAcceleration::kDifference}}};
 
-/// What is known of the hull's own motion.
+/// Source of the hull's own motion.
 enum class HullMotionSource {
   kFixed,  ///< it is at rest; weight by pitch
   kImu,    ///< as its IMU reports

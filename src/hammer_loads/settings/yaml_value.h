@@ -1,4 +1,4 @@
-/// What a single YAML value is, judged strictly: a quoted number is a text, a text is not a number.
+/// A single YAML value, judged strictly: a quoted number is a text, a text is not a number.
 #pragma once
 
 #include <yaml-cpp/yaml.h>

@@ -5,7 +5,7 @@
 
 namespace hammer_loads::simulation {
 
-/// What the pump gives at a time since the start [m3/s].
+/// Flow of the pump at a time since the start [m3/s].
 double supplyFlow(const DriveSettings& drive, double time) noexcept;
 /// Leakage, relief valve, bypass at a pressure [Pa]; below zero a check valve refills the line [m3/s].
 double valveFlow(const DriveSettings& drive, double time, double pressure) noexcept;

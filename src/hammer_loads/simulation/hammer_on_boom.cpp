@@ -32,7 +32,7 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
       ratio_(machine.hammer.drive_reaction_ratio),
       draws_(machine.seed ^ kBlowSeed) {
   if (machine.rod.stiffness > 0.0)
-    elastic_.emplace(Elastic{{machine.hammer, Level::kRocker}, RodSpring(machine.rod), {machine}, 0.0});
+    elastic_.emplace(Elastic{{machine.hammer, Level::kRocker}, RodSpring(machine.rod), {machine}});
   boom_.bulk_modulus *= machine.on_boom.oil_stiffness;
   takeMovingPartsOffTheHull();
   now_ = heldAt(0.0);
@@ -147,7 +147,7 @@ HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, co
   return all;
 }
 
-/// What the first joints do to a body.
+/// Effect of the first joints on a body.
 void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) {
   for (std::size_t j = 0; j < joints; ++j) {
     const PlanePoint arm = body.place - all.joint[j];

@@ -16,7 +16,7 @@
 
 namespace hammer_loads::simulation {
 
-/// What sensors of the boom read, without their errors.
+/// Readings of the boom's sensors, without their errors.
 struct OnBoomSensors {
   Eigen::Vector3d angles;                                 ///< of the joints [rad]
   Eigen::Vector3d rates;                                  ///< [rad/s]
@@ -25,7 +25,7 @@ struct OnBoomSensors {
   std::array<double, 3> bore_pressure{}, rod_pressure{};  ///< gauge [Pa]
 };
 
-/// What there is to know at one instant.
+/// The truth at one instant.
 struct OnBoomTruth : CrankTruth, OnBoomSensors {
   Eigen::Vector3d displacement;  ///< of the joints from where the operator holds them [rad]
   Eigen::Vector3d hold;          ///< BY the cylinders ON the joints [N m]
@@ -36,8 +36,8 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
 /// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, their
 /// accelerations for the loads by differences in time. Runge-Kutta of order 4.
 /// The operator's valves move the point at which the oil holds each joint along settings.boom; the oil about it is a
-/// linear spring, as stiff as at that place. settings.on_boom.seals rub against the rods: pressures are those of the oil,
-/// what holds the joints is oil and seals.
+/// linear spring, as stiff as at that place. settings.on_boom.seals rub against the rods: pressures are those of the
+/// oil, what holds the joints is oil and seals.
 ///
 /// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
 /// impulse within the linkage, or with a restitution that is drawn. settings.on_boom.rock holds the hull up where it is
@@ -99,7 +99,6 @@ class HammerOnBoom {
     ElasticLinks links;
     RodSpring rod;
     StruckTool struck;
-    double shortest{};  ///< step [s]
   };
   using Links = std::array<OilBoomLink, 3>;
   using Rocker = LinkBodies::Body;  ///< in the mechanism frame

@@ -45,7 +45,7 @@ struct BlowSettings {
   double restitution_low{};      ///< drawn anew for each blow, uniform between these [-]
   double restitution_high{};     ///< [-]
   double crank_loss{};           ///< part of the crank's speed lost beside that at each blow [-], in [0, 1)
-  double tool_early{};           ///< the tool is met so much before the dead centre [rad], in [0, 1]
+  double tool_early{};           ///< the tool is met this much before the dead centre [rad], in [0, 1]
   double early_tool_mass{50.0};  ///< that the rocker then takes along, at the striking point [kg], > 0
   double blank_share{};          ///< of the blows that find no tool [-], in [0, 1]
 };
@@ -65,7 +65,7 @@ struct StrikeSettings {
   double contact_stiffness{1.2e9};      ///< between rocker and tool [N/m], > 0
   double contact_damping{0.07};         ///< that force counts 1 + this times the speed of approach [s/m]
   double rock_stiffness{5e8};           ///< [N/m], > 0
-  double rock_damping{0.05};            ///< likewise [s/m]
+  double rock_damping{0.05};            ///< as above [s/m]
   double rock_strength{2e5};            ///< the rock yields above this force [N], > 0
   double tool_late{};                   ///< the tool stands so far below the dead centre's place; < 0: early [m]
   double tool_spread{};                 ///< drawn anew for each turn, uniform within plus and minus this [m]
@@ -90,7 +90,7 @@ struct CrankSensorSettings {
   bool stamps_late{};            ///< that noise only ever delays: its size counts
   double stamp_step{};           ///< stamps are whole multiples of it, rounded down [s]; 0: nanoseconds
   double latency{};              ///< constant part of stamp less instant [s]
-  int burst{1};                  ///< so many samples carry the stamp of their last one, >= 1
+  int burst{1};                  ///< this many samples carry the stamp of their last one, >= 1
   bool stamps_ordered{};         ///< none is before the one before: a late one holds up those behind it
   double duplicate_share{};      ///< of the messages that come twice [-], in [0, 1]
   double loss_share{};           ///< of the samples that never come [-], in [0, 1)
@@ -142,7 +142,7 @@ struct PressureSensors {
   double preload{};  ///< in the unloaded chamber at rest [Pa]
 };
 
-/// What the tool stands on. It holds the hull up at its foot and lets go of it: a spring with a loss, along the tool.
+/// The ground under the tool. It holds the hull up at its foot and lets go of it: a spring with a loss, along the tool.
 /// It gives way as fast as the operator moves the hull on.
 struct RockSettings {
   double stiffness{};    ///< of rock and tool [N/m]; 0: no rock, the hull hangs free

@@ -12,7 +12,7 @@ constexpr double kShort = 1e-5;     // those steps: a blow lasts some thirty of 
 constexpr double kBriefest = 1e-7;  // step in which a contact may begin or end [s]
 constexpr double kReach = 1.5;      // step times the rate of the rod's damping; Runge-Kutta is stable up to 2.8
 constexpr double kLong = 4e-5;      // a ring of 500 Hz has fifty of them [s]
-constexpr double kRings = 0.05;     // for so long after a blow [s]; then steps of twice that
+constexpr double kRings = 0.05;     // for this long after a blow [s]; then steps of twice that
 
 }  // namespace
 

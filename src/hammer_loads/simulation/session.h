@@ -1,4 +1,4 @@
-/// What a simulated machine's sensors say: a whole session in memory, or step by step.
+/// Readings of a simulated machine's sensors: a whole session in memory, or step by step.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// What the rocker of an elastic machine strikes: tool on yielding rock, the hull's retainer, or nothing.
+/// The target of an elastic machine's rocker: tool on yielding rock, the hull's retainer, or nothing.
 #pragma once
 
 #include "hammer_loads/simulation/machine_settings.h"

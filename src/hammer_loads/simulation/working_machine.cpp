@@ -63,7 +63,7 @@ double WorkingMachine::netTorque(const State& state) const noexcept {
                                flexible() ? state.y[kMotorSpeed] : state.y[kSpeed]);
 }
 
-/// What reaches the crank.
+/// Torque that reaches the crank.
 double WorkingMachine::shaftTorque(const State& state) const noexcept {
   if (!flexible()) return netTorque(state);
   return stiffness_ * state.y[kTwist] + damping_ * (state.y[kMotorSpeed] - state.y[kSpeed]);

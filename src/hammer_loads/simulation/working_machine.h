@@ -103,7 +103,7 @@ class WorkingMachine {
     kSize
   };
   using Vector = std::array<double, kSize>;
-  /// What comes from outside at a time.
+  /// Inputs from outside at a time.
   struct Outside {
     double time{};  ///< [s]
     Gravity gravity;

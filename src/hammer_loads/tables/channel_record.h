@@ -1,4 +1,4 @@
-/// What the tables say of one load channel of a run.
+/// One load channel of a run, in the tables.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct TurnLoad {
   double minimum_deviation{}, maximum_deviation{}, minimum_common_deviation{}, maximum_common_deviation{};
 };
 
-/// What one source adds to the variance of a figure.
+/// Share of one source in the variance of a figure.
 struct BudgetRow {
   std::string quantity;  ///< its end is its unit
   double value{}, deviation{};

@@ -1,4 +1,4 @@
-/// What the tables say of one run as a whole.
+/// One run as a whole, in the tables.
 #pragma once
 
 #include <cstdint>
