@@ -108,7 +108,7 @@ class CrankFilter final : public CrankTracker {
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
   /// Whether measured speeds are taken up, and why not.
   const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
-  double timingNoise() const noexcept { return timing_.deviation(); }        ///< of stamps, identified [s]
+  double timingNoise() const noexcept { return timing_.deviation(); }  ///< of stamps, identified [s]
   bool isProven() const noexcept override { return consistency() < kAgrees; }
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
   double consistency() const noexcept override { return consistency_.mean(); }
@@ -124,7 +124,6 @@ class CrankFilter final : public CrankTracker {
 
  private:
   static constexpr double kLearnSpeed = 5.0;  ///< [rad/s]: a slower crank is moved by friction and stopped by the tool
-  static constexpr double kAtBlow = 0.3;  ///< [rad] from the blow: no jitter takes a sample further to the other side
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
@@ -185,24 +184,24 @@ class CrankFilter final : public CrankTracker {
   StrikeConsistency strike_consistency_;
   ConstantErrors errors_;
   BlowHistory blows_;
-  CrankBelief now_;                ///< at the last sample, corrected by it
-  ShaftLoad load_;                 ///< there, with now_hull_
-  bool hull_moved_{true};          ///< since then
-  CrankBelief before_;             ///< at the last but one sample
-  ShaftLoad before_load_;          ///< there, with before_hull_
-  double step_{};                  ///< between these two [s]
-  ContactRival rival_;             ///< the same samples with contact where now_ has none, or the other way round
-  bool mirrored_{};                ///< now_ had no contact and is on the mirrored branch
-  double fit_{};                   ///< logarithm of the last sample's likelihood by now_
-  double speed_variance_;          ///< of measured speeds, as identified [rad2/s2]
+  CrankBelief now_;        ///< at the last sample, corrected by it
+  ShaftLoad load_;         ///< there, with now_hull_
+  bool hull_moved_{true};  ///< since then
+  CrankBelief before_;     ///< at the last but one sample
+  ShaftLoad before_load_;  ///< there, with before_hull_
+  double step_{};          ///< between these two [s]
+  ContactRival rival_;     ///< the same samples with contact where now_ has none, or the other way round
+  bool mirrored_{};        ///< now_ had no contact and is on the mirrored branch
+  double fit_{};           ///< logarithm of the last sample's likelihood by now_
+  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
   EncoderSlip slip_;
   double interval_{};    ///< of the samples, where they are taken at equal ones [s]
   double lost_time_{};   ///< of the last step, beyond what its stamps say [s]
   double stamps_off_{};  ///< standard deviation of what all stamps are off alike [s]
   SpeedTrust speed_trust_;
   std::optional<SpeedTrust::Witness> witness_;  ///< of the last sample
-  std::optional<Side> read_side_;  ///< of the blow, as the last reading shows it
-  double outlier_{};               ///< innovation of the outlier just seen [rad], 0: none
+  std::optional<Side> read_side_;               ///< of the blow, as the last reading shows it
+  double outlier_{};                            ///< innovation of the outlier just seen [rad], 0: none
   int unexplained_{};      ///< innovations beyond 5 deviations since one of the other sign; negative ones count down
   double surprises_{};     ///< such innovations of late
   double restart_load_{};  ///< beginnings since long, forgotten within some 2 s

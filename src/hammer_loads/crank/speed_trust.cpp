@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSpeedTurns = 12.0;     // [turns] of lag and scale
 constexpr double kSpeedSamples = 500.0;  // of what is left
-constexpr double kMostLag = 0.1;          // [s]: more is no filter of a drive that is controlled by it
+constexpr double kMostLag = 0.1;         // [s]: more is no filter of a drive that is controlled by it
 constexpr double kMostScale = 0.5;
 constexpr double kMostOfOne = 0.999;
 

@@ -23,7 +23,9 @@ class StampRounding {
     rounded_ = uneven_ > kMany / 10;
     stamps_ = 1, uneven_ = 0;
   }
-  double step() const noexcept { return rounded_ && step_ < kSteps.size() ? 1e-9 * static_cast<double>(kSteps[step_]) : 0.0; }  ///< [s]
+  double step() const noexcept {
+    return rounded_ && step_ < kSteps.size() ? 1e-9 * static_cast<double>(kSteps[step_]) : 0.0;
+  }  ///< [s]
 
  private:
   static constexpr std::array<std::int64_t, 6> kSteps{10000000, 5000000, 2000000, 1000000, 500000, 100000};  ///< [ns]
