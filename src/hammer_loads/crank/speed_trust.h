@@ -48,7 +48,7 @@ class SpeedTrust {
   double scaleDeviation() const noexcept { return deviation_[1]; }  ///< [-]
 
  private:
-  static constexpr int kTurnsToKnow = 5;  // some 1 s at work
+  static constexpr int kTurnsToKnow = 5;  // some 1 s at work. Guard: SpeedTrust.IsSilentBeforeItKnows
 
   double memory() const noexcept;
 
