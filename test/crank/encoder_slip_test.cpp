@@ -55,6 +55,19 @@ TEST(EncoderSlip, NorAClockThatWasSetNorASurpriseOfEachTurn) {
   EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 1.0, true), Step::kNone);  // and the turn before
 }
 
+/// Readings that were damaged for a while, and an index that is found again.
+TEST(EncoderSlip, AStepBackIsOneAtOnce) {
+  EncoderSlip slip = quiet();
+  slip.follow(0.035, kVariance, kByTorque, 1.0, true);
+  slip.follow(0.035, kVariance, kByTorque, 2.0, true);
+  slip.follow(1e-4, kVariance, kByTorque, 1.0, true);
+  EXPECT_TRUE(slip.isFresh());
+  EXPECT_EQ(slip.follow(-0.0352, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
+  EXPECT_EQ(slip.follow(-0.0350, kVariance, kByTorque, 2.0, true), Step::kSlipped);
+  for (int i = 0; i < 5; ++i) slip.endTurn();
+  EXPECT_FALSE(slip.isFresh());
+}
+
 TEST(EncoderSlip, NorWhatTheTorqueCanDo) {
   EncoderSlip slip = quiet();
   EXPECT_EQ(slip.follow(0.035, kVariance, 0.04, 1.0, true), Step::kNone);

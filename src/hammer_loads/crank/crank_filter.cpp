@@ -216,7 +216,12 @@ bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const
 
 /// What lies before this sample is not known any more; a speed that was kept from there and is contradicted again is
 /// wrong itself.
-Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
+Tracking CrankFilter::begin(WeighedSample sample) noexcept {
+  if (slip_.isFresh()) {  // readings that were damaged for a while
+    encoder_.slip(-slip_.last());
+    sample.angle = CrankAngle::wrapToPi(sample.angle + slip_.last());
+    slip_.takeBack();
+  }
   restart_load_ += 1.0;
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
   anchor(sample);

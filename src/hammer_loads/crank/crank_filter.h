@@ -163,7 +163,7 @@ class CrankFilter final : public CrankTracker {
   void learnSupply() noexcept;
   void doubtInertia(double dt) noexcept;
   void takeLoad() noexcept;
-  Tracking begin(const WeighedSample& sample) noexcept;
+  Tracking begin(WeighedSample sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
   double mostTorque() const noexcept;
 

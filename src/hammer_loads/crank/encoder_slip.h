@@ -27,18 +27,28 @@ class EncoderSlip {
       before_ = 0.0;  // the sample is another one once the encoder has moved
       if (!stays || length < kShortest + 1.0 || length > kLongest + 1.0) return Step::kNone;
       ++count_;
+      turns_since_ = 0;
       last_ = 0.5 * (innovation + seen), deviation_ = std::sqrt(0.5 * total);
       return Step::kSlipped;
     }
     const bool jumped = std::abs(before) < kSame * std::abs(innovation);
     if (!possible || !jumped || std::abs(innovation) < by_torque || !exceeds(innovation, total, gate::kImpossible))
       return Step::kNone;
-    if (std::exchange(quiet_turns_, 0) < kTurnsToTell || std::abs(innovation) > kMost) return Step::kNone;
+    const bool undoes = isFresh() && std::abs(innovation + last_) < kSame * std::abs(last_);
+    const int quiet = std::exchange(quiet_turns_, 0);
+    if ((quiet < kTurnsToTell && !undoes) || std::abs(innovation) > kMost) return Step::kNone;
     if (length < kShortest || length > kLongest) return Step::kNone;
     seen_ = innovation;
     return Step::kPerhaps;
   }
-  void endTurn() noexcept { ++quiet_turns_; }
+  void endTurn() noexcept { ++quiet_turns_, ++turns_since_; }
+  /// The last one is some turns old at most: a step back belongs to it, and a restart says that it was none.
+  bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < kTurnsToTell; }
+  /// The last one was none.
+  void takeBack() noexcept {
+    --count_;
+    last_ = 0.0;
+  }
   int count() const noexcept { return count_; }             ///< since the beginning
   double last() const noexcept { return last_; }            ///< of the crank's angle [rad]
   double deviation() const noexcept { return deviation_; }  ///< of that [rad]
@@ -53,7 +63,7 @@ class EncoderSlip {
   double before_{};  ///< innovation of the sample before [rad]
   double seen_{};    ///< the same where it may be a slip; else 0
   double last_{}, deviation_{};
-  int count_{}, quiet_turns_{};
+  int count_{}, quiet_turns_{}, turns_since_{};
 };
 
 }  // namespace hammer_loads
