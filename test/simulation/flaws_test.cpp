@@ -381,5 +381,78 @@ TEST(Encoder, GearedOneCountsItsOwnTurns) {
   }
 }
 
+/// y by the equation itself, lag y' = speed - y, in small steps of Euler's.
+TEST(Encoder, FilteredSpeedsObeyTheFiltersEquation) {
+  MachineSettings s = flawedRun();
+  s.crank.speed_noise = 0.0;
+  s.crank.speed_lag = 5e-3;
+  s.crank.speed_scale = 1.05;
+  const Session session = recordSession(s);
+  MachineSettings fine = flawedRun();
+  fine.crank.rate = 50000.0;
+  fine.crank.jitter = fine.crank.speed_noise = 0.0;
+  fine.duration = 3.0;
+  const Session plain = recordSession(fine);
+  double y = 0.0, largest = 0.0;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < plain.truth.size(); ++i) {
+    const double time = plain.truth[i].time;
+    while (next < session.truth.size() && session.truth[next].time <= time) {
+      if (time > 1.0) largest = std::max(largest, std::abs(*session.crank[next].speed - 1.05 * y));
+      ++next;
+    }
+    y += 2e-5 / s.crank.speed_lag * (plain.truth[i].speed - y);
+  }
+  EXPECT_LT(largest, 0.05);  // Euler's own: half a step of 800 rad/s2, and what a step of it moves
+  EXPECT_GT(next, 2000U);
+}
+
+TEST(Encoder, AFilteredAngleIsBehindByTheSpeedTimesItsLag) {
+  MachineSettings s = flawedRun();
+  s.crank.counts = 0;
+  s.crank.angle_lag = 2e-3;
+  const Session session = recordSession(s);
+  double worst = 0.0;
+  for (std::size_t i = 3000; i < session.crank.size(); ++i) {
+    const CrankTruth& t = session.truth[i];
+    if (std::abs(std::remainder(t.angle, kTwoPi)) < 1.0) continue;
+    const double behind = std::remainder(t.angle - session.crank[i].angle, kTwoPi);
+    worst = std::max(worst, std::abs(behind - 2e-3 * (t.speed - 2e-3 * t.acceleration)));
+  }
+  EXPECT_LT(worst, 1.5e-3);  // the third term of the series, lag^3 times the jerk
+}
+
+TEST(Encoder, SlipsByItsAmountForItsTime) {
+  MachineSettings s = flawedRun();
+  const Session plain = recordSession(s);
+  s.crank.slip = {0.1, {4.0, 6.0}};
+  const Session session = recordSession(s);
+  ASSERT_EQ(plain.crank.size(), session.crank.size());
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const bool slipped = session.truth[i].time >= 4.0 && session.truth[i].time < 6.0;
+    const double off = std::remainder(session.crank[i].angle - plain.crank[i].angle, kTwoPi);
+    ASSERT_NEAR(off, slipped ? 0.1 : 0.0, kTwoPi / 4096 + 1e-9);
+  }
+}
+
+TEST(Stamps, LostSamplesLeaveTheOthersAsTheyAre) {
+  MachineSettings s = flawedRun();
+  const Session plain = recordSession(s);
+  s.crank.loss_share = 0.05;
+  const Session session = recordSession(s);
+  EXPECT_NEAR(static_cast<double>(session.crank.size()) / static_cast<double>(plain.crank.size()), 0.95, 0.01);
+  std::set<std::int64_t> stamps;
+  for (const CrankReading& reading : plain.crank) stamps.insert(reading.stamp);
+  for (const CrankReading& reading : session.crank) ASSERT_EQ(stamps.count(reading.stamp), 1U);
+}
+
+TEST(Stamps, AreInOrderWhereAskedFor) {
+  MachineSettings s = flawedRun();
+  s.crank.stamp_noise = 1e-3;
+  s.crank.stamps_ordered = true;
+  const Session session = recordSession(s);
+  for (std::size_t i = 1; i < session.crank.size(); ++i) ASSERT_GT(session.crank[i].stamp, session.crank[i - 1].stamp);
+}
+
 }  // namespace
 }  // namespace hammer_loads::simulation

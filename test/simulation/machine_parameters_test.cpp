@@ -57,6 +57,12 @@ void expectSameFlaws(const MachineSettings& a, const MachineSettings& b) {
   EXPECT_EQ(a.crank.latency, b.crank.latency);
   EXPECT_EQ(a.crank.burst, b.crank.burst);
   EXPECT_EQ(a.crank.duplicate_share, b.crank.duplicate_share);
+  EXPECT_EQ(a.crank.loss_share, b.crank.loss_share);
+  EXPECT_EQ(a.crank.stamps_ordered, b.crank.stamps_ordered);
+  EXPECT_EQ(a.crank.speed_lag, b.crank.speed_lag);
+  EXPECT_EQ(a.crank.speed_scale, b.crank.speed_scale);
+  EXPECT_EQ(a.crank.angle_lag, b.crank.angle_lag);
+  EXPECT_EQ(a.crank.slip.amount, b.crank.slip.amount);
   EXPECT_EQ(a.crank.zero, b.crank.zero);
   EXPECT_EQ(a.crank.direction, b.crank.direction);
   EXPECT_EQ(a.crank.ratio, b.crank.ratio);

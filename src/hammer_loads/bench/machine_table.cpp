@@ -21,6 +21,7 @@ struct Kind {
   bool calibrated{};
   double shift{};                      ///< mean of all stamps less the instants [s]
   std::optional<Coupling> coupling{};  ///< as given
+  CrankStamps stamps{CrankStamps::kAuto};
 };
 
 std::vector<Kind> kinds() {
@@ -68,6 +69,40 @@ std::vector<Kind> kinds() {
       {"coupling of 80 Hz, given as 64", {1000.0, 100.0}, coupled(80.0), 1.0, false, 0.0, given(64.0, 0.2)},
       {"motor's share 0.2, given as 0.24", {1000.0, 100.0}, coupled(50.0), 1.0, false, 0.0, given(50.0, 0.24)},
       {"no speeds", {1000.0, 100.0}, [](MachineSettings& s) { s.crank.speed = false; }},
+  };
+}
+
+/// Of a sensor that a drive filters, that moves, or whose clock is coarse. Stamps that jitter keep their order, so that
+/// they are taken as they are.
+std::vector<Kind> sensorKinds() {
+  const auto held = [](double jitter, double lag, double scale) {
+    return [=](MachineSettings& s) {
+      s.crank.stamp_noise = jitter, s.crank.stamps_ordered = jitter > 0.0;
+      s.crank.speed_lag = lag, s.crank.speed_scale = scale;
+    };
+  };
+  const auto mute = [](double jitter) {
+    return
+        [=](MachineSettings& s) { s.crank.stamp_noise = jitter, s.crank.stamps_ordered = true, s.crank.speed = false; };
+  };
+  const auto slip = [](double degrees, double to) {
+    return [=](MachineSettings& s) { s.crank.slip = {degrees * kDegree, {8.0, to}}; };
+  };
+  Kind lossy{"jitter of 1 ms, given as steady, 0.2 % lost", {1000.0, 200.0}, [](MachineSettings& s) {
+               s.crank.stamp_noise = 1e-3, s.crank.loss_share = 0.002;
+             }};
+  lossy.stamps = CrankStamps::kSteady;
+  return {
+      {"jitter of 0.3 ms in order", {1000.0, 200.0}, mute(3e-4)},
+      {"the same, speeds lag by 2 ms", {1000.0, 200.0}, held(3e-4, 2e-3, 1.0)},
+      {"the same, speeds lag by 20 ms", {1000.0, 200.0}, held(3e-4, 2e-2, 1.0)},
+      {"the same, speeds 5 % too large", {1000.0, 200.0}, held(3e-4, 0.0, 1.05)},
+      {"jitter of 1 ms in order", {1000.0, 200.0}, mute(1e-3)},
+      {"the same, speeds lag by 10 ms", {1000.0, 200.0}, held(1e-3, 1e-2, 1.0)},
+      {"zero slips by 2 deg", {1000.0, 200.0}, slip(2.0, simulation::kNever)},
+      {"index lost for 4 s: 1 deg off", {1000.0}, slip(1.0, 12.0)},
+      {"angle lags by 2 ms", {1000.0, 200.0}, [](MachineSettings& s) { s.crank.angle_lag = 2e-3; }},
+      lossy,
   };
 }
 
@@ -121,6 +156,7 @@ MachineRow rowOf(const Settings& settings, const Kind& kind, double rate) {
   hammer.drive_inertia = kind.inertia_guess * machine.drive.inertia;
   PipelineSettings pipeline = settings.pipeline;
   pipeline.coupling = kind.coupling;
+  pipeline.crank_stamps = kind.stamps;
   if (kind.calibrated) applyCalibration(session, machine, hammer, pipeline);
   const SessionRun run = runSession(session, machine.start_stamp, *Mechanism::make(hammer).value, pipeline);
   return {kind.name, rate, machine.crank.speed, judgeAtStamps(run, session, machine, kind.shift)};
@@ -141,8 +177,10 @@ void makeTypical(MachineSettings& s) {
 
 std::vector<MachineRow> machineTable(const Settings& settings) {
   std::vector<MachineRow> rows;
-  for (const Kind& kind : kinds()) {
-    for (const double rate : kind.rates) rows.push_back(rowOf(settings, kind, rate));
+  for (const std::vector<Kind>& all : {kinds(), sensorKinds()}) {
+    for (const Kind& kind : all) {
+      for (const double rate : kind.rates) rows.push_back(rowOf(settings, kind, rate));
+    }
   }
   return rows;
 }

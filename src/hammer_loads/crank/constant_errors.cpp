@@ -37,6 +37,12 @@ void ConstantErrors::consider(int constant, double deviation) noexcept {
   root_ = covarianceRoot(moment_);
 }
 
+void ConstantErrors::stepZero(double variance) noexcept {
+  stepped_ += variance;
+  moment_(kZero, kZero) += variance;
+  root_ = covarianceRoot(moment_);
+}
+
 ConstantErrors::ConstantErrors(const Vector& prior) noexcept : prior_(prior) {
   fit_.begin(prior_);
   considerPriors();
@@ -77,6 +83,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   moment_ = square(kUnseenDeviations / unmodelled) * growth * covariance + certain * certain.transpose();
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
+  moment_(kZero, kZero) += stepped_;
   considerPriors();
   root_ = covarianceRoot(moment_);
   fit_.fade(1.0 - 1.0 / kMemoryTurns);

@@ -21,8 +21,8 @@ namespace hammer_loads {
 class ConstantErrors {
  public:
   static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();
-  static constexpr int kSupply = indexOfUnknown("supply"), kShare = indexOfUnknown("share"),
-                       kLatency = indexOfUnknown("latency");
+  static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
+                       kShare = indexOfUnknown("share"), kLatency = indexOfUnknown("latency");
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< of the table's alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
@@ -60,6 +60,8 @@ class ConstantErrors {
 
   /// Standard deviation of a constant that is considered, known better now.
   void consider(int constant, double deviation) noexcept;
+  /// The encoder's zero has been moved by what is known with this variance [rad2].
+  void stepZero(double variance) noexcept;
   /// The supply's stiffness has been changed by this much [SupplyLaw::unit].
   void takeSupply(double change) noexcept;
   /// 0 before some turns. deviation: of the sensor's place alone.
@@ -95,6 +97,7 @@ class ConstantErrors {
       Eigen::Matrix<double, kPlace, kMachineColumns>::Zero()};  ///< what the hammer's errors make of fit_'s score
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
+  double stepped_{};         ///< variance of the zero's steps [rad2]
   int turns_{}, samples_{};  ///< samples: of this turn
 };
 

@@ -24,6 +24,7 @@ constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
+constexpr double kNotSlip = 0.1;           // [rad] from the blow: there the tool stops and throws the crank
 constexpr double kPartOfInterval = 0.3;    // of one: what a reading ahead by whole ones may miss them by
 constexpr double kUnexplained = 3.0;       // mean innovation^2 over its variance
 constexpr double kUnlearnEvery = 3.0;      // [s]
@@ -215,7 +216,12 @@ bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const
 
 /// What lies before this sample is not known any more; a speed that was kept from there and is contradicted again is
 /// wrong itself.
-Tracking CrankFilter::begin(const WeighedSample& sample) noexcept {
+Tracking CrankFilter::begin(WeighedSample sample) noexcept {
+  if (slip_.isFresh()) {  // readings that were damaged for a while
+    encoder_.slip(-slip_.last());
+    sample.angle = CrankAngle::wrapToPi(sample.angle + slip_.last());
+    slip_.takeBack();
+  }
   restart_load_ += 1.0;
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
   anchor(sample);
@@ -284,7 +290,7 @@ double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
 bool CrankFilter::mayHaveSlipped(const WeighedSample& sample) const noexcept {
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
-  return at_work && !mirrored_ && !rival_.isThere() && nearest > kAtBlow;
+  return at_work && !mirrored_ && !rival_.isThere() && nearest > kNotSlip;
 }
 
 /// Steps (1) to (10) are those of model.md 6.
@@ -306,7 +312,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     innovation = sample.ofAngle(now_);
   }
   if (has_speed_) {
-    const double by_torque = 2.0 * square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
+    // From the largest one way to the largest the other way: half its change times the square of the time.
+    const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
     const bool possible = lost_time_ == 0.0 && mayHaveSlipped(sample);
     const EncoderSlip::Step step =
         slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_, possible);
@@ -316,6 +323,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     }
     if (step == EncoderSlip::Step::kSlipped) {
       encoder_.slip(slip_.last());
+      errors_.stepZero(square(slip_.deviation()));
       sample.angle = CrankAngle::wrapToPi(sample.angle - slip_.last());
       innovation = sample.ofAngle(now_);
     }

@@ -127,7 +127,6 @@ class CrankFilter final : public CrankTracker {
 
  private:
   static constexpr double kLearnSpeed = 5.0;  ///< [rad/s]: a slower crank is moved by friction and stopped by the tool
-  static constexpr double kAtBlow = 0.3;  ///< [rad] from the blow: no jitter takes a sample further to the other side
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
@@ -167,7 +166,7 @@ class CrankFilter final : public CrankTracker {
   void learnSupply() noexcept;
   void doubtInertia(double dt) noexcept;
   void takeLoad() noexcept;
-  Tracking begin(const WeighedSample& sample) noexcept;
+  Tracking begin(WeighedSample sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
   double mostTorque() const noexcept;
 

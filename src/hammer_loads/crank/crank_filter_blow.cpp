@@ -14,6 +14,7 @@ constexpr double kNearCounts = 4.0;       // counts from the blow within which t
 constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
 constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
+constexpr double kAtBlow = 0.3;  // [rad] from the blow: no jitter takes a sample further to the other side
 
 }  // namespace
 

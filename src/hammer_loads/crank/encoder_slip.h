@@ -9,10 +9,10 @@
 namespace hammer_loads {
 
 /// A crank has inertia: from one reading to the next no torque moves it by more than some milliradians, and what moves
-/// it goes on. A reading that is further off and whose next one is off by the same is of a sensor that has moved; the
-/// step itself says by how much, to the count. Stamps must not jitter by as much, the steps must be of the usual length
-/// (a clock that was set looks alike), and the blow must not be near. A model that is surprised in every turn is wrong
-/// otherwise: some turns without must have gone before.
+/// it goes on. A reading that is suddenly further off, and whose next one is off by the same, is of a sensor that
+/// moved; the step itself says by how much, to the count. Stamps must not jitter by as much, the steps must be of the
+/// usual length (a clock that was set looks alike), and the blow must not be near. A model that is surprised in every
+/// turn is wrong otherwise: some turns without must have gone before.
 class EncoderSlip {
  public:
   enum class Step { kNone, kPerhaps, kSlipped };
@@ -21,22 +21,34 @@ class EncoderSlip {
   /// over that of the one before. possible: place and samples before allow it. kPerhaps: the sample is not to be taken;
   /// only the next one says, whose step then begins at the same sample.
   Step follow(double innovation, double total, double by_torque, double length, bool possible) noexcept {
-    const double seen = std::exchange(seen_, 0.0);
+    const double seen = std::exchange(seen_, 0.0), before = std::exchange(before_, innovation);
     if (seen != 0.0) {
       const bool stays = std::abs(innovation - seen) < kSame * std::abs(seen);
+      before_ = 0.0;  // the sample is another one once the encoder has moved
       if (!stays || length < kShortest + 1.0 || length > kLongest + 1.0) return Step::kNone;
       ++count_;
+      turns_since_ = 0;
       last_ = 0.5 * (innovation + seen), deviation_ = std::sqrt(0.5 * total);
       return Step::kSlipped;
     }
-    if (!possible || std::abs(innovation) < by_torque || !exceeds(innovation, total, gate::kImpossible))
+    const bool jumped = std::abs(before) < kSame * std::abs(innovation);
+    if (!possible || !jumped || std::abs(innovation) < by_torque || !exceeds(innovation, total, gate::kImpossible))
       return Step::kNone;
-    if (std::exchange(quiet_turns_, 0) < kTurnsToTell || std::abs(innovation) > kMost) return Step::kNone;
+    const bool undoes = isFresh() && std::abs(innovation + last_) < kSame * std::abs(last_);
+    const int quiet = std::exchange(quiet_turns_, 0);
+    if ((quiet < kTurnsToTell && !undoes) || std::abs(innovation) > kMost) return Step::kNone;
     if (length < kShortest || length > kLongest) return Step::kNone;
     seen_ = innovation;
     return Step::kPerhaps;
   }
-  void endTurn() noexcept { ++quiet_turns_; }
+  void endTurn() noexcept { ++quiet_turns_, ++turns_since_; }
+  /// The last one is some turns old at most: a step back belongs to it, and a restart says that it was none.
+  bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < kTurnsToTell; }
+  /// The last one was none.
+  void takeBack() noexcept {
+    --count_;
+    last_ = 0.0;
+  }
   int count() const noexcept { return count_; }             ///< since the beginning
   double last() const noexcept { return last_; }            ///< of the crank's angle [rad]
   double deviation() const noexcept { return deviation_; }  ///< of that [rad]
@@ -45,10 +57,13 @@ class EncoderSlip {
   static constexpr double kMost = 0.5;  // [rad]: beyond it the sensor is another one, and the estimate begins anew
   static constexpr double kSame = 0.4;  // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kShortest = 0.6, kLongest = 1.5;  // of the step before
-  static constexpr int kTurnsToTell = 5;
-  double seen_{};  ///< what the sample before was off by [rad]; 0: it was not
+  static constexpr int kTurnsToTell = 5;                    // as many as a supply takes to be known
+  // Guard: EncoderSlip.ACrankThatWasPushedIsNone of kSame
+  // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kLongest, kShortest, kTurnsToTell
+  double before_{};  ///< innovation of the sample before [rad]
+  double seen_{};    ///< the same where it may be a slip; else 0
   double last_{}, deviation_{};
-  int count_{}, quiet_turns_{};
+  int count_{}, quiet_turns_{}, turns_since_{};
 };
 
 }  // namespace hammer_loads

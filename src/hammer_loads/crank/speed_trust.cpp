@@ -10,11 +10,24 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSpeedTurns = 12.0;     // [turns] of lag and scale
+constexpr double kSpeedTurns = 12.0;     // of lag and scale: some 3 s at work
 constexpr double kSpeedSamples = 500.0;  // of what is left
-constexpr double kMostLag = 0.1;          // [s]: more is no filter of a drive that is controlled by it
+constexpr int kFewSpeeds = 50;           // before them nothing is an outlier
+constexpr double kMostLag = 0.1;         // [s]: more is no filter of a drive that is controlled by it
 constexpr double kMostScale = 0.5;
-constexpr double kMostOfOne = 0.999;
+constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
+constexpr double kNotableScale = 0.01;  // likewise
+constexpr double kReleased = 0.5;       // of these and of the deviations: where what was seen is given up
+constexpr double kMostOfOne = 0.999;    // of a correlation
+constexpr double kSingular = 1e-9;      // of the diagonal's product: an even speed shows no lag
+// Guard: SpeedTrust.FindsTheLagOfAFilterWithItsDeviation of kSpeedTurns, kNotableLag, kMostLag
+// Guard: SpeedTrust.ErrorsThatHangTogetherWeighLess of kSpeedSamples
+// Guard: SpeedTrust.FindsAScaleApartFromALag of kNotableScale, kMostScale
+
+bool isSeen(double amount, double notable, double deviation, bool before) noexcept {
+  const double part = before ? kReleased : 1.0;
+  return std::abs(amount) > part * std::max(notable, gate::kVeryRare * deviation);
+}
 
 }  // namespace
 
@@ -31,7 +44,7 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
   acceleration_ = now.acceleration;
   const double filtered = now.speed - behind_;
   double residual = now.measured - (1.0 + scale_) * filtered;
-  if (samples_ > 50) {
+  if (samples_ > kFewSpeeds) {
     const double most = gate::kImpossible * std::sqrt(square_);
     residual = std::clamp(residual, -most, most);
   }
@@ -57,7 +70,7 @@ void SpeedTrust::endTurn() noexcept {
   if (samples_ == 0) return;
   ++turns_;
   const double determinant = information_.determinant();
-  if (!(determinant > 1e-9 * information_(0, 0) * information_(1, 1))) return;
+  if (!(determinant > kSingular * information_(0, 0) * information_(1, 1))) return;
   const Eigen::Matrix2d covariance = information_.inverse();
   Eigen::Vector2d change = covariance * score_;
   change[0] = std::clamp(lag_ + change[0], -kMostLag, kMostLag) - lag_;
@@ -67,11 +80,8 @@ void SpeedTrust::endTurn() noexcept {
   const double rho = std::clamp(product_ / square_, 0.0, kMostOfOne);
   deviation_ = (square_ * (1.0 + rho) / (1.0 - rho) * covariance.diagonal()).cwiseSqrt();
   information_ *= 1.0 - 1.0 / kSpeedTurns, score_ *= 1.0 - 1.0 / kSpeedTurns;
-  const auto isSeen = [](double amount, double notable, double deviation, bool before) {
-    return std::abs(amount) > std::max(before ? 0.5 * notable : notable, (before ? 2.0 : 4.0) * deviation);
-  };
-  lags_ = isSeen(lag_, 5e-4, deviation_[0], lags_);
-  out_of_scale_ = isSeen(scale_, 0.01, deviation_[1], out_of_scale_);
+  lags_ = isSeen(lag_, kNotableLag, deviation_[0], lags_);
+  out_of_scale_ = isSeen(scale_, kNotableScale, deviation_[1], out_of_scale_);
 }
 
 }  // namespace hammer_loads

@@ -42,13 +42,13 @@ class SpeedTrust {
   /// By which the variance of a speed grows, as its errors are no white noise: (1 + rho)/(1 - rho), >= 1. What the
   /// estimate's own error explains of rho does not count.
   double varianceFactor() const noexcept { return (1.0 + memory()) / (1.0 - memory()); }
-  double lag() const noexcept { return lag_; }                         ///< > 0: late [s]
-  double lagDeviation() const noexcept { return deviation_[0]; }       ///< [s]
-  double scale() const noexcept { return scale_; }                     ///< measured over true speed, less 1 [-]
-  double scaleDeviation() const noexcept { return deviation_[1]; }     ///< [-]
+  double lag() const noexcept { return lag_; }                      ///< > 0: late [s]
+  double lagDeviation() const noexcept { return deviation_[0]; }    ///< [s]
+  double scale() const noexcept { return scale_; }                  ///< measured over true speed, less 1 [-]
+  double scaleDeviation() const noexcept { return deviation_[1]; }  ///< [-]
 
  private:
-  static constexpr int kTurnsToKnow = 5;      // some 1 s at work
+  static constexpr int kTurnsToKnow = 5;  // some 1 s at work. Guard: SpeedTrust.IsSilentBeforeItKnows
 
   double memory() const noexcept;
 
@@ -56,10 +56,10 @@ class SpeedTrust {
   Eigen::Vector2d score_{Eigen::Vector2d::Zero()}, deviation_{Eigen::Vector2d::Zero()};
   double lag_{}, scale_{};
   bool begun_{}, lags_{}, out_of_scale_{};
-  double behind_{}, by_lag_{};              ///< at the last sample: speed - y [rad/s], and its derivative by the lag
-  double acceleration_{};                   ///< likewise
-  double residual_{};                       ///< of the last sample
-  double square_{}, product_{}, known_{};   ///< running means: of residual^2, of neighbours, of the estimate's variance
+  double behind_{}, by_lag_{};             ///< at the last sample: speed - y [rad/s], and its derivative by the lag
+  double acceleration_{};                  ///< likewise
+  double residual_{};                      ///< of the last sample
+  double square_{}, product_{}, known_{};  ///< running means: of residual^2, of neighbours, of the estimate's variance
   int samples_{};
   int turns_{};
 };

@@ -23,12 +23,15 @@ class StampRounding {
     rounded_ = uneven_ > kMany / 10;
     stamps_ = 1, uneven_ = 0;
   }
-  double step() const noexcept { return rounded_ && step_ < kSteps.size() ? 1e-9 * static_cast<double>(kSteps[step_]) : 0.0; }  ///< [s]
+  double step() const noexcept {
+    return rounded_ && step_ < kSteps.size() ? 1e-9 * static_cast<double>(kSteps[step_]) : 0.0;
+  }  ///< [s]
 
  private:
   static constexpr std::array<std::int64_t, 6> kSteps{10000000, 5000000, 2000000, 1000000, 500000, 100000};  ///< [ns]
   static constexpr std::int64_t kTolerance = 1000;  // [ns]: of stamps that were numbers of seconds on their way
   static constexpr int kMany = 100;                 // stamps that are judged together
+  // Guard: StampRounding.FindsTheStep of kMany; StampRounding.FineStampsHaveNone of kTolerance
 
   static bool isWhole(std::int64_t difference, std::int64_t step) noexcept {
     const std::int64_t rest = std::llabs(difference) % step;

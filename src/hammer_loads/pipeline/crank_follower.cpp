@@ -98,10 +98,8 @@ CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {
 
 /// The readings say more of the step's length than stamps that jitter.
 void CrankFollower::followLostTime() noexcept {
-  if (tracker_->slips() > slips_) {
-    slips_ = tracker_->slips();
-    slipped_ = stamp_;
-  }
+  if (tracker_->slips() > slips_) slipped_ = stamp_;
+  slips_ = tracker_->slips();
   const double lost = tracker_->lostTime();
   if (!(lost > 0.0)) return;
   stamp_ = sequence_.skip(lost);

@@ -43,7 +43,7 @@ void warnOfReadings(const CrankFollower& crank, const CrankFilter& filter, std::
                                1e3 * crank.stamps().rounding()),
                         true});
   const EncoderSlip& slip = filter.encoderSlip();
-  if (crank.slipped() && slip.count() > 0)
+  if (crank.slipped() && slip.last() != 0.0)
     warnings.push_back(
         {"slip",
          format("crank_zero_rad: the encoder slipped by %.2g deg (%.3g rad, deviation %.1g rad) at stamp %.1f s; since "

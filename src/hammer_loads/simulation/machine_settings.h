@@ -111,8 +111,8 @@ struct CrankSensorSettings {
   std::vector<Interval> drop_outs;  ///< instants in [from, to) give no sample
   /// The encoder has slipped on its shaft, or its counter has lost its reference, until it is found again.
   struct Slip {
-    double amount{};                ///< of the encoder's angle [rad]
-    Interval during{0.0, kNever};   ///< [s]
+    double amount{};               ///< of the encoder's angle [rad]
+    Interval during{0.0, kNever};  ///< [s]
   } slip;
 };
 

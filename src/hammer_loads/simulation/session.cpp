@@ -129,9 +129,10 @@ void SessionStream::advanceTo(double time, Session& session) {
 void SessionStream::takeCrank(Session& session) {
   const auto& lost = settings_.crank.drop_outs;
   const bool lost_one = loss_draws_.uniform() < settings_.crank.loss_share;
-  const bool dropped = lost_one || std::any_of(lost.begin(), lost.end(), [&](const CrankSensorSettings::Interval& interval) {
-    return next_sample_ >= interval.from && next_sample_ < interval.to;
-  });
+  const bool dropped =
+      lost_one || std::any_of(lost.begin(), lost.end(), [&](const CrankSensorSettings::Interval& interval) {
+        return next_sample_ >= interval.from && next_sample_ < interval.to;
+      });
   if (!dropped) {
     moveTo(next_sample_);
     take(session);

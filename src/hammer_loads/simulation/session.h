@@ -86,7 +86,7 @@ class SessionStream {
   void take(Session& session);
   CrankReading read(const CrankTruth& truth, double stamp_error, double speed_error) noexcept;
   double measuredSpeed(double shown, double error) const noexcept;  ///< both [rad/s]
-  OnBoomSensors onBoomAt(double time);  ///< of a hull on its boom, moved there
+  OnBoomSensors onBoomAt(double time);                              ///< of a hull on its boom, moved there
   JointReading readJoints(double time);
   HullImuReading readImu(double time);
   PressureReading readPressures(double time);

@@ -1,0 +1,77 @@
+// Which innovations are a slip of the encoder, and which are the crank's.
+#include "hammer_loads/crank/encoder_slip.h"
+
+#include <gtest/gtest.h>
+
+namespace hammer_loads {
+namespace {
+
+using Step = EncoderSlip::Step;
+constexpr double kVariance = 2.5e-7, kByTorque = 1e-3;  // [rad2], [rad]
+
+EncoderSlip quiet() {
+  EncoderSlip slip;
+  for (int i = 0; i < 10; ++i) slip.endTurn();
+  slip.follow(1e-4, kVariance, kByTorque, 1.0, true);
+  return slip;
+}
+
+TEST(EncoderSlip, IsWhatStaysAfterAJump) {
+  EncoderSlip slip = quiet();
+  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
+  EXPECT_EQ(slip.follow(0.036, kVariance, kByTorque, 2.0, true), Step::kSlipped);
+  EXPECT_NEAR(slip.last(), 0.0355, 1e-12);
+  EXPECT_EQ(slip.count(), 1);
+  EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, 1.0, true), Step::kNone);
+}
+
+TEST(EncoderSlip, ADamagedReadingIsNone) {
+  EncoderSlip slip = quiet();
+  EXPECT_EQ(slip.follow(0.1, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
+  EXPECT_EQ(slip.follow(2e-4, kVariance, kByTorque, 2.0, true), Step::kNone);
+  EXPECT_EQ(slip.count(), 0);
+}
+
+/// Pushed at some time within the step: after the next one it is off by at least twice as much.
+TEST(EncoderSlip, ACrankThatWasPushedIsNone) {
+  for (const double part : {0.2, 0.6, 1.0}) {
+    EncoderSlip slip = quiet();
+    const double push = 20.0, dt = 1e-3;
+    slip.follow(push * part * dt, kVariance, kByTorque, 1.0, true);
+    EXPECT_NE(slip.follow(push * (part + 1.0) * dt, kVariance, kByTorque, 2.0, true), Step::kSlipped) << part;
+  }
+}
+
+TEST(EncoderSlip, NorIsAModelThatFallsBehindByAndBy) {
+  EncoderSlip slip = quiet();
+  for (int i = 1; i < 40; ++i) EXPECT_EQ(slip.follow(-5e-4 * i, kVariance, kByTorque, 1.0, true), Step::kNone);
+}
+
+TEST(EncoderSlip, NorAClockThatWasSetNorASurpriseOfEachTurn) {
+  EncoderSlip slip = quiet();
+  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 3.0, true), Step::kNone);  // three steps late
+  EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, 1.0, true), Step::kNone);
+  slip.endTurn();
+  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 1.0, true), Step::kNone);  // and the turn before
+}
+
+/// Readings that were damaged for a while, and an index that is found again.
+TEST(EncoderSlip, AStepBackIsOneAtOnce) {
+  EncoderSlip slip = quiet();
+  slip.follow(0.035, kVariance, kByTorque, 1.0, true);
+  slip.follow(0.035, kVariance, kByTorque, 2.0, true);
+  slip.follow(1e-4, kVariance, kByTorque, 1.0, true);
+  EXPECT_TRUE(slip.isFresh());
+  EXPECT_EQ(slip.follow(-0.0352, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
+  EXPECT_EQ(slip.follow(-0.0350, kVariance, kByTorque, 2.0, true), Step::kSlipped);
+  for (int i = 0; i < 5; ++i) slip.endTurn();
+  EXPECT_FALSE(slip.isFresh());
+}
+
+TEST(EncoderSlip, NorWhatTheTorqueCanDo) {
+  EncoderSlip slip = quiet();
+  EXPECT_EQ(slip.follow(0.035, kVariance, 0.04, 1.0, true), Step::kNone);
+}
+
+}  // namespace
+}  // namespace hammer_loads
