@@ -376,6 +376,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
 void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept {
   if (std::abs(now_.state.speed) <= kLearnSpeed) return;
   consistency_.add(ratio);
+  rod_evidence_.add(now_.state.position.angle, ratio);
   if (now_.state.position.angle.side == Side::kBeforeBlow)
     strike_consistency_.add(ratio);
   else

@@ -13,6 +13,7 @@
 #include "hammer_loads/crank/encoder_slip.h"
 #include "hammer_loads/crank/estimate_between.h"
 #include "hammer_loads/crank/speed_trust.h"
+#include "hammer_loads/crank/rod_evidence.h"
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/timing_noise.h"
@@ -117,6 +118,8 @@ class CrankFilter final : public CrankTracker {
   const ConstantErrors& constantErrors() const noexcept { return errors_; }
   /// Steps of the encoder on its shaft, which the filter has followed.
   const EncoderSlip& encoderSlip() const noexcept { return slip_; }
+  /// Whether and where innovations say that the rod gives.
+  const RodEvidence& rodEvidence() const noexcept { return rod_evidence_; }
   /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Innovations stay far larger than the model explains, whatever the drive inertia.
@@ -183,6 +186,7 @@ class CrankFilter final : public CrankTracker {
   LearnedSupply supply_;
   Consistency consistency_;
   StrikeConsistency strike_consistency_;
+  RodEvidence rod_evidence_;
   ConstantErrors errors_;
   BlowHistory blows_;
   CrankBelief now_;                ///< at the last sample, corrected by it

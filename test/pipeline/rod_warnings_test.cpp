@@ -1,0 +1,108 @@
+// What is said of machines whose rod gives, and of sensors that are off on them: rods that no constant was set by.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hammer_loads/pipeline/warnings.h"
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/session.h"
+#include "hammer_loads/util/constants.h"
+
+namespace hammer_loads {
+namespace {
+
+const Settings& settingsOfRods() {
+  static const Settings settings = *load(configDirectory(), {}).value;
+  return settings;
+}
+
+/// Stiffness 2e8 to 1e10 N/m, damping ratio 0.2 to 3, a third of them without play, the others up to 0.5 mm.
+simulation::MachineSettings drawnMachine(std::mt19937_64& random, std::uint64_t seed) {
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  simulation::MachineSettings s = simulation::workingMo100();
+  s.hammer = settingsOfRods().mechanism.parameters();
+  s.level = Level::kLinkage;
+  s.duration = 14.0;
+  s.drive.stop_time = 20.0;
+  s.seed = seed;
+  s.rod.stiffness = 2e8 * std::pow(50.0, part(random));
+  s.rod.damping_ratio = 0.2 * std::pow(15.0, part(random));
+  s.rod.play = seed % 3 == 0 ? 0.0 : 5e-4 * part(random);
+  s.crank.speed = seed % 2 == 0;
+  for (simulation::JointMotion& joint : s.boom) joint.mean = joint.amplitude = 0.0;
+  return s;
+}
+
+/// The texts of all warnings, one line each, but for that of the pose.
+std::string heardOf(const simulation::MachineSettings& machine, Level level) {
+  PipelineSettings pipeline_settings = settingsOfRods().pipeline;
+  pipeline_settings.level = level;
+  const simulation::Session session = simulation::recordSession(machine);
+  Pipeline pipeline(settingsOfRods().mechanism, pipeline_settings);
+  for (const simulation::CrankReading& reading : session.crank)
+    pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+  std::string text;
+  for (const Warning& warning : warningsOf(pipeline))
+    if (std::string(warning.key) != "pitch joints") text += std::string(warning.key) + ": " + warning.text + "\n";
+  return text;
+}
+
+bool names(const std::string& text, const char* what) { return text.find(what) != std::string::npos; }
+
+TEST(RodWarnings, ARightSensorIsNotBlamedForARodThatGives) {
+  std::mt19937_64 random(4301);
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const simulation::MachineSettings machine = drawnMachine(random, 4300 + i);
+    const std::string text = heardOf(machine, i % 2 == 0 ? Level::kLinkage : Level::kElastic);
+    SCOPED_TRACE(testing::Message() << machine.rod.stiffness << " N/m, " << machine.rod.damping_ratio << ", "
+                                    << machine.rod.play << " m\n"
+                                    << text);
+    EXPECT_TRUE(names(text, "rod, pins and bearings give"));
+    for (const char* innocent : {"run calibrate", "eccentric", "coupling", "masses", "hammer file"})
+      EXPECT_FALSE(names(text, innocent)) << innocent;
+  }
+}
+
+/// Coarse or rare readings show less of the rod, and less of the zero.
+TEST(RodWarnings, NorByCoarseOrRareReadings) {
+  std::mt19937_64 random(4302);
+  for (std::uint64_t i = 0; i < 9; ++i) {
+    simulation::MachineSettings machine = drawnMachine(random, 4330 + i);
+    const double rates[] = {1000.0, 500.0, 200.0};
+    machine.crank.rate = rates[i % 3];
+    machine.crank.counts = i % 3 == 0 ? 1024 : 4096;
+    const std::string text = heardOf(machine, Level::kLinkage);
+    SCOPED_TRACE(testing::Message() << machine.rod.stiffness << " N/m, " << machine.rod.damping_ratio << ", "
+                                    << machine.rod.play << " m\n"
+                                    << text);
+    for (const char* innocent : {"run calibrate", "eccentric", "coupling", "masses", "hammer file"})
+      EXPECT_FALSE(names(text, innocent)) << innocent;
+  }
+}
+
+/// The other way round: a rigid rod is not blamed for a sensor or a shaft.
+TEST(RodWarnings, ARigidRodIsNotBlamed) {
+  std::mt19937_64 random(4303);
+  const simulation::MachineSettings base = drawnMachine(random, 4350);
+  const auto rigid = [&](const auto& flaw) {
+    simulation::MachineSettings machine = base;
+    machine.rod = {};
+    flaw(machine);
+    return heardOf(machine, Level::kLinkage);
+  };
+  for (const double off : {1.0, -1.0, 2.0}) {
+    const std::string text = rigid([&](auto& m) { m.crank.zero = off * kDegree; });
+    EXPECT_TRUE(names(text, "zero: ")) << off << text;
+    EXPECT_FALSE(names(text, "rod, pins")) << off << text;
+  }
+  EXPECT_FALSE(names(rigid([](auto& m) { m.crank.eccentricity[0] = {1.2 * kDegree, 0.7}; }), "rod, pins"));
+  EXPECT_FALSE(names(rigid([](auto& m) { m.strike = {}, m.blow.tool_early = 0.05; }), "rod, pins"));
+  EXPECT_FALSE(names(rigid([](auto& m) { m.blow.blank_share = 0.1; }), "rod, pins"));
+  EXPECT_EQ(rigid([](auto&) {}), "");
+  const std::string coupling = rigid([](auto& m) { m.drive.coupling_frequency = 50.0; });
+  EXPECT_FALSE(names(coupling, "rod, pins")) << coupling;
+  EXPECT_TRUE(names(coupling, "coupling")) << coupling;
+}
+
+}  // namespace
+}  // namespace hammer_loads
