@@ -21,6 +21,7 @@ Settings drawing(const std::map<std::string, double>& known) {
   Settings settings = *load(configDirectory(), {}).value;
   HammerParameters p = settings.mechanism.parameters();
   p.deviations = {};
+  p.rod_deviation = {};
   p.crank_mass = p.crank_inertia_about_com = p.rod_mass = p.rod_inertia_about_com = 0.0;
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
     const auto found = known.find(kHammerConstants[i].key);

@@ -26,7 +26,10 @@ TEST(Drawing, ErrorsOfMachinesDrawnFromItAreWithinTheDeviations) {
     amplitude += row.amplitude.covered / kDrawings;
     ranges += row.range.covered > 0.5;
   }
-  for (const double part : covered) EXPECT_GT(part, 0.88);
+  for (const double part : covered) {
+    EXPECT_GT(part, 0.88);
+    EXPECT_LT(part, 0.995);  // nor are they too large
+  }
   // A drawing's errors are alike in all its turns: one of six may be beyond two deviations.
   for (const double part : {energy, impulse, amplitude}) EXPECT_GT(part, 0.8);
   EXPECT_GE(ranges, kDrawings - 1);

@@ -139,6 +139,26 @@ TEST(HammerParameters, TheRodsSpringIsOptional) {
   EXPECT_EQ(problemsWith({}, "rod_stiffness_N_m: 10\nrod_damping_ratio: -1\npin_play_m: 0.1\n").size(), 3U);
 }
 
+TEST(HammerParameters, TheRodIsInDoubtUnlessTheFileSaysOtherwise) {
+  const auto parametersOf = [](const std::string& more) {
+    const TemporaryFile file(hammerYaml() + more);
+    return loadFiles(configDirectory(), {file.path()}).value->mechanism.parameters();
+  };
+  const HammerParameters usual = parametersOf(""), known = parametersOf("rod_stiffness_N_m: 1e9\n");
+  EXPECT_EQ(usual.rod_deviation.stiffness, 4e8);
+  EXPECT_EQ(usual.rod_deviation.play, 1e-4);
+  EXPECT_EQ(known.rod_deviation.stiffness, 2e8);
+  EXPECT_TRUE(priorOf(usual.rod, usual.rod_deviation).gives);
+  const HammerParameters weighed =
+      parametersOf("rod_stiffness_deviation_N_m: 1e8\nrod_damping_ratio_deviation: 0.1\npin_play_deviation_m: 5e-5\n");
+  EXPECT_EQ(weighed.rod_deviation.stiffness, 1e8);
+  EXPECT_EQ(weighed.rod_deviation.damping_ratio, 0.1);
+  EXPECT_EQ(weighed.rod_deviation.play, 5e-5);
+  const HammerParameters rigid = parametersOf("rod_stiffness_deviation_N_m: 0\npin_play_deviation_m: 0\n");
+  EXPECT_FALSE(priorOf(rigid.rod, rigid.rod_deviation).gives);
+  EXPECT_EQ(problemsWith({}, "rod_stiffness_deviation_N_m: -1\n").size(), 1U);
+}
+
 TEST(HammerParameters, RefusesAnImpossibleLinkageWithItsNumbers) {
   const Lines problems = problemsWith({{"rod_length_m", "0.151"}});
   ASSERT_EQ(problems.size(), 1U);

@@ -31,6 +31,12 @@ HammerParameters drawn(HammerParameters p, std::uint64_t seed, double off) {
   return drawing;
 }
 
+/// The machines that are drawn have rigid rods, and the file says so.
+Mechanism withRigidRod(HammerParameters p) {
+  p.rod_deviation = {};
+  return *Mechanism::make(p).value;
+}
+
 /// Of samples or of figures of which there is one a turn.
 class FigureErrors {
  public:
@@ -70,7 +76,8 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
   machine.seed = seed;
   machine.crank.drop_outs.clear();
   const simulation::Session session = simulation::recordSession(machine);
-  SessionPlayer player(settings.mechanism, settings.pipeline, {}, session);
+  const Mechanism mechanism = withRigidRod(settings.mechanism.parameters());
+  SessionPlayer player(mechanism, settings.pipeline, {}, session);
   DrawingRow row;
   row.seed = seed;
   std::array<double, 3> peak{};

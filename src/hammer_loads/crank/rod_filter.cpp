@@ -10,12 +10,8 @@
 namespace hammer_loads {
 namespace {
 
-// First guess where the hammer file gives none; a rod's stiffness and damping are in no source.
-constexpr double kFirstStiffness = 8e8, kFirstDamping = 0.4;      // [N/m], [-]
-constexpr double kGuessed[] = {0.5, 0.8}, kGiven[] = {0.2, 0.4};  // deviations of their logarithms
 constexpr double kFirstRestitution = 0.16, kRestitutionDeviation = 0.1;
 constexpr double kPlaceDeviation = 5e-3;                                // [rad]: a millimetre
-constexpr double kPlayDeviation = 1e-4;                                 // [m]
 constexpr double kWalks[] = {0.02, 0.005, 0.01, 5e-6, 3e-3};            // of the learned rows from blow to blow
 constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
 constexpr double kLongest = 2.5e-4, kLongestLater = 5e-4;  // [s] of a part: near the blow the lever changes fast
@@ -29,16 +25,14 @@ constexpr double kAgrees = 2.0, kContradicts = 4.0;  // mean innovation^2 over i
 }  // namespace
 
 RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(mechanism) {
-  const RodSpring& given = mechanism.parameters().rod;
-  const bool stiffness = given.stiffness > 0.0, damping = given.damping_ratio > 0.0;
-  const double play = pins == Pins::kPlay ? kPlayDeviation : 0.0;
-  learned_.play = pins == Pins::kPlay && given.play > 0.0 ? given.play : play;
+  const RodPrior prior = priorOf(mechanism.parameters().rod, mechanism.parameters().rod_deviation);
+  const double play = pins == Pins::kPlay ? prior.play : 0.0;
+  learned_.play = pins == Pins::kPlay && prior.rod.play > 0.0 ? prior.rod.play : play;
   learned_.restitution = kFirstRestitution;
-  learned_.log_stiffness = std::log(stiffness ? given.stiffness : kFirstStiffness);
-  learned_.log_damping = std::log(damping ? given.damping_ratio : kFirstDamping);
+  learned_.log_stiffness = std::log(prior.rod.stiffness);
+  learned_.log_damping = std::log(prior.rod.damping_ratio);
   Eigen::Matrix<double, kLearned, 1> deviations;
-  deviations << kRestitutionDeviation, (stiffness ? kGiven : kGuessed)[0], (damping ? kGiven : kGuessed)[1], play,
-      kPlaceDeviation;
+  deviations << kRestitutionDeviation, prior.log_stiffness, prior.log_damping, play, kPlaceDeviation;
   learned_covariance_ = deviations.cwiseAbs2().asDiagonal();
   first_ = learned_;
   first_covariance_ = learned_covariance_;

@@ -31,7 +31,8 @@ struct HammerParameters {
   double rod_inertia_about_com{};       ///< [kg m2], >= 0
   double drive_inertia{};               ///< motor and flywheel on the crank's shaft [kg m2], > 0; a first guess
   double drive_reaction_ratio{1.0};     ///< r of DriveReaction [-], finite
-  RodSpring rod;                        ///< of level elastic alone; what is 0 in it is learned from a first guess
+  RodSpring rod;                        ///< what is 0 in it is not known: see priorOf()
+  RodSpring rod_deviation;              ///< standard deviations of it, >= 0
   HammerDeviations deviations{};        ///< what is known of the above but the spring; all exact where nothing is said
 };
 

@@ -15,4 +15,32 @@ struct RodSpring {
   double damping() const noexcept { return 2.0 * damping_ratio * stiffness / kReference; }  ///< [N s/m]
 };
 
+/// What is known of a rod before any reading: no source gives one, so guesses stand in for what a file leaves out.
+struct RodPrior {
+  RodSpring rod;
+  double log_stiffness{}, log_damping{};  ///< standard deviations of their logarithms
+  double play{};                          ///< standard deviation [m]
+  bool gives{};                           ///< false: the rod is said to be rigid, its pins to be tight
+
+  static constexpr double kStiffness = 8e8, kDamping = 0.4;  ///< 4e8 to 1e9 N/m and 0.2 to 0.6: estimates
+  static constexpr double kStiffest = 1e11;                  ///< stands for a rigid rod [N/m]
+};
+
+/// Standard deviations where a file says nothing; 0 in the rod: not known.
+inline RodSpring usualDeviation(const RodSpring& rod) noexcept {
+  return {rod.stiffness > 0.0 ? 0.2 * rod.stiffness : 0.5 * RodPrior::kStiffness,
+          rod.damping_ratio > 0.0 ? 0.4 * rod.damping_ratio : 0.8 * RodPrior::kDamping, 1e-4};
+}
+
+/// deviation: standard, in the units of the rod. A stiffness that is neither known nor in doubt is that of a rigid rod.
+inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexcept {
+  RodPrior prior{rod, 0.0, 0.0, deviation.play, true};
+  if (!(rod.stiffness > 0.0)) prior.rod.stiffness = deviation.stiffness > 0.0 ? prior.kStiffness : prior.kStiffest;
+  if (!(rod.damping_ratio > 0.0)) prior.rod.damping_ratio = prior.kDamping;
+  prior.log_stiffness = deviation.stiffness / prior.rod.stiffness;
+  prior.log_damping = deviation.damping_ratio / prior.rod.damping_ratio;
+  prior.gives = rod.stiffness > 0.0 || deviation.stiffness > 0.0 || rod.play > 0.0 || deviation.play > 0.0;
+  return prior;
+}
+
 }  // namespace hammer_loads

@@ -34,7 +34,8 @@ bool isOver(const RodFilter& rod) noexcept {
 
 ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
     : model_(&model),
-      wanted_(level == Level::kElastic),
+      wanted_(level == Level::kElastic &&
+              priorOf(model.mechanism().parameters().rod, model.mechanism().parameters().rod_deviation).gives),
       filters_{RodFilter(model.mechanism(), RodFilter::Pins::kTight),
                RodFilter(model.mechanism(), RodFilter::Pins::kPlay)} {}
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/linkage/oscillator.h"
 #include "hammer_loads/util/square.h"
@@ -22,15 +23,26 @@ double acceleration(const Oscillator& rod, double y, double speed) noexcept {
   return std::sqrt(0.5 * now + std::max(0.5 * now, 0.5 * square(rod.square) * size));
 }
 
-/// Over a time, by a lever^2 over I; the acceleration after it.
-double moved(const RodSpring& spring, double by_lever, double rigid, double time, double& x, double& speed) noexcept {
+double fly(double rigid, double time, double& x, double& speed) noexcept {
+  x += time * (speed - 0.5 * time * rigid);
+  speed -= time * rigid;
+  return std::abs(rigid);
+}
+
+/// Over a time; the acceleration after it.
+double moved(const RodSpring& spring, double lever, double inertia, double rigid, double time, double& x,
+             double& speed) noexcept {
+  const double by_lever = square(lever) / inertia, free = 0.5 * spring.play / std::abs(lever);
   const Oscillator rod{spring.stiffness * by_lever, 0.5 * spring.damping() * by_lever};
-  if (rod.square * square(time) < square(kBallistic)) {
-    x += time * (speed - 0.5 * time * rigid);
-    speed -= time * rigid;
-    return std::abs(rigid);
+  if (rod.square * square(time) < square(kBallistic)) return fly(rigid, time, x, speed);
+  if (std::abs(x) < free) {
+    const double edge = std::copysign(free, speed), to_edge = (edge - x) / speed;
+    if (!(to_edge < time)) return fly(rigid, time, x, speed);
+    fly(rigid, to_edge, x, speed);
+    x = edge;
+    time -= to_edge;
   }
-  const double rest_at = -rigid / rod.square;
+  const double rest_at = std::copysign(std::min(free, std::abs(x)), x) - rigid / rod.square;
   double y = x - rest_at;
   rod.move(time, y, speed);
   x = y + rest_at;
@@ -39,9 +51,18 @@ double moved(const RodSpring& spring, double by_lever, double rigid, double time
 
 }  // namespace
 
+Rods rodsOf(const RodPrior& prior) noexcept {
+  const auto rod = [&](double damping, double play) {
+    return RodSpring{prior.rod.stiffness, prior.rod.damping_ratio * std::exp(damping * prior.log_damping), play};
+  };
+  return {rod(-1.0, prior.rod.play), rod(1.0, prior.rod.play), rod(0.0, prior.rod.play + gate::kUsual * prior.play)};
+}
+
 RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
-  const HammerDeviations& deviations = model.mechanism().parameters().deviations;
-  gives_ = std::any_of(deviations.begin(), deviations.end(), [](double deviation) { return deviation > 0.0; });
+  const HammerParameters& p = model.mechanism().parameters();
+  const RodPrior prior = priorOf(p.rod, p.rod_deviation);
+  gives_ = prior.gives;
+  rods_ = rodsOf(prior);
 }
 
 void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {
@@ -53,7 +74,7 @@ void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) 
   const double doubt = std::hypot(measured, kRestitutionDoubt) * at.u_before * passage.speed_before;
   const double missing = rocker - at.u_after * blow.mean * passage.speed_before;
   rings_ = true;
-  rods_.fill({0.0, std::copysign(std::hypot(missing, doubt), missing)});
+  states_.fill({0.0, std::copysign(std::hypot(missing, doubt), missing)});
 }
 
 void RodRing::move(const CrankStep& step, double from, double to) noexcept {
@@ -67,12 +88,12 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
     crank.position.slide(-crank.speed * (step.length() - from - (i + 0.5) * time));
     if (crank.position.angle.side == Side::kBeforeBlow || !(crank.speed > 0.0)) return rest();
     const LinkMotion links = linkMotion(model_->mechanism().linkage(), crank.position.angle);
-    const double lever = p.lengths.rocker * links.sin_mu, by_lever = square(lever) / p.rocker_inertia_about_pivot;
+    const double lever = p.lengths.rocker * links.sin_mu;
     const double rigid = links.rocker.du * square(crank.speed) + links.rocker.u * crank.acceleration;
     double sum = 0.0;
-    for (std::size_t k = 0; k < kRods.size(); ++k)
-      sum += square(moved(kRods[k], by_lever, rigid, time, rods_[k].x, rods_[k].speed));
-    acceleration_ = std::sqrt(sum / kRods.size());
+    for (std::size_t k = 0; k < rods_.size(); ++k)
+      sum += square(moved(rods_[k], lever, p.rocker_inertia_about_pivot, rigid, time, states_[k].x, states_[k].speed));
+    acceleration_ = std::sqrt(sum / static_cast<double>(rods_.size()));
   }
 }
 

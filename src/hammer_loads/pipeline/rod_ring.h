@@ -9,20 +9,22 @@
 
 namespace hammer_loads {
 
-/// What rods may be: no source gives any. Those with little damping ring longest, those with much are first.
-inline constexpr std::array<RodSpring, 3> kRods{{{8e8, 0.15}, {8e8, 0.6}}};
+/// What a rod may be, as far as its file says: with little damping it rings longest, with much it is first, with worn
+/// pins the rocker flies until their play is taken up.
+using Rods = std::array<RodSpring, 3>;
+Rods rodsOf(const RodPrior& prior) noexcept;
 
 /// The rocker leaves the tool with its own speed, not with that which the linkage has there, and at the dead centre the
 /// rod has no lever h = l3 sin(psi - beta) on it. With x = psi - psi of the rigid linkage,
 ///
 ///     I x'' = -h^2 (k x + c x') - I psi_rigid'',  x(0) = 0,  x'(0) = R |u- w-| - u+ w+
 ///
-/// the rocker picks up as the lever opens, and rings. x'' is missing in a wrench of rigid links; its phase hangs on a
-/// stiffness that is hardly known, its size does not: the mean square over kRods counts. Each step is
-/// that of the oscillator with the lever at its middle.
+/// the rocker picks up as the lever opens, and rings; within the pins' play the spring does nothing. x'' is missing in
+/// a wrench of rigid links; its phase hangs on a stiffness that is hardly known, its size does not: the mean square
+/// over the rods counts. Each step is that of the oscillator with the lever at its middle.
 class RodRing {
  public:
-  /// The rod of a hammer that is said to be exact does not give.
+  /// A rod that is said to be rigid does not ring.
   explicit RodRing(const HullModel& model) noexcept;
 
   /// Nothing rings.
@@ -43,7 +45,8 @@ class RodRing {
   struct State {
     double x{}, speed{};  ///< [rad], [rad/s]
   };
-  std::array<State, kRods.size()> rods_;
+  Rods rods_;
+  std::array<State, std::tuple_size_v<Rods>> states_;
   double acceleration_{};
 };
 

@@ -39,10 +39,13 @@ double inFile(const HammerConstant& constant, double value) {
   return std::string(constant.unit) == "deg" ? value / kDegree : value;
 }
 
-/// Those that the file gives; of the others what is usual, and one note that names them.
-void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::vector<std::string>& notes) {
+void name(const std::string& key, double deviation, std::string& usual) {
+  usual += format("%s%s %.3g", usual.empty() ? "" : ", ", key.c_str(), deviation);
+}
+
+/// Those that the file gives; of the others what is usual, which is named.
+void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::string& usual) {
   parameters.deviations = usualDeviations(parameters);
-  std::string usual;
   for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
     const HammerConstant& constant = kHammerConstants[i];
     const std::string key = deviationKey(constant);
@@ -53,17 +56,35 @@ void readDeviations(ParameterReader& reader, HammerParameters& parameters, std::
         reader.addProblem(format("%s: %.9g %s, no hammer of the other values is so far off", key.c_str(),
                                  inFile(constant, deviation), constant.unit));
     } else if (deviation > 0.0) {
-      usual += format("%s%s %.3g", usual.empty() ? "" : ", ", key.c_str(), inFile(constant, deviation));
+      name(key, inFile(constant, deviation), usual);
     }
   }
-  if (!usual.empty()) notes.push_back("standard deviations not given, the usual ones count: " + usual);
 }
 
-/// All optional.
-void readRod(ParameterReader& reader, RodSpring& rod) {
-  if (reader.given("rod_stiffness_N_m")) rod.stiffness = reader.number("rod_stiffness_N_m", "N/m", kStiffness);
-  if (reader.given("rod_damping_ratio")) rod.damping_ratio = reader.number("rod_damping_ratio", "", kDampingRatio);
-  if (reader.given("pin_play_m")) rod.play = reader.number("pin_play_m", "m", kPlay);
+struct RodKey {
+  const char *key, *deviation, *unit;
+  double RodSpring::*field;
+  NumberRule rule;
+};
+constexpr RodKey kRodKeys[] = {
+    {"rod_stiffness_N_m", "rod_stiffness_deviation_N_m", "N/m", &RodSpring::stiffness, kStiffness},
+    {"rod_damping_ratio", "rod_damping_ratio_deviation", "", &RodSpring::damping_ratio, kDampingRatio},
+    {"pin_play_m", "pin_play_deviation_m", "m", &RodSpring::play, kPlay}};
+
+/// All optional. Of a hammer whose other constants are all exact the rod is so too, unless the file says otherwise.
+void readRod(ParameterReader& reader, HammerParameters& parameters, std::string& usual) {
+  for (const RodKey& k : kRodKeys)
+    if (reader.given(k.key)) parameters.rod.*k.field = reader.number(k.key, k.unit, k.rule);
+  const HammerDeviations& others = parameters.deviations;
+  const bool exact = std::all_of(others.begin(), others.end(), [](double deviation) { return deviation == 0.0; });
+  if (!exact || parameters.rod.stiffness > 0.0) parameters.rod_deviation = usualDeviation(parameters.rod);
+  for (const RodKey& k : kRodKeys) {
+    double& deviation = parameters.rod_deviation.*k.field;
+    if (reader.given(k.deviation))
+      deviation = reader.number(k.deviation, k.unit, NumberRule::within(0.0, 1e12));
+    else if (deviation > 0.0)
+      name(k.deviation, deviation, usual);
+  }
 }
 
 }  // namespace
@@ -79,10 +100,9 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
   const char* ratio = kHammerConstants[kRatio].key;
   if (reader.given(ratio)) parameters.drive_reaction_ratio = reader.number(ratio, "", kRules[kRatio]);
 
-  readRod(reader, parameters.rod);
-
-  std::vector<std::string> of_deviations;
-  readDeviations(reader, parameters, of_deviations);  // known keys, whatever else is wrong
+  std::string usual;
+  readDeviations(reader, parameters, usual);  // known keys, whatever else is wrong
+  readRod(reader, parameters, usual);
   const Checked<Mechanism> mechanism = Mechanism::make(parameters);
   for (const std::string& problem : mechanism.problems) reader.addProblem(problem);
   for (std::size_t i = 0; i < kRatio; ++i) {
@@ -95,7 +115,7 @@ std::optional<Mechanism> readMechanism(ParameterReader& reader, std::vector<std:
     reader.demand("striking_distance_m", "m", parameters.striking_distance,
                   NumberRule::within(kLeastLever * gyration, kMostLever * gyration));
   notes.insert(notes.end(), mechanism.notes.begin(), mechanism.notes.end());
-  notes.insert(notes.end(), of_deviations.begin(), of_deviations.end());
+  if (!usual.empty()) notes.push_back("standard deviations not given, the usual ones count: " + usual);
   if (!reader.given(ratio))
     notes.push_back(std::string(ratio) +
                     ": not given, counts as 1: the hull feels the drive's reaction as of a flywheel on the crank's "
