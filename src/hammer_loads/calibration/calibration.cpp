@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hammer_loads/calibration/first_guess.h"
+#include "hammer_loads/calibration/rod_check.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
@@ -259,6 +260,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   result.before = curveOf(fittedAlone(segments, model, in_force, fit.noise, piece(progress, 0.88, 1.0)), model,
                           in_force, fit.noise);
   addEstimates(result, fit, basis, centred);
+  refuseForRod(rodEvidence(track, basis, fit), result);
   addCorrelations(result, fit);
   addRemarks(result, curve_square);
   countNeeds(result);

@@ -1,0 +1,15 @@
+/// Whether a recording is of a machine whose rod gives: what a rigid one explains is then no zero.
+#pragma once
+
+#include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/crank/rod_evidence.h"
+
+namespace hammer_loads::calibration {
+
+/// What the crank's filter finds with the sensor and the drive of a fit.
+RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
+
+/// Keys that a rigid rod's fit would get wrong are not determined: how far they may be off, and what to do instead.
+void refuseForRod(const RodEvidence& rod, Calibration& result);
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,53 @@
+// Machines whose rod gives: a zero that a rigid rod's fit would move is refused, with the reason.
+#include "hammer_loads/calibration/rod_check.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "calibration/recorded.h"
+#include "hammer_loads/calibration/report.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+Calibration withRod(const simulation::RodSettings& rod, double zero, double rate, std::uint64_t seed) {
+  simulation::MachineSettings s = test::atWork(12.0, rate);
+  s.rod = rod;
+  s.crank.zero = zero;
+  s.seed = seed;
+  const Mechanism mechanism = test::mechanismOf(s);
+  return calibrate(test::recorded(s), test::basisOf(mechanism));
+}
+
+/// "Dead": damping ratio 3. What is not written leaves the loads as they were.
+TEST(RodCheck, NothingIsWrittenThatARodMovesByMoreThanAFifthOfADegree) {
+  std::mt19937_64 random(77);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    const double zero = (2.0 * part(random) - 1.0) * kDegree;
+    const simulation::RodSettings rod{2e8 * std::pow(50.0, static_cast<double>(i) / 7.0), i % 2 == 0 ? 3.0 : 0.4,
+                                      i % 3 == 0 ? 0.0 : 5e-4 * part(random)};
+    SCOPED_TRACE(testing::Message() << rod.stiffness << " N/m, " << rod.damping_ratio << ", " << rod.play << " m");
+    const Calibration c = withRod(rod, zero, i % 4 == 1 ? 500.0 : 1000.0, 770 + i);
+    if (!c.problem.empty()) continue;
+    const Estimate* found = test::find(c, "crank_zero_rad");
+    EXPECT_TRUE(!found->determined() || std::abs(found->value - zero) < 0.2 * kDegree)
+        << found->value / kDegree << " for " << zero / kDegree << " deg";
+    if (found->determined()) continue;
+    EXPECT_EQ(yamlOf(c, "a.bag"), "");
+    EXPECT_NE(textOf(c).find("rod, pins and bearings give"), std::string::npos);
+    EXPECT_NE(textOf(c).find("Turn the crank by hand"), std::string::npos);
+  }
+}
+
+TEST(RodCheck, ARigidRodIsNotSuspected) {
+  for (const double zero : {0.0, 1.0, -1.0}) {
+    const Calibration c = withRod({}, zero * kDegree, 1000.0, 790);
+    EXPECT_TRUE(test::find(c, "crank_zero_rad")->determined()) << zero;
+    EXPECT_EQ(textOf(c).find("rod, pins"), std::string::npos) << zero;
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads::calibration
