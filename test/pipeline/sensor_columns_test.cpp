@@ -25,7 +25,7 @@ simulation::MachineSettings machineAt(double rate, std::uint64_t seed) {
   return s;
 }
 
-struct Judged {
+struct JudgedColumns {
   double x{}, z{}, torque{};  ///< rms over the peak
   double covered{};           ///< of Fx, Fz, moment within two deviations: the least
   std::vector<Warning> warnings;
@@ -38,7 +38,8 @@ struct Judged {
 };
 
 /// From `from` [s] on, by the truth at the published stamps.
-Judged judge(const simulation::MachineSettings& machine, CrankStamps stamps = CrankStamps::kAuto, double from = 4.0) {
+JudgedColumns judge(const simulation::MachineSettings& machine, CrankStamps stamps = CrankStamps::kAuto,
+                    double from = 4.0) {
   Settings settings = test::withExactHammer(*load(configDirectory(), {}).value);
   settings.pipeline.crank_stamps = stamps;
   const simulation::Session session = simulation::recordSession(machine);
@@ -54,7 +55,7 @@ Judged judge(const simulation::MachineSettings& machine, CrankStamps stamps = Cr
     deviations.push_back(result.outputs.front().deviation.wrench);
   }
   const std::vector<simulation::CrankTruth> truth = simulation::truthAt(machine, times);
-  Judged judged;
+  JudgedColumns judged;
   Eigen::Array3d square = Eigen::Array3d::Zero(), peak = square, covered = square;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const simulation::CrankTruth& t = truth[i];
@@ -84,16 +85,17 @@ void hold(double jitter, simulation::MachineSettings& s) {
 }
 
 TEST(SensorColumns, SpeedsThatLagCostNothingAndAreNamed) {
-  struct Case {
+  struct LaggingCase {
     double rate, jitter, lag;
   };
-  for (const Case& c : {Case{1000.0, 3e-4, 2e-3}, {1000.0, 1e-3, 1e-2}, {200.0, 1e-4, 2e-2}, {200.0, 1e-3, 5e-3}}) {
+  for (const LaggingCase& c :
+       {LaggingCase{1000.0, 3e-4, 2e-3}, {1000.0, 1e-3, 1e-2}, {200.0, 1e-4, 2e-2}, {200.0, 1e-3, 5e-3}}) {
     simulation::MachineSettings s = machineAt(c.rate, 811);
     hold(c.jitter, s);
     simulation::MachineSettings mute = s;
     mute.crank.speed = false;
     s.crank.speed_lag = c.lag;
-    const Judged with = judge(s), without = judge(mute);
+    const JudgedColumns with = judge(s), without = judge(mute);
     EXPECT_LT(with.x, 1.2 * without.x) << c.lag;
     EXPECT_LT(with.z, 1.2 * without.z) << c.lag;
     EXPECT_LT(with.torque, 1.2 * without.torque) << c.lag;
@@ -109,7 +111,7 @@ TEST(SensorColumns, SpeedsOutOfScaleLikewise) {
   simulation::MachineSettings mute = s;
   mute.crank.speed = false;
   s.crank.speed_scale = 1.05;
-  const Judged with = judge(s), without = judge(mute);
+  const JudgedColumns with = judge(s), without = judge(mute);
   EXPECT_LT(std::max({with.x / without.x, with.z / without.z, with.torque / without.torque}), 1.2);
   EXPECT_NEAR(numberAfter(with.textOf("speed scale"), "are "), 1.05, 0.01);
 }
@@ -127,7 +129,7 @@ TEST(SensorColumns, ASlipIsAStepAtItsInstant) {
   for (const double degrees : {2.0, -2.0}) {
     simulation::MachineSettings s = machineAt(1000.0, 814);
     s.crank.slip = {degrees * kDegree, {7.03, simulation::kNever}};
-    const Judged judged = judge(s, CrankStamps::kAuto, 7.53);
+    const JudgedColumns judged = judge(s, CrankStamps::kAuto, 7.53);
     EXPECT_LT(judged.z, 0.01) << degrees;
     EXPECT_LT(judged.x, 0.01) << degrees;
     EXPECT_GT(judged.covered, 0.88);
@@ -141,7 +143,7 @@ TEST(SensorColumns, ASlipIsAStepAtItsInstant) {
 TEST(SensorColumns, AnIndexThatIsLostAndFoundIsTwoSteps) {
   simulation::MachineSettings s = machineAt(1000.0, 815);
   s.crank.slip = {-1.0 * kDegree, {6.0, 10.0}};
-  const Judged judged = judge(s, CrankStamps::kAuto, 6.5);
+  const JudgedColumns judged = judge(s, CrankStamps::kAuto, 6.5);
   EXPECT_LT(judged.z, 0.01);
   EXPECT_NE(judged.textOf("slip").find("slips so far: 2"), std::string::npos) << judged.textOf("slip");
 }
@@ -149,7 +151,7 @@ TEST(SensorColumns, AnIndexThatIsLostAndFoundIsTwoSteps) {
 TEST(SensorColumns, AnAngleThatLagsIsCoveredAndNamedAsWhatItIs) {
   simulation::MachineSettings s = machineAt(1000.0, 816);
   s.crank.angle_lag = 2e-3;
-  const Judged judged = judge(s);
+  const JudgedColumns judged = judge(s);
   EXPECT_GT(judged.covered, 0.88);
   const std::string text = judged.textOf("angle lag");
   EXPECT_NEAR(numberAfter(text, "angles are "), 2.0, 0.1) << text;
@@ -161,7 +163,7 @@ TEST(SensorColumns, WholeMillisecondsAreCoveredAndNamed) {
   for (const double rate : {1000.0, 200.0}) {
     simulation::MachineSettings s = machineAt(rate, 817);
     s.crank.stamp_step = 1e-3;
-    const Judged judged = judge(s);
+    const JudgedColumns judged = judge(s);
     EXPECT_GT(judged.covered, 0.88) << rate;
     EXPECT_NE(judged.textOf("whole stamps"), "") << rate;
   }
@@ -171,7 +173,7 @@ TEST(SensorColumns, SteadyStampsStandLostSamples) {
   simulation::MachineSettings s = machineAt(1000.0, 818);
   s.crank.stamp_noise = 1e-3;
   s.crank.loss_share = 0.002;
-  const Judged judged = judge(s, CrankStamps::kSteady);
+  const JudgedColumns judged = judge(s, CrankStamps::kSteady);
   EXPECT_LT(std::max({judged.x, judged.z, judged.torque}), 0.003);
 }
 
@@ -182,7 +184,7 @@ TEST(SensorColumns, SensorsThatAreRightAreNotSuspected) {
       simulation::MachineSettings s = machineAt(rate, 819);
       s.drive.stop_time = 9.0;
       hold(jitter, s);
-      const Judged judged = judge(s);
+      const JudgedColumns judged = judge(s);
       for (const char* key : {"slip", "speed lag", "angle lag", "speed scale", "whole stamps"})
         EXPECT_EQ(judged.textOf(key), "") << rate << ' ' << jitter;
     }

@@ -13,6 +13,7 @@ namespace hammer_loads {
 /// angle_deviation: of the crank [rad]; NaN: not known.
 inline bool isBesideBlow(const CrankEstimate& crank, double angle_deviation) noexcept {
   constexpr double kSlow = 5.0;  // [rad/s]
+  // Guard: BesideBlow.IsWhereSomethingJumps of kSlow
   const CrankPosition& at = crank.position;
   return std::abs(at.angle.offset) < gate::kUsual * angle_deviation && std::abs(crank.speed) > kSlow &&
          !at.isMirrored();

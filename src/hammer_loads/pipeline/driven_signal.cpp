@@ -16,6 +16,7 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 constexpr double kSteadyBegin = 0.2, kSteadyMemory = 2.0;  // [s]: a turn or less; of the signal's mean, which is weight
+// Guard: DrivenSignal.JumpsWithTheLoadAndSaysHowFarItIsOff of kSteadyMemory
 constexpr double kBlowPart = 0.3;                // of a blow's impulse, which is known when the crank has turned on
 constexpr double kMemoryOfReadings = 1000.0;     // readings
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
