@@ -11,7 +11,7 @@ namespace {
 
 /// A speed that goes up and down five times a second, as a crank's, and what a first-order filter makes of it: the
 /// sinusoid's own steady answer, not a difference equation.
-struct Crank {
+struct SwingingCrank {
   static constexpr double kMean = 30.0, kSwing = 18.0, kOmega = 31.0;
   static double speed(double t) { return kMean + kSwing * std::sin(kOmega * t); }
   static double acceleration(double t) { return kSwing * kOmega * std::cos(kOmega * t); }
@@ -21,17 +21,18 @@ struct Crank {
 };
 
 /// noise [rad/s] of the speeds, `memory` of it from one sample to the next; after 40 turns.
-SpeedTrust judged(double rate, double lag, double scale, double noise, double memory = 0.0) {
+SpeedTrust trustAfter(double rate, double lag, double scale, double noise, double memory = 0.0) {
   SpeedTrust trust;
   std::mt19937 random(5);
   std::normal_distribution<> normal;
   double error = 0.0;
-  const int turn = static_cast<int>(rate * 2.0 * M_PI / Crank::kOmega);
+  const int turn = static_cast<int>(rate * 2.0 * M_PI / SwingingCrank::kOmega);
   for (int i = 1; i < 40 * turn; ++i) {
     const double t = i / rate;
     error = memory * error + noise * std::sqrt(1.0 - memory * memory) * normal(random);
-    const double measured = scale * (lag < 0.0 ? Crank::speed(t - lag) : Crank::filtered(t, lag)) + error;
-    trust.follow(1.0 / rate, {measured, Crank::speed(t), 1e-6, Crank::acceleration(t), 0.0});
+    const double measured =
+        scale * (lag < 0.0 ? SwingingCrank::speed(t - lag) : SwingingCrank::filtered(t, lag)) + error;
+    trust.follow(1.0 / rate, {measured, SwingingCrank::speed(t), 1e-6, SwingingCrank::acceleration(t), 0.0});
     if (i % turn == 0) trust.endTurn();
   }
   return trust;
@@ -39,7 +40,7 @@ SpeedTrust judged(double rate, double lag, double scale, double noise, double me
 
 TEST(SpeedTrust, TakesSpeedsThatAreRight) {
   for (const double rate : {1000.0, 200.0, 50.0}) {
-    const SpeedTrust trust = judged(rate, 0.0, 1.0, 0.15);
+    const SpeedTrust trust = trustAfter(rate, 0.0, 1.0, 0.15);
     EXPECT_TRUE(trust.isTrusted()) << rate;
     EXPECT_NEAR(trust.varianceFactor(), 1.0, 0.3);
     EXPECT_LT(std::abs(trust.lag()), 4.0 * trust.lagDeviation());
@@ -49,7 +50,7 @@ TEST(SpeedTrust, TakesSpeedsThatAreRight) {
 TEST(SpeedTrust, FindsTheLagOfAFilterWithItsDeviation) {
   for (const double rate : {1000.0, 200.0}) {
     for (const double lag : {1e-3, 2e-3, 5e-3, 2e-2}) {
-      const SpeedTrust trust = judged(rate, lag, 1.0, 0.3);
+      const SpeedTrust trust = trustAfter(rate, lag, 1.0, 0.3);
       EXPECT_TRUE(trust.lags()) << lag;
       EXPECT_FALSE(trust.isTrusted() || trust.isOutOfScale()) << lag;
       EXPECT_NEAR(trust.lag(), lag, 4.0 * trust.lagDeviation() + 0.01 * lag) << rate;
@@ -59,13 +60,13 @@ TEST(SpeedTrust, FindsTheLagOfAFilterWithItsDeviation) {
 }
 
 TEST(SpeedTrust, AnAngleThatIsLateMakesTheSpeedsEarly) {
-  const SpeedTrust trust = judged(1000.0, -2e-3, 1.0, 0.15);
+  const SpeedTrust trust = trustAfter(1000.0, -2e-3, 1.0, 0.15);
   EXPECT_TRUE(trust.lags());
   EXPECT_NEAR(trust.lag(), -2e-3, 4.0 * trust.lagDeviation() + 1e-5);
 }
 
 TEST(SpeedTrust, FindsAScaleApartFromALag) {
-  const SpeedTrust trust = judged(1000.0, 4e-3, 1.05, 0.15);
+  const SpeedTrust trust = trustAfter(1000.0, 4e-3, 1.05, 0.15);
   EXPECT_TRUE(trust.lags() && trust.isOutOfScale());
   EXPECT_NEAR(trust.scale(), 0.05, 2e-3);
   EXPECT_NEAR(trust.lag(), 4e-3, 1e-4);
@@ -74,7 +75,7 @@ TEST(SpeedTrust, FindsAScaleApartFromALag) {
 /// The mean of n such errors has the variance (1 + rho)/(1 - rho)/n: what the factor says.
 TEST(SpeedTrust, ErrorsThatHangTogetherWeighLess) {
   for (const double rho : {0.3, 0.7, 0.9}) {
-    const double factor = judged(1000.0, 0.0, 1.0, 0.3, rho).varianceFactor(), exact = (1.0 + rho) / (1.0 - rho);
+    const double factor = trustAfter(1000.0, 0.0, 1.0, 0.3, rho).varianceFactor(), exact = (1.0 + rho) / (1.0 - rho);
     EXPECT_NEAR(std::log(factor), std::log(exact), 0.4) << rho;
   }
 }

@@ -24,11 +24,12 @@ constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
-constexpr double kNotSlip = 0.1;           // [rad] from the blow: there the tool stops and throws the crank
+constexpr double kNotSlip = 0.04;          // [rad] from the blow: there the tool stops and throws the crank
 constexpr double kPartOfInterval = 0.3;    // of one: what a reading ahead by whole ones may miss them by
 constexpr double kUnexplained = 3.0;       // mean innovation^2 over its variance
 constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
+constexpr double kBeganOfLate = 0.5;       // beginnings of late: some 1.4 s after a single one
 constexpr double kForgetDoubts = 30.0;     // [s]
 
 /// Those of the settings; that of the motor's share is the coupling's.
@@ -160,9 +161,10 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   consistency_ = {};
 }
 
-/// (8) As it is without the speed, by the estimate at the angle.
+/// (8) As it is without the speed, by the estimate at the angle; one that began anew of late is no judge.
 void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
-  if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed) return speed_trust_.restart();
+  if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
+    return speed_trust_.restart();
   witness_->acceleration =
       now_.motor ? motorAcceleration(*model_.coupling(), load_, now_.state) : acceleration(load_, now_.state);
   if (struck && !now_.motor) witness_->jump = now_.state.speed * (1.0 - 1.0 / now_.factor);
@@ -317,7 +319,9 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     const bool possible = lost_time_ == 0.0 && mayHaveSlipped(sample);
     const EncoderSlip::Step step =
         slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_, possible);
-    if (step == EncoderSlip::Step::kPerhaps) {
+    if (step == EncoderSlip::Step::kPerhaps) {  // else an outlier as any other
+      surprises_ += 1.0 - surprises_ / kSurpriseLength;
+      outlier_ = innovation.value;
       now_ = last;
       return Tracking::kOutlier;
     }
