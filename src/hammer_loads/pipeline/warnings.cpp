@@ -241,16 +241,17 @@ void warnOfOil(const Boom& boom, std::vector<Warning>& warnings) {
   const char* name = unlike->name.c_str();
   const double times = std::exp(std::abs(found.stiffer));
   const bool soft = found.stiffer < 0.0;
-  std::string text = format("%s: the readings do not fit its stiffness nor the boom's damping as given: air in its oil, "
-                            "worn pins, a link that gives, or seals that rub",
-                            name);
+  std::string text = format(
+      "%s: the readings do not fit its stiffness nor the boom's damping as given: air in its oil, "
+      "worn pins, a link that gives, or seals that rub",
+      name);
   if (!dampingIsOff(boom))
-    text = format("%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, %s_stiffness_deviation "
-                  "allows for %.0f %%: %s; the boom's loads are those of the stiffness found",
-                  name, times, times * found.deviation, soft ? "softer" : "stiffer", name,
-                  100.0 * unlike->stiffness_deviation,
-                  soft ? "air in its oil, hoses, worn pins or a link that gives"
-                       : "its bore or hose volumes in the boom file, or air in the oil of the others");
+    text = format(
+        "%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, %s_stiffness_deviation "
+        "allows for %.0f %%: %s; the boom's loads are those of the stiffness found",
+        name, times, times * found.deviation, soft ? "softer" : "stiffer", name, 100.0 * unlike->stiffness_deviation,
+        soft ? "air in its oil, hoses, worn pins or a link that gives"
+             : "its bore or hose volumes in the boom file, or air in the oil of the others");
   warnings.push_back({"cylinder stiffness", std::move(text), true});
 }
 
