@@ -167,6 +167,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   const Checked<SimulatorSettings> loaded = loadSimulator(
       configDirectory(),
       given("{rod: rigid, hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
+            " arm_cylinder_oil_factor: 0.4,"
             " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, joint_noise_rad: 0.0001, "
             "restitution_drawn: true,"
             " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, press_force_N: 700}"));
@@ -174,6 +175,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   const MachineSettings& machine = loaded.value->machine;
   EXPECT_TRUE(machine.on_boom.on);
   EXPECT_EQ(machine.on_boom.oil_stiffness, 0.7);
+  EXPECT_EQ(machine.on_boom.cylinder_oil, (std::array<double, 3>{1.0, 0.4, 1.0}));
   EXPECT_EQ(machine.on_boom.damping, 0.03);
   EXPECT_EQ(machine.on_boom.imu.rate, 500.0);
   EXPECT_EQ(machine.on_boom.imu.x, 0.1);

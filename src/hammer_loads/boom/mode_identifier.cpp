@@ -40,8 +40,7 @@ ModeIdentifier::ModeIdentifier(double damping_ratio, bool learns, const LogOil& 
 void ModeIdentifier::setFirstGuesses() noexcept {
   for (int k = 0; k < kMaxJoints; ++k) {
     for (int l = 0; l < kMaxJoints; ++l)
-      covariance_(at(k, kOil), at(l, kOil)) =
-          square(kCommonDeviation) + (k == l ? square(own_deviation_[k]) : 0.0);
+      covariance_(at(k, kOil), at(l, kOil)) = square(kCommonDeviation) + (k == l ? square(own_deviation_[k]) : 0.0);
     covariance_(at(k, kDamping), at(k, kDamping)) = square(kDampingDeviation);
   }
 }
@@ -73,8 +72,7 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     rows(0, k) = contact_[k];
     rows(own + kX, k) = -m.omega * m.omega, rows(own + kV, k) = -damped, rows(own + kDamping, k) = -damped * s.v;
     for (int i = 0; i < count_; ++i)
-      rows(kept + kParts * i + kOil, k) =
-          -modes_.shape(i, k) * torque[i] - 0.5 * modes_.oil_share(i, k) * damped * s.v;
+      rows(kept + kParts * i + kOil, k) = -modes_.shape(i, k) * torque[i] - 0.5 * modes_.oil_share(i, k) * damped * s.v;
   }
   JointMatrix covariance(count_, count_);
   for (int k = 0; k < count_; ++k) {
@@ -220,8 +218,8 @@ LogOil ModeIdentifier::oilTorques(const States& of) const noexcept {
   return torque;
 }
 
-/// P <- F P F^T. Stiffness and damping act as forces that are linear over the step: their derivatives are off by 3 % at 9
-/// Hz and a step of 10 ms, the states themselves are exact.
+/// P <- F P F^T. Stiffness and damping act as forces that are linear over the step: their derivatives are off by 3 % at
+/// 9 Hz and a step of 10 ms, the states themselves are exact.
 void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
                                        const States& next) noexcept {
   const LogOil torque_now = oilTorques(now), torque_next = oilTorques(next);
@@ -244,7 +242,8 @@ void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, k
     of.add(x + kV, own.x_by_v, own.v_by_v);
     for (int i = 0; i < count_ && learns_; ++i) {
       const double shape = modes_.shape(i, k), share = 0.5 * modes_.oil_share(i, k);
-      const ModeState of_oil = by(-shape * torque_now[i] - share * damped_now, -shape * torque_next[i] - share * damped_next);
+      const ModeState of_oil =
+          by(-shape * torque_now[i] - share * damped_now, -shape * torque_next[i] - share * damped_next);
       of.add(at(i, kOil) - first, of_oil.x, of_oil.v);
     }
     const ModeState of_damping = by(-damped_now, -damped_next);

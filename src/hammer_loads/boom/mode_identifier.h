@@ -18,10 +18,10 @@ struct CrankLead {
   double mean{}, deviation{};
 };
 
-/// Extended Kalman filter: per mode displacement, velocity and logarithm of damping over the given one; per cylinder the
-/// logarithm of its oil's stiffness over that of the modes given; per channel an offset. Steps are the same as those of
-/// Vibration, between them come readings in any order. No allocation. Of the stiffnesses found, frequencies are to the
-/// second order and shapes are those of the modes given: give modes of what is found, before it is far away.
+/// Extended Kalman filter: per mode displacement, velocity and logarithm of damping over the given one; per cylinder
+/// the logarithm of its oil's stiffness over that of the modes given; per channel an offset. Steps are the same as
+/// those of Vibration, between them come readings in any order. No allocation. Of the stiffnesses found, frequencies
+/// are to the second order and shapes are those of the modes given: give modes of what is found, before it is far away.
 ///
 /// First guesses: stiffnesses wrong by 30 % together and each beside by its own deviation, damping by a factor 1.6.
 /// Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
@@ -30,9 +30,9 @@ struct CrankLead {
 /// rock's force would be taken for a soft oil, by a factor e of frequency in half a minute.
 ///
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
-/// should be, stiffnesses and damping are those given. Before that is said the oil is sought once more from those given,
-/// with modes that follow it at once (seeks()): one cylinder that is much softer makes other shapes. At first they wait
-/// until frequencies are known, since stamps that are late would lead them far away.
+/// should be, stiffnesses and damping are those given. Before that is said the oil is sought once more from those
+/// given, with modes that follow it at once (seeks()): one cylinder that is much softer makes other shapes. At first
+/// they wait until frequencies are known, since stamps that are late would lead them far away.
 ///
 /// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
 /// From 0.2 s on after the frequencies are known it is followed, and frequencies and damping count as less known again.
@@ -229,10 +229,10 @@ class ModeIdentifier {
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds
   Mode modeAt(int mode) const noexcept { return {modes_.given_omega[mode] * frequencyRatio(mode), damping(mode)}; }
 
-  std::array<double, kMaxJoints> ratio_{}, damping_{};                ///< of state_
+  std::array<double, kMaxJoints> ratio_{}, damping_{};                   ///< of state_
   LogOil stiffness_ratio_ = LogOil::Ones(), used_oil_ = LogOil::Zero();  ///< likewise; logarithms of it
-  std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};  ///< logarithms of these
-  int channels_{};                                                    ///< in use
+  std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};     ///< logarithms of these
+  int channels_{};                                                       ///< in use
   std::array<int, kMaxChannels> slot_{};    ///< state of each channel's offset; -1: not in use
   std::array<double, kMaxChannels> age_{};  ///< since the channel's last reading [s]
 };

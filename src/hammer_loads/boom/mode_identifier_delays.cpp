@@ -8,19 +8,19 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kDelayBegins = 0.2;          // so long after the frequencies are known [s]
-constexpr double kDelayWalk = 2e-5;           // of a delay in a second [s]: clocks drift by some 20 ppm
-constexpr double kOilWithDelay = 0.1;         // deviation of log stiffness, beside what was known without a delay
-constexpr double kDampingWithDelay = 0.5;     // likewise
-constexpr double kLost = 1.0;                 // so long frequencies unknown while a delay is followed [s]
-constexpr double kFreeFor = 1.0;              // [s]: its mean force has no longer memory
-constexpr double kImuSpeaks = 0.1;            // [s]
-constexpr double kWrongPart = 0.1;            // of a delay that is found
-constexpr double kWrongByPressures = 0.3;     // by them alone
-constexpr double kWrongOnRock = 0.6;          // where it has not been seen on a free hull: another's may be early
-constexpr double kDelayKnown = 2e-4;          // deviation [s]
-constexpr double kDoubt = 0.6;                // deviations of an expected lead: they are large, see ConstantErrors
-constexpr double kWrongLead = 0.3;            // of what is taken for the crank's: it may be a sensor's
+constexpr double kDelayBegins = 0.2;       // so long after the frequencies are known [s]
+constexpr double kDelayWalk = 2e-5;        // of a delay in a second [s]: clocks drift by some 20 ppm
+constexpr double kOilWithDelay = 0.1;      // deviation of log stiffness, beside what was known without a delay
+constexpr double kDampingWithDelay = 0.5;  // likewise
+constexpr double kLost = 1.0;              // so long frequencies unknown while a delay is followed [s]
+constexpr double kFreeFor = 1.0;           // [s]: its mean force has no longer memory
+constexpr double kImuSpeaks = 0.1;         // [s]
+constexpr double kWrongPart = 0.1;         // of a delay that is found
+constexpr double kWrongByPressures = 0.3;  // by them alone
+constexpr double kWrongOnRock = 0.6;       // where it has not been seen on a free hull: another's may be early
+constexpr double kDelayKnown = 2e-4;       // deviation [s]
+constexpr double kDoubt = 0.6;             // deviations of an expected lead: they are large, see ConstantErrors
+constexpr double kWrongLead = 0.3;         // of what is taken for the crank's: it may be a sensor's
 
 /// Of two of one sign the one nearer to 0; else 0.
 double lesserOf(double a, double b) noexcept {

@@ -9,8 +9,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kKnown = 0.03;     // deviation of log frequency of a mode that is known
-constexpr double kMostFound = 2.0;  // of log stiffness: a frequency that is e times that given
+constexpr double kKnown = 0.03;                         // deviation of log frequency of a mode that is known
+constexpr double kMostFound = 2.0;                      // of log stiffness: a frequency that is e times that given
 constexpr double kMostEarly = 0.004, kMostLate = 0.01;  // [s]
 
 }  // namespace

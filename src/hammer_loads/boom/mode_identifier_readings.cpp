@@ -165,10 +165,10 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
       correct(readings[r], row[r], difference[r] - inUse(row[r]).dot(inUse(state_) - inUse(before)), kept);
 }
 
-/// Variance of what is predicted by a delay that is not followed yet: noise, so that the oil is not made what would have
-/// such stamps.
+/// Variance of what is predicted by an IMU's delay that is not followed yet: noise, so that the oil is not made what
+/// would have such stamps.
 double ModeIdentifier::byDelay(Clock clock, const State& row) const noexcept {
-  if (!learns_ || clock == Clock::kCrank || isDelayFollowed(clock)) return 0.0;
+  if (!learns_ || clock != Clock::kImu || isDelayFollowed(clock)) return 0.0;
   return square(kDelayDeviation * row[delayAt(clock)]);
 }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kSwingMemory = 1.0;           // [s]
 constexpr double kContactMemory = 0.5;         // of the rock's mean force: some turns [s]
 constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
-constexpr double kOilStep = 0.01;              // by which the modes' oil is off before they are found anew
+constexpr double kOilStep = 0.003;             // by which the modes' oil is off before they are found anew
 constexpr double kMostOil = 2.0;               // of the logarithm
 
 }  // namespace

@@ -63,8 +63,8 @@ class Vibration {
     reading.channel = channel;
     observe(&reading, 1);
   }
-  /// Of a cylinder's oil against the mean of the others', logarithms of stiffness: as found, its standard deviation, and
-  /// how far that may be by the boom file, standard.
+  /// Of a cylinder's oil against the mean of the others', logarithms of stiffness: as found, its standard deviation,
+  /// and how far that may be by the boom file, standard.
   struct OilAgainstOthers {
     double stiffer{}, deviation{}, expected{};
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/unknowns.h"
@@ -202,14 +203,26 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   }
 }
 
+/// A stamp that is later [s] is named, and may be taken for oil that is softer.
+constexpr double kLateStamp = 8e-4;
+
 /// A clock of its own, as the boom's modes show it. Whether it is off.
 bool warnOfClock(const ModeIdentifier& identifier, Clock clock, const char* key, const char* text,
                  std::vector<Warning>& warnings) {
-  constexpr double kLate = 8e-4, kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
+  constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
   const double delay = identifier.delay(clock);
-  if (std::abs(delay) < kLate || identifier.delayDeviation(clock) > kKnown + kPart * std::abs(delay)) return false;
+  if (std::abs(delay) < kLateStamp || identifier.delayDeviation(clock) > kKnown + kPart * std::abs(delay)) return false;
   warnings.push_back({key, format(text, 1e3 * std::abs(delay), delay > 0.0 ? "late" : "early"), true});
   return true;
+}
+
+/// Damping that no oil makes: the mode is not one of this boom on its cylinders.
+bool dampingIsOff(const Boom& boom) {
+  constexpr double kDeviation = 0.5;  // of its logarithm, as the identifier begins
+  const double given = boom.parameters().vibration.damping_ratio;
+  for (int k = 0; k < boom.vibration().modes().count; ++k)
+    if (std::abs(std::log(boom.vibration().mode(k).zeta / given)) > gate::kUsual * kDeviation) return true;
+  return false;
 }
 
 /// The cylinder whose oil differs most from that of the others, where that is more than the boom file has it.
@@ -222,18 +235,24 @@ void warnOfOil(const Boom& boom, std::vector<Warning>& warnings) {
     if (unlike != nullptr && std::abs(one->stiffer) <= std::abs(found.stiffer)) continue;
     unlike = &boom.cylinders()[i].parameters(), found = *one;
   }
-  if (unlike == nullptr) return;
+  if (unlike == nullptr || !boom.vibration().identifier()->explains()) return;
+  for (const Clock clock : {Clock::kImu, Clock::kPressures})
+    if (std::abs(boom.vibration().identifier()->delay(clock)) > kLateStamp) return;
+  const char* name = unlike->name.c_str();
   const double times = std::exp(std::abs(found.stiffer));
   const bool soft = found.stiffer < 0.0;
-  warnings.push_back(
-      {"cylinder stiffness",
-       format("%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, %s_stiffness_deviation "
-              "allows for %.0f %%: %s; the boom's loads are those of the stiffness found",
-              unlike->name.c_str(), times, times * found.deviation, soft ? "softer" : "stiffer", unlike->name.c_str(),
-              100.0 * unlike->stiffness_deviation,
-              soft ? "air in its oil, hoses, worn pins or a link that gives"
-                   : "its bore or hose volumes in the boom file, or air in the oil of the others"),
-       true});
+  std::string text = format(
+      "%s: the readings do not fit its stiffness nor the boom's damping as given: air in its oil, "
+      "worn pins, a link that gives, or seals that rub",
+      name);
+  if (!dampingIsOff(boom))
+    text = format(
+        "%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, %s_stiffness_deviation "
+        "allows for %.0f %%: %s; the boom's loads are those of the stiffness found",
+        name, times, times * found.deviation, soft ? "softer" : "stiffer", name, 100.0 * unlike->stiffness_deviation,
+        soft ? "air in its oil, hoses, worn pins or a link that gives"
+             : "its bore or hose volumes in the boom file, or air in the oil of the others");
+  warnings.push_back({"cylinder stiffness", std::move(text), true});
 }
 
 void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {

@@ -161,11 +161,11 @@ struct SealSettings {
 
 /// Hull and boom that move on the oil of their cylinders; all dimensions in oil_boom.h.
 struct OnBoomSettings {
-  bool on{};                  ///< else the hull has no motion but its pitch, and no sensors
-  double oil_stiffness{1.0};  ///< over that of a bulk modulus of 1e9 Pa [-], > 0
+  bool on{};                                          ///< else the hull has no motion but its pitch, and no sensors
+  double oil_stiffness{1.0};                          ///< over that of a bulk modulus of 1e9 Pa [-], > 0
   std::array<double, 3> cylinder_oil{1.0, 1.0, 1.0};  ///< each cylinder's over that [-], > 0
-  double damping{0.05};       ///< ratio of every mode [-], in [0, 1)
-  double step{4e-4};          ///< longest integration step [s], > 0
+  double damping{0.05};                               ///< ratio of every mode [-], in [0, 1)
+  double step{4e-4};                                  ///< longest integration step [s], > 0
   SealSettings seals;
   RockSettings rock;
   HullImuSensor imu;
