@@ -121,6 +121,8 @@ class CrankFilter final : public CrankTracker {
   const EncoderSlip& encoderSlip() const noexcept { return slip_; }
   /// Whether and where innovations say that the rod gives.
   const RodEvidence& rodEvidence() const noexcept { return rod_evidence_; }
+  /// Standard deviation of the last reading [rad].
+  double readingDeviation() const noexcept { return std::sqrt(sample_.angleVariance(now_.state.speed)); }
   /// It restarted so often that the model does not fit: contradictions are then followed with little trust instead.
   bool isLost() const noexcept { return restart_load_ > kLost; }
   /// Innovations stay far larger than the model explains, whatever the drive inertia.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/util/constants.h"
@@ -25,14 +26,25 @@ class RodEvidence {
     if (at.offset < kPickedUp) picked_up_.add(bounded);
     if (at.offset > kRungOut) later_.add(bounded);
   }
+  /// Standard deviation of a reading from which on it shows no rod [rad]: through noise beyond it the sensor's place is
+  /// taken for the rod's stiffness. Guarded by ElasticSession.ReadingsTooCoarseForARodLeaveLinkage.
+  static constexpr double kCoarsest = 1e-3;
   /// Mean while the rod picks the rocker up, and when it has rung out [-].
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }
+  /// Of the square of a ring that is expected the part that readings leave possible; readings: standard deviation of
+  /// one [rad].
+  double share(double reading) const noexcept {
+    if (!(reading < kCoarsest) || !(picked_up_.count() > kEnough)) return 1.0;
+    const double doubt = gate::kUsual * std::sqrt(2.0 / picked_up_.count());
+    return std::clamp((pickedUp() - 1.0 + doubt) / kLeastExcess, 0.0, 1.0);
+  }
   bool gives() const noexcept {
     return picked_up_.count() > kEnough && pickedUp() > kGives && pickedUp() - 1.0 > kShare * (later() - 1.0);
   }
 
  private:
+  static constexpr double kLeastExcess = 3.0;  ///< above 1, of any rod whose ring readings show
   static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;  ///< behind the blow
   static constexpr double kMost = 100.0;                                          ///< of one sample, as of Consistency
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22

@@ -23,19 +23,24 @@ struct LoadError {
   double deviation() const noexcept { return std::hypot(own, common); }
 };
 
-/// Least and largest value of a turn with their errors.
+/// Least and largest value of a turn with their errors, and how far a sample may be beyond them: where a load is hardly
+/// known a turn's extreme may lie that the values do not show.
 struct TurnExtremes {
   double least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
+  double lowest{least}, highest{greatest};  ///< by one own deviation of any sample
   LoadError of_least, of_greatest;
 
   void add(double value, const LoadError& error) noexcept {
     if (value < least) least = value, of_least = error;
     if (value > greatest) greatest = value, of_greatest = error;
+    lowest = std::min(lowest, value - error.own);
+    highest = std::max(highest, value + error.own);
   }
   double range() const noexcept { return greatest - least; }
   /// Samples err independently. What constants do to one end and to the other may have any signs: at most both add up.
   LoadError ofRange() const noexcept {
-    return {std::hypot(of_least.own, of_greatest.own), of_least.common + of_greatest.common};
+    return {std::hypot(std::max(of_least.own, least - lowest), std::max(of_greatest.own, highest - greatest)),
+            of_least.common + of_greatest.common};
   }
 };
 

@@ -15,13 +15,8 @@ constexpr double kTo = 2.2;                              // [rad]: by then no ro
 constexpr double kNeverStruck = 0.1;                     // [rad] beyond the dead centre
 constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
 constexpr double kSlow = 5.0;                            // [rad/s]
-/// [rad] of a reading: through noise beyond it the sensor's place is taken for the rod's stiffness, and deviations are
-/// too small. Guarded by ElasticSession.ReadingsTooCoarseForARodLeaveLinkage.
-constexpr double kCoarsest = 1e-3;
 
 constexpr double kEvidenceGain = 0.2, kDecides = 2.0, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
-
-constexpr double kCountsPart = 0.2887;  // standard deviation of a reading, of a count: 1/sqrt(12)
 
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 
@@ -43,9 +38,7 @@ bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& fi
   const CrankPosition& at = crank.estimate().position;
   return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && at.angle.offset < kFromLatest &&
          crank.estimate().speed > kSlow && filter.hasSpeed() && filter.isPlausible() && !filter.isDoubtful() &&
-         !filter.belief().motor &&
-         std::hypot(filter.timingNoise() * crank.estimate().speed, kCountsPart * crank.tracker().angleResolution()) <
-             kCoarsest;
+         !filter.belief().motor && filter.readingDeviation() < RodEvidence::kCoarsest;
 }
 
 void ElasticFollower::rest() noexcept {
@@ -140,6 +133,10 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive) cons
     wrench[i] *= part;
   }
   return {wrenchOf(wrench), wrenchOf(of.cwiseSqrt())};
+}
+
+double ElasticFollower::speedBeside() const noexcept {
+  return std::hypot(filter().motion().state.beside_speed, filter().deviation(RodFilter::kBesideSpeed));
 }
 
 std::optional<CrankBlow> ElasticFollower::blow() const noexcept {

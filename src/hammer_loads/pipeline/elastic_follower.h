@@ -31,6 +31,8 @@ class ElasticFollower {
     HullWrench wrench, deviation;
   };
   Beside beside(const DriveReaction& drive) const noexcept;
+  /// Of the rocker's speed beside a rigid rod's and its standard deviation the root of the squares [rad/s].
+  double speedBeside() const noexcept;
   /// Of the blow that was struck while it runs: the rocker's speed at the tool and its restitution, as a crank would
   /// feel them whose rod takes the rocker up at once.
   std::optional<CrankBlow> blow() const noexcept;

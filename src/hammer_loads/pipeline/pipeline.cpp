@@ -130,6 +130,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
     passBlows();
     followHull();
     rod_.follow(crank_.step(), crank_.tracker().blowFactor());
+    rod_.take(crank_.tracker().filter());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
     if (counts) turn_.follow(hull_.motion().motion, result_);
   } else {
@@ -155,8 +156,10 @@ HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive)
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
   const HullWrench own = gives ? result_.deviation.common : result_.deviation.wrench;
   const ElasticFollower::Beside rod =
-      gives ? elastic_.beside(drive) : ElasticFollower::Beside{{}, rod_.wrench(links.here.links)};
+      gives ? elastic_.beside(drive)
+            : ElasticFollower::Beside{{}, rockerWrench(mechanism_, links.here.links, rod_.acceleration())};
   result_.rod_ring = rod.deviation;
+  result_.rod_momentum = rockerWrench(mechanism_, links.here.links, gives ? elastic_.speedBeside() : rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + vectorOf(rod.deviation).cwiseAbs2()).cwiseSqrt());
   result_.beside_blow =
       gives ? elastic_.isBesideBlow()

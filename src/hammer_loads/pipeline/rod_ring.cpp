@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/linkage/oscillator.h"
@@ -108,11 +109,20 @@ void RodRing::follow(const CrankStep& step, const BlowFactor& blow) noexcept {
   move(step, from, step.length());
 }
 
-HullWrench RodRing::wrench(const LinkMotion& links) const noexcept {
-  const Mechanism& mechanism = model_->mechanism();
-  const double a = acceleration(), force = mechanism.rockerFirstMoment() * a;
+void RodRing::take(const CrankFilter* filter) noexcept {
+  share_ = filter == nullptr ? 1.0 : std::sqrt(filter->rodEvidence().share(filter->readingDeviation()));
+}
+
+double RodRing::speed() const noexcept {
+  double sum = 0.0;
+  for (const State& state : states_) sum += square(state.speed);
+  return rings_ ? share_ * std::sqrt(sum / static_cast<double>(states_.size())) : 0.0;
+}
+
+HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, double acceleration) noexcept {
+  const double force = mechanism.rockerFirstMoment() * acceleration;
   return {-force * links.rocker.sin_psi, -force * links.rocker.cos_psi,
-          -mechanism.parameters().rocker_inertia_about_pivot * a};
+          -mechanism.parameters().rocker_inertia_about_pivot * acceleration};
 }
 
 }  // namespace hammer_loads

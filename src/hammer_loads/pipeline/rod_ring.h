@@ -9,6 +9,8 @@
 
 namespace hammer_loads {
 
+class CrankFilter;
+
 /// What a rod may be, as far as its file says: with little damping it rings longest, with much it is first, with worn
 /// pins the rocker flies until their play is taken up.
 using Rods = std::array<RodSpring, 3>;
@@ -31,10 +33,12 @@ class RodRing {
   void rest() noexcept { rings_ = false; }
   /// Over the step to the crank's last sample. blow: of the passage that the step has, if it has one.
   void follow(const CrankStep& step, const BlowFactor& blow) noexcept;
+  /// The filter that has followed the readings, if any: they may show that no rod rings.
+  void take(const CrankFilter* filter) noexcept;
   /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
-  double acceleration() const noexcept { return rings_ ? acceleration_ : 0.0; }
-  /// What that is on the hull; its direction is the sample's.
-  HullWrench wrench(const LinkMotion& links) const noexcept;
+  double acceleration() const noexcept { return rings_ ? share_ * acceleration_ : 0.0; }
+  /// Likewise of its speed [rad/s].
+  double speed() const noexcept;
 
  private:
   void strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
@@ -47,7 +51,10 @@ class RodRing {
   };
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
-  double acceleration_{};
+  double acceleration_{}, share_{1.0};
 };
+
+/// What the rocker's angular acceleration [rad/s2] is on the hull; of a speed [rad/s] the momentum [N s, N m s].
+HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, double acceleration) noexcept;
 
 }  // namespace hammer_loads

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/pipeline/crank_trust.h"
 
 namespace hammer_loads {
@@ -104,6 +105,18 @@ void TurnFollower::hullMovedAtBlow(const TipVelocity& hull) noexcept {
   pending_.setHullSpeed(hull.z + model_->mechanism().parameters().striking_distance * hull.rate);
 }
 
+/// A rod that gives takes the rocker up within the turn, not at the blow: what that is of the support's impulse is the
+/// turn's.
+void TurnFollower::takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept {
+  const double u_after = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia).u_after;
+  const double missing = blow.rocker_speed_after - u_after * blow.crank_speed_after;
+  const double momentum = model_->mechanism().rockerFirstMoment() * missing;
+  after = linkMomentum(*model_, {0.0, Side::kAfterBlow}, blow.crank_speed_after);
+  after.z += momentum;
+  blow.support_impulse_z -= momentum;
+  blow.support_impulse_y -= model_->mechanism().parameters().rocker_inertia_about_pivot * missing;
+}
+
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!pending_.isWaiting()) return;
   if (pending_.isWithheld() && !(tracker_->strikeConsistency() <= CrankTrust::kMost)) return discard();
@@ -114,17 +127,19 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
     ++blank_;
     return;
   }
-  const LinkMomentum after = linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter());
-  turn_.correctBegin(after);
+  LinkMomentum after = linkMomentum(*model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter());
   RockerBlow& blow = pending_end_.blow;
   const CrankBlow measured = pending_.take();
-  const CrankBlow crank = elastic_->blow().value_or(measured);  // a rod that gives shows more than the crank's speed
+  const std::optional<CrankBlow> elastic = elastic_->blow();  // a rod that gives shows more than the crank's speed
+  const CrankBlow crank = elastic.value_or(measured);
   const double doubt =
       std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
   errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
                                             pending_.columnsAfter()));
   blow = measuredBlow(*model_, crank);
+  if (elastic) takeUpLater(crank, after, blow);
+  turn_.correctBegin(after);
   pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
   voidImpossible(model_->mechanism(), model_->level(), blow);
   impossible_ += blow.impossible;

@@ -53,6 +53,7 @@ class TurnFollower {
   std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again
 
  private:
+  void takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept;
   void countBackward(const CrankStep::Passage& passage) noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;

@@ -113,7 +113,7 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   output.near_blow = state.transmission_angle < near_blow_;
   if (at_sample) {
     output.deviation = result.deviation;
-    boundMean(links, result.doubt.own, output);
+    boundMean(links, result.doubt.own, result.rod_momentum, output);
     return output;
   }
   const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
@@ -122,15 +122,20 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   output.deviation = hullDeviation(*hammer_, *model_, step_->driveInertia(), output.crank, there, hull, doubt, unused);
   addHullMotion(*model_, drive_, there.here.links, output.crank.speed, hull, result.hull.covariance,
                 output.deviation.wrench);
-  boundMean(there, doubt.own, output);
+  output.deviation.wrench =
+      wrenchOf((vectorOf(output.deviation.wrench).cwiseAbs2() + vectorOf(result.rod_ring).cwiseAbs2()).cwiseSqrt());
+  boundMean(there, doubt.own, result.rod_momentum, output);
   return output;
 }
 
-/// What a sample's error is of, the momenta at both ends bound; a constant's is the mean of its own.
-void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, WrenchOutput& output) noexcept {
+/// What a sample's error is of, the momenta at both ends bound; a constant's is the mean of its own. rod: momentum of
+/// its ring.
+void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const HullWrench& rod,
+                              WrenchOutput& output) noexcept {
   if (kind_ != OutputKind::kMean) return;
   HullDeviation& deviation = output.deviation;
-  const HullWrench momentum = momentumDeviation(*model_, drive_, output.crank, links, own);
+  const HullWrench of_crank = momentumDeviation(*model_, drive_, output.crank, links, own);
+  const HullWrench momentum = of_crank + wrenchOf(vectorOf(rod).cwiseAbs());
   const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_deviation_ + momentum);
   momentum_deviation_ = momentum;
   const Eigen::Vector3d of_end =

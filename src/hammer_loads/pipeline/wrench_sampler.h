@@ -35,7 +35,8 @@ class WrenchSampler {
   WrenchOutput output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept;
   void addUpTo(double time, const SampleResult& result) noexcept;
   void followHull(const HullMotion& hull) noexcept;
-  void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, WrenchOutput& output) noexcept;
+  void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const HullWrench& rod,
+                 WrenchOutput& output) noexcept;
 
   const HullModel* model_;
   const WrenchColumns* hammer_;

@@ -1,0 +1,153 @@
+// What follows a blow in a machine whose rod gives: in the deviations of rigid levels, in the figures of level elastic.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/life/damage.h"
+#include "hammer_loads/life/exact_cycles.h"
+#include "hammer_loads/pipeline/life_follower.h"
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/session.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+const Settings& drawingOfRing() {
+  static const Settings settings = *load(configDirectory(), {}).value;
+  return settings;
+}
+
+/// Root mean squares 10 to 40 ms after the blows [N], of Fz.
+struct RingFound {
+  double error{}, said{}, elsewhere{};  ///< said by the ring alone; elsewhere: more than 70 ms after
+  double impulse_bias{};                ///< of a turn's impulse along z, relative
+  double impulse_covered{};
+  double range_error[2]{}, range_said[2]{};  ///< of the equivalent range at slopes 3 and 5, relative
+};
+
+double equivalentOf(const life::ExactCycles& cycles, double slope) {
+  return life::equivalentLoad(life::rangesAndMeans(cycles), slope, 1.0, {}).value;
+}
+
+RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanism& mechanism, double rate = 1000.0) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.hammer = mechanism.parameters();
+  machine.level = Level::kLinkage;
+  machine.duration = 12.0;
+  machine.drive.stop_time = 20.0;
+  machine.rod = rod;
+  machine.seed = 4711;
+  machine.crank.rate = rate;
+  const simulation::Session session = simulation::recordSession(machine);
+  PipelineSettings settings = drawingOfRing().pipeline;
+  settings.level = level;
+  Pipeline pipeline(mechanism, settings);
+  life::LifeSettings counted;
+  counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
+  counted.period = 1000;
+  LifeFollower life(pipeline, counted);
+  RingFound found;
+  double n = 0.0, others = 0.0, turns = 0.0;
+  std::size_t blow = 0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const simulation::CrankReading& reading = session.crank[i];
+    const simulation::CrankTruth& truth = session.truth[i];
+    const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+    while (blow < session.blows.size() && session.blows[blow].time <= truth.time) ++blow;
+    if (truth.time < 4.0 || blow == 0) continue;
+    life.follow();
+    for (std::size_t k = 0; k < result.turn_ends; ++k) {
+      const TurnEnd& end = result.ends[k];
+      for (const simulation::BlowTruth& b : session.blows) {
+        if (std::abs(b.time - 1e-9 * static_cast<double>(end.stamp - machine.start_stamp)) > 0.05) continue;
+        if (!end.pulse || !b.whole_turn) continue;
+        const double error = end.pulse->turn_impulse_z - b.turn_impulse_z;
+        ++turns;
+        found.impulse_bias += error / b.turn_impulse_z;
+        found.impulse_covered += std::abs(error) <= 2.0 * end.pulse_errors.turn_impulse_z.deviation();
+      }
+    }
+    if (result.refusal || result.beside_blow) continue;
+    const double since = truth.time - session.blows[blow - 1].time;
+    if (since > 0.01 && since < 0.04) {
+      ++n;
+      found.error += square(result.wrench.force_z - truth.load.force_z);
+      found.said += square(result.rod_ring.force_z);
+    } else if (since > 0.07) {
+      ++others;
+      found.elsewhere += square(result.rod_ring.force_z);
+    }
+  }
+  found.error = std::sqrt(found.error / n), found.said = std::sqrt(found.said / n);
+  found.elsewhere = std::sqrt(found.elsewhere / others);
+  found.impulse_bias /= turns, found.impulse_covered /= turns;
+  life::ExactCycles right;
+  std::vector<double> times;
+  for (double t = 4.0; t < machine.duration; t += 1e-4) times.push_back(t);
+  for (const simulation::CrankTruth& truth : simulation::truthAt(machine, times))
+    if (truth.tool_force == 0.0) right.add(truth.load.force_z);
+  const life::CycleCount count = life.take().counts[0];
+  for (const int k : {0, 1}) {
+    const double slope = k == 0 ? 3.0 : 5.0;
+    const life::Figure figure =
+        life::equivalentLoad(life::rangesAndMeans(count), slope, 1.0, life::rangeDeviation(count));
+    found.range_error[k] = figure.value / equivalentOf(right, slope) - 1.0;
+    found.range_said[k] = figure.deviation / equivalentOf(right, slope);
+  }
+  return found;
+}
+
+/// At the levels below, its size is said where it acts, and the ranges of cycles that it may lengthen.
+TEST(RodRing, RigidLevelsSayHowLargeItIs) {
+  for (const simulation::RodSettings& rod :
+       {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
+    SCOPED_TRACE(rod.stiffness);
+    const RingFound found = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism);
+    EXPECT_GT(found.said, 0.7 * found.error);
+    EXPECT_LT(found.said, 2.5 * found.error);
+    EXPECT_LT(found.elsewhere, 0.05 * found.said);
+    for (const int k : {0, 1}) {
+      EXPECT_LT(found.range_error[k], -0.1);  // without the ring
+      EXPECT_LT(std::abs(found.range_error[k]), 2.0 * found.range_said[k]);
+    }
+  }
+}
+
+TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
+  const Mechanism& usual = drawingOfRing().mechanism;
+  const RingFound rigid = ringOf({}, Level::kLinkage, usual), elastic = ringOf({1e9, 0.6, 0.0}, Level::kLinkage, usual);
+  EXPECT_LT(rigid.said, 0.35 * elastic.said);
+  EXPECT_LT(rigid.range_said[0], 0.2);
+  HammerParameters p = usual.parameters();
+  p.rod_deviation = {};
+  EXPECT_EQ(ringOf({}, Level::kLinkage, *Mechanism::make(p).value).said, 0.0);
+}
+
+/// The lever changes within a step of 5 ms.
+TEST(RodRing, IsTheSameByRareReadings) {
+  const Mechanism& usual = drawingOfRing().mechanism;
+  const double often = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual).said,
+               rarely = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual, 200.0).said;
+  EXPECT_NEAR(rarely, often, 0.25 * often);
+}
+
+/// Issue: counted damage 0.7 to 1.4 of the true; the rocker is picked up within the turn, whose impulse that is.
+TEST(RodRing, LevelElasticCountsItAndItsImpulse) {
+  for (const simulation::RodSettings& rod :
+       {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
+    SCOPED_TRACE(rod.stiffness);
+    const RingFound found = ringOf(rod, Level::kElastic, drawingOfRing().mechanism);
+    for (const int k : {0, 1}) {
+      const double damage = std::pow(1.0 + found.range_error[k], k == 0 ? 3.0 : 5.0);
+      EXPECT_GT(damage, 0.7);
+      EXPECT_LT(damage, 1.4);
+      EXPECT_LT(std::abs(found.range_error[k]), 2.0 * found.range_said[k]);
+    }
+    EXPECT_LT(std::abs(found.impulse_bias), 0.07);  // what the hull feels while the contact lasts is not in it
+    EXPECT_GT(found.impulse_covered, 0.88);
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
