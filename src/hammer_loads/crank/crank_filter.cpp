@@ -30,6 +30,8 @@ constexpr double kUnexplained = 3.0;       // mean innovation^2 over its varianc
 constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
 constexpr double kForgetDoubts = 30.0;     // [s]
+constexpr double kStrikeBegins = 0.6;      // [rad] before the blow: a rod that gives is calm until there
+// Guard: RodWarnings.ARightSensorIsNotBlamedForARodThatGives of kStrikeBegins
 
 /// Those of the settings; that of the motor's share is the coupling's.
 ConstantErrors::Vector deviationsOf(const CrankFilterSettings& settings, const ShaftModel& model) noexcept {
@@ -314,7 +316,9 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   if (has_speed_) {
     // From the largest one way to the largest the other way: half its change times the square of the time.
     const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
-    const bool possible = lost_time_ == 0.0 && mayHaveSlipped(sample);
+    const CrankAngle& at = now_.state.position.angle;
+    const bool rings = rod_evidence_.gives() && (at.side == Side::kAfterBlow || at.offset > -kStrikeBegins);
+    const bool possible = lost_time_ == 0.0 && !rings && mayHaveSlipped(sample);
     const EncoderSlip::Step step =
         slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_, possible);
     if (step == EncoderSlip::Step::kPerhaps) {

@@ -14,7 +14,6 @@
 #include "hammer_loads/crank/estimate_between.h"
 #include "hammer_loads/crank/rod_evidence.h"
 #include "hammer_loads/crank/speed_trust.h"
-#include "hammer_loads/crank/rod_evidence.h"
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/timing_noise.h"
