@@ -23,6 +23,7 @@ struct RingFound {
   double error{}, said{}, elsewhere{};  ///< said by the ring alone; elsewhere: more than 70 ms after
   double impulse_bias{};                ///< of a turn's impulse along z, relative
   double impulse_covered{};
+  double restitution_bias{}, restitution_covered{}, energy_covered{}, restitution_said{};
   double range_error[2]{}, range_said[2]{};  ///< of the equivalent range at slopes 3 and 5, relative
 };
 
@@ -61,7 +62,13 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
       const TurnEnd& end = result.ends[k];
       for (const simulation::BlowTruth& b : session.blows) {
         if (std::abs(b.time - 1e-9 * static_cast<double>(end.stamp - machine.start_stamp)) > 0.05) continue;
-        if (!end.pulse || !b.whole_turn) continue;
+        if (end.blow.impossible || !end.pulse || !b.whole_turn) continue;
+        const double restitution = -b.strike.rocker_speed_after / b.strike.rocker_speed_before;
+        const double off = end.blow.restitution - restitution;
+        found.restitution_bias += off;
+        found.restitution_said += end.blow.restitution_deviation;
+        found.restitution_covered += std::abs(off) <= 2.0 * end.blow.restitution_deviation;
+        found.energy_covered += std::abs(end.blow.energy - b.strike.energy) <= 2.0 * end.blow.energy_deviation;
         const double error = end.pulse->turn_impulse_z - b.turn_impulse_z;
         ++turns;
         found.impulse_bias += error / b.turn_impulse_z;
@@ -81,7 +88,9 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
   }
   found.error = std::sqrt(found.error / n), found.said = std::sqrt(found.said / n);
   found.elsewhere = std::sqrt(found.elsewhere / others);
-  found.impulse_bias /= turns, found.impulse_covered /= turns;
+  for (double* mean : {&found.impulse_bias, &found.impulse_covered, &found.restitution_bias, &found.restitution_said,
+                       &found.restitution_covered, &found.energy_covered})
+    *mean /= turns;
   life::ExactCycles right;
   std::vector<double> times;
   for (double t = 4.0; t < machine.duration; t += 1e-4) times.push_back(t);
@@ -105,13 +114,31 @@ TEST(RodRing, RigidLevelsSayHowLargeItIs) {
     SCOPED_TRACE(rod.stiffness);
     const RingFound found = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism);
     EXPECT_GT(found.said, 0.7 * found.error);
-    EXPECT_LT(found.said, 2.5 * found.error);
+    EXPECT_LT(found.said, 4.0 * found.error);  // a rod softer than thought rings less
     EXPECT_LT(found.elsewhere, 0.05 * found.said);
     for (const int k : {0, 1}) {
       EXPECT_LT(found.range_error[k], -0.1);  // without the ring
       EXPECT_LT(std::abs(found.range_error[k]), 2.0 * found.range_said[k]);
     }
   }
+}
+
+/// Issue: a bias of 0.02, or covered; a rigid machine's is no wider for it.
+TEST(RodRing, RestitutionIsCovered) {
+  for (const simulation::RodSettings& rod : {simulation::RodSettings{1e9, 0.2, 0.0}, {1.4e9, 0.25, 0.0}}) {
+    SCOPED_TRACE(rod.stiffness);
+    const RingFound rigid = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism);
+    EXPECT_GT(rigid.restitution_bias, 0.03);
+    EXPECT_GT(rigid.restitution_covered, 0.88);
+    EXPECT_LT(rigid.restitution_said, 0.08);
+    EXPECT_GT(rigid.energy_covered, 0.88);
+    EXPECT_GT(rigid.impulse_covered, 0.88);
+    const RingFound elastic = ringOf(rod, Level::kElastic, drawingOfRing().mechanism);
+    EXPECT_LT(std::abs(elastic.restitution_bias), 0.02);
+    EXPECT_GT(elastic.restitution_covered, 0.88);
+    EXPECT_GT(elastic.energy_covered, 0.88);
+  }
+  EXPECT_LT(ringOf({}, Level::kLinkage, drawingOfRing().mechanism).restitution_said, 0.025);
 }
 
 TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
@@ -129,7 +156,7 @@ TEST(RodRing, IsTheSameByRareReadings) {
   const Mechanism& usual = drawingOfRing().mechanism;
   const double often = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual).said,
                rarely = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual, 200.0).said;
-  EXPECT_NEAR(rarely, often, 0.25 * often);
+  EXPECT_NEAR(rarely, often, 0.35 * often);
 }
 
 /// Issue: counted damage 0.7 to 1.4 of the true; the rocker is picked up within the turn, whose impulse that is.

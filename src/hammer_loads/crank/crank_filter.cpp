@@ -31,6 +31,9 @@ constexpr double kUnlearnEvery = 3.0;      // [s]
 constexpr double kForgetRestarts = 2.0;    // [s]
 constexpr double kBeganOfLate = 0.5;       // beginnings of late: some 1.4 s after a single one
 constexpr double kForgetDoubts = 30.0;     // [s]
+constexpr double kStrikeBegins = 0.6;      // [rad] before the blow: a rod that gives is calm until there
+constexpr double kRodMoves = 0.017;        // [rad] of a reading at most, there: worn pins, a rod that was learned
+// Guard: RodWarnings.ARightSensorIsNotBlamedForARodThatGives of kStrikeBegins, kRodMoves
 
 /// Those of the settings; that of the motor's share is the coupling's.
 ConstantErrors::Vector deviationsOf(const CrankFilterSettings& settings, const ShaftModel& model) noexcept {
@@ -316,7 +319,10 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   if (has_speed_) {
     // From the largest one way to the largest the other way: half its change times the square of the time.
     const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
-    const bool possible = lost_time_ == 0.0 && mayHaveSlipped(sample);
+    const CrankAngle& at = now_.state.position.angle;
+    const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
+    const bool rings = rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
+    const bool possible = lost_time_ == 0.0 && !rings && mayHaveSlipped(sample);
     const EncoderSlip::Step step =
         slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_, possible);
     if (step == EncoderSlip::Step::kPerhaps) {  // else an outlier as any other

@@ -37,6 +37,10 @@ class RodRing {
   void take(const CrankFilter* filter) noexcept;
   /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
   double acceleration() const noexcept { return rings_ ? share_ * acceleration_ : 0.0; }
+  /// How far a restitution may be off that was read off a crank as if the rod were rigid, standard [-].
+  double restitutionDoubt() const noexcept;
+  /// Of the rocker's speed what the last blow left for the rod to take up [rad/s].
+  double struck() const noexcept { return gives_ ? share_ * struck_ : 0.0; }
   /// Likewise of its speed [rad/s].
   double speed() const noexcept;
 
@@ -51,7 +55,7 @@ class RodRing {
   };
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
-  double acceleration_{}, share_{1.0};
+  double acceleration_{}, struck_{}, share_{1.0};
 };
 
 /// What the rocker's angular acceleration [rad/s2] is on the hull; of a speed [rad/s] the momentum [N s, N m s].

@@ -131,10 +131,16 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   RockerBlow& blow = pending_end_.blow;
   const CrankBlow measured = pending_.take();
   const std::optional<CrankBlow> elastic = elastic_->blow();  // a rod that gives shows more than the crank's speed
-  const CrankBlow crank = elastic.value_or(measured);
+  CrankBlow crank = elastic.value_or(measured);
+  if (!elastic) {
+    const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
+    crank.factor_deviation =
+        std::hypot(crank.factor_deviation, rod_->restitutionDoubt() / inertia.restitutionPerFactor());
+  }
+  const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
   const double doubt =
       std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
-  errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0},
+  errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::hypot(after.z * doubt, taken_up), 0.0},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
                                             pending_.columnsAfter()));
   blow = measuredBlow(*model_, crank);

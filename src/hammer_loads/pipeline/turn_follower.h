@@ -8,6 +8,7 @@
 #include "hammer_loads/pipeline/crank_step.h"
 #include "hammer_loads/pipeline/elastic_follower.h"
 #include "hammer_loads/pipeline/pending_blow.h"
+#include "hammer_loads/pipeline/rod_ring.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/turn_errors.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
@@ -18,8 +19,8 @@ class TurnFollower {
  public:
   /// Refers to them, which must outlive it.
   TurnFollower(const HullModel& model, const WrenchColumns& columns, const CrankStep& step, const CrankTracker& tracker,
-               const ElasticFollower& elastic)
-      : model_(&model), columns_(&columns), step_(&step), tracker_(&tracker), elastic_(&elastic) {}
+               const RodRing& rod, const ElasticFollower& elastic)
+      : model_(&model), columns_(&columns), step_(&step), tracker_(&tracker), rod_(&rod), elastic_(&elastic) {}
 
   /// Time begins with this stamp.
   void begin(StampNs stamp) noexcept { epoch_ = stamp; }
@@ -64,6 +65,7 @@ class TurnFollower {
   const WrenchColumns* columns_;
   const CrankStep* step_;
   const CrankTracker* tracker_;
+  const RodRing* rod_;
   const ElasticFollower* elastic_;
   TurnRecorder turn_;
   TurnErrors errors_;

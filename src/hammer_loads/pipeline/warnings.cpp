@@ -124,8 +124,7 @@ std::string rodOf(const CrankFilter& filter) {
   const RodEvidence& rod = filter.rodEvidence();
   return format(
       "crank: just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of "
-      "a "
-      "turn later by %.2g: rod, pins and bearings give (level: elastic; rod_stiffness_N_m, pin_play_m); crank_zero_rad "
+      "a turn later by %.2g: rod, pins and bearings give (level: elastic; rod_stiffness_N_m, pin_play_m); crank_zero_rad "
       "looks %.2g deg off; such a rod makes it look 0.2 to 3 deg less than it is: neither is corrected",
       rod.pickedUp(), rod.later(), filter.constantErrors().estimate()[0] / kDegree);
 }
