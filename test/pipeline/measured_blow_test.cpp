@@ -33,7 +33,7 @@ Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, doub
   for (const accuracy::BlowAt& b :
        accuracy::runSession(session, machine.start_stamp, shipped.mechanism, shipped.pipeline).blows)
     for (const simulation::BlowTruth& t : session.blows) {
-      if (std::abs(t.time - b.time) > 0.01 || b.time < 3.0) continue;
+      if (std::abs(t.time - b.time) > 0.01 || b.time < 4.0) continue;  // speeds are judged before that (SpeedTrust)
       const double error = std::abs(b.energy / t.strike.energy - 1.0);
       const double deviation = b.energy_deviation / t.strike.energy;
       blows.worst = std::max(blows.worst, error);

@@ -16,6 +16,7 @@ namespace {
 using simulation::CrankTruth;
 using simulation::MachineSettings;
 
+constexpr double kFrom = 4.0;  // [s]: speeds are judged first, for five turns, and the rod is known after them
 constexpr double kAfterFrom = 0.006, kAfterTo = 0.040;  // of the ring, from the first touch [s]
 
 std::array<double, 3> valuesOf(const CrankTruth& t) {
@@ -65,7 +66,7 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
   LifeError life;
   std::array<double, 3> largest{};
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (times[k] < 3.0 || times[k] > machine.duration - 3.0) continue;
+    if (times[k] < kFrom || times[k] > machine.duration - 3.0) continue;
     const std::array<double, 3> values = valuesOf(truth[k]);
     for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
     whole.add(run.wrenches[k], values);

@@ -172,7 +172,8 @@ void ModeIdentifier::followContact(const JointVector& torque) noexcept {
 
 void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
-  if (learns_ && !explains_ && !seeks_) seeks_ = explains_ = true, surprise_ = 1.0;
+  if (isExplained()) explained_for_ += step;
+  if (learns_ && !explains_ && !seeks_ && explained_for_ < kOilProven) seeks_ = explains_ = true, surprise_ = 1.0;
   const double share = std::min(1.0, step / kForceMemory);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];

@@ -30,8 +30,9 @@ struct CrankLead {
 /// rock's force would be taken for a soft oil, by a factor e of frequency in half a minute.
 ///
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
-/// should be, stiffnesses and damping are those given. Before that is said the oil is sought once more from those
-/// given, with modes that follow it at once (seeks()): one cylinder that is much softer makes other shapes. At first
+/// should be, stiffnesses and damping are those given. Where no oil has explained them yet it is sought once more from
+/// those given before that is said, with modes that follow it at once (seeks()): one cylinder that is much softer makes
+/// other shapes. At first
 /// they wait until frequencies are known, since stamps that are late would lead them far away.
 ///
 /// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
@@ -89,7 +90,7 @@ class ModeIdentifier {
   /// but each pressure by itself, are linear about what was known before them.
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
   /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them, or may yet turn out to be.
-  bool explains() const noexcept { return explains_ || (learns_ && !seeks_); }
+  bool explains() const noexcept { return explains_ || (learns_ && !seeks_ && explained_for_ <= kOilProven); }
   /// What was found of the oil does not hold: give modes of the oil as given.
   bool forgets() const noexcept { return !explains_; }
   /// Give modes of the oil as it is found, known or not.
@@ -173,6 +174,9 @@ class ModeIdentifier {
   double findCrankLead() const noexcept;
   bool imuSpeaks() const noexcept;
   bool waitsForDelay() const noexcept;
+  bool isExplained() const noexcept;
+  // Guards: ContactFollowing.WithoutPressuresABouncingHullTeachesNothing, SoftCylinder
+  static constexpr double kOilProven = 1.0;  ///< of agreement [s]: oil does not change from one second to the next
   double byDelay(Clock clock, const State& row) const noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {
@@ -208,6 +212,7 @@ class ModeIdentifier {
   double known_for_{};  ///< so long every frequency has been known, until a delay is followed [s]
   double lost_for_{};   ///< so long one has not been since then [s]
   bool explains_{true}, seeks_{};
+  double explained_for_{};    ///< so long readings have agreed with the oil that was found [s]
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]
   BoomModes modes_;

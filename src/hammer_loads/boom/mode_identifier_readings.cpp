@@ -185,8 +185,11 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
 
 /// Accelerations may be off as those of an oil not yet found, or of stamps that are late.
 bool ModeIdentifier::waitsForDelay() const noexcept {
-  return learns_ && !(identified() && isDelayFollowed(Clock::kImu));
+  return learns_ && !(identified() && (isDelayFollowed(Clock::kImu) || explained_for_ > kOilProven));
 }
+
+/// By the oil that was found.
+bool ModeIdentifier::isExplained() const noexcept { return explains_ && surprise_ < kCalm && learns_ && identified(); }
 
 /// S of a reading, by the variance of what is predicted; 0: it does not count.
 double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {

@@ -72,7 +72,7 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   if (sample.speed) sample.speed = encoder_.speed(angle, *reading.speed);
   sample.angle_variance = encoder_.variance() + square(settings_.angle_noise);
   sample.timing_variance = timing_.variance();
-  sample.speed_variance = speed_trust_.varianceFactor() * speed_variance_;
+  sample.speed_variance = speed_variance_;
   return sample;
 }
 
@@ -182,8 +182,7 @@ void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
   if (!innovation.exceeds(gate::kImpossible))
     now_.correctSpeed(innovation.value, innovation.total, innovation.by_error);
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
-  const double expected = innovation.total - sample.speed_variance + speed_variance_;  // of one speed alone
-  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - expected), floor);
+  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
 }
 
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
@@ -265,10 +264,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   settleSide(last, dt, sample, struck);
   read_side_ = readSide(reading);
   respectCount(last, dt, struck, sample, reading);
-  if (witness_) {
-    witness_->speed = now_.encoderSpeed();
-    witness_->variance = consistency_.growth() * now_.encoderVariance(Belief::kSpeed);
-  }
+  if (witness_) witness_->speed = now_.encoderSpeed();
   if (sample.speed) correctSpeed(sample);
   if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed
   now_.boundFactor();

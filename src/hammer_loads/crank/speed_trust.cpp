@@ -21,7 +21,7 @@ constexpr double kReleased = 0.5;       // of these and of the deviations: where
 constexpr double kMostOfOne = 0.999;    // of a correlation
 constexpr double kSingular = 1e-9;      // of the diagonal's product: an even speed shows no lag
 // Guard: SpeedTrust.FindsTheLagOfAFilterWithItsDeviation of kSpeedTurns, kNotableLag, kMostLag
-// Guard: SpeedTrust.ErrorsThatHangTogetherWeighLess of kSpeedSamples
+// Guard: SpeedTrust.FindsTheLagOfAFilterWithItsDeviation of kSpeedSamples
 // Guard: SpeedTrust.FindsAScaleApartFromALag of kNotableScale, kMostScale
 
 bool isSeen(double amount, double notable, double deviation, bool before) noexcept {
@@ -53,17 +53,11 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
     const double gain = 1.0 / samples_;
     square_ += gain * (square(residual) - square_);
     product_ += gain * (residual * residual_ - product_);
-    known_ += gain * (now.variance - known_);
     const Eigen::Vector2d by{-(1.0 + scale_) * by_lag_, filtered};
     information_.noalias() += by * by.transpose();
     score_ += residual * by;
   }
   residual_ = residual;
-}
-
-double SpeedTrust::memory() const noexcept {
-  const double own = square_ - known_;
-  return own > 0.0 ? std::clamp((product_ - known_) / own, 0.0, kMostOfOne) : 0.0;
 }
 
 void SpeedTrust::endTurn() noexcept {
@@ -82,6 +76,8 @@ void SpeedTrust::endTurn() noexcept {
   information_ *= 1.0 - 1.0 / kSpeedTurns, score_ *= 1.0 - 1.0 / kSpeedTurns;
   lags_ = isSeen(lag_, kNotableLag, deviation_[0], lags_);
   out_of_scale_ = isSeen(scale_, kNotableScale, deviation_[1], out_of_scale_);
+  are_good_ = !lags_ && !out_of_scale_ && gate::kUsual * deviation_[0] < kNotableLag &&
+              gate::kUsual * deviation_[1] < kNotableScale;
 }
 
 }  // namespace hammer_loads

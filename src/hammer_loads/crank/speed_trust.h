@@ -16,8 +16,9 @@ namespace hammer_loads {
 ///
 /// lag and scale by least squares (Gauss and Newton, a step a turn) over some turns. What is left has a variance and an
 /// autocorrelation rho from one sample to the next; n such errors say as much as n (1 - rho)/(1 + rho) independent
-/// ones, and weigh as much. Speeds serve the start alone until some turns have shown them to be neither late nor out of
-/// scale, and where they are.
+/// ones. Speeds serve the start alone until lag and scale are known to be less than matters, and where they are not:
+/// who takes them up cannot judge them. (No larger variance instead: a model that errs hangs together as well, and then
+/// it is the speeds that put it right.)
 class SpeedTrust {
  public:
   /// What came before does not continue.
@@ -26,7 +27,6 @@ class SpeedTrust {
   struct Witness {
     double measured{};      ///< [rad/s]
     double speed{};         ///< [rad/s]
-    double variance{};      ///< of the latter [rad2/s2]
     double acceleration{};  ///< there [rad/s2]
     double jump{};          ///< of the speed by a blow since the sample before [rad/s]
   };
@@ -36,12 +36,9 @@ class SpeedTrust {
   void endTurn() noexcept;
 
   /// They may be taken up.
-  bool isTrusted() const noexcept { return turns_ >= kTurnsToKnow && !lags_ && !out_of_scale_; }
+  bool isTrusted() const noexcept { return turns_ >= kTurnsToKnow && are_good_; }
   bool lags() const noexcept { return turns_ >= kTurnsToKnow && lags_; }
   bool isOutOfScale() const noexcept { return turns_ >= kTurnsToKnow && out_of_scale_; }
-  /// By which the variance of a speed grows, as its errors are no white noise: (1 + rho)/(1 - rho), >= 1. What the
-  /// estimate's own error explains of rho does not count.
-  double varianceFactor() const noexcept { return (1.0 + memory()) / (1.0 - memory()); }
   double lag() const noexcept { return lag_; }                      ///< > 0: late [s]
   double lagDeviation() const noexcept { return deviation_[0]; }    ///< [s]
   double scale() const noexcept { return scale_; }                  ///< measured over true speed, less 1 [-]
@@ -50,12 +47,10 @@ class SpeedTrust {
  private:
   static constexpr int kTurnsToKnow = 5;  // some 1 s at work. Guard: SpeedTrust.IsSilentBeforeItKnows
 
-  double memory() const noexcept;
-
   Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};  ///< of lag and scale, unit variance
   Eigen::Vector2d score_{Eigen::Vector2d::Zero()}, deviation_{Eigen::Vector2d::Zero()};
   double lag_{}, scale_{};
-  bool begun_{}, lags_{}, out_of_scale_{};
+  bool begun_{}, lags_{}, out_of_scale_{}, are_good_{};
   double behind_{}, by_lag_{};             ///< at the last sample: speed - y [rad/s], and its derivative by the lag
   double acceleration_{};                  ///< likewise
   double residual_{};                      ///< of the last sample
