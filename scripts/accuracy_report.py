@@ -149,7 +149,8 @@ def machines_excerpt(machines):
 def drawings_excerpt(drawings):
     """What a machine's drawing leaves open."""
     lines = ["", "Of 50 machines drawn from the deviations that a hammer file has where it gives none (2 % of mass and inertia, a",
-             "millimetre of the centre, 0.3 mm of lengths, half of what crank and rod weigh), with a clean sensor and a rod that is known to be rigid:", "",
+             "millimetre of the centre, 0.3 mm of lengths, half of what crank and rod weigh), with a clean sensor",
+             "and a rod that is known to be rigid:", "",
              "| | error, rms | said | within two deviations |", "|---|---|---|---|"]
     lines += [f"| {row['quantity']} | {100 * row['rms']:.1f} % | {100 * row['said']:.1f} % | {100 * row['covered']:.0f} % |"
               for row in drawings]
