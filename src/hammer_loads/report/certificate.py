@@ -1,8 +1,6 @@
 """A test certificate: one page that says what was measured, with which uncertainty, and how that is known."""
-import math
-
 from report.budget import budget_of
-from report.markup import duration, in_unit, number, paragraph, scaled, section, table, text, utc
+from report.markup import duration, in_unit, number, paragraph, places_of, scaled, section, table, text, utc
 from report.names import without_unit
 from report.overview import warnings_of
 from report.page import GENERATOR
@@ -10,7 +8,6 @@ from report.problem import Problem
 from report.sensor_health import health_rows, refusals_of
 
 COVERAGE = 2  # k of the expanded uncertainty: some 95 % of a normal distribution (JCGM 100, 6.3.3)
-SIGNIFICANT = 2  # digits of an uncertainty (JCGM 100, 7.2.6)
 STYLE = """
 @page { size: A4; margin: 12mm }
 body { font: 9pt/1.25 sans-serif; max-width: 180mm; margin: 1em auto; color: #111; background: #fff }
@@ -25,7 +22,7 @@ def rounded(value, uncertainty):
     """Both with the last digit of the uncertainty's two (JCGM 100, 7.2.6)."""
     if value is None or uncertainty is None or not uncertainty > 0.0:
         return number(value), number(uncertainty)
-    places = SIGNIFICANT - 1 - math.floor(math.log10(uncertainty))
+    places = places_of(uncertainty)
     return tuple(f"{round(x, places):.{max(places, 0)}f}" for x in (value, uncertainty))
 
 

@@ -27,11 +27,16 @@ def number(value, digits=4):
     return shown.replace("-", "\u2212") if not shown[:1].isalpha() else shown
 
 
+def places_of(deviation):
+    """Decimal places up to its second digit (JCGM 100, 7.2.6); below zero where that stands before the point."""
+    return 1 - math.floor(math.log10(deviation))
+
+
 def measured(value, deviation):
     """Value and deviation, the value to the place of the deviation's second digit."""
     if value is None or not deviation or not math.isfinite(value) or not math.isfinite(deviation):
         return number(value)
-    places = 1 - math.floor(math.log10(deviation))
+    places = places_of(deviation)
     if places <= 0:
         return f"{number(round(value))} \u00b1 {number(round(deviation))}"
     return f"{value:.{places}f} \u00b1 {deviation:.{places}f}".replace("-", "\u2212")
