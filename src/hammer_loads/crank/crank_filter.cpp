@@ -232,6 +232,13 @@ Tracking CrankFilter::begin(WeighedSample sample) noexcept {
   return Tracking::kRestarted;
 }
 
+/// The sample is as if it had not come, but that the next one may confirm it.
+Tracking CrankFilter::ignore(const CrankBelief& last, const Innovation& innovation) noexcept {
+  now_ = last;
+  outlier_ = innovation.value;
+  return Tracking::kOutlier;
+}
+
 /// (5) One such sample is ignored, a second one believed. Nothing: it is taken as any other, with the angle unknown.
 std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                                 const WeighedSample& sample) noexcept {
@@ -239,11 +246,7 @@ std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double 
   surprises_ += 1.0 - surprises_ / kSurpriseLength;
   const bool agrees = std::abs(CrankAngle::wrapToPi(innovation.value - outlier_)) < most;
   const bool confirmed = outlier_ != 0.0 && (agrees || surprises_ < kManySurprises);
-  if (!confirmed) {
-    now_ = last;
-    outlier_ = innovation.value;
-    return Tracking::kOutlier;
-  }
+  if (!confirmed) return ignore(last, innovation);
   // Contradicted on the mirrored branch: there was contact.
   if (!agrees || mirrored_ || std::abs(innovation.value) > kSlip * std::abs(now_.state.speed)) {
     WeighedSample angle_alone = sample;
@@ -287,11 +290,27 @@ double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
   return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
 }
 
-/// (5) Whether a step of the reading could be told from the crank's own.
-bool CrankFilter::mayHaveSlipped(const WeighedSample& sample) const noexcept {
+/// (5) Whether a step of the reading could be told from the crank's own and from what a rod that rings moves.
+bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
+  const CrankAngle& at = now_.state.position.angle;
+  const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
+  const bool rings = rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
-  return at_work && !mirrored_ && !rival_.isThere() && nearest > kNotSlip;
+  return lost_time_ == 0.0 && !rings && at_work && !mirrored_ && !rival_.isThere() && nearest > kNotSlip;
+}
+
+/// (5) A slip that has shown itself is taken off the reading.
+EncoderSlip::Step CrankFilter::followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept {
+  // From the largest one way to the largest the other way: half its change times the square of the time.
+  const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
+  const EncoderSlip::Step step = slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_,
+                                              mayHaveSlipped(sample, innovation));
+  if (step != EncoderSlip::Step::kSlipped) return step;
+  encoder_.slip(slip_.last());
+  errors_.stepZero(square(slip_.deviation()));
+  sample.angle = CrankAngle::wrapToPi(sample.angle - slip_.last());
+  return step;
 }
 
 /// Steps (1) to (10) are those of model.md 6.
@@ -313,26 +332,12 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     innovation = sample.ofAngle(now_);
   }
   if (has_speed_) {
-    // From the largest one way to the largest the other way: half its change times the square of the time.
-    const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
-    const CrankAngle& at = now_.state.position.angle;
-    const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
-    const bool rings = rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
-    const bool possible = lost_time_ == 0.0 && !rings && mayHaveSlipped(sample);
-    const EncoderSlip::Step step =
-        slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_, possible);
+    const EncoderSlip::Step step = followSlip(dt, innovation, sample);
     if (step == EncoderSlip::Step::kPerhaps) {  // else an outlier as any other
       surprises_ += 1.0 - surprises_ / kSurpriseLength;
-      outlier_ = innovation.value;
-      now_ = last;
-      return Tracking::kOutlier;
+      return ignore(last, innovation);
     }
-    if (step == EncoderSlip::Step::kSlipped) {
-      encoder_.slip(slip_.last());
-      errors_.stepZero(square(slip_.deviation()));
-      sample.angle = CrankAngle::wrapToPi(sample.angle - slip_.last());
-      innovation = sample.ofAngle(now_);
-    }
+    if (step == EncoderSlip::Step::kSlipped) innovation = sample.ofAngle(now_);
   }
   const double ratio = innovation.ratio();
   const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/consistency.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/linkage/crank_angle.h"
@@ -22,7 +23,7 @@ class RodEvidence {
   /// Of an innovation at a place of the crank.
   void add(const CrankAngle& at, double squared_over_variance) noexcept {
     if (at.side == Side::kBeforeBlow || !std::isfinite(squared_over_variance)) return;
-    const double bounded = std::min(squared_over_variance, kMost);
+    const double bounded = std::min(squared_over_variance, kMostSurprise);
     if (at.offset < kPickedUp) picked_up_.add(bounded);
     if (at.offset > kRungOut) later_.add(bounded);
   }
@@ -46,7 +47,6 @@ class RodEvidence {
  private:
   static constexpr double kLeastExcess = 3.0;  ///< above 1, of any rod whose ring readings show
   static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;  ///< behind the blow
-  static constexpr double kMost = 100.0;                                          ///< of one sample, as of Consistency
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
   static constexpr double kGives = 2.0, kShare = 5.0;
   RunningMean<> picked_up_{400.0}, later_{1200.0};  ///< some 20 turns at 1 kHz
