@@ -60,7 +60,12 @@ TEST(ConstantErrors, NothingIsConcludedBeforeSomeTurns) {
     errors.endTurn(1.0, kTwoPi / 4096.0);
   }
   EXPECT_EQ(errors.estimate(), ConstantErrors::Vector::Zero());
-  EXPECT_EQ(errors.moment(), ConstantErrors::Matrix::Zero());
+  ConstantErrors::Matrix moment = errors.moment();
+  for (const int considered : {ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale}) {
+    EXPECT_GT(moment(considered, considered), 0.0);
+    moment(considered, considered) = 0.0;
+  }
+  EXPECT_EQ(moment, ConstantErrors::Matrix::Zero());
 }
 
 /// What is off for certain is part of the uncertainty with what is not known of it; what may be nothing is not.

@@ -32,7 +32,7 @@ SpeedTrust trustAfter(double rate, double lag, double scale, double noise, doubl
     error = memory * error + noise * std::sqrt(1.0 - memory * memory) * normal(random);
     const double measured =
         scale * (lag < 0.0 ? SwingingCrank::speed(t - lag) : SwingingCrank::filtered(t, lag)) + error;
-    trust.follow(1.0 / rate, {measured, SwingingCrank::speed(t), SwingingCrank::acceleration(t), 0.0});
+    trust.follow(1.0 / rate, {measured, SwingingCrank::speed(t), SwingingCrank::acceleration(t), 0.0, 0.0, 0.0});
     if (i % turn == 0) trust.endTurn();
   }
   return trust;
@@ -71,12 +71,29 @@ TEST(SpeedTrust, FindsAScaleApartFromALag) {
   EXPECT_NEAR(trust.lag(), 4e-3, 1e-4);
 }
 
+/// An estimate that takes up half of what a late speed says, and knows what its lag makes of it.
+TEST(SpeedTrust, AnEstimateThatTookSpeedsUpJudgesThem) {
+  constexpr double kLag = 2e-3, kTaken = 0.5;
+  SpeedTrust trust;
+  const int turn = static_cast<int>(1e3 * 2.0 * M_PI / SwingingCrank::kOmega);
+  for (int i = 1; i < 40 * turn; ++i) {
+    const double t = 1e-3 * i, measured = SwingingCrank::filtered(t, kLag);
+    const double pulled = SwingingCrank::speed(t) + kTaken * (measured - SwingingCrank::speed(t));
+    trust.follow(1e-3, {measured, pulled, SwingingCrank::acceleration(t), -kTaken * SwingingCrank::acceleration(t),
+                        kTaken * SwingingCrank::speed(t), 0.0});
+    if (i % turn == 0) trust.endTurn();
+  }
+  EXPECT_TRUE(trust.lags());
+  EXPECT_NEAR(trust.lag(), kLag, 0.05 * kLag);
+  EXPECT_NEAR(trust.scale(), 0.0, 1e-3);
+}
+
 /// The mean of n such errors has the variance (1 + rho)/(1 - rho)/n: what the factor says.
 TEST(SpeedTrust, IsSilentBeforeItKnows) {
   SpeedTrust trust;
-  for (int i = 1; i <= 100; ++i) trust.follow(1e-3, {40.0, 30.0, 100.0, 0.0});
+  for (int i = 1; i <= 100; ++i) trust.follow(1e-3, {40.0, 30.0, 100.0, 0.0, 0.0, 0.0});
   trust.endTurn();
-  EXPECT_FALSE(trust.isTrusted() || trust.lags() || trust.isOutOfScale());
+  EXPECT_FALSE(trust.knows() || trust.lags() || trust.isOutOfScale());
 }
 
 }  // namespace

@@ -139,6 +139,40 @@ TEST(GaussianBelief, MeasurementOfOneVariableIsTheGeneralOne) {
   EXPECT_EQ(one.covariance, one.covariance.transpose());
 }
 
+/// Schmidt's filter on all variables at once, dense: the gain of what is corrected, none of the constants.
+TEST(GaussianBelief, WeighsAMeasurementByConstantsThatAreConsidered) {
+  constexpr int kAll = kN + kC;
+  using Dense = Eigen::Matrix<double, kAll, kAll>;
+  Machine machine(9);
+  machine.H = Belief::Row::Unit(1);
+  const Belief::ConstantRow of_constants = machine.prior.cwiseAbs2().transpose();
+  Belief belief = machine.begin();
+  Dense both = Dense::Identity();  // of (x, p) less what is known of them
+  both.topLeftCorner<kN, kN>() = machine.first;
+  both.bottomRightCorner<kC, kC>() = machine.prior.cwiseAbs2().asDiagonal();
+  Machine::Vector mean = Machine::Vector::Zero();
+  Dense step = Dense::Identity();
+  step.topLeftCorner<kN, kN>() = machine.F, step.topRightCorner<kN, kC>() = machine.B;
+  Eigen::Matrix<double, 1, kAll> seen;
+  seen << machine.H, machine.D;
+  for (int k = 0; k < 20; ++k) {
+    machine.predict(belief, mean);
+    const Belief::Vector gain = belief.correct(1, machine.noise, machine.D, of_constants);
+    both = (step * both * step.transpose()).eval();
+    both.topLeftCorner<kN, kN>() += machine.step_noise;
+    Eigen::Matrix<double, kAll, 1> of_all = both * seen.transpose() / (seen * both * seen.transpose() + machine.noise);
+    of_all.tail<kC>().setZero();
+    const Dense left = Dense::Identity() - of_all * seen;
+    both = (left * both * left.transpose() + machine.noise * of_all * of_all.transpose()).eval();
+    EXPECT_TRUE(gain.isApprox(of_all.head<kN>(), 1e-10)) << k;
+    EXPECT_TRUE(belief.grown(1.0, of_constants.asDiagonal()).isApprox(both.topLeftCorner<kN, kN>(), 1e-10)) << k;
+  }
+  Belief plain = machine.begin(), weighed = plain;  // of constants that are right: the same as without them
+  EXPECT_TRUE(plain.correct(2, 0.3, machine.D)
+                  .isApprox(weighed.correct(2, 0.3, machine.D, Belief::ConstantRow::Zero()), 1e-14));
+  EXPECT_TRUE(weighed.covariance.isApprox(plain.covariance, 1e-13));
+}
+
 /// A count of 1e-12 rad2 beside a torque of 1e6 N m, known a million times better by each of many samples, and two
 /// variables that are one but for a part in 1e12: nothing turns negative, and what is known is that of all samples.
 TEST(GaussianBelief, SurvivesExactReadingsOfBadlyScaledVariables) {

@@ -141,8 +141,9 @@ TEST_P(Mistaken, SensorsLeaveNothingBehind) {
   }
 }
 
-/// A bus that takes 10 ms: torques are as late as the readings, and their deviations say so.
-TEST(MistakenSensors, PressuresThatLagAreNamedAndTheirDeviationsWidened) {
+/// A bus that takes 10 ms, more than can be allowed for: beside an IMU they are not used; alone they are all that shows
+/// the vibration, and deviations are as wide.
+TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
   for (const bool rock : {false, true}) {
     for (const bool imu : {false, true}) {
       const char* keys = imu ? kHullByImu : kBoomIdentified;
@@ -151,10 +152,13 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndTheirDeviationsWidened) {
       EXPECT_FALSE(right.warned_of_pressure_stamps) << rock << imu;
       Session session = sessionOn(rock);
       for (simulation::PressureReading& r : session.pressures) r.stamp += 10'000'000;
+      const BoomErrors without = errorsOf(sessionOn(rock), keys, {imu, false}, 3.5, 5.0);
       const BoomErrors late = errorsOf(session, keys, {imu, true}, 3.5, 5.0);
-      EXPECT_GT(late.worstTorque(), 0.2) << rock << imu << ": what there is to say";
-      // On rock the oil is not known yet in these 5 s where the crank's speeds are judged first and no IMU helps.
+      // On rock the oil is not known yet in these 5 s where no IMU helps.
       EXPECT_TRUE(late.warned_of_pressure_stamps || (rock && !imu)) << rock << imu;
+      if (imu) {
+        EXPECT_LT(late.worstTorque(), without.worstTorque() + 0.15) << rock;
+      }
       EXPECT_GT(late.covered(), 0.85) << rock << imu;
       EXPECT_GT(late.sectionsCovered(), 0.85) << rock << imu;
     }

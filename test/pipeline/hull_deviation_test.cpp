@@ -69,8 +69,7 @@ TEST_P(Deviations, HoldTheErrorsAsOftenAsTheyShould) {
   const char* names[] = {"force_x", "force_z", "torque_y", "angle", "speed", "acceleration"};
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_GE(inside[k], 0.90) << names[k];
-    // At 50 Hz speeds are not taken up in these 15 s (SpeedTrust): the angles' own deviations are wide there.
-    EXPECT_LE(inside[k], machine.crank.rate > 50.0 ? 0.99 : 1.0) << names[k];
+    EXPECT_LE(inside[k], machine.crank.rate > 50.0 ? 0.99 : 1.0) << names[k];  // at 50 Hz lag and scale stay in doubt
   }
   for (std::size_t k = 0; k < 6; ++k) RecordProperty(names[k], std::to_string(inside[k]));
 }

@@ -44,8 +44,9 @@ const auto kNothing = [](const SampleResult&, const LifeFollower&) {};
 
 TEST(TurnLoads, OfTheHullHaveThePulsesPeakAtAnyRate) {
   for (const double rate : {100.0, 1000.0}) {
-    std::size_t turns = 0;
+    std::size_t turns = 0, withheld = 0;
     run(test::settingsWith("{}"), sessionAt(rate), [&](const SampleResult& result, const LifeFollower& follower) {
+      withheld += result.beside_blow;
       for (std::size_t i = 0; i < result.turn_ends; ++i) {
         const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
         ASSERT_NE(turn, nullptr);
@@ -55,6 +56,8 @@ TEST(TurnLoads, OfTheHullHaveThePulsesPeakAtAnyRate) {
         const HalfSinePulse& pulse = *result.ends[i].pulse;
         // The pulse's amplitude is that of a parabola through points 1.25 ms apart, along the turn's own track.
         EXPECT_NEAR(turn->maximum[1], pulse.amplitude, 5e-4 * kPeak) << rate;
+        // A mean is of what was published: at 100 Hz a sample withheld beside the blow is a twentieth of the turn.
+        if (std::exchange(withheld, 0) > 0 && rate < 1000.0) continue;
         EXPECT_NEAR(turn->mean[1], pulse.turn_impulse_z / pulse.period, 0.01 * kPeak) << rate;
       }
     });

@@ -11,6 +11,9 @@ using Vector = CrankBelief::Vector;
 
 constexpr double kMostAtBlow = 6.0;  // squared distance of five variables: 9 of 10 blows at the dead centre are below 3
 
+constexpr double kWeighing = 0.1, kSmoothedRounding = 1e-6;
+// Guard: SmoothedRuns.StampsThatJitterWeighLess of kWeighing
+
 /// Beliefs that a step of the model joins, and how.
 struct Joined {
   CrankBelief predicted;
@@ -34,10 +37,10 @@ std::optional<Joined> joined(const ShaftModel& model, const FilterStep& step, co
   return result;
 }
 
-/// A sample only ever makes a variance smaller; where the filter made one larger, the prediction is not what it used.
-bool isWidened(const CrankBelief& predicted, const CrankBelief& now) noexcept {
-  constexpr double kRoundingLeft = 1e-6;
-  return (now.covariance.diagonal().array() > (1.0 + kRoundingLeft) * predicted.covariance.diagonal().array()).any();
+/// A sample only ever makes a variance smaller, but for a speed that is weighed by constants, which gives up a little
+/// for less of theirs; where the filter made one larger by more than this part, the prediction is not what it used.
+bool isWidened(const CrankBelief& predicted, const CrankBelief& now, double part) noexcept {
+  return (now.covariance.diagonal().array() > (1.0 + part) * predicted.covariance.diagonal().array()).any();
 }
 
 Vector between(const CrankBelief& a, const CrankBelief& b) noexcept {
@@ -53,7 +56,7 @@ std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& st
                                           const CrankBelief& now, const CrankBelief& next) noexcept {
   model.setHullMotion(step.hull);
   const std::optional<Joined> way = joined(model, step, before, now);
-  if (!way || isWidened(way->predicted, now)) return std::nullopt;
+  if (!way || isWidened(way->predicted, now, kWeighing)) return std::nullopt;
   const Vector change = between(next, way->predicted);
   const auto smoothed = smooth(before, way->transition, way->predicted, next, change);
   const bool passes = before.state.position.blowsPassed() != now.state.position.blowsPassed();
@@ -63,7 +66,7 @@ std::optional<CrankBelief> smoothedBelief(ShaftModel model, const FilterStep& st
   result.move(smoothed->gain * change);
   result.boundFactor();
   static_cast<CrankBelief::Base&>(result) = smoothed->belief;
-  if (!result.isSound(step.most_speed) || isWidened(before, result)) return std::nullopt;
+  if (!result.isSound(step.most_speed) || isWidened(before, result, kSmoothedRounding)) return std::nullopt;
   return result;
 }
 

@@ -22,7 +22,8 @@ class ConstantErrors {
  public:
   static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();
   static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
-                       kShare = indexOfUnknown("share"), kLatency = indexOfUnknown("latency");
+                       kShare = indexOfUnknown("share"), kLatency = indexOfUnknown("latency"),
+                       kSpeedLag = indexOfUnknown("speed lag"), kSpeedScale = indexOfUnknown("speed scale");
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< of the table's alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;
@@ -60,6 +61,8 @@ class ConstantErrors {
 
   /// Standard deviation of a constant that is considered, known better now.
   void consider(int constant, double deviation) noexcept;
+  /// As it is now, of one that is considered.
+  double considered(int constant) const noexcept { return prior_[constant]; }
   /// The encoder's zero has been moved by what is known with this variance [rad2].
   void stepZero(double variance) noexcept;
   /// The supply's stiffness has been changed by this much [SupplyLaw::unit].

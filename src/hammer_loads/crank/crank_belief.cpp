@@ -115,11 +115,15 @@ void CrankBelief::move(const Vector& change) noexcept {
 
 void CrankBelief::boundFactor() noexcept { factor = std::clamp(factor, kLeastFactor, kMostFactor); }
 
-void CrankBelief::correct(Row row, double innovation, double variance,
-                          const ConstantErrors::Row& measured_by_error) noexcept {
-  if (motor)
-    return correctFlexible(row == kAngle ? kMotorAngle : kMotorSpeed, innovation, variance, measured_by_error, *this);
-  Vector change = Base::correct(row, variance, measured_by_error) * innovation;
+void CrankBelief::correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
+                          const ConstantErrors::Row* of_constants) noexcept {
+  if (motor) {
+    const FlexibleRow at_motor = row == kAngle ? kMotorAngle : kMotorSpeed;
+    return correctFlexible(at_motor, innovation, variance, by_error, of_constants, *this);
+  }
+  Vector change = (of_constants != nullptr ? Base::correct(row, variance, by_error, *of_constants)
+                                           : Base::correct(row, variance, by_error)) *
+                  innovation;
   change[kInertia] = std::clamp(change[kInertia], -kMostInertiaChange, kMostInertiaChange);
   move(change);
 }

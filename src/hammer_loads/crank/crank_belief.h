@@ -55,12 +55,10 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
   /// factor and the speed go together.
   void boundFactor() noexcept;
-  /// Scalar measurement of one variable; moves. by_error: what the sensor's errors make of the measurement.
-  void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error) noexcept;
-  /// The same of a speed whose innovation has the variance `total`.
-  void correctSpeed(double innovation, double total, const ConstantErrors::Row& measured) noexcept {
-    correct(kSpeed, innovation, total - encoderVariance(kSpeed), measured);
-  }
+  /// Scalar measurement of one variable; moves. by_error: what the sensor's errors make of the measurement;
+  /// of_constants: their variances where the measurement is to be weighed by them.
+  void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
+               const ConstantErrors::Row* of_constants = nullptr) noexcept;
   /// The coming correction teaches nothing of the inertia, nor of a coupling's stiffness.
   void forgetInertiaCoupling() noexcept;
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.

@@ -21,6 +21,8 @@ constexpr double kMostTorque = 3.0;        // times its first deviation: more is
 constexpr double kSoundSpeeds = 2.0;       // times the largest plausible speed: more is a diverged filter
 constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
+constexpr int kOneSided = 3;               // innovations in a row beyond 5 deviations: no jitter of stamps
+constexpr int kOneSidedLost = 10;          // the same where readings made no sense: they do again, elsewhere
 constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
 constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
@@ -73,6 +75,9 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   sample.angle_variance = encoder_.variance() + square(settings_.angle_noise);
   sample.timing_variance = timing_.variance();
   sample.speed_variance = speed_variance_;
+  if (speed_trust_.areGood()) return sample;
+  for (const int constant : {ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale})
+    sample.of_speed[constant] = square(errors_.considered(constant));
   return sample;
 }
 
@@ -114,6 +119,8 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   p(Belief::kFactor, Belief::kFactor) = square(settings_.blow_deviation);
   now_.by_constant.setZero();
   now_.by_constant.row(Belief::kAngle) = ConstantErrors::ofAngle({s.position.angle.offset, s.speed, 0.0});
+  if (has_speed_)
+    now_.by_constant.row(Belief::kSpeed) = ConstantErrors::ofSpeed({s.position.angle.offset, s.speed, 0.0});
   if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 
@@ -135,7 +142,8 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
   const int side = innovation.exceeds(gate::kImpossible) ? (innovation.value > 0.0 ? 1 : -1) : 0;
   if (side != 0) unexplained_ = side * unexplained_ < 0 ? side : unexplained_ + side;
   surprises_ += (side != 0 ? 1.0 : 0.0) - surprises_ / kSurpriseLength;
-  if (side != 0 && ((std::abs(unexplained_) < 3 && surprises_ > kManySurprises) || isLost())) {
+  const bool one_sided = std::abs(unexplained_) >= (isLost() ? kOneSidedLost : kOneSided);
+  if (side != 0 && !one_sided && (surprises_ > kManySurprises || isLost())) {
     innovation.variance = squared / square(gate::kImpossible);  // with many like it on both sides: the stamps
   } else if (side != 0) {
     const double factor = (0.25 * squared - innovation.variance) / now_.encoderVariance(Belief::kAngle);
@@ -164,6 +172,23 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   consistency_ = {};
 }
 
+/// (10) What stamps and speeds may be off: as it is given, and as it has shown itself.
+void CrankFilter::considerSensor() noexcept {
+  const double ahead = speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0;
+  errors_.consider(ConstantErrors::kLatency,
+                   std::hypot(settings_.constant_deviations[ConstantErrors::kLatency], std::hypot(stamps_off_, ahead)));
+  if (!speed_trust_.knows()) return;
+  const auto consider = [&](int constant, double amount, double deviation) {
+    const double prior = settings_.constant_deviations[constant];
+    if (!(prior > 0.0)) return;
+    const double together = 1.0 / std::hypot(1.0 / prior, 1.0 / deviation);
+    const double shown = std::max(0.0, square(amount) - square(gate::kUsual * deviation));
+    errors_.consider(constant, std::sqrt(square(together) + shown));
+  };
+  consider(ConstantErrors::kSpeedLag, speed_trust_.lag(), speed_trust_.lagDeviation());
+  consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());
+}
+
 /// (8) As it is without the speed, by the estimate at the angle; one that began anew of late is no judge.
 void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
   if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
@@ -175,14 +200,25 @@ void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
 }
 
 /// (8)
-void CrankFilter::correctSpeed(const WeighedSample& sample) noexcept {
-  const Innovation innovation = sample.ofSpeed(now_, model_);
+void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept {
+  Innovation innovation = sample.ofSpeed(now_, model_);
+  if (sample.of_speed[ConstantErrors::kSpeedLag] > 0.0) {
+    double& by = innovation.by_error[ConstantErrors::kSpeedLag];
+    const double jump = struck && !now_.motor ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
+    const double of_state = now_.encoderByError(Belief::kSpeed)[ConstantErrors::kSpeedLag], before = by;
+    by = -speed_trust_.lateBy(dt, -before, jump);
+    innovation.total +=
+        sample.of_speed[ConstantErrors::kSpeedLag] * (square(by - of_state) - square(before - of_state));
+  }
   fit_ += innovation.logLikelihood();
-  const double squared = std::min(square(innovation.value), square(gate::kImpossible) * innovation.total);
+  // What lag and scale make of it passes for noise: less speed is taken up then.
+  const double known = now_.encoderVariance(Belief::kSpeed) + innovation.variance;
+  const double squared = std::min(square(innovation.value), square(gate::kImpossible) * known);
   if (!innovation.exceeds(gate::kImpossible))
-    now_.correctSpeed(innovation.value, innovation.total, innovation.by_error);
+    now_.correct(Belief::kSpeed, innovation.value, innovation.variance, innovation.by_error, &sample.of_speed);
+  if (restart_load_ > kBeganOfLate) return;  // angles that make no sense say nothing of speeds
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
-  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - innovation.total), floor);
+  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - known), floor);
 }
 
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
@@ -194,9 +230,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   speed_trust_.endTurn();
   slip_.endTurn();
   if (from.isMirrored() || to.isMirrored()) return;
-  const double ahead = speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0;
-  errors_.consider(ConstantErrors::kLatency,
-                   std::hypot(settings_.constant_deviations[ConstantErrors::kLatency], std::hypot(stamps_off_, ahead)));
+  considerSensor();
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   learnSupply();
   blows_.add(now_.factor, now_.covariance(Belief::kFactor, Belief::kFactor), now_.by_constant.row(Belief::kFactor));
@@ -267,8 +301,13 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   settleSide(last, dt, sample, struck);
   read_side_ = readSide(reading);
   respectCount(last, dt, struck, sample, reading);
-  if (witness_) witness_->speed = now_.encoderSpeed();
-  if (sample.speed) correctSpeed(sample);
+  if (witness_) {
+    const ConstantErrors::Row by_error = now_.encoderByError(Belief::kSpeed);
+    witness_->speed = now_.encoderSpeed();
+    witness_->by_lag = by_error[ConstantErrors::kSpeedLag];
+    witness_->by_scale = by_error[ConstantErrors::kSpeedScale];
+  }
+  if (sample.speed) correctSpeed(sample, dt, struck);
   if (!mirrored_ && now_.state.position.isMirrored()) now_.standAtBlow();  // pushed by the speed
   now_.boundFactor();
   if (contested && rival_.isThere()) {

@@ -161,8 +161,9 @@ class CrankFilter final : public CrankTracker {
   void respectCount(const CrankBelief& last, double dt, bool struck, const WeighedSample& sample,
                     double reading) noexcept;
   void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
+  void considerSensor() noexcept;
   void judgeSpeed(double dt, bool struck) noexcept;
-  void correctSpeed(const WeighedSample& sample) noexcept;
+  void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;
   void meetRival(const CrankBelief& belief) noexcept;
   bool rivalExplains(double dt, const WeighedSample& sample) noexcept;
   void learnFrom(const Innovation& innovation, double ratio) noexcept;

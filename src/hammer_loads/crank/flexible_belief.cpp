@@ -113,7 +113,7 @@ void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) no
   m.covariance(Belief::kSpeed, MotorSide::kSpeed) = m.covariance(kMotorSpeed, MotorSide::kSpeed) =
       b.covariance(Belief::kSpeed, Belief::kSpeed);
   m.covariance(kStiffness, MotorSide::kStiffness) = stiffness_variance;
-  m.by_constant.row(MotorSide::kAngle) = b.by_constant.row(Belief::kAngle);
+  m.by_constant.topRows<2>() = b.by_constant.topRows<2>();
   const CouplingLaw law = lawOf(coupling, b.state);
   const double twist = torque_deviation / law.stiffness;
   b.covariance(Belief::kAngle, Belief::kAngle) += square(twist);
@@ -157,10 +157,12 @@ void passLateFlexible(const ShaftModel& model, double factor, Belief& b) noexcep
   setJoint(all, b);
 }
 
-void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& measured_by_error,
-                     Belief& b) noexcept {
+void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& by_error,
+                     const ConstantErrors::Row* of_constants, Belief& b) noexcept {
   Joint all = joint(b);
-  const Joint::Vector change = all.correct(row, variance, measured_by_error) * innovation;
+  const Joint::Vector change = (of_constants != nullptr ? all.correct(row, variance, by_error, *of_constants)
+                                                        : all.correct(row, variance, by_error)) *
+                               innovation;
   setJoint(all, b);
   Belief::Vector crank = change.head<5>();
   crank[Belief::kInertia] = std::clamp(crank[Belief::kInertia], -kMostInertiaChange, kMostInertiaChange);

@@ -16,8 +16,8 @@ void doubtStiffness(const Coupling& coupling, CrankBelief& belief) noexcept;
 int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact,
                     double most_speed, double dt, CrankBelief& belief) noexcept;
 void passLateFlexible(const ShaftModel& model, double factor, CrankBelief& belief) noexcept;
-void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& measured_by_error,
-                     CrankBelief& belief) noexcept;
+void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& by_error,
+                     const ConstantErrors::Row* of_constants, CrankBelief& belief) noexcept;
 void widenFlexible(double factor, CrankBelief& belief) noexcept;
 void forgetAngleFlexible(double variance, CrankBelief& belief) noexcept;
 void forgetCouplingsOf(CrankBelief& belief) noexcept;

@@ -31,8 +31,15 @@ bool isSeen(double amount, double notable, double deviation, bool before) noexce
 
 }  // namespace
 
+double SpeedTrust::lateBy(double dt, double acceleration, double jump) const noexcept {
+  if (!begun_) return acceleration;
+  const double settled = 0.5 * (acceleration_ + acceleration);
+  return settled + std::exp(-dt / kLag) * (late_ + jump / kLag - settled);
+}
+
 /// b = speed - y by the exact answer to an even acceleration: b' = acceleration - b/lag.
 void SpeedTrust::follow(double dt, const Witness& now) noexcept {
+  late_ = lateBy(dt, now.acceleration, now.jump);
   const bool continues = std::exchange(begun_, true);
   const double mean = continues ? 0.5 * (acceleration_ + now.acceleration) : now.acceleration;
   const double kept = continues && lag_ > 0.0 ? std::exp(-dt / lag_) : 0.0;
@@ -42,7 +49,7 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
   if (kept > 0.0) by_lag_ += kept * (before - settled) * dt / square(lag_);
   behind_ = settled + kept * (before - settled);
   acceleration_ = now.acceleration;
-  const double filtered = now.speed - behind_;
+  const double filtered = now.speed - behind_ - lag_ * now.by_lag - scale_ * now.by_scale;
   double residual = now.measured - (1.0 + scale_) * filtered;
   if (samples_ > kFewSpeeds) {
     const double most = gate::kImpossible * std::sqrt(square_);
@@ -53,7 +60,8 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
     const double gain = 1.0 / samples_;
     square_ += gain * (square(residual) - square_);
     product_ += gain * (residual * residual_ - product_);
-    const Eigen::Vector2d by{-(1.0 + scale_) * by_lag_, filtered};
+    const double whole = 1.0 + scale_;
+    const Eigen::Vector2d by{-whole * (by_lag_ + now.by_lag), filtered - whole * now.by_scale};
     information_.noalias() += by * by.transpose();
     score_ += residual * by;
   }
@@ -76,8 +84,7 @@ void SpeedTrust::endTurn() noexcept {
   information_ *= 1.0 - 1.0 / kSpeedTurns, score_ *= 1.0 - 1.0 / kSpeedTurns;
   lags_ = isSeen(lag_, kNotableLag, deviation_[0], lags_);
   out_of_scale_ = isSeen(scale_, kNotableScale, deviation_[1], out_of_scale_);
-  are_good_ = !lags_ && !out_of_scale_ && gate::kUsual * deviation_[0] < kNotableLag &&
-              gate::kUsual * deviation_[1] < kNotableScale;
+  are_good_ = isTrusted() && gate::kUsual * deviation_[0] < kNotableLag && gate::kUsual * deviation_[1] < kNotableScale;
 }
 
 }  // namespace hammer_loads

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hammer_loads/estimation/latch.h"
+#include "hammer_loads/crank/unknowns.h"
 
 namespace hammer_loads {
 
@@ -14,11 +14,11 @@ namespace hammer_loads {
 ///
 ///     measured = (1 + scale) y + noise,  lag y' = speed - y,
 ///
-/// lag and scale by least squares (Gauss and Newton, a step a turn) over some turns. What is left has a variance and an
-/// autocorrelation rho from one sample to the next; n such errors say as much as n (1 - rho)/(1 + rho) independent
-/// ones. Speeds serve the start alone until lag and scale are known to be less than matters, and where they are not:
-/// who takes them up cannot judge them. (No larger variance instead: a model that errs hangs together as well, and then
-/// it is the speeds that put it right.)
+/// and where the estimate has taken up speeds before, less what their lag and scale have made of it. Both by least
+/// squares (Gauss and Newton, a step a turn) over some turns. What is left has a variance and an autocorrelation rho
+/// from one sample to the next; n such errors say as much as n (1 - rho)/(1 + rho) independent ones. Speeds are
+/// weighed by what is not known of lag and scale (GaussianBelief, unknowns.h) until that is less than matters; where
+/// one shows they serve the start alone. (Not for ever: a model that errs is put right by them.)
 class SpeedTrust {
  public:
   /// What came before does not continue.
@@ -28,23 +28,31 @@ class SpeedTrust {
     double measured{};      ///< [rad/s]
     double speed{};         ///< [rad/s]
     double acceleration{};  ///< there [rad/s2]
+    double by_lag{};        ///< what a lag of the speeds taken so far has made of `speed` [rad/s2]
+    double by_scale{};      ///< likewise their scale [rad/s]
     double jump{};          ///< of the speed by a blow since the sample before [rad/s]
   };
+  /// By how much a lag of kLag would make the speed smaller now, over kLag [rad/s2]; dt, acceleration, jump: as below.
+  double lateBy(double dt, double acceleration, double jump) const noexcept;
   /// dt [s], > 0, after the sample before.
   void follow(double dt, const Witness& now) noexcept;
   /// Once a turn.
   void endTurn() noexcept;
 
   /// They may be taken up.
-  bool isTrusted() const noexcept { return turns_ >= kTurnsToKnow && are_good_; }
-  bool lags() const noexcept { return turns_ >= kTurnsToKnow && lags_; }
-  bool isOutOfScale() const noexcept { return turns_ >= kTurnsToKnow && out_of_scale_; }
+  bool isTrusted() const noexcept { return !lags() && !isOutOfScale(); }
+  bool knows() const noexcept { return turns_ >= kTurnsToKnow; }  ///< lag and scale
+  /// Both are known to be less than matters.
+  bool areGood() const noexcept { return knows() && are_good_; }
+  bool lags() const noexcept { return knows() && lags_; }
+  bool isOutOfScale() const noexcept { return knows() && out_of_scale_; }
   double lag() const noexcept { return lag_; }                      ///< > 0: late [s]
   double lagDeviation() const noexcept { return deviation_[0]; }    ///< [s]
   double scale() const noexcept { return scale_; }                  ///< measured over true speed, less 1 [-]
   double scaleDeviation() const noexcept { return deviation_[1]; }  ///< [-]
 
  private:
+  static constexpr double kLag = kUnknowns[indexOfUnknown("speed lag")].prior;  ///< [s]
   static constexpr int kTurnsToKnow = 5;  // some 1 s at work. Guard: SpeedTrust.IsSilentBeforeItKnows
 
   Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};  ///< of lag and scale, unit variance
@@ -52,6 +60,7 @@ class SpeedTrust {
   double lag_{}, scale_{};
   bool begun_{}, lags_{}, out_of_scale_{}, are_good_{};
   double behind_{}, by_lag_{};             ///< at the last sample: speed - y [rad/s], and its derivative by the lag
+  double late_{};                          ///< lateBy() at the last sample [rad/s2]
   double acceleration_{};                  ///< likewise
   double residual_{};                      ///< of the last sample
   double square_{}, product_{}, known_{};  ///< running means: of residual^2, of neighbours, of the estimate's variance

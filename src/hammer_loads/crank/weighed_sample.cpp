@@ -15,9 +15,11 @@ Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& m
   const ShaftState& state = belief.state;
   const ShaftLoad load = model(state.position.angle);
   const double change = belief.motor ? motorAcceleration(*model.coupling(), load, state) : acceleration(load, state);
-  const double known = belief.encoderVariance(CrankBelief::kSpeed) + square(change) * timing_variance;
-  return {*speed - belief.encoderSpeed(), known + speed_variance, speed_variance,
-          ConstantErrors::ofSpeed({belief.encoderOffset(), belief.encoderSpeed(), change})};
+  const double noise = speed_variance + square(change) * timing_variance;
+  const auto by_error = ConstantErrors::ofSpeed({belief.encoderOffset(), belief.encoderSpeed(), change});
+  const double of_constants = (by_error - belief.encoderByError(CrankBelief::kSpeed)).cwiseAbs2().dot(of_speed);
+  return {*speed - belief.encoderSpeed(), belief.encoderVariance(CrankBelief::kSpeed) + noise + of_constants, noise,
+          by_error};
 }
 
 }  // namespace hammer_loads

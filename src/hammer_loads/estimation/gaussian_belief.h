@@ -78,6 +78,20 @@ struct GaussianBelief {
     take(gain, column, variance, measured_by_constant - seen * by_constant);
     return gain;
   }
+  /// The same of one variable where the constants have these variances, independent of each other: Schmidt's gain, the
+  /// least error of all where they are not corrected. 0: as if that constant were right.
+  Vector correct(Eigen::Index row, double variance, const ConstantRow& measured_by_constant,
+                 const ConstantRow& of_constants) noexcept {
+    const ConstantRow seen = measured_by_constant - by_constant.row(row), weighed = seen.cwiseProduct(of_constants);
+    const Vector column = covariance.col(row);
+    const double noise = column[row] + variance;
+    const Vector gain = (column - by_constant * weighed.transpose()) / (noise + seen.dot(weighed));
+    const Matrix taken = gain * column.transpose();
+    covariance += noise * gain * gain.transpose() - taken - taken.transpose();
+    covariance.diagonal() = covariance.diagonal().cwiseMax(variance * gain.cwiseAbs2());
+    by_constant.noalias() += gain.lazyProduct(seen);
+    return gain;
+  }
 
   /// A variable's mean is worth this variance now, whatever the others are.
   void forget(Eigen::Index i, double variance) noexcept {

@@ -15,7 +15,8 @@ namespace hammer_loads {
 /// Rock bears on the hull along the tool. The force that three cylinders show beyond weight, motion and blows is a load
 /// on the tip in its plane: across the tool, and about the tool's axis, there must be next to none in the mean of 2 s.
 /// Pressures in bar, chambers or cylinders that are exchanged show 13 to 220 % of the weight there, right ones 4 %;
-/// what a lag of their stamps makes has no mean and is not seen.
+/// what a lag of their stamps makes has no mean and is not seen there. A delay that the boom's vibration shows is
+/// allowed for up to some ms; beyond that what is found of it strays, and nothing is used of them for a while.
 class PressureTrust {
  public:
   /// Loads on the tip, axes of the tip: measured beyond the model's, and of the weight; arm: from D to the tool [m];
@@ -29,7 +30,15 @@ class PressureTrust {
     const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
     lost_.follow(off);
   }
-  bool isLost() const noexcept { return lost_.isEngaged(); }
+  /// delay: of their stamps, as the boom's vibration shows it [s].
+  void followDelay(double delay, double step) noexcept {
+    late_left_ -= step;
+    beyond_for_ = std::abs(delay) > kMostDelay ? beyond_for_ + step : 0.0;
+    if (beyond_for_ > kDelayShown) late_by_ = delay, late_left_ = kUntilTriedAgain;
+  }
+  bool isLate() const noexcept { return late_left_ > 0.0; }
+  double lateBy() const noexcept { return late_by_; }  ///< as it was when it showed [s]
+  bool isLost() const noexcept { return lost_.isEngaged() || isLate(); }
   /// Mean load on the tip that no rock makes; along the tool it may, from least_force [N] on. Pressures, lengths or
   /// masses are otherwise than said.
   Wrench notOfRock(double arm, double least_force) const noexcept {
@@ -44,11 +53,15 @@ class PressureTrust {
   // Guard: SensorBounds.OfPressuresMean of kTurning
   static constexpr double kBack = 0.5;  // of that: trusted again
   // Guard: SensorBounds.OfPressuresTimes of kAcross, kBack
+  static constexpr double kMostDelay = 5e-3;                           ///< [s]: a third of the vibration's torque
+  static constexpr double kDelayShown = 0.1, kUntilTriedAgain = 60.0;  ///< [s]
+  // Guard: MistakenSensors.PressuresThatLagAreNamedAndNotUsed of kMostDelay, kDelayShown
 
   double turning() const noexcept { return mean_.mean()[2]; }
 
   RunningMean<Eigen::Vector3d> mean_{trust::kMemory, Eigen::Vector3d::Zero()};
   Latch lost_{1.0, kBack};
+  double beyond_for_{}, late_left_{}, late_by_{};  ///< [s]
 };
 
 }  // namespace hammer_loads

@@ -124,7 +124,8 @@ std::string rodOf(const CrankFilter& filter) {
   const RodEvidence& rod = filter.rodEvidence();
   return format(
       "crank: just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of "
-      "a turn later by %.2g: rod, pins and bearings give (level: elastic; rod_stiffness_N_m, pin_play_m); crank_zero_rad "
+      "a turn later by %.2g: rod, pins and bearings give (level: elastic; rod_stiffness_N_m, pin_play_m); "
+      "crank_zero_rad "
       "looks %.2g deg off; such a rod makes it look 0.2 to 3 deg less than it is: neither is corrected",
       rod.pickedUp(), rod.later(), filter.constantErrors().estimate()[0] / kDegree);
 }
@@ -270,7 +271,14 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
                   "that, up to 4 ms, the hull's motion in the wrench does not",
                   warnings);
   }
-  if (pipeline.boom() && pipeline.boom()->pressureTrust().isLost()) {
+  if (pipeline.boom() && pipeline.boom()->pressureTrust().isLate()) {
+    const double late = 1e3 * pipeline.boom()->pressureTrust().lateBy();
+    warnings.push_back({"pressure stamps",
+                        format("cylinder_pressures: not used, by those of the crank their stamps are some %.2g ms %s, "
+                               "more than the 5 ms that can be allowed for",
+                               std::abs(late), late > 0.0 ? "late" : "early"),
+                        true});
+  } else if (pipeline.boom() && pipeline.boom()->pressureTrust().isLost()) {
     const PressureTrust& trust = pipeline.boom()->pressureTrust();
     warnings.push_back({"pressures",
                         format("cylinder_pressures: not used, they show a mean load of %.0f N across the tool and %.0f "
