@@ -11,31 +11,22 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kDoubtfulAngle = 0.3;     // [rad] predicted deviation from which on the prediction is worth nothing
-constexpr double kJump = 0.5;              // [rad] innovation that no working machine makes between two samples
-constexpr double kKick = 0.35;             // of the speed: what no torque changes between two samples
-constexpr double kLeastInertia = 0.1;      // of the first guess: no drawing is further off
-constexpr double kMostInertia = 1000.0;    // times the first guess: a crank held at constant speed looks that heavy
-constexpr double kRelearn = 0.05;          // relative deviation of the inertia after what it cannot explain
-constexpr double kMostTorque = 3.0;        // times its first deviation: more is what a bad sample left behind
-constexpr double kSoundSpeeds = 2.0;       // times the largest plausible speed: more is a diverged filter
-constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
-constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
-constexpr int kOneSided = 3;               // innovations in a row beyond 5 deviations: no jitter of stamps
-constexpr int kOneSidedLost = 10;          // the same where readings made no sense: they do again, elsewhere
-constexpr double kSurpriseLength = 50.0;   // samples over which innovations beyond 5 deviations are counted
-constexpr double kManySurprises = 2.5;     // of them: more than a supply's jolts
-constexpr double kSlip = 3e-3;             // [s]: stamps that are off by so much, again and again alike
-constexpr double kNotSlip = 0.04;          // [rad] from the blow: there the tool stops and throws the crank
-constexpr double kPartOfInterval = 0.3;    // of one: what a reading ahead by whole ones may miss them by
-constexpr double kUnexplained = 3.0;       // mean innovation^2 over its variance
-constexpr double kUnlearnEvery = 3.0;      // [s]
-constexpr double kForgetRestarts = 2.0;    // [s]
-constexpr double kBeganOfLate = 0.5;       // beginnings of late: some 1.4 s after a single one
-constexpr double kForgetDoubts = 30.0;     // [s]
-constexpr double kStrikeBegins = 0.6;      // [rad] before the blow: a rod that gives is calm until there
-constexpr double kRodMoves = 0.017;        // [rad] of a reading at most, there: worn pins, a rod that was learned
-// Guard: RodWarnings.ARightSensorIsNotBlamedForARodThatGives of kStrikeBegins, kRodMoves
+constexpr double kDoubtfulAngle = 0.3;    // [rad] predicted deviation from which on the prediction is worth nothing
+constexpr double kKick = 0.35;            // of the speed: what no torque changes between two samples
+constexpr double kLeastInertia = 0.1;     // of the first guess: no drawing is further off
+constexpr double kMostInertia = 1000.0;   // times the first guess: a crank held at constant speed looks that heavy
+constexpr double kRelearn = 0.05;         // relative deviation of the inertia after what it cannot explain
+constexpr double kMostTorque = 3.0;       // times its first deviation: more is what a bad sample left behind
+constexpr double kSoundSpeeds = 2.0;      // times the largest plausible speed: more is a diverged filter
+constexpr int kOneSided = 3;              // innovations in a row beyond 5 deviations: no jitter of stamps
+constexpr int kOneSidedLost = 10;         // the same where readings made no sense: they do again, elsewhere
+constexpr double kSurpriseLength = 50.0;  // samples over which innovations beyond 5 deviations are counted
+constexpr double kManySurprises = 2.5;    // of them: more than a supply's jolts
+constexpr double kSlip = 3e-3;            // [s]: stamps that are off by so much, again and again alike
+constexpr double kUnexplained = 3.0;      // mean innovation^2 over its variance
+constexpr double kUnlearnEvery = 3.0;     // [s]
+constexpr double kForgetRestarts = 2.0;   // [s]
+constexpr double kForgetDoubts = 30.0;    // [s]
 
 /// Those of the settings; that of the motor's share is the coupling's.
 ConstantErrors::Vector deviationsOf(const CrankFilterSettings& settings, const ShaftModel& model) noexcept {
@@ -66,20 +57,6 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
 
 double CrankFilter::mostSpeed() const noexcept { return kSoundSpeeds * settings_.max_speed; }
 double CrankFilter::mostTorque() const noexcept { return kMostTorque * settings_.initial_torque_deviation; }
-
-/// (2) Angle and speed of the crank from those of its sensor, with their noise.
-WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
-  const double angle = encoder_.angle(reading.angle);
-  WeighedSample sample{CrankAngle::fromAngle(angle).offset, reading.speed};
-  if (sample.speed) sample.speed = encoder_.speed(angle, *reading.speed);
-  sample.angle_variance = encoder_.variance() + square(settings_.angle_noise);
-  sample.timing_variance = timing_.variance();
-  sample.speed_variance = speed_variance_;
-  if (speed_trust_.areGood()) return sample;
-  for (const int constant : {ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale})
-    sample.of_speed[constant] = square(errors_.considered(constant));
-  return sample;
-}
 
 void CrankFilter::start(const CrankSample& reading) noexcept {
   const WeighedSample sample = weighed(reading);
@@ -170,55 +147,6 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
   if (now_.motor) doubtStiffness(*model_.coupling(), now_);
   consistency_ = {};
-}
-
-/// (10) What stamps and speeds may be off: as it is given, and as it has shown itself.
-void CrankFilter::considerSensor() noexcept {
-  const double ahead = speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0;
-  errors_.consider(ConstantErrors::kLatency,
-                   std::hypot(settings_.constant_deviations[ConstantErrors::kLatency], std::hypot(stamps_off_, ahead)));
-  if (!speed_trust_.knows()) return;
-  const auto consider = [&](int constant, double amount, double deviation) {
-    const double prior = settings_.constant_deviations[constant];
-    if (!(prior > 0.0)) return;
-    const double together = 1.0 / std::hypot(1.0 / prior, 1.0 / deviation);
-    const double shown = std::max(0.0, square(amount) - square(gate::kUsual * deviation));
-    errors_.consider(constant, std::sqrt(square(together) + shown));
-  };
-  consider(ConstantErrors::kSpeedLag, speed_trust_.lag(), speed_trust_.lagDeviation());
-  consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());
-}
-
-/// (8) As it is without the speed, by the estimate at the angle; one that began anew of late is no judge.
-void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
-  if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
-    return speed_trust_.restart();
-  witness_->acceleration =
-      now_.motor ? motorAcceleration(*model_.coupling(), load_, now_.state) : acceleration(load_, now_.state);
-  if (struck && !now_.motor) witness_->jump = now_.state.speed * (1.0 - 1.0 / now_.factor);
-  speed_trust_.follow(dt, *witness_);
-}
-
-/// (8)
-void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept {
-  Innovation innovation = sample.ofSpeed(now_, model_);
-  if (sample.of_speed[ConstantErrors::kSpeedLag] > 0.0) {
-    double& by = innovation.by_error[ConstantErrors::kSpeedLag];
-    const double jump = struck && !now_.motor ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
-    const double of_state = now_.encoderByError(Belief::kSpeed)[ConstantErrors::kSpeedLag], before = by;
-    by = -speed_trust_.lateBy(dt, -before, jump);
-    innovation.total +=
-        sample.of_speed[ConstantErrors::kSpeedLag] * (square(by - of_state) - square(before - of_state));
-  }
-  fit_ += innovation.logLikelihood();
-  // What lag and scale make of it passes for noise: less speed is taken up then.
-  const double known = now_.encoderVariance(Belief::kSpeed) + innovation.variance;
-  const double squared = std::min(square(innovation.value), square(gate::kImpossible) * known);
-  if (!innovation.exceeds(gate::kImpossible))
-    now_.correct(Belief::kSpeed, innovation.value, innovation.variance, innovation.by_error, &sample.of_speed);
-  if (restart_load_ > kBeganOfLate) return;  // angles that make no sense say nothing of speeds
-  const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
-  speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - known), floor);
 }
 
 /// (10) Once a turn, half a turn after the blow: by then all samples that show it have come.
@@ -315,41 +243,6 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
     rival_.follow(sample, model_, fit_, consistency_.growth(), mostSpeed());
   }
   return rival_.isThere() && rival_.choose(now_, mirrored_);
-}
-
-/// (5) Samples were lost before this one, where they are taken at equal intervals: the reading is whole intervals
-/// ahead.
-double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
-  const double speed = now_.encoderSpeed();
-  if (!(interval_ > 0.0) || std::abs(speed) < kLearnSpeed || !innovation.exceeds(gate::kImpossible)) return 0.0;
-  const double intervals = innovation.value / (speed * interval_);
-  if (intervals < 1.0 - kPartOfInterval || std::abs(innovation.value) > kJump) return 0.0;
-  const double whole = std::nearbyint(intervals);
-  const double rest = (intervals - whole) * speed * interval_;
-  return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
-}
-
-/// (5) Whether a step of the reading could be told from the crank's own and from what a rod that rings moves.
-bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
-  const CrankAngle& at = now_.state.position.angle;
-  const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
-  const bool rings = rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
-  const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
-  const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
-  return lost_time_ == 0.0 && !rings && at_work && !mirrored_ && !rival_.isThere() && nearest > kNotSlip;
-}
-
-/// (5) A slip that has shown itself is taken off the reading.
-EncoderSlip::Step CrankFilter::followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept {
-  // From the largest one way to the largest the other way: half its change times the square of the time.
-  const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
-  const EncoderSlip::Step step = slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_,
-                                              mayHaveSlipped(sample, innovation));
-  if (step != EncoderSlip::Step::kSlipped) return step;
-  encoder_.slip(slip_.last());
-  errors_.stepZero(square(slip_.deviation()));
-  sample.angle = CrankAngle::wrapToPi(sample.angle - slip_.last());
-  return step;
 }
 
 /// Steps (1) to (10) are those of model.md 6.

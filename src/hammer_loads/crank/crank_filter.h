@@ -131,6 +131,7 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kLearnSpeed = 5.0;  ///< [rad/s]: a slower crank is moved by friction and stopped by the tool
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
+  static constexpr double kJump = 0.5;    ///< [rad]: an innovation that no working machine makes between two samples
   static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
 
   /// The last two and the step between them.
