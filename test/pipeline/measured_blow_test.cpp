@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
 
+#include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/util/constants.h"
@@ -33,7 +35,7 @@ Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, doub
   for (const accuracy::BlowAt& b :
        accuracy::runSession(session, machine.start_stamp, shipped.mechanism, shipped.pipeline).blows)
     for (const simulation::BlowTruth& t : session.blows) {
-      if (std::abs(t.time - b.time) > 0.01 || b.time < 4.0) continue;  // speeds are judged before that (SpeedTrust)
+      if (std::abs(t.time - b.time) > 0.01 || b.time < 3.0) continue;
       const double error = std::abs(b.energy / t.strike.energy - 1.0);
       const double deviation = b.energy_deviation / t.strike.energy;
       blows.worst = std::max(blows.worst, error);
@@ -44,6 +46,50 @@ Blows follow(const std::function<void(simulation::MachineSettings&)>& flaw, doub
     }
   blows.deviation /= static_cast<double>(blows.count);
   return blows;
+}
+
+/// Parts within two deviations: [0] energy, [1] restitution.
+std::array<double, 2> coveredBeforeCalibrate(double rate, double zero) {
+  std::array<double, 2> covered{};
+  double count = 0.0;
+  for (std::uint64_t seed = 600; seed < 603; ++seed) {
+    const Settings shipped = test::withExactHammer(*load(configDirectory(), {}).value);
+    simulation::MachineSettings machine = test::shippedMachine(shipped, 20.0, seed);
+    accuracy::makeTypical(machine);
+    machine.crank.rate = rate;
+    machine.crank.zero = zero;
+    const simulation::Session session = simulation::recordSession(machine);
+    Pipeline pipeline(shipped.mechanism, shipped.pipeline, {});
+    for (const simulation::CrankReading& reading : session.crank) {
+      const SampleResult& result = pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
+      for (std::size_t k = 0; k < result.turn_ends; ++k) {
+        const double time = 1e-9 * static_cast<double>(result.ends[k].stamp - machine.start_stamp);
+        const auto truth = std::find_if(session.blows.begin(), session.blows.end(),
+                                        [&](const auto& t) { return std::abs(t.time - time) < 0.01; });
+        if (truth == session.blows.end() || time < 3.0 || time > 17.0) continue;
+        const RockerBlow& blow = result.ends[k].blow;
+        const double restitution = -truth->strike.rocker_speed_after / truth->strike.rocker_speed_before;
+        covered[0] += std::abs(blow.energy - truth->strike.energy) < 2.0 * blow.energy_deviation;
+        covered[1] += std::abs(blow.restitution - restitution) < 2.0 * blow.restitution_deviation;
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(count, 150.0);
+  return {covered[0] / count, covered[1] / count};
+}
+
+/// Half a degree off, 1024 counts, stamps of a PC, no speeds, blows that differ: what is not known of the zero is in
+/// the deviations, whether it shows or not.
+TEST(MeasuredBlow, DeviationsHoldBeforeCalibrateToo) {
+  for (const double zero : {0.5, -0.5}) {
+    const auto often = coveredBeforeCalibrate(1000.0, zero * kPi / 180.0);
+    EXPECT_GT(often[0], 0.92) << zero;
+    EXPECT_GT(often[1], 0.9) << zero;
+    const auto seldom = coveredBeforeCalibrate(200.0, zero * kPi / 180.0);
+    EXPECT_GT(seldom[0], 0.7) << zero;
+    EXPECT_GT(seldom[1], 0.88) << zero;
+  }
 }
 
 /// At work to the end: a crank that comes to rest is another question.

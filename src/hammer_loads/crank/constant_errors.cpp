@@ -16,9 +16,7 @@ constexpr int kTurnsToKnow = 6;  // nothing is concluded before
 constexpr double kMemoryTurns = 300.0;  // turns: a minute at work
 constexpr double kUnmodelledCounts =
     0.5;  // what a clean machine shows, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
-constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well
-constexpr double kUnseenDeviations = 0.6;      // of what is not seen: 88 to 99 % of the wrench's errors
-                                               // then lie within two deviations (simulated machines)
+constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well, before a warning
 constexpr double kSamplesToFollow = 20.0;      // a turn: with fewer of them a supply that follows the crank's
                                                // speed looks more like b, at 50 Hz twice as much, and
                                                // the torque's walk holds more of what is not seen
@@ -70,17 +68,19 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   const Eigen::Matrix<double, kPlace, 1> by_hammer =
       (covariance.topLeftCorner<kPlace, kPlace>() * beside_).rowwise().squaredNorm();
   const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
-  Vector doubt = Vector::Zero(), certain = Vector::Zero();  // variance of what is seen; what remains after it
-  double share = 0.0;                                       // of b that is certain
+  // Variance of what is seen; b^2 is by so much less than its estimate's square; what remains after it.
+  Vector doubt = Vector::Zero(), certain = Vector::Zero();
+  double share = 0.0;  // of b that is certain
   for (int i = 0; i < kPlace; ++i) {
-    doubt[i] = square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) +
-               square(kUnmodelledDeviations) * growth * covariance(i, i) + by_hammer[i];
-    deviation_[i] = std::sqrt(doubt[i] + square(kUnmodelledCounts * count));
+    const double variance = growth * covariance(i, i);
+    doubt[i] = square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + variance + by_hammer[i];
+    deviation_[i] =
+        std::sqrt(doubt[i] + (square(kUnmodelledDeviations) - 1.0) * variance + square(kUnmodelledCounts * count));
     const double excess = square(estimate_[i]) - doubt[i];
     certain[i] = excess > 0.0 ? std::copysign(std::sqrt(excess), estimate_[i]) : 0.0;
     if (excess > 0.0) share = std::max(share, excess / square(estimate_[i]));
   }
-  moment_ = square(kUnseenDeviations / unmodelled) * growth * covariance + certain * certain.transpose();
+  moment_ = 1.0 / square(unmodelled) * growth * covariance + certain * certain.transpose();
   // A sensor that is off for certain is so by as much as is known of it; what is hardly certain adds little.
   moment_.diagonal() += share * share * doubt;
   moment_(kZero, kZero) += stepped_;
