@@ -275,7 +275,7 @@ void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
     const double late = 1e3 * pipeline.boom()->pressureTrust().lateBy();
     warnings.push_back({"pressure stamps",
                         format("cylinder_pressures: not used, by those of the crank their stamps are some %.2g ms %s, "
-                               "more than the 5 ms that can be allowed for",
+                               "more than can be allowed for",
                                std::abs(late), late > 0.0 ? "late" : "early"),
                         true});
   } else if (pipeline.boom() && pipeline.boom()->pressureTrust().isLost()) {
