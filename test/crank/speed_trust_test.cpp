@@ -88,7 +88,6 @@ TEST(SpeedTrust, AnEstimateThatTookSpeedsUpJudgesThem) {
   EXPECT_NEAR(trust.scale(), 0.0, 1e-3);
 }
 
-/// The mean of n such errors has the variance (1 + rho)/(1 - rho)/n: what the factor says.
 TEST(SpeedTrust, IsSilentBeforeItKnows) {
   SpeedTrust trust;
   for (int i = 1; i <= 100; ++i) trust.follow(1e-3, {40.0, 30.0, 100.0, 0.0, 0.0, 0.0});

@@ -168,8 +168,9 @@ TEST(GaussianBelief, WeighsAMeasurementByConstantsThatAreConsidered) {
     EXPECT_TRUE(belief.grown(1.0, of_constants.asDiagonal()).isApprox(both.topLeftCorner<kN, kN>(), 1e-10)) << k;
   }
   Belief plain = machine.begin(), weighed = plain;  // of constants that are right: the same as without them
-  EXPECT_TRUE(plain.correct(2, 0.3, machine.D)
-                  .isApprox(weighed.correct(2, 0.3, machine.D, Belief::ConstantRow::Zero()), 1e-14));
+  EXPECT_TRUE(
+      plain.correct(2, 0.3, machine.D)
+          .isApprox(weighed.correct(2, 0.3, machine.D, Belief::ConstantRow(Belief::ConstantRow::Zero())), 1e-14));
   EXPECT_TRUE(weighed.covariance.isApprox(plain.covariance, 1e-13));
 }
 

@@ -69,7 +69,8 @@ TEST_P(Deviations, HoldTheErrorsAsOftenAsTheyShould) {
   const char* names[] = {"force_x", "force_z", "torque_y", "angle", "speed", "acceleration"};
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_GE(inside[k], 0.90) << names[k];
-    EXPECT_LE(inside[k], machine.crank.rate > 50.0 ? 0.99 : 1.0) << names[k];  // at 50 Hz lag and scale stay in doubt
+    if (machine.crank.rate <= 50.0) continue;  // lag and scale stay in doubt there: wider than they need be
+    EXPECT_LE(inside[k], 0.99) << names[k];
   }
   for (std::size_t k = 0; k < 6; ++k) RecordProperty(names[k], std::to_string(inside[k]));
 }

@@ -16,7 +16,7 @@ namespace {
 using simulation::CrankTruth;
 using simulation::MachineSettings;
 
-constexpr double kFrom = 4.0;  // [s]: speeds are judged first, for five turns, and the rod is known after them
+constexpr double kFrom = 4.0;                           // [s]: the rod is known by then
 constexpr double kAfterFrom = 0.006, kAfterTo = 0.040;  // of the ring, from the first touch [s]
 
 std::array<double, 3> valuesOf(const CrankTruth& t) {

@@ -32,8 +32,7 @@ struct CrankLead {
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
 /// should be, stiffnesses and damping are those given. Where no oil has explained them yet it is sought once more from
 /// those given before that is said, with modes that follow it at once (seeks()): one cylinder that is much softer makes
-/// other shapes. At first
-/// they wait until frequencies are known, since stamps that are late would lead them far away.
+/// other shapes. At first they wait until frequencies are known, since stamps that are late would lead them far away.
 ///
 /// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
 /// From 0.2 s on after the frequencies are known it is followed, and frequencies and damping count as less known again.

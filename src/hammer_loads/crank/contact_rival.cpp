@@ -31,7 +31,7 @@ void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, 
     const Innovation speed = sample.ofSpeed(belief, model);
     own_fit += speed.logLikelihood();
     if (!speed.exceeds(gate::kImpossible))
-      belief.correct(CrankBelief::kSpeed, speed.value, speed.variance, speed.by_error, &sample.of_speed);
+      belief.correct(CrankBelief::kSpeed, speed.value, speed.variance, speed.by_error, sample.of_speed);
   }
   evidence_ += std::clamp(own_fit - fit, -kMostFit, kMostFit) / growth;
   if (!belief.isSound(most_speed)) drop();

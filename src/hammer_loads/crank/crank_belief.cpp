@@ -116,14 +116,12 @@ void CrankBelief::move(const Vector& change) noexcept {
 void CrankBelief::boundFactor() noexcept { factor = std::clamp(factor, kLeastFactor, kMostFactor); }
 
 void CrankBelief::correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
-                          const ConstantErrors::Row* of_constants) noexcept {
+                          const std::optional<ConstantErrors::Row>& of_constants) noexcept {
   if (motor) {
     const FlexibleRow at_motor = row == kAngle ? kMotorAngle : kMotorSpeed;
     return correctFlexible(at_motor, innovation, variance, by_error, of_constants, *this);
   }
-  Vector change = (of_constants != nullptr ? Base::correct(row, variance, by_error, *of_constants)
-                                           : Base::correct(row, variance, by_error)) *
-                  innovation;
+  Vector change = Base::correct(row, variance, by_error, of_constants) * innovation;
   change[kInertia] = std::clamp(change[kInertia], -kMostInertiaChange, kMostInertiaChange);
   move(change);
 }

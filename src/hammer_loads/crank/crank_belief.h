@@ -58,7 +58,7 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   /// Scalar measurement of one variable; moves. by_error: what the sensor's errors make of the measurement;
   /// of_constants: their variances where the measurement is to be weighed by them.
   void correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
-               const ConstantErrors::Row* of_constants = nullptr) noexcept;
+               const std::optional<ConstantErrors::Row>& of_constants = {}) noexcept;
   /// The coming correction teaches nothing of the inertia, nor of a coupling's stiffness.
   void forgetInertiaCoupling() noexcept;
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.

@@ -163,6 +163,7 @@ class CrankFilter final : public CrankTracker {
                     double reading) noexcept;
   void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
   void considerSensor() noexcept;
+  double speedJump(bool struck) const noexcept;
   void judgeSpeed(double dt, bool struck) noexcept;
   void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;
   void meetRival(const CrankBelief& belief) noexcept;

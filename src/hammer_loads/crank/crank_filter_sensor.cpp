@@ -29,9 +29,10 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
   sample.angle_variance = encoder_.variance() + square(settings_.angle_noise);
   sample.timing_variance = timing_.variance();
   sample.speed_variance = speed_variance_;
-  if (speed_trust_.areGood()) return sample;
+  if (!sample.speed || speed_trust_.areGood()) return sample;
+  sample.of_speed = ConstantErrors::Row::Zero();
   for (const int constant : {ConstantErrors::kSpeedLag, ConstantErrors::kSpeedScale})
-    sample.of_speed[constant] = square(errors_.considered(constant));
+    (*sample.of_speed)[constant] = square(errors_.considered(constant));
   return sample;
 }
 
@@ -52,33 +53,37 @@ void CrankFilter::considerSensor() noexcept {
   consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());
 }
 
+/// Of the speed by the blow that was struck within the step [rad/s]; a motor of its own is not reached so soon.
+double CrankFilter::speedJump(bool struck) const noexcept {
+  return struck && !now_.motor ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
+}
+
 /// (8) As it is without the speed, by the estimate at the angle; one that began anew of late is no judge.
 void CrankFilter::judgeSpeed(double dt, bool struck) noexcept {
   if (!witness_ || std::abs(now_.state.speed) < kLearnSpeed || restart_load_ > kBeganOfLate)
     return speed_trust_.restart();
   witness_->acceleration =
       now_.motor ? motorAcceleration(*model_.coupling(), load_, now_.state) : acceleration(load_, now_.state);
-  if (struck && !now_.motor) witness_->jump = now_.state.speed * (1.0 - 1.0 / now_.factor);
+  witness_->jump = speedJump(struck);
   speed_trust_.follow(dt, *witness_);
 }
 
 /// (8)
 void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept {
   Innovation innovation = sample.ofSpeed(now_, model_);
-  if (sample.of_speed[ConstantErrors::kSpeedLag] > 0.0) {
+  if (sample.of_speed) {
     double& by = innovation.by_error[ConstantErrors::kSpeedLag];
-    const double jump = struck && !now_.motor ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;
     const double of_state = now_.encoderByError(Belief::kSpeed)[ConstantErrors::kSpeedLag], before = by;
-    by = -speed_trust_.lateBy(dt, -before, jump);
+    by = -speed_trust_.lateBy(dt, -before, speedJump(struck));
     innovation.total +=
-        sample.of_speed[ConstantErrors::kSpeedLag] * (square(by - of_state) - square(before - of_state));
+        (*sample.of_speed)[ConstantErrors::kSpeedLag] * (square(by - of_state) - square(before - of_state));
   }
   fit_ += innovation.logLikelihood();
   // What lag and scale make of it passes for noise: less speed is taken up then.
   const double known = now_.encoderVariance(Belief::kSpeed) + innovation.variance;
   const double squared = std::min(square(innovation.value), square(gate::kImpossible) * known);
   if (!innovation.exceeds(gate::kImpossible))
-    now_.correct(Belief::kSpeed, innovation.value, innovation.variance, innovation.by_error, &sample.of_speed);
+    now_.correct(Belief::kSpeed, innovation.value, innovation.variance, innovation.by_error, sample.of_speed);
   if (restart_load_ > kBeganOfLate) return;  // angles that make no sense say nothing of speeds
   const double floor = square(kLeastSpeedNoise * settings_.speed_noise);
   speed_variance_ = std::max(speed_variance_ + kSpeedNoiseGain * (squared - known), floor);

@@ -158,11 +158,9 @@ void passLateFlexible(const ShaftModel& model, double factor, Belief& b) noexcep
 }
 
 void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& by_error,
-                     const ConstantErrors::Row* of_constants, Belief& b) noexcept {
+                     const std::optional<ConstantErrors::Row>& of_constants, Belief& b) noexcept {
   Joint all = joint(b);
-  const Joint::Vector change = (of_constants != nullptr ? all.correct(row, variance, by_error, *of_constants)
-                                                        : all.correct(row, variance, by_error)) *
-                               innovation;
+  const Joint::Vector change = all.correct(row, variance, by_error, of_constants) * innovation;
   setJoint(all, b);
   Belief::Vector crank = change.head<5>();
   crank[Belief::kInertia] = std::clamp(crank[Belief::kInertia], -kMostInertiaChange, kMostInertiaChange);

@@ -1,6 +1,8 @@
 /// Prediction, measurement and blow of a belief with a flexible coupling.
 #pragma once
 
+#include <optional>
+
 #include "hammer_loads/crank/crank_belief.h"
 
 namespace hammer_loads {
@@ -17,7 +19,7 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
                     double most_speed, double dt, CrankBelief& belief) noexcept;
 void passLateFlexible(const ShaftModel& model, double factor, CrankBelief& belief) noexcept;
 void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& by_error,
-                     const ConstantErrors::Row* of_constants, CrankBelief& belief) noexcept;
+                     const std::optional<ConstantErrors::Row>& of_constants, CrankBelief& belief) noexcept;
 void widenFlexible(double factor, CrankBelief& belief) noexcept;
 void forgetAngleFlexible(double variance, CrankBelief& belief) noexcept;
 void forgetCouplingsOf(CrankBelief& belief) noexcept;

@@ -17,7 +17,8 @@ Innovation WeighedSample::ofSpeed(const CrankBelief& belief, const ShaftModel& m
   const double change = belief.motor ? motorAcceleration(*model.coupling(), load, state) : acceleration(load, state);
   const double noise = speed_variance + square(change) * timing_variance;
   const auto by_error = ConstantErrors::ofSpeed({belief.encoderOffset(), belief.encoderSpeed(), change});
-  const double of_constants = (by_error - belief.encoderByError(CrankBelief::kSpeed)).cwiseAbs2().dot(of_speed);
+  const double of_constants =
+      of_speed ? (by_error - belief.encoderByError(CrankBelief::kSpeed)).cwiseAbs2().dot(*of_speed) : 0.0;
   return {*speed - belief.encoderSpeed(), belief.encoderVariance(CrankBelief::kSpeed) + noise + of_constants, noise,
           by_error};
 }

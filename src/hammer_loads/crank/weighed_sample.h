@@ -23,12 +23,13 @@ struct Innovation {
 };
 
 struct WeighedSample {
-  double angle{};                                             ///< from the nearest blow [rad]
-  std::optional<double> speed;                                ///< [rad/s]
-  double angle_variance{};                                    ///< of count and noise [rad2]
-  double timing_variance{};                                   ///< of the stamp [s2]
-  double speed_variance{};                                    ///< of the speed's noise [rad2/s2]
-  ConstantErrors::Row of_speed{ConstantErrors::Row::Zero()};  ///< variances of the constants that a speed is weighed by
+  double angle{};               ///< from the nearest blow [rad]
+  std::optional<double> speed;  ///< [rad/s]
+  double angle_variance{};      ///< of count and noise [rad2]
+  double timing_variance{};     ///< of the stamp [s2]
+  double speed_variance{};      ///< of the speed's noise [rad2/s2]
+  std::optional<ConstantErrors::Row>
+      of_speed{};  ///< variances of constants that a speed is weighed by; none: are right
 
   /// Variance of the angle about that at the stamp [rad2].
   double angleVariance(double speed_there) const noexcept {

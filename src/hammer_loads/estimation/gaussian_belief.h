@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace hammer_loads {
 
@@ -79,10 +80,11 @@ struct GaussianBelief {
     return gain;
   }
   /// The same of one variable where the constants have these variances, independent of each other: Schmidt's gain, the
-  /// least error of all where they are not corrected. 0: as if that constant were right.
+  /// least error of all where they are not corrected. 0, or none at all: as if the constant were right.
   Vector correct(Eigen::Index row, double variance, const ConstantRow& measured_by_constant,
-                 const ConstantRow& of_constants) noexcept {
-    const ConstantRow seen = measured_by_constant - by_constant.row(row), weighed = seen.cwiseProduct(of_constants);
+                 const std::optional<ConstantRow>& of_constants) noexcept {
+    if (!of_constants) return correct(row, variance, measured_by_constant);
+    const ConstantRow seen = measured_by_constant - by_constant.row(row), weighed = seen.cwiseProduct(*of_constants);
     const Vector column = covariance.col(row);
     const double noise = column[row] + variance;
     const Vector gain = (column - by_constant * weighed.transpose()) / (noise + seen.dot(weighed));
