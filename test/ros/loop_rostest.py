@@ -16,8 +16,9 @@ from node_session import NodeSession, TURN, active_bags, bags, crank_stamps, exp
 from process_rostest import DEADLINE, eventually
 
 LOOPS = 3  # whole ones
-# Of the peak. A loop's first samples may overtake the clock: then the estimate begins so much later.
-UNLIKE = 0.05
+# Of the peak. A loop's first samples may overtake the clock: then the estimate begins so much later, by up to a turn.
+# Its next turn is 7 % off the other loops', the one after that 0.6 %.
+UNLIKE = 0.01
 
 
 def in_loops(told):
@@ -92,10 +93,10 @@ class LoopTest(unittest.TestCase):
     def test_each_loop_gives_the_same(self):
         first = {m.header.stamp: m.wrench.force for m in self.loops[0]}
         peak = max(abs(force.z) for force in first.values())
-        settled = crank_stamps(self.piece)[0] + rospy.Duration(TURN)
+        settled = crank_stamps(self.piece)[0] + rospy.Duration(2 * TURN)
         for loop in self.loops[1:]:
             unlike = [abs(m.wrench.force.z - first[m.header.stamp].z) / peak for m in loop if m.header.stamp > settled]
-            self.assertGreater(len(unlike), 700)
+            self.assertGreater(len(unlike), 550)
             self.assertLess(max(unlike), UNLIKE)
 
 
