@@ -31,9 +31,20 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
     EXPECT_LT(none.covered(), usual.covered()) << imu;
     // Seals that were weighed are taken off.
     const BoomErrors weighed = errorsOf("weighed seals", session, knownFriction(0.02, 0.004), sensors);
-    EXPECT_LT(weighed.worstTorque(), 0.8 * none.worstTorque()) << imu;
-    // Beside an IMU what is left is the sign near standstill, where rods are slower than they are seen.
-    EXPECT_GT(weighed.covered(), imu ? 0.7 : 0.85) << imu;
+    EXPECT_LT(weighed.worstTorque(), 0.65 * none.worstTorque()) << imu;
+    EXPECT_GT(weighed.covered(), 0.85) << imu;
+  }
+}
+
+/// What rubs is in the boom's damping and not in its pressures, which seem up to 1.1 ms late by it.
+TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
+  for (const double friction : {0.0, 0.03, 0.05, 0.08}) {
+    const simulation::Session session = rubbingSession(friction);
+    for (const bool imu : {false, true}) {
+      const BoomErrors e = errorsOf("seals", session, "boom_stiffness: identified\n", {imu, true});
+      EXPECT_FALSE(e.warned_of_pressure_stamps || e.warned_of_imu_stamps || e.warned_of_rock) << friction << imu;
+      EXPECT_EQ(e.warned_of_damping, friction == 0.08 && imu) << friction << imu;
+    }
   }
 }
 

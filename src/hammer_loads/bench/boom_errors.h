@@ -22,7 +22,7 @@ struct BoomErrors {
   double worst_force{}, largest_force{};  ///< as a vector [N]
   std::size_t sections_within{};          ///< bending moments within two deviations
   std::size_t lost_as_shown{};            ///< the flag of a press force that is lost is right
-  bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_imu_stamps{};
+  bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_imu_stamps{}, warned_of_damping{};
   std::size_t unknown{};  ///< the rock's force is said not to be known
   double energy_sum{};    ///< of the blows, relative
   double frequency{};     ///< of the lowest mode at the end [Hz]

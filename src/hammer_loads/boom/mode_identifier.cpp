@@ -9,17 +9,16 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCommonDeviation = 0.3;   // of log stiffness, of all cylinders together
-constexpr double kDampingDeviation = 0.5;  // of log damping
-constexpr double kOilWalk = 0.004;         // of log stiffness in a second: oil that warms up, a pose that changes
-constexpr double kDampingWalk = 0.01;      // of log damping in a second
-constexpr double kForcePart = 0.05;        // deviation of the modal force over its root mean square
-constexpr double kForceTime = 0.01;        // for which a force stays wrong the same way [s]
-constexpr double kForceMemory = 2.0;       // of the mean square [s]
-constexpr double kUnknownRate = 0.05;      // joint velocity where nothing is known [rad/s]
-constexpr double kContactWalk = 1.3e5;     // of the rock's force [N/sqrt(s)]
-constexpr double kContactWalkSeen = 3e5;   // where an IMU shows each landing: they are no noise then
-constexpr double kUnknownContact = 1e4;    // of it at the start [N]
+constexpr double kCommonDeviation = 0.3;  // of log stiffness, of all cylinders together
+constexpr double kOilWalk = 0.004;        // of log stiffness in a second: oil that warms up, a pose that changes
+constexpr double kDampingWalk = 0.01;     // of log damping in a second
+constexpr double kForcePart = 0.05;       // deviation of the modal force over its root mean square
+constexpr double kForceTime = 0.01;       // for which a force stays wrong the same way [s]
+constexpr double kForceMemory = 2.0;      // of the mean square [s]
+constexpr double kUnknownRate = 0.05;     // joint velocity where nothing is known [rad/s]
+constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]
+constexpr double kContactWalkSeen = 3e5;  // where an IMU shows each landing: they are no noise then
+constexpr double kUnknownContact = 1e4;   // of it at the start [N]
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
 
 }  // namespace
@@ -196,17 +195,32 @@ void ModeIdentifier::advanceModes(double step, const TorqueStep& modal) noexcept
   history_.begin(step);
   std::array<ModeStep, kMaxJoints> steps;
   States now, then;
+  for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
+  rubbed_ = forceOfSeals(now);
   for (int k = 0; k < count_; ++k) {
     const auto mode = static_cast<std::size_t>(k);
     const ModeStep& its = steps[mode] = stepOf(modeAt(k), step);
-    const double rock = rockOn(k) * state_[kContact];
-    const ModeState& before = now[mode] = stateOf(k);
+    const double beside = rockOn(k) * state_[kContact] + rubbed_[k];
+    const ModeState& before = now[mode];
     ModeState& next = then[mode] = advanced(its, before, pathOf({modal.from[k], modal.to[k], modal.mean[k]}, step));
-    next.x += its.r.step * rock, next.v += its.r.impulse * rock;
+    next.x += its.r.step * beside, next.v += its.r.impulse * beside;
     state_[at(k, kX)] = next.x, state_[at(k, kV)] = next.v;
     history_.set(k, before, next, modal.from[k], modal.to[k]);
   }
   advanceCovariance(step, steps, now, then);
+}
+
+/// Modal, against the joints' motion.
+ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
+  ModeVector force = ModeVector::Zero();
+  for (int i = 0; i < count_; ++i) {
+    const Seals& seals = seals_[static_cast<std::size_t>(i)];
+    if (seals.known == 0.0) continue;
+    double rate = 0.0;
+    for (int k = 0; k < count_; ++k) rate += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].v;
+    for (int k = 0; k < count_; ++k) force[k] -= modes_.shape(i, k) * seals.way(rate) * seals.known;
+  }
+  return force;
 }
 
 /// What a unit of each logarithm of stiffness adds to the oil's torques on the joints [N m].

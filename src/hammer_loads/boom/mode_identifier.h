@@ -9,6 +9,7 @@
 #include "hammer_loads/boom/covariance_kernels.h"
 #include "hammer_loads/boom/mode.h"
 #include "hammer_loads/boom/mode_history.h"
+#include "hammer_loads/boom/seals.h"
 #include "hammer_loads/boom/vibration_reading.h"
 
 namespace hammer_loads {
@@ -50,6 +51,7 @@ struct CrankLead {
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
+  static constexpr double kDampingDeviation = 0.5;  ///< of the logarithm of a damping at the start
   /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
 
@@ -84,6 +86,8 @@ class ModeIdentifier {
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
   /// By how much time the crank's angle leads as far as its own model knows [s].
   void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
+  /// Of a cylinder, by its last pressures: what is known of them acts on the modes; the rest of it damps them.
+  void setSeals(std::size_t cylinder, const Seals& seals) noexcept { seals_[cylinder] = seals; }
   /// Readings of one instant by one clock, at the present time or a little before. A channel in [0, kMaxChannels) keeps
   /// its offset; others, and values that are no number, do not count. A reading far off counts less. Three at a time,
   /// but each pressure by itself, are linear about what was known before them.
@@ -159,6 +163,7 @@ class ModeIdentifier {
   double accelerationNow(int mode) const noexcept;
   using States = std::array<ModeState, kMaxJoints>;
   LogOil oilTorques(const States& of) const noexcept;
+  ModeVector forceOfSeals(const States& of) const noexcept;
   double logFrequency(int mode) const noexcept;
   void advanceCovariance(double step, const std::array<ModeStep, kMaxJoints>& its, const States& now,
                          const States& next) noexcept;
@@ -228,6 +233,8 @@ class ModeIdentifier {
   bool moving_known_{};        ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
+  std::array<Seals, kMaxJoints> seals_;
+  ModeVector rubbed_ = ModeVector::Zero();  ///< modal force of the seals over the last step
   /// Modal, at the present time; and by the second.
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds

@@ -31,9 +31,9 @@ void ModeIdentifier::useChannel(const VibrationReading& reading) noexcept {
   age_[i] = 0.0;
 }
 
-/// By the hammer and, where it is followed, the rock.
+/// By the hammer, seals and, where it is followed, the rock.
 double ModeIdentifier::accelerationNow(int mode) const noexcept {
-  return acceleration(modeAt(mode), stateOf(mode), force_[mode] + rockOn(mode) * state_[kContact]);
+  return acceleration(modeAt(mode), stateOf(mode), force_[mode] + rubbed_[mode] + rockOn(mode) * state_[kContact]);
 }
 
 /// By a short line back: some 1e-4 of it for 0.5 ms of the fastest mode.
@@ -148,8 +148,10 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
     then[mode] = seen[mode].then.state;
   }
   const LogOil torque = oilTorques(then);
+  const ModeVector rubbed = forceOfSeals(then);
   for (int k = 0; k < count_; ++k) {
     Seen& its = seen[static_cast<std::size_t>(k)];
+    its.acceleration += rubbed[k];
     for (int i = 0; i < count_; ++i)
       its.by_oil[static_cast<std::size_t>(i)] =
           modes_.shape(i, k) * torque[i] + 0.5 * modes_.oil_share(i, k) * its.damped * its.then.state.v;

@@ -59,6 +59,9 @@ class Vibration {
   /// A sensor's readings at the end of the last step, see ModeIdentifier; nothing without identify() or
   /// followContact().
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
+  void setSeals(std::size_t cylinder, const Seals& seals) noexcept {
+    if (identifier_) identifier_->setSeals(cylinder, seals);
+  }
   void observe(int channel, VibrationReading reading) noexcept {
     reading.channel = channel;
     observe(&reading, 1);

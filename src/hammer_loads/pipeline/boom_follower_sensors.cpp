@@ -40,7 +40,7 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (sample.imu && !state_.at_blow) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (!pressuresCount()) return;
-  observer_.pressures(boom_, sample.stamp, pressures_);
+  observer_.pressures(boom_, held_, sample.stamp, pressures_);
   trust_.followDelay(boom_.vibration().identifier()->delay(Clock::kPressures), step);
 }
 

@@ -12,24 +12,20 @@ namespace {
 
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
-constexpr double kSlowRod = 0.002;     // [m/s]: near standstill friction may have either sign (its Stribeck speed)
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 
-/// Friction of the seals between oil and joint, as part of the load's torque on the joint [N m].
+/// What seals take between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
   double torque{};
   double deviation{}, lasting{};  ///< standard; the part of it while the operator's motion sets the rod's direction
 };
 
-/// Joint rates by the operator and by the vibration [rad/s].
-Rubbing rubbing(const CylinderParameters& p, double arm, double oil_torque, double driven, double vibrating) noexcept {
-  const double force = std::abs(oil_torque / arm), speed = arm * (driven + vibrating);
-  const double level = p.friction_force + p.friction * force;
-  const double way = speed / std::sqrt(square(speed) + square(kSlowRod));
-  const double of_level = square(p.friction_force_deviation) + square(p.friction_deviation * force);
-  const double one_way = square(arm * driven) / (square(arm) * (square(driven) + square(vibrating)) + square(kSlowRod));
-  return {arm * level * way, std::abs(arm) * std::sqrt(of_level + (1.0 - square(way)) * square(level)),
-          std::abs(arm) * std::sqrt(one_way * of_level)};
+/// vibrating: rate of the joint [rad/s].
+Rubbing rubbing(const Seals& seals, double vibrating) noexcept {
+  const double way = seals.way(vibrating);
+  const double one_way = square(seals.driven) / (square(seals.driven) + square(vibrating) + square(seals.slow));
+  return {seals.known * way, std::sqrt(square(seals.deviation) + (1.0 - square(way)) * square(seals.known)),
+          std::sqrt(one_way) * seals.deviation};
 }
 
 }  // namespace
@@ -117,7 +113,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
                                  (lag + 2.0 * lost) * track.swing.mean() +
                                  (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
     const CylinderParameters& p = cylinder.parameters();
-    const Rubbing seals = rubbing(p, at.arm, value, motion[j], boom.vibration().velocity()[j]);
+    const Rubbing seals = rubbing(sealsOf(cylinder, at.arm, value, motion[j]), boom.vibration().velocity()[j]);
     const double offset = square(at.arm * cylinder.boreArea() * p.pressure_offset_deviation);
     torque_[i] = Torque{value + seals.torque, off, std::sqrt(square(seals.deviation) + offset),
                         std::sqrt(square(seals.lasting) + offset), at};

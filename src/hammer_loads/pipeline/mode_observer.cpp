@@ -67,7 +67,8 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
   }
 }
 
-void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures) noexcept {
+void ModeObserver::pressures(Boom& boom, const HeldPose& held, StampNs sample,
+                             const CylinderPressures& pressures) noexcept {
   const auto cylinders = boom.cylinders().size();
   std::array<VibrationReading, kMaxJoints> seen;  // of one instant
   std::size_t count = 0;
@@ -88,6 +89,7 @@ void ModeObserver::pressures(Boom& boom, StampNs sample, const CylinderPressures
     reading.channel = kImuChannels + static_cast<int>(cylinders + i);
     reading.ahead = ahead;
     reading.clock = Clock::kPressures;
+    boom.vibration().setSeals(i, sealsOf(cylinder, at.arm, forceOf(cylinder, *p) * at.arm, held.motion().velocity[j]));
     setDoubt(kTorque, cylinder.greatestPush() * std::abs(at.arm), reading);
   }
   take();

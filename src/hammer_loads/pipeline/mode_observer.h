@@ -24,7 +24,7 @@ class ModeObserver {
   /// The unit's reading at the sample in the hull's axes, if a new one has come.
   void imu(Boom& boom, const HeldPose& held, const ImuReading& reading) noexcept;
   void joints(Boom& boom, const HeldPose& held, StampNs sample, double step, const JointBuffer& joints) noexcept;
-  void pressures(Boom& boom, StampNs sample, const CylinderPressures& pressures) noexcept;
+  void pressures(Boom& boom, const HeldPose& held, StampNs sample, const CylinderPressures& pressures) noexcept;
 
  private:
   struct JointTrack {

@@ -8,6 +8,7 @@
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/unknowns.h"
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/pipeline/boom_warnings.h"
 #include "hammer_loads/pipeline/reading_warnings.h"
 #include "hammer_loads/util/format.h"
 
@@ -203,128 +204,6 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   }
 }
 
-/// A stamp that is later [s] is named, and may be taken for oil that is softer.
-constexpr double kLateStamp = 8e-4;
-
-/// A clock of its own, as the boom's modes show it. Whether it is off.
-bool warnOfClock(const ModeIdentifier& identifier, Clock clock, const char* key, const char* text,
-                 std::vector<Warning>& warnings) {
-  constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
-  const double delay = identifier.delay(clock);
-  if (std::abs(delay) < kLateStamp || identifier.delayDeviation(clock) > kKnown + kPart * std::abs(delay)) return false;
-  warnings.push_back({key, format(text, 1e3 * std::abs(delay), delay > 0.0 ? "late" : "early"), true});
-  return true;
-}
-
-/// Damping that no oil makes: the mode is not one of this boom on its cylinders.
-bool dampingIsOff(const Boom& boom) {
-  constexpr double kDeviation = 0.5;  // of its logarithm, as the identifier begins
-  const double given = boom.parameters().vibration.damping_ratio;
-  for (int k = 0; k < boom.vibration().modes().count; ++k)
-    if (std::abs(std::log(boom.vibration().mode(k).zeta / given)) > gate::kUsual * kDeviation) return true;
-  return false;
-}
-
-/// The cylinder whose oil differs most from that of the others, where that is more than the boom file has it.
-void warnOfOil(const Boom& boom, std::vector<Warning>& warnings) {
-  const CylinderParameters* unlike = nullptr;
-  Vibration::OilAgainstOthers found;
-  for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
-    const auto one = boom.vibration().oilAgainstOthers(i);
-    if (!one || !exceeds(one->stiffer, square(one->expected) + square(one->deviation), gate::kRare)) continue;
-    if (unlike != nullptr && std::abs(one->stiffer) <= std::abs(found.stiffer)) continue;
-    unlike = &boom.cylinders()[i].parameters(), found = *one;
-  }
-  if (unlike == nullptr || !boom.vibration().identifier()->explains()) return;
-  for (const Clock clock : {Clock::kImu, Clock::kPressures})
-    if (std::abs(boom.vibration().identifier()->delay(clock)) > kLateStamp) return;
-  const char* name = unlike->name.c_str();
-  const double times = std::exp(std::abs(found.stiffer));
-  const bool soft = found.stiffer < 0.0;
-  std::string text = format(
-      "%s: the readings do not fit its stiffness nor the boom's damping as given: air in its oil, "
-      "worn pins, a link that gives, or seals that rub",
-      name);
-  if (!dampingIsOff(boom))
-    text = format(
-        "%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, %s_stiffness_deviation "
-        "allows for %.0f %%: %s; the boom's loads are those of the stiffness found",
-        name, times, times * found.deviation, soft ? "softer" : "stiffer", name, 100.0 * unlike->stiffness_deviation,
-        soft ? "air in its oil, hoses, worn pins or a link that gives"
-             : "its bore or hose volumes in the boom file, or air in the oil of the others");
-  warnings.push_back({"cylinder stiffness", std::move(text), true});
-}
-
-void warnOfBoom(const Pipeline& pipeline, std::vector<Warning>& warnings) {
-  const SampleResult& result = pipeline.result();
-  if (pipeline.boom() && pipeline.counts().accepted > 0) {
-    const Vibration& vibration = pipeline.boom()->boom().vibration();
-    if (vibration.identifies() && vibration.identifier()->channels() == 0 && !pipeline.hull().imuTrust().isLost())
-      warnings.push_back({"boom stiffness",
-                          "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
-                          "cylinder_pressures came: as the boom file gives it",
-                          true});
-    warnOfOil(pipeline.boom()->boom(), warnings);
-    if (vibration.identifier())
-      warnOfClock(*vibration.identifier(), Clock::kImu, "imu stamps",
-                  "hull_imu: by those of the crank its stamps are some %.2g ms %s; the boom's vibration allows for "
-                  "that, up to 4 ms, the hull's motion in the wrench does not",
-                  warnings);
-  }
-  if (pipeline.boom() && pipeline.boom()->pressureTrust().isLate()) {
-    const double late = 1e3 * pipeline.boom()->pressureTrust().lateBy();
-    warnings.push_back({"pressure stamps",
-                        format("cylinder_pressures: not used, by those of the crank their stamps are some %.2g ms %s, "
-                               "more than can be allowed for",
-                               std::abs(late), late > 0.0 ? "late" : "early"),
-                        true});
-  } else if (pipeline.boom() && pipeline.boom()->pressureTrust().isLost()) {
-    const PressureTrust& trust = pipeline.boom()->pressureTrust();
-    warnings.push_back({"pressures",
-                        format("cylinder_pressures: not used, they show a mean load of %.0f N across the tool and %.0f "
-                               "N along it: units (must be Pa), chambers or cylinders that are exchanged, masses of "
-                               "the description, or the tool is used as a lever",
-                               trust.across(), trust.along()),
-                        true});
-  }
-  if (result.boom != nullptr && result.boom->measured) {
-    const ModeIdentifier& identifier = *pipeline.boom()->boom().vibration().identifier();
-    const double surprise = identifier.oilSurprise();
-    const bool late = warnOfClock(identifier, Clock::kPressures, "pressure stamps",
-                                  "cylinder_pressures: by those of the crank their stamps are some %.2g ms %s, or "
-                                  "those of hull_imu the other way; the boom's loads allow for that, up to 2 ms",
-                                  warnings);
-    if (!late && surprise > MeasuredTorques::kSurprised)
-      warnings.push_back(
-          {"pressure stamps",
-           format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the expected "
-                  "variance: stamps that lag (5 ms are a third of the vibration's torque), also those of hull_imu, or "
-                  "readings too rare for a hull that bounces on rock; deviations are widened",
-                  surprise),
-           true});
-  }
-  if (result.boom != nullptr && result.boom->contact_unknown)
-    warnings.push_back(
-        {"rock",
-         "hull_imu shows that the rock bears on the hull, or its stamps are off by more than 5 ms: without "
-         "cylinder_pressures the rock's force is in no joint torque and in no section, and the boom's "
-         "modes are those of the boom file",
-         true});
-  if (pipeline.boom() && pipeline.boom()->runaways() > 0)
-    warnings.push_back(
-        {"boom vibration",
-         "boom: its vibration grew beyond all that the hammer, operator and rock can do and began anew, " +
-             count(pipeline.boom()->runaways()) +
-             " times; its loads are withheld after that: masses of the description, "
-             "mode_refresh_angle_rad, the boom file or sensors are wrong",
-         result.boom != nullptr && result.boom->fault && result.boom->fault->kind == JointFault::Kind::kRunAway});
-  if (result.boom == nullptr || !result.boom->fault || result.boom->fault->kind == JointFault::Kind::kRunAway) return;
-  warnings.push_back({"boom joints",
-                      "boom joints: no loads for " + count(pipeline.boom()->faults()) +
-                          " samples: " + joined(pipeline.boom()->joints().complaints(result.stamp)),
-                      true});
-}
-
 }  // namespace
 
 bool isContradiction(std::string_view key) noexcept {
@@ -339,7 +218,8 @@ std::vector<Warning> warningsOf(const Pipeline& pipeline) {
   warnOfCrank(pipeline, counts, warnings);
   warnOfSensor(pipeline, warnings);
   warnOfHull(pipeline, counts, warnings);
-  warnOfBoom(pipeline, warnings);
+  if (pipeline.boom() && counts.accepted > 0)
+    warnOfBoom(*pipeline.boom(), pipeline.result().boom, pipeline.hull().imuTrust().isLost(), warnings);
   return warnings;
 }
 

@@ -10,7 +10,7 @@ ALL = {CRANK, BOOM}
 CONCERNS = {
     "pitch joints": {CRANK, BOOM}, "imu": {CRANK, BOOM}, "joint states": {CRANK, BOOM},
     "boom stiffness": {BOOM}, "pressures": {BOOM}, "pressure stamps": {BOOM}, "rock": {BOOM}, "boom joints": {BOOM},
-    "cylinder stiffness": set(),  # found, and allowed for
+    "cylinder stiffness": set(), "boom damping": set(),  # found, and allowed for
     "lost messages": {COUNTS}, "publishers": ALL | {COUNTS}, "definitions": {COUNTS}, "ledger": set(),
 }
 

@@ -1,0 +1,38 @@
+/// What the seals of a cylinder take between its oil and its joint.
+#pragma once
+
+#include <cmath>
+
+#include "hammer_loads/boom/cylinder.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+
+/// Coulomb friction against the rod's motion, as a torque on the joint: the joint's load is that of the oil and
+/// way() times this torque. Of it a part is known, and a part only by its standard deviation.
+struct Seals {
+  int joint{};
+  double known{}, deviation{};  ///< standard [N m]
+  double driven{};              ///< rate of the joint beside its vibration [rad/s]
+  double slow{1.0};             ///< that rate up to which they may rub either way [rad/s]
+
+  /// -1 to 1: of the joint, at a rate of vibration [rad/s].
+  double way(double vibrating) const noexcept {
+    const double rate = driven + vibrating;
+    return rate / std::sqrt(square(rate) + square(slow));
+  }
+};
+
+/// By the boom file; arm [m/rad]; torque of the oil [N m]; driven: rate of the joint beside its vibration [rad/s].
+inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, double driven) noexcept {
+  // A rod's speed [m/s] near standstill, as Stribeck's.
+  // Guard: RubbingBoom.DeviationsCoverSealsThatAreNotKnown
+  constexpr double kSlowRod = 0.002;
+  const CylinderParameters& p = cylinder.parameters();
+  const double size = std::abs(arm), force = std::abs(oil_torque / arm);
+  return {cylinder.joint(), size * (p.friction_force + p.friction * force),
+          size * std::sqrt(square(p.friction_force_deviation) + square(p.friction_deviation * force)), driven,
+          kSlowRod / size};
+}
+
+}  // namespace hammer_loads

@@ -1,0 +1,198 @@
+#include "hammer_loads/pipeline/boom_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/format.h"
+
+namespace hammer_loads {
+namespace {
+
+/// A stamp that is later [s] is named, and may be taken for oil that is softer.
+// Guard: MistakenSensors.PressuresThatAreLateAreNamedAndAllowedFor
+constexpr double kLateStamp = 8e-4;
+
+/// The mode whose damping is farthest from the boom file's, where that is more than the identifier expects: no oil
+/// makes it. -1: none.
+int modeOfOddDamping(const Boom& boom) {
+  const double given = boom.parameters().vibration.damping_ratio;
+  int mode = -1;
+  double farthest = gate::kUsual * ModeIdentifier::kDampingDeviation;
+  for (int k = 0; k < boom.vibration().modes().count; ++k) {
+    const double off = std::abs(std::log(boom.vibration().mode(k).zeta / given));
+    if (off > farthest) mode = k, farthest = off;
+  }
+  return mode;
+}
+
+/// By which pressures seem late where what damps the boom is not in its oil [s]: what is more than the boom file has,
+/// or where that is odd all that is found, and as much as the delay itself is not known.
+double lagOfDamping(const Boom& boom, int odd) {
+  const double oil = odd < 0 ? boom.parameters().vibration.damping_ratio : 0.0;
+  double lag = 0.0;
+  for (int k = 0; k < boom.vibration().modes().count; ++k) {
+    const Mode mode = boom.vibration().mode(k);
+    lag = std::max(lag, 2.0 * (mode.zeta - oil) / mode.omega);
+  }
+  const ModeIdentifier& identifier = *boom.vibration().identifier();
+  return odd < 0 ? lag : lag + gate::kUsual * identifier.delayDeviation(Clock::kPressures);
+}
+
+/// A clock of its own, as the boom's modes show it. explained: late by this without one [s].
+bool isOff(const ModeIdentifier& identifier, Clock clock, double explained = 0.0) {
+  constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
+  // Guard: MistakenSensors.ImuStampsThatAreOffAreNamedAndAllowedFor
+  const double delay = identifier.delay(clock);
+  return std::abs(delay) > kLateStamp && !(delay > 0.0 && delay < explained) &&
+         identifier.delayDeviation(clock) < kKnown + kPart * std::abs(delay);
+}
+
+std::string earlyOrLate(double delay) {
+  return format("%.2g ms %s", 1e3 * std::abs(delay), delay > 0.0 ? "late" : "early");
+}
+
+std::string dampingText(const Boom& boom, int mode) {
+  const Mode found = boom.vibration().mode(mode);
+  return format("vibration of %.2g Hz has a damping of %.2g, damping_ratio is %.2g", found.omega / kTwoPi, found.zeta,
+                boom.parameters().vibration.damping_ratio);
+}
+
+/// What rubs beside the oil damps the boom and is not in its pressures, which then seem late.
+void warnOfDamping(const Boom& boom, int mode, std::vector<Warning>& warnings) {
+  const ModeIdentifier& identifier = *boom.vibration().identifier();
+  std::string text = "boom: its " + dampingText(boom, mode);
+  if (isOff(identifier, Clock::kPressures) && !isOff(identifier, Clock::kPressures, lagOfDamping(boom, mode)))
+    text += "; what damps it beside the oil makes cylinder_pressures seem " +
+            earlyOrLate(identifier.delay(Clock::kPressures)) + ", the loads allow for that";
+  warnings.push_back({"boom damping", std::move(text), true});
+}
+
+void warnOfImuClock(const ModeIdentifier& identifier, std::vector<Warning>& warnings) {
+  if (!isOff(identifier, Clock::kImu)) return;
+  warnings.push_back(
+      {"imu stamps",
+       "hull_imu: by those of the crank its stamps are some " + earlyOrLate(identifier.delay(Clock::kImu)) +
+           "; the boom's vibration allows for that, up to 4 ms, the hull's motion in the wrench does not",
+       true});
+}
+
+/// explained: by what damps the boom they seem late by this [s].
+void warnOfPressures(const ModeIdentifier& identifier, double explained, std::vector<Warning>& warnings) {
+  const double surprise = identifier.oilSurprise();
+  if (isOff(identifier, Clock::kPressures, explained)) {
+    warnings.push_back({"pressure stamps",
+                        "cylinder_pressures: by those of the crank their stamps are some " +
+                            earlyOrLate(identifier.delay(Clock::kPressures)) +
+                            ", or those of hull_imu the other way; the boom's loads allow for that, up to 2 ms",
+                        true});
+  } else if (surprise > MeasuredTorques::kSurprised) {
+    warnings.push_back({"pressure stamps",
+                        format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the "
+                               "expected variance, as where stamps lag (5 ms are a third of the vibration's torque) "
+                               "or a hull bounces on rock between readings; deviations are widened",
+                               surprise),
+                        true});
+  }
+}
+
+/// The cylinder whose oil differs most from that of the others, where that is more than the boom file has it. odd: mode
+/// whose damping no oil makes, or -1.
+void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
+  const CylinderParameters* unlike = nullptr;
+  Vibration::OilAgainstOthers found;
+  for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {
+    const auto one = boom.vibration().oilAgainstOthers(i);
+    if (!one || !exceeds(one->stiffer, square(one->expected) + square(one->deviation), gate::kRare)) continue;
+    if (unlike != nullptr && std::abs(one->stiffer) <= std::abs(found.stiffer)) continue;
+    unlike = &boom.cylinders()[i].parameters(), found = *one;
+  }
+  if (unlike == nullptr || !boom.vibration().identifier()->explains()) return;
+  for (const Clock clock : {Clock::kImu, Clock::kPressures})
+    if (odd < 0 && std::abs(boom.vibration().identifier()->delay(clock)) > kLateStamp) return;
+  const char* name = unlike->name.c_str();
+  const double times = std::exp(std::abs(found.stiffer));
+  const bool soft = found.stiffer < 0.0;
+  std::string text = format("%s: by the boom's vibration %.2g +- %.1g times %s than the other cylinders, ", name, times,
+                            times * found.deviation, soft ? "softer" : "stiffer");
+  text += odd >= 0 ? "but its " + dampingText(boom, odd) + ": no oil makes both, the stiffness is doubtful"
+                   : format(
+                         "%s_stiffness_deviation allows for %.0f %%: %s; the boom's loads are those of the stiffness "
+                         "found",
+                         name, 100.0 * unlike->stiffness_deviation,
+                         soft ? "air in its oil, hoses, worn pins or a link that gives"
+                              : "its bore or hose volumes in the boom file, or air in the oil of the others");
+  warnings.push_back({"cylinder stiffness", std::move(text), true});
+}
+
+/// Pressures that are not used.
+void warnOfTrust(const PressureTrust& trust, std::vector<Warning>& warnings) {
+  if (trust.isLate()) {
+    warnings.push_back({"pressure stamps",
+                        "cylinder_pressures: not used, by those of the crank their stamps are some " +
+                            earlyOrLate(trust.lateBy()) + ", more than can be allowed for",
+                        true});
+  } else if (trust.isLost()) {
+    warnings.push_back({"pressures",
+                        format("cylinder_pressures: not used, they show a mean load of %.0f N across the tool and %.0f "
+                               "N along it: units (must be Pa), chambers or cylinders that are exchanged, masses of "
+                               "the description, or the tool is used as a lever",
+                               trust.across(), trust.along()),
+                        true});
+  }
+}
+
+void warnOfVibration(const BoomFollower& follower, const BoomState* boom, bool imu_lost,
+                     std::vector<Warning>& warnings) {
+  const Vibration& vibration = follower.boom().vibration();
+  if (vibration.identifies() && vibration.identifier()->channels() == 0 && !imu_lost)
+    warnings.push_back({"boom stiffness",
+                        "boom_stiffness: identified, but no reading of hull_imu, joint_states above 100 Hz or "
+                        "cylinder_pressures came: as the boom file gives it",
+                        true});
+  const int odd = modeOfOddDamping(follower.boom());
+  warnOfOil(follower.boom(), odd, warnings);
+  if (!vibration.identifier()) return;
+  const ModeIdentifier& identifier = *vibration.identifier();
+  if (odd < 0) warnOfImuClock(identifier, warnings);
+  if (boom != nullptr && boom->measured) warnOfPressures(identifier, lagOfDamping(follower.boom(), odd), warnings);
+  if (odd >= 0) warnOfDamping(follower.boom(), odd, warnings);
+}
+
+}  // namespace
+
+void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lost, std::vector<Warning>& warnings) {
+  warnOfVibration(follower, boom, imu_lost, warnings);
+  warnOfTrust(follower.pressureTrust(), warnings);
+  if (boom != nullptr && boom->contact_unknown)
+    warnings.push_back(
+        {"rock",
+         "hull_imu shows that the rock bears on the hull, or its stamps are off by more than 5 ms: without "
+         "cylinder_pressures the rock's force is in no joint torque and in no section, and the boom's "
+         "modes are those of the boom file",
+         true});
+  const bool fault = boom != nullptr && boom->fault,
+             runs_away = fault && boom->fault->kind == JointFault::Kind::kRunAway;
+  if (follower.runaways() > 0)
+    warnings.push_back(
+        {"boom vibration",
+         format("boom: its vibration grew beyond all that the hammer, operator and rock can do and began anew, %llu "
+                "times; its loads are withheld after that: masses of the description, mode_refresh_angle_rad, the "
+                "boom file or sensors are wrong",
+                static_cast<unsigned long long>(follower.runaways())),
+         runs_away});
+  if (!fault || runs_away) return;
+  std::string complaints;
+  for (const std::string& one : follower.joints().complaints(boom->stamp))
+    complaints += (complaints.empty() ? "" : ", ") + one;
+  warnings.push_back(
+      {"boom joints",
+       format("boom joints: no loads for %llu samples: ", static_cast<unsigned long long>(follower.faults())) +
+           complaints,
+       true});
+}
+
+}  // namespace hammer_loads
