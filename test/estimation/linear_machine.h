@@ -65,14 +65,12 @@ struct LinearMachine {
   Run run(unsigned seed, int steps) const {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
+    const auto white = [&](Eigen::Index) { return normal(random); };
     const auto draw = [&](const auto& covariance) {
-      Vector white;
-      for (double& w : white) w = normal(random);
-      return Vector(covariance.llt().matrixL() * white);
+      return Vector(covariance.llt().matrixL() * Vector::NullaryExpr(white));
     };
     Run run;
-    for (double& p : run.p) p = normal(random);
-    run.p = run.p.cwiseProduct(prior);
+    run.p = Constants::NullaryExpr(white).cwiseProduct(prior);
     run.x.push_back(draw(first));
     for (int k = 0; k < steps; ++k) {
       run.x.push_back(F * run.x.back() + B * run.p + draw(step_noise));

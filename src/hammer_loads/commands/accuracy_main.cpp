@@ -6,6 +6,7 @@
 #include "hammer_loads/bench/cost_table.h"
 #include "hammer_loads/bench/drawing_table.h"
 #include "hammer_loads/bench/elastic_table.h"
+#include "hammer_loads/bench/kdl_observer.h"
 #include "hammer_loads/bench/life_table.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_table.h"
@@ -60,6 +61,10 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << accuracy::markdown(drawings);
     return kDrawn + accuracy::json(drawings);
   }
+  if (only == "observer") {
+    std::cout << accuracy::markdown(accuracy::observerTable());
+    return "";
+  }
   if (only == "life") {
     std::cout << accuracy::lifeMarkdown(accuracy::boomTable(), accuracy::elasticTable(settings));
     return "";
@@ -84,6 +89,7 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
     const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
     std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
+    std::cout << "\n### Beside KDL's momentum observer\n\n" << accuracy::markdown(accuracy::observerTable());
     std::cout << "\n### Damage-equivalent ranges\n\n" << accuracy::lifeMarkdown(boom, elastic);
     std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
     json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
@@ -103,8 +109,9 @@ int run(int argc, const char* const* argv) {
   line.option("--json", json_file, "also write the figures to this file, which must not exist");
   line.flag("--force", force, "replace that file if this command wrote it");
   line.option("--only", only,
-              "one of the two parts, or drawings, elastic machines or damage-equivalent ranges (life) alone")
-      .oneOf({"costs", "sessions", "drawings", "elastic", "life"});
+              "one of the two parts, or drawings, elastic machines, KDL's observer or damage-equivalent ranges (life) "
+              "alone")
+      .oneOf({"costs", "sessions", "drawings", "elastic", "observer", "life"});
   if (const auto code = line.parse(argc, argv)) return *code;
   endCleanlyOnSignals();
   const std::optional<Settings> settings = loadOrReport(files);

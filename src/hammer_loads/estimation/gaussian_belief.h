@@ -35,18 +35,19 @@ struct GaussianBelief {
   /// By a transition F = d(after)/d(before) that is the identity but for some rows; f: those, in the order of `rows`.
   /// P <- F P F^T, V <- F V.
   template <Eigen::Index... rows>
-  void predict(const Eigen::Matrix<double, sizeof...(rows), variables>& f) noexcept {
-    constexpr Eigen::Index changed[] = {rows...}, count = sizeof...(rows);
+  void predict(const Eigen::Matrix<double, int{sizeof...(rows)}, variables>& f) noexcept {
+    constexpr Eigen::Index changed[] = {rows...};
+    constexpr int count = sizeof...(rows);
     const Eigen::Matrix<double, count, variables> moved = f * covariance;
     const Eigen::Matrix<double, count, count> both = moved * f.transpose();
     const Eigen::Matrix<double, count, constants> effect = f * by_constant;
-    for (Eigen::Index i = 0; i < count; ++i) {
+    for (int i = 0; i < count; ++i) {
       covariance.row(changed[i]) = moved.row(i);
       covariance.col(changed[i]) = moved.row(i).transpose();
       by_constant.row(changed[i]) = effect.row(i);
     }
-    for (Eigen::Index i = 0; i < count; ++i) {
-      for (Eigen::Index k = 0; k <= i; ++k)
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k <= i; ++k)
         covariance(changed[i], changed[k]) = covariance(changed[k], changed[i]) = both(i, k);
     }
   }
