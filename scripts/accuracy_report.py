@@ -157,6 +157,23 @@ def drawings_excerpt(drawings):
     return "\n".join(lines) + "\n"
 
 
+LIFE = [("oil as in the file", "none", "as the boom file has it, no sensor on the boom"),
+        ("bulk modulus 30 % lower", "none", "oil 30 % softer than the file, no sensor on the boom"),
+        ("bulk modulus 30 % lower", "IMU", "the same with an IMU on the hull"),
+        ("bulk modulus 30 % lower", "both", "the same with an IMU and cylinder pressures"),
+        ("pressed on rock, crank typical", "both", "hull pressed on rock, typical crank sensor, both")]
+
+
+def life_excerpt(boom):
+    """What fatigue is judged by."""
+    rows = {(row["machine"], row["sensors"]): row for row in boom}
+    lines = ["| machine | force on the hull | joint torque | bending |", "|---|---|---|---|"]
+    lines += ["| " + text + " | " + " | ".join(f"{100 * rows[machine, sensors][key]:+.1f} %"
+                                               for key in ("life_force", "life_torque", "life_section")) + " |"
+              for machine, sensors, text in LIFE]
+    return "\n".join(lines) + "\n"
+
+
 def replace(path, marker, text):
     """Text between <!-- marker --> and <!-- /marker -->."""
     begin, end = f"<!-- {marker} -->\n", f"<!-- /{marker} -->"
@@ -173,6 +190,7 @@ def main():
     figures = json.loads((work / "sessions.json").read_text())
     replace(root / "doc" / "accuracy.md", "sessions", (work / "sessions").read_text())
     replace(root / "README.md", "machines", machines_excerpt(figures["machines"]) + drawings_excerpt(figures["drawings"]))
+    replace(root / "README.md", "life", life_excerpt(figures["boom"]))
     if not (work / "costs.json").exists():
         return
     figures.update(json.loads((work / "costs.json").read_text()))
