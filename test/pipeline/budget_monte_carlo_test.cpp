@@ -30,7 +30,7 @@ using Figures = std::map<std::string, double>;
 /// Of standard deviations; half a mass is 2 of them.
 Draw drawn(simulation::NormalNoise& noise) {
   Draw draw;
-  for (double& z : draw) z = std::clamp(noise(), -1.9, 3.0);
+  for (Eigen::Index i = 0; i < draw.size(); ++i) draw[i] = std::clamp(noise(), -1.9, 3.0);
   return draw;
 }
 

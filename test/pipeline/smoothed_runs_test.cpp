@@ -170,10 +170,17 @@ TEST(SmoothedRuns, NothingIsLostOnExactSensors) {
 }
 
 TEST(SmoothedRuns, StampsThatJitterWeighLess) {
-  MachineSettings machine = machineOf(1000.0, 7);
-  machine.crank.stamp_noise = 2e-4;
-  const Both both = bothOf(machine);
-  expectBetter(both, 0.8);
+  double inside = 0.0;
+  for (const unsigned seed : {7U, 8U, 9U, 10U}) {
+    MachineSettings machine = machineOf(1000.0, seed);
+    machine.crank.stamp_noise = 2e-4;
+    const Both both = bothOf(machine);
+    EXPECT_LT(both.smoothed.rms, 0.8 * both.live.rms) << seed;
+    inside += both.smoothed.inside / 4.0;
+  }
+  // With right speeds the errors are 0.09 % of the peak, the deviations half as large again: those of any supply.
+  EXPECT_GE(inside, 0.95);
+  EXPECT_LT(inside, 0.999);
 }
 
 TEST(SmoothedRuns, ATypicalMachineIsCloser) {

@@ -232,6 +232,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   if (witness_) {
     const ConstantErrors::Row by_error = now_.encoderByError(Belief::kSpeed);
     witness_->speed = now_.encoderSpeed();
+    witness_->variance = now_.encoderVariance(Belief::kSpeed) + square(settings_.speed_noise);
     witness_->by_lag = by_error[ConstantErrors::kSpeedLag];
     witness_->by_scale = by_error[ConstantErrors::kSpeedScale];
   }

@@ -45,9 +45,8 @@ void CrankFilter::considerSensor() noexcept {
   const auto consider = [&](int constant, double amount, double deviation) {
     const double prior = settings_.constant_deviations[constant];
     if (!(prior > 0.0)) return;
-    const double together = 1.0 / std::hypot(1.0 / prior, 1.0 / deviation);
     const double shown = std::max(0.0, square(amount) - square(gate::kUsual * deviation));
-    errors_.consider(constant, std::sqrt(square(together) + shown));
+    errors_.consider(constant, std::sqrt(square(std::min(prior, deviation)) + shown));
   };
   consider(ConstantErrors::kSpeedLag, speed_trust_.lag(), speed_trust_.lagDeviation());
   consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());

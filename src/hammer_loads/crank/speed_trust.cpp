@@ -10,18 +10,15 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSpeedTurns = 12.0;     // of lag and scale: some 3 s at work
-constexpr double kSpeedSamples = 500.0;  // of what is left
-constexpr int kFewSpeeds = 50;           // before them nothing is an outlier
-constexpr double kMostLag = 0.1;         // [s]: more is no filter of a drive that is controlled by it
+constexpr double kSpeedTurns = 30.0;  // of lag and scale: some 3 s at work
+constexpr double kMostLag = 0.1;      // [s]: more is no filter of a drive that is controlled by it
 constexpr double kMostScale = 0.5;
 constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
 constexpr double kNotableScale = 0.01;  // likewise
 constexpr double kReleased = 0.5;       // of these and of the deviations: where what was seen is given up
+constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
 constexpr double kMostOfOne = 0.999;    // of a correlation
-constexpr double kSingular = 1e-9;      // of the diagonal's product: an even speed shows no lag
 // Guard: SpeedTrust.FindsTheLagOfAFilterWithItsDeviation of kSpeedTurns, kNotableLag, kMostLag
-// Guard: SpeedTrust.FindsTheLagOfAFilterWithItsDeviation of kSpeedSamples
 // Guard: SpeedTrust.FindsAScaleApartFromALag of kNotableScale, kMostScale
 
 bool isSeen(double amount, double notable, double deviation, bool before) noexcept {
@@ -50,38 +47,52 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
   behind_ = settled + kept * (before - settled);
   acceleration_ = now.acceleration;
   const double filtered = now.speed - behind_ - lag_ * now.by_lag - scale_ * now.by_scale;
-  double residual = now.measured - (1.0 + scale_) * filtered;
-  if (samples_ > kFewSpeeds) {
-    const double most = gate::kImpossible * std::sqrt(square_);
-    residual = std::clamp(residual, -most, most);
-  }
+  const double size = std::sqrt(now.variance);
+  const double whole = 1.0 + scale_;
+  Row row{now.measured - whole * filtered, -whole * (by_lag_ + now.by_lag), filtered - whole * now.by_scale};
+  row /= size;
+  if (const double most = gate::kImpossible * std::sqrt(square_); most > 0.0) row[0] = std::clamp(row[0], -most, most);
   if (continues) {
-    samples_ += samples_ < static_cast<int>(kSpeedSamples);
-    const double gain = 1.0 / samples_;
-    square_ += gain * (square(residual) - square_);
-    product_ += gain * (residual * residual_ - product_);
-    const double whole = 1.0 + scale_;
-    const Eigen::Vector2d by{-whole * (by_lag_ + now.by_lag), filtered - whole * now.by_scale};
-    information_.noalias() += by * by.transpose();
-    score_ += residual * by;
+    same_.noalias() += row * row.transpose();
+    next_.noalias() += 0.5 * (row * last_.transpose() + last_ * row.transpose());
+    ++count_;
   }
-  residual_ = residual;
+  last_ = row;
 }
 
+/// The turn counts by what its own best fit leaves, so that one in which the estimate was lost counts little.
 void SpeedTrust::endTurn() noexcept {
-  if (samples_ == 0) return;
+  constexpr int kFitted = 2;  // lag and scale
+  if (count_ <= 2 * kFitted) return;
   ++turns_;
-  const double determinant = information_.determinant();
-  if (!(determinant > kSingular * information_(0, 0) * information_(1, 1))) return;
-  const Eigen::Matrix2d covariance = information_.inverse();
-  Eigen::Vector2d change = covariance * score_;
-  change[0] = std::clamp(lag_ + change[0], -kMostLag, kMostLag) - lag_;
-  change[1] = std::clamp(scale_ + change[1], -kMostScale, kMostScale) - scale_;
-  lag_ += change[0], scale_ += change[1];
+  const Eigen::Matrix2d prior = Eigen::Vector2d(1.0 / square(kLag), 1.0 / square(kScale)).asDiagonal();
+  const Eigen::Matrix2d of_turn = same_.bottomRightCorner<2, 2>();
+  const Eigen::Vector2d by_turn = same_.bottomLeftCorner<2, 1>();
+  Row best;
+  best << 1.0, -((prior + of_turn).inverse() * by_turn);
+  const double sum = best.dot(same_ * best), rho = std::clamp(best.dot(next_ * best) / sum, 0.0, kMostOfOne);
+  const double counts = (1.0 - rho) / (1.0 + rho) * (count_ - kFitted) / sum;  // of a row, over one of unit variance
+  square_ = same_(0, 0) / count_;
+  constexpr double kKept = 1.0 - 1.0 / kSpeedTurns;
+  information_ = kKept * information_ + counts * of_turn;
+  score_ = kKept * score_ + counts * by_turn;
+  scatter_ = kKept * scatter_ + counts * by_turn.dot((prior + of_turn).inverse() * by_turn);
+  seen_turns_ = kKept * seen_turns_ + 1.0;
+  same_.setZero(), next_.setZero(), count_ = 0;
+  if (seen_turns_ < kLeastTurns) return;
+  const Eigen::Vector2d off = (prior + information_).inverse() * score_;
+  const double beyond = (scatter_ - score_.dot(off)) / (kFitted * (seen_turns_ - 1.0));
+  const double share = 1.0 / std::max(1.0, beyond);
+  const Eigen::Matrix2d covariance = (prior + share * information_).inverse();
+  const Eigen::Vector2d now(lag_, scale_), found = now + covariance * (share * score_ - prior * now);
+  lag_ = std::clamp(found[0], -kMostLag, kMostLag), scale_ = std::clamp(found[1], -kMostScale, kMostScale);
+  const Eigen::Vector2d change = Eigen::Vector2d(lag_, scale_) - now;
+  scatter_ -= change.dot(2.0 * score_ - information_ * change);
   score_ -= information_ * change;
-  const double rho = std::clamp(product_ / square_, 0.0, kMostOfOne);
-  deviation_ = (square_ * (1.0 + rho) / (1.0 - rho) * covariance.diagonal()).cwiseSqrt();
-  information_ *= 1.0 - 1.0 / kSpeedTurns, score_ *= 1.0 - 1.0 / kSpeedTurns;
+  deviation_ = covariance.diagonal().cwiseSqrt();
+  // Rows are linear about what lag and scale were then.
+  if (std::abs(change[0]) > gate::kRare * deviation_[0] || std::abs(change[1]) > gate::kRare * deviation_[1])
+    information_.setZero(), score_.setZero(), scatter_ = seen_turns_ = 0.0;
   lags_ = isSeen(lag_, kNotableLag, deviation_[0], lags_);
   out_of_scale_ = isSeen(scale_, kNotableScale, deviation_[1], out_of_scale_);
   are_good_ = isTrusted() && gate::kUsual * deviation_[0] < kNotableLag && gate::kUsual * deviation_[1] < kNotableScale;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hammer_loads/crank/unknowns.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -15,10 +16,11 @@ namespace hammer_loads {
 ///     measured = (1 + scale) y + noise,  lag y' = speed - y,
 ///
 /// and where the estimate has taken up speeds before, less what their lag and scale have made of it. Both by least
-/// squares (Gauss and Newton, a step a turn) over some turns. What is left has a variance and an autocorrelation rho
-/// from one sample to the next; n such errors say as much as n (1 - rho)/(1 + rho) independent ones. Speeds are
-/// weighed by what is not known of lag and scale (GaussianBelief, unknowns.h) until that is less than matters; where
-/// one shows they serve the start alone. (Not for ever: a model that errs is put right by them.)
+/// squares (Gauss and Newton, a step a turn) over some turns, their priors among them. What the best fit leaves of a
+/// turn has a variance and an autocorrelation rho from one sample to the next; n such errors say as much as n (1 -
+/// rho)/(1 + rho) independent ones. Speeds are weighed by what is not known of lag and scale (GaussianBelief,
+/// unknowns.h) until that is less than matters; where one shows they serve the start alone. (Not for ever: a model that
+/// errs is put right by them.)
 class SpeedTrust {
  public:
   /// What came before does not continue.
@@ -31,6 +33,7 @@ class SpeedTrust {
     double by_lag{};        ///< what a lag of the speeds taken so far has made of `speed` [rad/s2]
     double by_scale{};      ///< likewise their scale [rad/s]
     double jump{};          ///< of the speed by a blow since the sample before [rad/s]
+    double variance{1.0};   ///< of both together, > 0 [rad2/s2]: their difference weighs by it
   };
   /// By how much a lag of kLag would make the speed smaller now, over kLag [rad/s2]; dt, acceleration, jump: as below.
   double lateBy(double dt, double acceleration, double jump) const noexcept;
@@ -53,18 +56,24 @@ class SpeedTrust {
 
  private:
   static constexpr double kLag = kUnknowns[indexOfUnknown("speed lag")].prior;  ///< [s]
+  static constexpr double kScale = kUnknowns[indexOfUnknown("speed scale")].prior;
   static constexpr int kTurnsToKnow = 5;  // some 1 s at work. Guard: SpeedTrust.IsSilentBeforeItKnows
 
-  Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};  ///< of lag and scale, unit variance
-  Eigen::Vector2d score_{Eigen::Vector2d::Zero()}, deviation_{Eigen::Vector2d::Zero()};
+  /// Of a speed, over the deviation expected of it: what is not explained, and its derivatives by lag and scale.
+  using Row = Eigen::Vector3d;
+  Row last_{Row::Zero()};
+  Eigen::Matrix3d same_{Eigen::Matrix3d::Zero()}, next_{same_};  ///< of the turn: products of a row, with that before
+  int count_{};                                                  ///< rows in them
+  double square_{};                                              ///< mean, of the residuals of the turn before
+  Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};         ///< of lag and scale, by turns
+  Eigen::Vector2d score_{Eigen::Vector2d::Zero()};
+  double scatter_{}, seen_turns_{};  ///< squares by which turns' own fits are off, over what they should; of so many
+  Eigen::Vector2d deviation_{Eigen::Vector2d::Zero()};
   double lag_{}, scale_{};
   bool begun_{}, lags_{}, out_of_scale_{}, are_good_{};
-  double behind_{}, by_lag_{};             ///< at the last sample: speed - y [rad/s], and its derivative by the lag
-  double late_{};                          ///< lateBy() at the last sample [rad/s2]
-  double acceleration_{};                  ///< likewise
-  double residual_{};                      ///< of the last sample
-  double square_{}, product_{}, known_{};  ///< running means: of residual^2, of neighbours, of the estimate's variance
-  int samples_{};
+  double behind_{}, by_lag_{};  ///< at the last sample: speed - y [rad/s], and its derivative by the lag
+  double late_{};               ///< lateBy() at the last sample [rad/s2]
+  double acceleration_{};       ///< likewise
   int turns_{};
 };
 
