@@ -83,7 +83,8 @@ void LoadErrors::findVariances(const Eigen::Ref<const Eigen::MatrixXd>& response
         (column[k] * response.col(k) + 2.0 * response.rightCols(after).lazyProduct(column.segment(k + 1, after)))
             .array();
   }
-  variance = variance.cwiseMax(0.0);
+  // Not cwiseMax(), which loses a not-a-number with Eigen 3.3.
+  variance = (variance.array() < 0.0).select(0.0, variance);
   if (!has_larger_) return;
   const auto squares = [&](const Inputs& one) { return (response.lazyProduct(one.head(inputs))).cwiseAbs2(); };
   variance += squares(larger_[0]).cwiseMax(squares(larger_[1]));

@@ -10,7 +10,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSpeedTurns = 30.0;  // of lag and scale: some 3 s at work
+constexpr double kSpeedTurns = 30.0;    // of lag and scale: some 6 s at work
 constexpr double kMostLag = 0.1;      // [s]: more is no filter of a drive that is controlled by it
 constexpr double kMostScale = 0.5;
 constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
