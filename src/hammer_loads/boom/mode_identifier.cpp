@@ -56,37 +56,6 @@ JointVector ModeIdentifier::velocity() const noexcept {
   return jointsOf(modes_, v);
 }
 
-JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 + kParts * kMaxJoints, kMaxJoints>;
-  const int states = end() - kContact, kept = kModes - kContact;
-  Rows rows = Rows::Zero(states, count_);  // a mode's acceleration by the states from the rock's force on
-  States now;
-  for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
-  const LogOil torque = oilTorques(now);
-  for (int k = 0; k < count_; ++k) {
-    const Mode m = modeAt(k);
-    const ModeState s = stateOf(k);
-    const double damped = 2.0 * m.zeta * m.omega;
-    const int own = kept + kParts * k;
-    rows(0, k) = contact_[k];
-    rows(own + kX, k) = -m.omega * m.omega, rows(own + kV, k) = -damped, rows(own + kDamping, k) = -damped * s.v;
-    for (int i = 0; i < count_; ++i)
-      rows(kept + kParts * i + kOil, k) = -modes_.shape(i, k) * torque[i] - 0.5 * modes_.oil_share(i, k) * damped * s.v;
-  }
-  JointMatrix covariance(count_, count_);
-  for (int k = 0; k < count_; ++k) {
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
-    with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
-    for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
-    // What the mode's shape lacks.
-    const Mode m = modeAt(k);
-    const ModeState s = stateOf(k);
-    covariance(k, k) +=
-        square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) + square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
-  }
-  return covariance;
-}
-
 void ModeIdentifier::setModes(const BoomModes& given, const LogOil& stiffer) noexcept {
   const bool carries = moving_known_ && count_ == given.count;
   JointMatrix T(given.count, given.count);  // new modal displacements of the old ones, through the joints
@@ -208,29 +177,6 @@ void ModeIdentifier::advanceModes(double step, const TorqueStep& modal) noexcept
     history_.set(k, before, next, modal.from[k], modal.to[k]);
   }
   advanceCovariance(step, steps, now, then);
-}
-
-/// Modal, against the joints' motion.
-ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
-  ModeVector force = ModeVector::Zero();
-  for (int i = 0; i < count_; ++i) {
-    const Seals& seals = seals_[static_cast<std::size_t>(i)];
-    if (seals.known == 0.0) continue;
-    double rate = 0.0;
-    for (int k = 0; k < count_; ++k) rate += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].v;
-    for (int k = 0; k < count_; ++k) force[k] -= modes_.shape(i, k) * seals.way(rate) * seals.known;
-  }
-  return force;
-}
-
-/// What a unit of each logarithm of stiffness adds to the oil's torques on the joints [N m].
-LogOil ModeIdentifier::oilTorques(const States& of) const noexcept {
-  LogOil torque = LogOil::Zero();
-  for (int i = 0; i < count_; ++i) {
-    for (int k = 0; k < count_; ++k) torque[i] += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].x;
-    torque[i] *= modes_.stiffness[i] * stiffness_ratio_[i];
-  }
-  return torque;
 }
 
 /// P <- F P F^T. Stiffness and damping act as forces that are linear over the step: their derivatives are off by 3 % at

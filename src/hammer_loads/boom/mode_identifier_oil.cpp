@@ -1,4 +1,4 @@
-// What is known of the oil: stiffness of the cylinders, frequencies and damping of the modes.
+// What is known of the oil: stiffness of the cylinders, frequencies and damping of the modes, and their forces.
 #include <algorithm>
 #include <cmath>
 
@@ -77,6 +77,60 @@ void ModeIdentifier::useOil() noexcept {
     damping_[i] *= growth(damping - used_damping_[i]), used_damping_[i] = damping;
   }
   for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
+}
+
+/// Modal, against the joints' motion.
+ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
+  ModeVector force = ModeVector::Zero();
+  for (int i = 0; i < count_; ++i) {
+    const Seals& seals = seals_[static_cast<std::size_t>(i)];
+    if (seals.known == 0.0) continue;
+    double rate = 0.0;
+    for (int k = 0; k < count_; ++k) rate += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].v;
+    for (int k = 0; k < count_; ++k) force[k] -= modes_.shape(i, k) * seals.way(rate) * seals.known;
+  }
+  return force;
+}
+
+/// What a unit of each logarithm of stiffness adds to the oil's torques on the joints [N m].
+LogOil ModeIdentifier::oilTorques(const States& of) const noexcept {
+  LogOil torque = LogOil::Zero();
+  for (int i = 0; i < count_; ++i) {
+    for (int k = 0; k < count_; ++k) torque[i] += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].x;
+    torque[i] *= modes_.stiffness[i] * stiffness_ratio_[i];
+  }
+  return torque;
+}
+
+JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 + kParts * kMaxJoints, kMaxJoints>;
+  const int states = end() - kContact, kept = kModes - kContact;
+  Rows rows = Rows::Zero(states, count_);  // a mode's acceleration by the states from the rock's force on
+  States now;
+  for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
+  const LogOil torque = oilTorques(now);
+  for (int k = 0; k < count_; ++k) {
+    const Mode m = modeAt(k);
+    const ModeState s = stateOf(k);
+    const double damped = 2.0 * m.zeta * m.omega;
+    const int own = kept + kParts * k;
+    rows(0, k) = contact_[k];
+    rows(own + kX, k) = -m.omega * m.omega, rows(own + kV, k) = -damped, rows(own + kDamping, k) = -damped * s.v;
+    for (int i = 0; i < count_; ++i)
+      rows(kept + kParts * i + kOil, k) = -modes_.shape(i, k) * torque[i] - 0.5 * modes_.oil_share(i, k) * damped * s.v;
+  }
+  JointMatrix covariance(count_, count_);
+  for (int k = 0; k < count_; ++k) {
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
+    with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
+    for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
+    // What the mode's shape lacks.
+    const Mode m = modeAt(k);
+    const ModeState s = stateOf(k);
+    covariance(k, k) +=
+        square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) + square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
+  }
+  return covariance;
 }
 
 }  // namespace hammer_loads
