@@ -23,7 +23,7 @@ constexpr double kObserverGains[] = {30.0, 100.0, 300.0, 1000.0};
 /// filter. Empty where KDL has no observer.
 std::optional<OuterLoadErrors> kdlErrors(const simulation::Session& session, const Settings& settings, double gain,
                                          double from, double to);
-/// The pipeline's, with the same pressures and joints and, where it speaks, the hull's IMU, at each crank sample.
+/// The pipeline's, with the same pressures and joints and, where there is one, the hull's IMU, at each crank sample.
 OuterLoadErrors pipelineErrors(const simulation::Session& session, const Settings& settings, bool imu, double from,
                                double to);
 

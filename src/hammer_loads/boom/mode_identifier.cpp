@@ -66,7 +66,7 @@ void ModeIdentifier::setModes(const BoomModes& given, const LogOil& stiffer) noe
       T.col(k) = modalOf(given, jointsOf(modes_, unit));
     }
   }
-  if (count_ != given.count) history_ = ModeHistory();  // zero for modes that there are not
+  if (count_ != given.count) history_ = ModeHistory();  // unused modes are zero
   modes_ = given;
   count_ = given.count;
   history_.clear();

@@ -117,7 +117,7 @@ class ModeIdentifier {
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
   ModeState motion(int mode) const noexcept;  ///< as estimated
-  /// So long [s] after the present, or before it: some ms back exactly, with what readings have shown since.
+  /// This time [s] after the present, or before it: some ms back exactly, with what readings have shown since.
   ModeState motionAt(int mode, double ahead) const noexcept;
   JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
@@ -213,10 +213,10 @@ class ModeIdentifier {
   double least_damping_, most_damping_;  ///< logarithms over the given one
   bool learns_, keeps_oil_{};
   LogOil own_deviation_;
-  double known_for_{};  ///< so long every frequency has been known, until a delay is followed [s]
-  double lost_for_{};   ///< so long one has not been since then [s]
+  double known_for_{};  ///< time for which every frequency has been known, until a delay is followed [s]
+  double lost_for_{};   ///< time for which one has not been since then [s]
   bool explains_{true}, seeks_{};
-  double explained_for_{};    ///< so long readings have agreed with the oil that was found [s]
+  double explained_for_{};    ///< time for which readings have agreed with the oil that was found [s]
   double oil_surprise_{1.0};  ///< mean square of the oil torques' errors over what it should be [-]
   double surprise_{1.0};      ///< mean square of accelerations' errors over what it should be [-]
   BoomModes modes_;
@@ -226,7 +226,7 @@ class ModeIdentifier {
   ModeVector contact_ = ModeVector::Zero();           ///< modal force of the rock per newton
   bool bears_{};                                      ///< the rock bears on the hull
   std::array<std::optional<double>, 2> least_delay_;  ///< of each clock, as a free hull showed it [s]
-  double free_for_{};                                 ///< so long it has not, while pressures spoke [s]
+  double free_for_{};                                 ///< time for which it has not, while pressures came [s]
   CrankLead expected_lead_;
   double crank_lead_{};
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]

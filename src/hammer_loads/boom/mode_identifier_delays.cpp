@@ -8,11 +8,11 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kDelayBegins = 0.2;       // so long after the frequencies are known [s]
+constexpr double kDelayBegins = 0.2;       // after the frequencies are known [s]
 constexpr double kDelayWalk = 2e-5;        // of a delay in a second [s]: clocks drift by some 20 ppm
 constexpr double kOilWithDelay = 0.1;      // deviation of log stiffness, beside what was known without a delay
 constexpr double kDampingWithDelay = 0.5;  // likewise
-constexpr double kLost = 1.0;              // so long frequencies unknown while a delay is followed [s]
+constexpr double kLost = 1.0;              // time with unknown frequencies while a delay is followed [s]
 constexpr double kFreeFor = 1.0;           // [s]: its mean force has no longer memory
 constexpr double kImuSpeaks = 0.1;         // [s]
 constexpr double kWrongPart = 0.1;         // of a delay that is found

@@ -67,7 +67,8 @@ class SpeedTrust {
   double square_{};                                              ///< mean, of the residuals of the turn before
   Eigen::Matrix2d information_{Eigen::Matrix2d::Zero()};         ///< of lag and scale, by turns
   Eigen::Vector2d score_{Eigen::Vector2d::Zero()};
-  double scatter_{}, seen_turns_{};  ///< squares by which turns' own fits are off, over what they should; of so many
+  double scatter_{},
+      seen_turns_{};  ///< mean squares of the turns' own fits over those expected, summed; number of turns
   Eigen::Vector2d deviation_{Eigen::Vector2d::Zero()};
   double lag_{}, scale_{};
   bool begun_{}, lags_{}, out_of_scale_{}, are_good_{};

@@ -15,7 +15,7 @@ class SteadyClockFit {
   void begin(std::int64_t stamp) noexcept;
   /// The next sample's stamp [ns]; its instant on the line so far [ns].
   std::int64_t add(std::int64_t stamp) noexcept;
-  /// Samples were lost before the last one: it and the coming ones are so many intervals later.
+  /// Samples were lost before the last one: it and the coming ones are this number of intervals later.
   void skip(double intervals) noexcept { shift(intervals); }
   /// The last stamp is where it must be without a loss before it, though one would show.
   bool contradictsLoss() const noexcept;

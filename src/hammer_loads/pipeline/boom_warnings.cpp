@@ -51,8 +51,8 @@ bool isOff(const ModeIdentifier& identifier, Clock clock, double explained = 0.0
          identifier.delayDeviation(clock) < kKnown + kPart * std::abs(delay);
 }
 
-std::string earlyOrLate(double delay) {
-  return format("%.2g ms %s", 1e3 * std::abs(delay), delay > 0.0 ? "late" : "early");
+std::string laterOrEarlier(double delay) {
+  return format("%.2g ms %s", 1e3 * std::abs(delay), delay > 0.0 ? "later" : "earlier");
 }
 
 std::string dampingText(const Boom& boom, int mode) {
@@ -67,31 +67,32 @@ void warnOfDamping(const Boom& boom, int mode, std::vector<Warning>& warnings) {
   std::string text = "boom: its " + dampingText(boom, mode);
   if (isOff(identifier, Clock::kPressures) && !isOff(identifier, Clock::kPressures, lagOfDamping(boom, mode)))
     text += "; what damps it beside the oil makes cylinder_pressures seem " +
-            earlyOrLate(identifier.delay(Clock::kPressures)) + ", the loads allow for that";
+            laterOrEarlier(identifier.delay(Clock::kPressures)) + " than the crank, the loads allow for that";
   warnings.push_back({"boom damping", std::move(text), true});
 }
 
 void warnOfImuClock(const ModeIdentifier& identifier, std::vector<Warning>& warnings) {
   if (!isOff(identifier, Clock::kImu)) return;
-  warnings.push_back(
-      {"imu stamps",
-       "hull_imu: by those of the crank its stamps are some " + earlyOrLate(identifier.delay(Clock::kImu)) +
-           "; the boom's vibration allows for that, up to 4 ms, the hull's motion in the wrench does not",
-       true});
+  warnings.push_back({"imu stamps",
+                      "hull_imu: its stamps are about " + laterOrEarlier(identifier.delay(Clock::kImu)) +
+                          " than the crank's; the boom's vibration allows for that, up to 4 ms, the hull's motion in "
+                          "the wrench does not",
+                      true});
 }
 
 /// explained: by what damps the boom they seem late by this [s].
 void warnOfPressures(const ModeIdentifier& identifier, double explained, std::vector<Warning>& warnings) {
   const double surprise = identifier.oilSurprise();
   if (isOff(identifier, Clock::kPressures, explained)) {
-    warnings.push_back({"pressure stamps",
-                        "cylinder_pressures: by those of the crank their stamps are some " +
-                            earlyOrLate(identifier.delay(Clock::kPressures)) +
-                            ", or those of hull_imu the other way; the boom's loads allow for that, up to 2 ms",
-                        true});
+    warnings.push_back(
+        {"pressure stamps",
+         "cylinder_pressures: their stamps are about " + laterOrEarlier(identifier.delay(Clock::kPressures)) +
+             " than the crank's, or those of hull_imu the other way; the boom's loads allow for that, up "
+             "to 2 ms",
+         true});
   } else if (surprise > MeasuredTorques::kSurprised) {
     warnings.push_back({"pressure stamps",
-                        format("cylinder_pressures: the boom's motion does not make them, errors are %.2g times the "
+                        format("cylinder_pressures: they do not fit the boom's motion, errors are %.2g times the "
                                "expected variance, as where stamps lag (5 ms are a third of the vibration's torque) "
                                "or a hull bounces on rock between readings; deviations are widened",
                                surprise),
@@ -132,8 +133,8 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
 void warnOfTrust(const PressureTrust& trust, std::vector<Warning>& warnings) {
   if (trust.isLate()) {
     warnings.push_back({"pressure stamps",
-                        "cylinder_pressures: not used, by those of the crank their stamps are some " +
-                            earlyOrLate(trust.lateBy()) + ", more than can be allowed for",
+                        "cylinder_pressures: not used, their stamps are about " + laterOrEarlier(trust.lateBy()) +
+                            " than the crank's, more than can be allowed for",
                         true});
   } else if (trust.isLost()) {
     warnings.push_back({"pressures",

@@ -13,7 +13,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongest = 1e-3;           // [s] in which the lever counts as constant
-constexpr double kOver = 0.2;               // [s]: no rod rings so long
+constexpr double kOver = 0.2;               // [s]: no rod rings longer
 constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a measured restitution: 0.03 to 0.08,
                                             // with worn pins to 0.14; guarded by RodRing.RestitutionIsCovered
 constexpr double kBallistic = 1e-2;         // [rad]: below, the spring does nothing within a part

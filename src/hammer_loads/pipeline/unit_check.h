@@ -66,7 +66,7 @@ class UnitCheck {
   CrankUnit recognised_{CrankUnit::kRadians};
 };
 
-/// A pitch joint beyond a whole turn [rad]: a boom that speaks in degrees, for it cannot reach there.
+/// A pitch joint beyond a whole turn [rad]: a boom in degrees, for it cannot reach there.
 constexpr bool jointLooksLikeDegrees(double angle) noexcept { return angle > kTwoPi || angle < -kTwoPi; }
 
 }  // namespace hammer_loads

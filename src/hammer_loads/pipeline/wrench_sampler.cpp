@@ -61,7 +61,7 @@ bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
   stamp = sample;
   if (rate_ > 0.0) {
     const double after = static_cast<double>(index_) * 1e9 / rate_;  // [ns]
-    if (!(after <= static_cast<double>(kLastStamp))) return false;   // nor can it be told as a stamp
+    if (!(after <= static_cast<double>(kLastStamp))) return false;   // no stamp can hold it
     stamp = origin_ + static_cast<StampNs>(std::llround(after));
   }
   return stamp <= sample;

@@ -18,7 +18,7 @@ def figure_of(value, by_absolute, by_relative, deviation):
 
 
 def equivalent_range(cycles, slope, equivalent_cycles, deviation=None):
-    """Range that does the same damage in so many cycles; 0 without cycles. deviation: as for figure_of()."""
+    """Range that does the same damage in this number of cycles; 0 without cycles. deviation: as for figure_of()."""
     largest = max((r for r, _, _ in cycles), default=0.0)
     if largest == 0.0:
         return 0.0, None if deviation is None else 0.0

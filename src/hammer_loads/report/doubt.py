@@ -3,7 +3,7 @@
 CRANK = "crank"    # everything that comes from the crank's estimate
 BOOM = "boom"      # joints, cylinders, sections, stresses
 COUNTS = "counts"  # how much was seen at all
-SENSOR = "sensor"  # the sensor's own figures are what the warning speaks of
+SENSOR = "sensor"  # the warning is about the sensor's own figures
 ALL = {CRANK, BOOM}
 
 # A key that is not here puts everything measured in doubt.

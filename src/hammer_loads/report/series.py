@@ -2,7 +2,7 @@
 import math
 
 PAUSE_TURNS = 4.0  # times the usual step: there was no work between two points
-PAUSE_S = 2.0      # and at least so long: a slow turn is no pause
+PAUSE_S = 2.0      # at least: a slow turn is no pause
 
 
 class Segments:

@@ -31,7 +31,7 @@ constexpr std::array<std::pair<const char*, std::optional<Level>>, 5> kLevelChoi
                                                                                      {"linkage", Level::kLinkage},
                                                                                      {"elastic", Level::kElastic},
                                                                                      {"auto", std::nullopt}}};
-/// Of rigid links, which a machine without a rod's spring is told by.
+/// Of rigid links: they tell a machine without a rod's spring.
 constexpr std::array<std::pair<const char*, Level>, 3> kRigidLevelNames{
     {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
 constexpr const char* nameOf(Level level) noexcept {

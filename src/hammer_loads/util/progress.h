@@ -5,7 +5,7 @@
 
 namespace hammer_loads {
 
-/// Takes the part done, in [0, 1]; empty: nobody wants to know.
+/// Takes the part done, in [0, 1]; empty: no progress is shown.
 using Progress = std::function<void(double)>;
 
 /// Of a piece of the work that takes it from one part to another.
