@@ -71,6 +71,33 @@ TEST(SpeedTrust, FindsAScaleApartFromALag) {
   EXPECT_NEAR(trust.lag(), 4e-3, 1e-4);
 }
 
+TEST(SpeedTrust, AnEvenSpeedWithoutNoiseSaysNothing) {
+  for (const double wrong : {0.0, 1e-3}) {
+    SpeedTrust trust;
+    for (int i = 1; i < 8000; ++i) {
+      trust.follow(1e-3, {30.0 + wrong, 30.0, 0.0, 0.0, 0.0, 0.0});
+      if (i % 200 == 0) trust.endTurn();
+    }
+    EXPECT_TRUE(trust.isTrusted());
+    EXPECT_EQ(trust.lag(), 0.0);
+    EXPECT_NEAR(trust.scale(), wrong / 30.0, 1e-5);
+    EXPECT_GT(trust.lagDeviation(), 1e-3);
+    // A hundredth of the expected noise a sample, whatever is left of it.
+    EXPECT_GT(trust.scaleDeviation(), 0.01 / 30.0 / std::sqrt(8000.0));
+  }
+}
+
+TEST(SpeedTrust, WhatIsNoNumberIsLeftOut) {
+  SpeedTrust trust;
+  for (int i = 1; i < 8000; ++i) {
+    const double t = 1e-3 * i, speed = SwingingCrank::speed(t);
+    trust.follow(1e-3, {i % 100 == 0 ? NAN : speed + 0.1 * std::sin(7e3 * t), speed, SwingingCrank::acceleration(t)});
+    if (i % 200 == 0) trust.endTurn();
+  }
+  EXPECT_TRUE(trust.areGood());
+  EXPECT_NEAR(trust.lag(), 0.0, 1e-4);
+}
+
 /// An estimate that takes up half of what a late speed says, and knows what its lag makes of it.
 TEST(SpeedTrust, AnEstimateThatTookSpeedsUpJudgesThem) {
   constexpr double kLag = 2e-3, kTaken = 0.5;

@@ -10,14 +10,16 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSpeedTurns = 30.0;    // of lag and scale: some 6 s at work
+constexpr double kSpeedTurns = 30.0;  // of lag and scale: some 6 s at work
 constexpr double kMostLag = 0.1;      // [s]: more is no filter of a drive that is controlled by it
 constexpr double kMostScale = 0.5;
 constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
 constexpr double kNotableScale = 0.01;  // likewise
 constexpr double kReleased = 0.5;       // of these and of the deviations: where what was seen is given up
+constexpr double kLeastSquare = 1e-4;   // of a residual, over that expected: no reading is a hundred times better
 constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
 constexpr double kMostOfOne = 0.999;    // of a correlation
+// Guard: SpeedTrust.AnEvenSpeedWithoutNoiseSaysNothing of kLeastSquare
 // Guard: SpeedTrust.FindsTheLagOfAFilterWithItsDeviation of kSpeedTurns, kNotableLag, kMostLag
 // Guard: SpeedTrust.FindsAScaleApartFromALag of kNotableScale, kMostScale
 
@@ -51,6 +53,7 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
   const double whole = 1.0 + scale_;
   Row row{now.measured - whole * filtered, -whole * (by_lag_ + now.by_lag), filtered - whole * now.by_scale};
   row /= size;
+  if (!row.allFinite()) return restart();
   if (const double most = gate::kImpossible * std::sqrt(square_); most > 0.0) row[0] = std::clamp(row[0], -most, most);
   if (continues) {
     same_.noalias() += row * row.transpose();
@@ -70,7 +73,8 @@ void SpeedTrust::endTurn() noexcept {
   const Eigen::Vector2d by_turn = same_.bottomLeftCorner<2, 1>();
   Row best;
   best << 1.0, -((prior + of_turn).inverse() * by_turn);
-  const double sum = best.dot(same_ * best), rho = std::clamp(best.dot(next_ * best) / sum, 0.0, kMostOfOne);
+  const double sum = std::max(best.dot(same_ * best), kLeastSquare * count_);
+  const double rho = std::clamp(best.dot(next_ * best) / sum, 0.0, kMostOfOne);
   const double counts = (1.0 - rho) / (1.0 + rho) * (count_ - kFitted) / sum;  // of a row, over one of unit variance
   square_ = same_(0, 0) / count_;
   constexpr double kKept = 1.0 - 1.0 / kSpeedTurns;
