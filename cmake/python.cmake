@@ -7,6 +7,7 @@ if(PYTHON_EXECUTABLE AND NOT Python3_EXECUTABLE)
   set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})  # catkin's
 endif()
 find_package(Python3 QUIET COMPONENTS Interpreter ${development})
+set(Python_FOUND FALSE)  # another package's interpreter without headers, as catkin's of Debian 13; pybind11 would take it
 find_package(pybind11 2.6 QUIET)
 if(NOT Python3_FOUND OR NOT pybind11_FOUND)
   message(WARNING "Python: hammer_loads_py is not built: found ${Python3_EXECUTABLE}, but not both its headers (Debian: "
