@@ -5,7 +5,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 PLACES = (HERE.parent / "build" / "devel" / "lib" / "hammer_loads", HERE.parent / "devel" / "lib" / "hammer_loads",
-          HERE.parents[2] / "lib" / "hammer_loads")
+          HERE.parent.parent.parent / "lib" / "hammer_loads")
 for home in (HERE.parent / "src" / "hammer_loads", HERE.parent):  # in the source, installed
     if (home / "report").is_dir():
         sys.path.insert(0, str(home))

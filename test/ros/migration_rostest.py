@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """Bags of older message definitions: process_bag names them, rosbag fix makes them readable."""
+import inspect
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import genpy.dynamic
 import rosbag
+import rosbag.migration
 import roslib.packages
 import rospkg
 import rospy
@@ -25,6 +28,8 @@ KINDS = {kind._type.split('/')[1]: kind for kind in (
     Blow, BoomVibration, HullLoads, JointLoads, JointReactions, LoadCycles, Pulse, SectionLoads, TurnLoads)}
 OLD = {'first': ('Blow', 'BoomVibration', 'HullLoads', 'JointLoads'), 'second': ('Blow', 'HullLoads'),
        'third': tuple(sorted(set(KINDS) - {'BoomVibration'}))}
+# rosbag builds its rules with exec() and looks for them in locals(), which Python 3.13 does not fill any more (PEP 667).
+ROSBAG_FIXES = sys.version_info < (3, 13) or 'return locals()[name]' not in inspect.getsource(rosbag.migration)
 RULE = '=' * 80
 PARTS = (RULE + '\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n' +
          RULE + '\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n' +
@@ -102,6 +107,8 @@ class Migration(unittest.TestCase):
 
     def fix(self):
         """Messages of the new bag by version and name."""
+        if not ROSBAG_FIXES:
+            self.skipTest('this rosbag cannot fix bags')
         code, text = self.run_command('rosbag', 'fix', '-n', self.old, self.path('new.bag'), RULES)
         self.assertEqual(code, 0, text)
         found = {}

@@ -19,7 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 def package_version():
     """From package.xml: three levels up in the source, one up where it is installed."""
-    for directory in (HERE.parent, HERE.parents[2]):
+    for directory in (HERE.parent, HERE.parent.parent.parent):
         path = directory / "package.xml"
         if path.is_file():
             return ElementTree.parse(path).getroot().findtext("version")

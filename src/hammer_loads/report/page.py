@@ -22,7 +22,7 @@ from report.turn_pictures import turn_pictures
 
 HERE = pathlib.Path(__file__).resolve().parent
 # Beside this folder where it is installed, else at the top of the source.
-DYGRAPHS = next((place for place in (up / "third_party" / "dygraphs" for up in (HERE.parent, HERE.parents[2]))
+DYGRAPHS = next((place for place in (up / "third_party" / "dygraphs" for up in (HERE.parent, HERE.parent.parent.parent))
                  if place.is_dir()), HERE.parent / "third_party" / "dygraphs")
 GENERATOR = '<meta name="generator" content="hammer_loads report">'
 MOST_IN_FULL = 4  # machines; beyond, the page compares them and no more
