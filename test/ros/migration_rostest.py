@@ -169,6 +169,8 @@ class Migration(unittest.TestCase):
         self.assertEqual(len(warning), 1, text)
         for version, name in self.messages:
             self.assertIn('/%s/%s (hammer_loads/%s)' % (version, name, name), warning[0])
+        if not ROSBAG_FIXES:
+            self.skipTest('this rosbag cannot fix bags')
         # The command that it names is the one that helps.
         fix = warning[0].split('`')[1].replace('NEW.bag', self.path('new.bag'))
         code, text = self.run_command(*fix.split())
