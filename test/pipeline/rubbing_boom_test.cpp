@@ -36,7 +36,8 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
   }
 }
 
-/// What rubs is in the boom's damping and not in its pressures, which seem up to 1.1 ms late by it.
+/// What rubs is in the boom's damping and not in its pressures, which seem up to 1.1 ms late by it. Torques that are up
+/// to 24 % off say so: the usual deviation of 3 % is not that of seals of 8 %, the damping found is.
 TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
   for (const double friction : {0.0, 0.03, 0.05, 0.08}) {
     const simulation::Session session = rubbingSession(friction);
@@ -44,6 +45,7 @@ TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
       const BoomErrors e = errorsOf("seals", session, "boom_stiffness: identified\n", {imu, true});
       EXPECT_FALSE(e.warned_of_pressure_stamps || e.warned_of_imu_stamps || e.warned_of_rock) << friction << imu;
       EXPECT_EQ(e.warned_of_damping, friction == 0.08 && imu) << friction << imu;
+      EXPECT_GT(e.covered(), 0.85) << friction << imu;
     }
   }
 }

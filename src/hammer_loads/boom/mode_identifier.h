@@ -116,6 +116,9 @@ class ModeIdentifier {
   /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
+  /// What damps a cylinder's joint beyond the damping given: no oil does, so that its pressures do not show it; root
+  /// mean square over a swing [N m].
+  double dampingBesideOil(std::size_t cylinder) const noexcept;
   ModeState motion(int mode) const noexcept;  ///< as estimated
   /// This time [s] after the present, or before it: some ms back exactly, with what readings have shown since.
   ModeState motionAt(int mode, double ahead) const noexcept;

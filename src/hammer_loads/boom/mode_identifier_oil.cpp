@@ -79,6 +79,18 @@ void ModeIdentifier::useOil() noexcept {
   for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }
 
+double ModeIdentifier::dampingBesideOil(std::size_t cylinder) const noexcept {
+  double squares = 0.0;
+  for (int k = 0; k < count_; ++k) {
+    const Mode mode = modeAt(k);
+    const ModeState now = stateOf(k);
+    const double by_rate =
+        modes_.inertia(modes_.joint[cylinder], k) * 2.0 * std::max(0.0, mode.zeta - damping_ratio_) * mode.omega;
+    squares += 0.5 * square(by_rate) * (square(now.v) + square(mode.omega * now.x));
+  }
+  return std::sqrt(squares);
+}
+
 /// Modal, against the joints' motion.
 ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
   ModeVector force = ModeVector::Zero();

@@ -115,8 +115,10 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const CylinderParameters& p = cylinder.parameters();
     const Rubbing seals = rubbing(sealsOf(cylinder, at.arm, value, motion[j]), boom.vibration().velocity()[j]);
     const double offset = square(at.arm * cylinder.boreArea() * p.pressure_offset_deviation);
-    torque_[i] = Torque{value + seals.torque, off, std::sqrt(square(seals.deviation) + offset),
-                        std::sqrt(square(seals.lasting) + offset), at};
+    torque_[i] = Torque{
+        value + seals.torque, off,
+        std::sqrt(square(seals.deviation) + offset + (identifier ? square(identifier->dampingBesideOil(i)) : 0.0)),
+        std::sqrt(square(seals.lasting) + offset), at};
   }
   model_ = model, sample_ = sample;
 }
