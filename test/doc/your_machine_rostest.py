@@ -227,8 +227,10 @@ class YourMachine(unittest.TestCase):
 
     def test_console_has_no_warning_after_the_calibration(self):
         before, after = (console.read_text() for console in self.stranger.consoles)
-        self.assertIn("[ WARN]", before)
-        self.assertNotIn("[ WARN]", after)  # class_loader of Debian 13 has one of its own at each end of a bag's writer
+        # class_loader of Debian 13 has a warning of its own at each end of a bag's writer.
+        after = "\n".join(line for line in after.splitlines() if "class_loader.ClassLoader: SEVERE WARNING" not in line)
+        self.assertIn("WARN", before)
+        self.assertNotIn("WARN", after)
         self.assertNotIn("ERROR", after)
 
     def test_the_log_gives_the_loads_again(self):

@@ -1,6 +1,7 @@
 /// Cost table: what KDL's momentum observer makes of the same readings.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 

@@ -163,13 +163,13 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
 void ModeIdentifier::advanceModes(double step, const TorqueStep& modal) noexcept {
   history_.begin(step);
   std::array<ModeStep, kMaxJoints> steps;
-  States now, then;
-  for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
-  rubbed_ = forceOfSeals(now);
+  const States now = statesNow();
+  States then;
+  const ModeVector rubbed = forceOfSeals(now);
   for (int k = 0; k < count_; ++k) {
     const auto mode = static_cast<std::size_t>(k);
     const ModeStep& its = steps[mode] = stepOf(modeAt(k), step);
-    const double beside = rockOn(k) * state_[kContact] + rubbed_[k];
+    const double beside = rockOn(k) * state_[kContact] + rubbed[k];
     const ModeState& before = now[mode];
     ModeState& next = then[mode] = advanced(its, before, pathOf({modal.from[k], modal.to[k], modal.mean[k]}, step));
     next.x += its.r.step * beside, next.v += its.r.impulse * beside;

@@ -165,6 +165,7 @@ class ModeIdentifier {
   }
   double accelerationNow(int mode) const noexcept;
   using States = std::array<ModeState, kMaxJoints>;
+  States statesNow() const noexcept;
   LogOil oilTorques(const States& of) const noexcept;
   ModeVector forceOfSeals(const States& of) const noexcept;
   double logFrequency(int mode) const noexcept;
@@ -237,7 +238,6 @@ class ModeIdentifier {
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
   std::array<Seals, kMaxJoints> seals_;
-  ModeVector rubbed_ = ModeVector::Zero();  ///< modal force of the seals over the last step
   /// Modal, at the present time; and by the second.
   ModeVector force_ = ModeVector::Zero(), force_rate_ = force_;
   std::array<double, kMaxJoints> force_power_{};  ///< mean square of each modal force, over some seconds

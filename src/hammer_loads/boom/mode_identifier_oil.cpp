@@ -91,6 +91,12 @@ double ModeIdentifier::dampingBesideOil(std::size_t cylinder) const noexcept {
   return std::sqrt(squares);
 }
 
+ModeIdentifier::States ModeIdentifier::statesNow() const noexcept {
+  States now;
+  for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
+  return now;
+}
+
 /// Modal, against the joints' motion.
 ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
   ModeVector force = ModeVector::Zero();
@@ -99,7 +105,8 @@ ModeVector ModeIdentifier::forceOfSeals(const States& of) const noexcept {
     if (seals.known == 0.0) continue;
     double rate = 0.0;
     for (int k = 0; k < count_; ++k) rate += modes_.shape(i, k) * of[static_cast<std::size_t>(k)].v;
-    for (int k = 0; k < count_; ++k) force[k] -= modes_.shape(i, k) * seals.way(rate) * seals.known;
+    const double torque = seals.way(rate) * seals.known;
+    for (int k = 0; k < count_; ++k) force[k] -= modes_.shape(i, k) * torque;
   }
   return force;
 }
@@ -118,9 +125,7 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 + kParts * kMaxJoints, kMaxJoints>;
   const int states = end() - kContact, kept = kModes - kContact;
   Rows rows = Rows::Zero(states, count_);  // a mode's acceleration by the states from the rock's force on
-  States now;
-  for (int k = 0; k < count_; ++k) now[static_cast<std::size_t>(k)] = stateOf(k);
-  const LogOil torque = oilTorques(now);
+  const LogOil torque = oilTorques(statesNow());
   for (int k = 0; k < count_; ++k) {
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);

@@ -33,7 +33,8 @@ void ModeIdentifier::useChannel(const VibrationReading& reading) noexcept {
 
 /// By the hammer, seals and, where it is followed, the rock.
 double ModeIdentifier::accelerationNow(int mode) const noexcept {
-  return acceleration(modeAt(mode), stateOf(mode), force_[mode] + rubbed_[mode] + rockOn(mode) * state_[kContact]);
+  return acceleration(modeAt(mode), stateOf(mode),
+                      force_[mode] + forceOfSeals(statesNow())[mode] + rockOn(mode) * state_[kContact]);
 }
 
 /// By a short line back: some 1e-4 of it for 0.5 ms of the fastest mode.

@@ -11,7 +11,6 @@ namespace hammer_loads {
 /// Coulomb friction against the rod's motion, as a torque on the joint: the joint's load is that of the oil and
 /// way() times this torque. Of it a part is known, and a part only by its standard deviation.
 struct Seals {
-  int joint{};
   double known{}, deviation{};  ///< standard [N m]
   double driven{};              ///< rate of the joint beside its vibration [rad/s]
   double slow{1.0};             ///< that rate up to which they may rub either way [rad/s]
@@ -30,7 +29,7 @@ inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, do
   constexpr double kSlowRod = 0.002;
   const CylinderParameters& p = cylinder.parameters();
   const double size = std::abs(arm), force = std::abs(oil_torque / arm);
-  return {cylinder.joint(), size * (p.friction_force + p.friction * force),
+  return {size * (p.friction_force + p.friction * force),
           size * std::sqrt(square(p.friction_force_deviation) + square(p.friction_deviation * force)), driven,
           kSlowRod / size};
 }

@@ -56,12 +56,13 @@ class Vibration {
   void expectCrankLead(const CrankLead& lead) noexcept {
     if (identifier_) identifier_->expectCrankLead(lead);
   }
-  /// A sensor's readings at the end of the last step, see ModeIdentifier; nothing without identify() or
-  /// followContact().
-  void observe(const VibrationReading* readings, std::size_t count) noexcept;
+  /// See ModeIdentifier; nothing where it is not used.
   void setSeals(std::size_t cylinder, const Seals& seals) noexcept {
     if (identifier_) identifier_->setSeals(cylinder, seals);
   }
+  /// A sensor's readings at the end of the last step, see ModeIdentifier; nothing without identify() or
+  /// followContact().
+  void observe(const VibrationReading* readings, std::size_t count) noexcept;
   void observe(int channel, VibrationReading reading) noexcept {
     reading.channel = channel;
     observe(&reading, 1);

@@ -71,8 +71,8 @@ void SpeedTrust::endTurn() noexcept {
   const Eigen::Matrix2d prior = Eigen::Vector2d(1.0 / square(kLag), 1.0 / square(kScale)).asDiagonal();
   const Eigen::Matrix2d of_turn = same_.bottomRightCorner<2, 2>();
   const Eigen::Vector2d by_turn = same_.bottomLeftCorner<2, 1>();
-  Row best;
-  best << 1.0, -((prior + of_turn).inverse() * by_turn);
+  const Eigen::Vector2d fit = (prior + of_turn).inverse() * by_turn;
+  const Row best(1.0, -fit[0], -fit[1]);
   const double sum = std::max(best.dot(same_ * best), kLeastSquare * count_);
   const double rho = std::clamp(best.dot(next_ * best) / sum, 0.0, kMostOfOne);
   const double counts = (1.0 - rho) / (1.0 + rho) * (count_ - kFitted) / sum;  // of a row, over one of unit variance
@@ -80,7 +80,7 @@ void SpeedTrust::endTurn() noexcept {
   constexpr double kKept = 1.0 - 1.0 / kSpeedTurns;
   information_ = kKept * information_ + counts * of_turn;
   score_ = kKept * score_ + counts * by_turn;
-  scatter_ = kKept * scatter_ + counts * by_turn.dot((prior + of_turn).inverse() * by_turn);
+  scatter_ = kKept * scatter_ + counts * by_turn.dot(fit);
   seen_turns_ = kKept * seen_turns_ + 1.0;
   same_.setZero(), next_.setZero(), count_ = 0;
   if (seen_turns_ < kLeastTurns) return;

@@ -28,8 +28,8 @@ struct WeighedSample {
   double angle_variance{};      ///< of count and noise [rad2]
   double timing_variance{};     ///< of the stamp [s2]
   double speed_variance{};      ///< of the speed's noise [rad2/s2]
-  std::optional<ConstantErrors::Row>
-      of_speed{};  ///< variances of constants that a speed is weighed by; none: are right
+  /// Variances of the constants that a speed is weighed by; none: they count as right.
+  std::optional<ConstantErrors::Row> of_speed{};
 
   /// Variance of the angle about that at the stamp [rad2].
   double angleVariance(double speed_there) const noexcept {

@@ -180,20 +180,16 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
   if (follower.runaways() > 0)
     warnings.push_back(
         {"boom vibration",
-         format("boom: its vibration grew beyond all that the hammer, operator and rock can do and began anew, %llu "
-                "times; its loads are withheld after that: masses of the description, mode_refresh_angle_rad, the "
-                "boom file or sensors are wrong",
-                static_cast<unsigned long long>(follower.runaways())),
+         "boom: its vibration grew beyond all that the hammer, operator and rock can do and began anew, " +
+             std::to_string(follower.runaways()) +
+             " times; its loads are withheld after that: masses of the description, mode_refresh_angle_rad, the boom "
+             "file or sensors are wrong",
          runs_away});
   if (!fault || runs_away) return;
-  std::string complaints;
-  for (const std::string& one : follower.joints().complaints(boom->stamp))
-    complaints += (complaints.empty() ? "" : ", ") + one;
-  warnings.push_back(
-      {"boom joints",
-       format("boom joints: no loads for %llu samples: ", static_cast<unsigned long long>(follower.faults())) +
-           complaints,
-       true});
+  warnings.push_back({"boom joints",
+                      "boom joints: no loads for " + std::to_string(follower.faults()) +
+                          " samples: " + joined(follower.joints().complaints(boom->stamp)),
+                      true});
 }
 
 }  // namespace hammer_loads

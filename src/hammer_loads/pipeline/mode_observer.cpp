@@ -85,11 +85,12 @@ void ModeObserver::pressures(Boom& boom, const HeldPose& held, StampNs sample,
     const double ahead = seconds(stamp - sample);
     if (count > 0 && ahead != seen[0].ahead) take();
     VibrationReading& reading = seen[count++];
-    reading = oilTorqueReading(j, -forceOf(cylinder, *p) * at.arm - boom.steadyTorque(j));
+    const double by_oil = forceOf(cylinder, *p) * at.arm;
+    reading = oilTorqueReading(j, -by_oil - boom.steadyTorque(j));
     reading.channel = kImuChannels + static_cast<int>(cylinders + i);
     reading.ahead = ahead;
     reading.clock = Clock::kPressures;
-    boom.vibration().setSeals(i, sealsOf(cylinder, at.arm, forceOf(cylinder, *p) * at.arm, held.motion().velocity[j]));
+    boom.vibration().setSeals(i, sealsOf(cylinder, at.arm, by_oil, held.motion().velocity[j]));
     setDoubt(kTorque, cylinder.greatestPush() * std::abs(at.arm), reading);
   }
   take();

@@ -31,7 +31,7 @@ constexpr std::array<std::pair<const char*, std::optional<Level>>, 5> kLevelChoi
                                                                                      {"linkage", Level::kLinkage},
                                                                                      {"elastic", Level::kElastic},
                                                                                      {"auto", std::nullopt}}};
-/// Of rigid links: they tell a machine without a rod's spring.
+/// Of rigid links, for a machine without a rod's spring.
 constexpr std::array<std::pair<const char*, Level>, 3> kRigidLevelNames{
     {{"pulse", Level::kPulse}, {"rocker", Level::kRocker}, {"linkage", Level::kLinkage}}};
 constexpr const char* nameOf(Level level) noexcept {
