@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "hammer_loads/crank/crank_dynamics.h"
+#include "hammer_loads/crank/near_columns.h"
 
 namespace hammer_loads {
 
@@ -15,17 +15,19 @@ class ColumnStep {
  public:
   using Columns = Eigen::Matrix<double, 1, kMachineColumns>;
 
-  /// Before the step. inertia: Jc, or that of the crank's side of a coupling [kg m2].
-  ColumnStep(const ShaftModel& model, const ShaftState& from, double inertia, const ShaftLoad& load) noexcept
-      : start_(model.columns(from.position.angle)),
+  /// Before the step. near: moves with it; inertia: Jc, or that of the crank's side of a coupling [kg m2].
+  ColumnStep(const ShaftModel& model, const ShaftState& from, double inertia, const ShaftLoad& load,
+             NearColumns& near) noexcept
+      : near_(near),
+        start_(near.moveTo(model, from.position.angle)),
         offset_(from.position.angle.offset),
         m_(inertia + load.inertia),
         weight_(load.weight_torque) {}
   /// What they are of the speed [rad/s] at its end. torque: on the crank beside its links [N m]; struck: it passed a
   /// blow.
   Columns ofSpeed(const ShaftModel& model, const ShaftState& to, double inertia, const ShaftLoad& load, double torque,
-                  double dt, bool struck) const noexcept {
-    const MachineColumns::OnShaft end = model.columns(to.position.angle);
+                  double dt, bool struck) noexcept {
+    const MachineColumns::OnShaft& end = near_.moveTo(model, to.position.angle);
     const double m = inertia + load.inertia;
     Columns relative = start_.row(0) / m_ - end.row(0) / m;  // of h kept
     double begin = 0.5;                                      // part of the step
@@ -44,6 +46,7 @@ class ColumnStep {
     return (at.row(2) - (torque / m) * at.row(0)) / m;
   }
 
+  NearColumns& near_;
   MachineColumns::OnShaft start_;
   double offset_, m_, weight_;  ///< at the step's start: angle [rad], M [kg m2], the links' weight on the crank [N m]
 };

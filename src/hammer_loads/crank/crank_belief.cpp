@@ -74,7 +74,7 @@ int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const
     const double torque_before = state.torque;
     const CrankPosition from = state.position;
     std::optional<ColumnStep> columns;
-    if (!model.isExact()) columns.emplace(model, state, state.drive_inertia, load);
+    if (!model.isExact()) columns.emplace(model, state, state.drive_inertia, load, near);
     state.torque -= 0.5 * supply.stiffness * supply.lead(state.speed * h, h);  // mean of the step
     const Advance step = advance(model, h, {prior.mean, contact}, state, load);
     const double lead = supply.lead(difference(state.position, from), h);
@@ -171,12 +171,13 @@ bool CrankBelief::isSound(double most_speed) const noexcept {
          Base::isSound() && (!motor || isSoundFlexible(most_speed, *this));
 }
 
-void addAcceleration(const ShaftModel& model, const ShaftState& state, double acceleration, double inverse_inertia,
+void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double acceleration, double inverse_inertia,
                      CrankUncertainty& result) noexcept {
   if (model.isExact()) return;
-  const MachineColumns::OnShaft on_shaft = model.columns(state.position.angle);
+  const MachineColumns::OnShaft on_shaft = belief.near.near(model, belief.state.position.angle);
   result.by_constant.row(CrankUncertainty::kAcceleration).tail<kMachineColumns>() +=
-      inverse_inertia * (on_shaft.row(2) - square(state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));
+      inverse_inertia *
+      (on_shaft.row(2) - square(belief.state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));
 }
 
 /// Linear in the state's deviation; the acceleration's derivative by the angle by a difference.
@@ -200,7 +201,7 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
   result.by_constant << belief.by_constant.topRows<2>(), by.lazyProduct(belief.by_constant.topRows<4>()),
       belief.by_constant.row(CrankBelief::kInertia);
   result.by_constant = ConstantErrors::columns(result.by_constant, root);
-  addAcceleration(model, state, here, inv, result);
+  addAcceleration(model, belief, here, inv, result);
   result.inertia = std::sqrt(growth * P(CrankBelief::kInertia, CrankBelief::kInertia));
   return result;
 }

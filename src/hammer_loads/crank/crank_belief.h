@@ -8,6 +8,7 @@
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/motor_side.h"
+#include "hammer_loads/crank/near_columns.h"
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/estimation/gaussian_belief.h"
 
@@ -44,6 +45,7 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   double most_inertia{};           ///< as above
   bool tool_met{};                 ///< before the dead centre: nothing strikes there any more
   bool struck_early{};             ///< the last blow's factor acted before the dead centre
+  NearColumns near;                ///< of the hammer, where the state was last predicted
   std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
@@ -113,7 +115,7 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
                                    double growth, const ConstantErrors::Matrix& root, double torque_part) noexcept;
 
 /// Derivatives by the hammer's constants of the acceleration [rad/s2] at the state itself.
-void addAcceleration(const ShaftModel& model, const ShaftState& state, double acceleration, double inverse_inertia,
+void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double acceleration, double inverse_inertia,
                      CrankUncertainty& result) noexcept;
 
 }  // namespace hammer_loads

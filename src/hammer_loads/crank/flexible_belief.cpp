@@ -41,7 +41,7 @@ void apply(const FlexibleMatrix& f, Joint& all) noexcept {
 }
 
 /// On the crank acts the coupling's moment.
-void endColumns(const ShaftModel& model, const ShaftState& to, double h, bool struck, const ColumnStep& columns,
+void endColumns(const ShaftModel& model, const ShaftState& to, double h, bool struck, ColumnStep& columns,
                 Joint& all) noexcept {
   const CouplingLaw law = lawOf(*model.coupling(), to);
   const ShaftLoad load = model(to.position.angle);
@@ -130,7 +130,8 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
     const BlowPrior prior = b.priorOf(drawn);
     std::optional<ColumnStep> columns;
     if (!model.isExact())
-      columns.emplace(model, b.state, lawOf(*model.coupling(), b.state).crank_inertia, model(b.state.position.angle));
+      columns.emplace(model, b.state, lawOf(*model.coupling(), b.state).crank_inertia, model(b.state.position.angle),
+                      b.near);
     FlexibleMatrix f = FlexibleMatrix::Identity();
     const bool struck = advanceFlexible(model, h, {prior.mean, contact}, b.state, &f) > 0;
     if (struck) {
@@ -215,7 +216,7 @@ CrankUncertainty flexibleUncertainty(const ShaftModel& model, const Belief& b, d
   result.by_constant = ConstantErrors::columns(result.by_constant, root);
   const ShaftLoad load = model(b.state.position.angle);
   const double inv = 1.0 / (lawOf(*model.coupling(), b.state).crank_inertia + load.inertia);
-  addAcceleration(model, b.state, acceleration(model, load, b.state), inv, result);
+  addAcceleration(model, b, acceleration(model, load, b.state), inv, result);
   jacobian.row(2) = (slopes.others + torque_part * slopes.by_moment).head<kFlexibleVariables>();
   result.own = growth * jacobian.topRows<3>() * all.covariance * jacobian.topRows<3>().transpose();
   result.inertia = std::sqrt(growth * all.covariance(Belief::kInertia, Belief::kInertia));

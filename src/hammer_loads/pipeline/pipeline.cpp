@@ -127,7 +127,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
   if (taken == CrankFollower::Taken::kContinued) {
     passBlows();
     followHull();
-    rod_.follow(crank_.step(), crank_.tracker().blowFactor());
+    rod_.follow(crank_.step(), crank_.tracker());
     rod_.take(crank_.tracker().filter());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
     if (counts) turn_.follow(hull_.motion().motion, result_);

@@ -100,12 +100,12 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   }
 }
 
-void RodRing::follow(const CrankStep& step, const BlowFactor& blow) noexcept {
+void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcept {
   if (!gives_) return;
   double from = 0.0;
   for (const CrankStep::Passage& passage : step) {
     if (!passage.strikes) continue;
-    strike(passage, blow);
+    strike(passage, tracker.blowFactor());
     from = passage.time;
   }
   move(step, from, step.length());

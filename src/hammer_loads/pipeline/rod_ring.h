@@ -31,8 +31,8 @@ class RodRing {
 
   /// Nothing rings.
   void rest() noexcept { rings_ = false; }
-  /// Over the step to the crank's last sample. blow: of the passage that the step has, if it has one.
-  void follow(const CrankStep& step, const BlowFactor& blow) noexcept;
+  /// Over the step to the crank's last sample; the tracker has followed it.
+  void follow(const CrankStep& step, const CrankTracker& tracker) noexcept;
   /// The filter that has followed the readings, if any: they may show that no rod rings.
   void take(const CrankFilter* filter) noexcept;
   /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
