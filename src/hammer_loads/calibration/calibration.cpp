@@ -9,6 +9,7 @@
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -182,10 +183,13 @@ double secondsOf(const CrankTrack& track) {
   return seconds;
 }
 
+/// More blows lessen their own part of a deviation alone.
 void countNeeds(Calibration& result) {
   double most = 1.0;
   for (const Estimate& e : result.estimates) {
-    if (!e.determined() && e.limit > 0.0) most = std::max(most, std::pow(e.deviation / e.limit, 2));
+    if (e.determined() || !(e.limit > 0.0)) continue;
+    const double by_blows = square(e.by_blows), left = square(e.limit) - (square(e.deviation) - by_blows);
+    most = std::max(most, left > 0.0 ? by_blows / left : std::numeric_limits<double>::infinity());
   }
   result.more_blows = most * static_cast<double>(result.blows);
 }

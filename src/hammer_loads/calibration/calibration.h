@@ -53,7 +53,7 @@ struct Calibration {
   double fitted{},
       held_out{};  ///< mean square over variance: of the first three quarters, of the last with their values
   ResidualCurve before, after;  ///< with the parameters in force, with those found
-  double more_blows{};          ///< needed for every key that is not determined
+  double more_blows{};          ///< needed for every key that is not determined; infinity: more do not help
 
   /// Of the key that is known least: what more blows would lessen of its deviation, over its limit. Infinity with a
   /// problem.

@@ -11,7 +11,6 @@
 namespace hammer_loads::calibration {
 namespace {
 
-
 /// With the same in degrees where it is an angle.
 std::string shown(double value, const std::string& unit) {
   std::string text = format("%.6g", value);
@@ -20,6 +19,7 @@ std::string shown(double value, const std::string& unit) {
 }
 
 std::string needOf(const Calibration& c) {
+  if (!std::isfinite(c.more_blows)) return "more such work does not help, the notes say why";
   const double seconds = c.blows > 0 ? c.seconds / static_cast<double>(c.blows) * c.more_blows : 0.25 * c.more_blows;
   return format("some %.0f blows, %.0f s of such work", std::ceil(c.more_blows), std::ceil(seconds));
 }
