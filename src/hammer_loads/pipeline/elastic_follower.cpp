@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/util/square.h"
@@ -71,20 +72,23 @@ void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexce
   if (std::none_of(filters_.begin(), filters_.end(), [](const RodFilter& rod) { return rod.isRunning(); })) judge();
 }
 
+/// Pins with play: where it shows, or where tight ones contradict the readings. Tight pins can imitate play by a soft
+/// rod and much damping, but not the impacts.
+const RodFilter& ElasticFollower::likelier() const noexcept {
+  const RodFilter &tight = filters_[0], &play = filters_[1];
+  if (!play.isProven()) return tight;
+  const double doubt = square(play.deviation(RodFilter::kPlay));
+  return !tight.isProven() || exceeds(play.motion().play, doubt, gate::kImpossible) ? play : tight;
+}
+
 /// A rod stiffer than the rate of the samples shows explains them no better than a rigid one: the level is linkage
 /// then.
 void ElasticFollower::judge() noexcept {
   runs_ = false;
-  const double held = best_ != nullptr ? evidence_[static_cast<std::size_t>(best_ - filters_.data())] : 0.0;
-  double most = (best_ != nullptr ? held : 0.0) + kDecides;
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const double gain = filters_[i].isProven() ? filters_[i].fit() - rigid_fit_ : -kGivenUp;
-    evidence_[i] += kEvidenceGain * (std::clamp(gain, -kGivenUp, kGivenUp) - evidence_[i]);
-    if (!(evidence_[i] > most)) continue;
-    most = evidence_[i];
-    best_ = &filters_[i];
-  }
-  if (best_ != nullptr && evidence_[static_cast<std::size_t>(best_ - filters_.data())] < 0.0) best_ = nullptr;
+  const RodFilter& rod = likelier();
+  const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
+  evidence_ += kEvidenceGain * (gain - evidence_);
+  best_ = evidence_ > (best_ == nullptr ? kDecides : 0.0) ? &rod : nullptr;
 }
 
 CrankEstimate ElasticFollower::crank() const noexcept {

@@ -38,23 +38,24 @@ class ElasticFollower {
   std::optional<CrankBlow> blow() const noexcept;
   /// Contact lasts, or may have begun or not.
   bool isBesideBlow() const noexcept;
-  /// While it runs: with pins tight or with play, as explained the last blows better.
+  /// While it runs: with pins tight, or with play where the last blow showed one.
   const RodFilter& filter() const noexcept { return best_ != nullptr ? *best_ : filters_[0]; }
 
  private:
   Eigen::Vector3d beside(const RodMotion& motion) const noexcept;
   Eigen::Vector3d variance(const DriveReaction& drive) const noexcept;
   void begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept;
+  const RodFilter& likelier() const noexcept;
   void judge() noexcept;
   bool mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept;
 
   const HullModel* model_;
   bool wanted_, runs_{};
   std::array<RodFilter, 2> filters_;
-  std::array<double, 2> evidence_{};  ///< mean over some blows of a filter's fit less that of the rigid mechanism
-  double rigid_fit_{};                ///< of this blow
-  const RodFilter* best_{};           ///< null: rigid
-  std::int64_t blow_{};               ///< CrankPosition::blow
+  double evidence_{};        ///< mean over some blows of the rod's fit less that of the rigid mechanism
+  double rigid_fit_{};       ///< of this blow
+  const RodFilter* best_{};  ///< null: rigid
+  std::int64_t blow_{};      ///< CrankPosition::blow
 };
 
 }  // namespace hammer_loads
