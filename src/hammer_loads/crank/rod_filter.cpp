@@ -74,7 +74,7 @@ void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
     bodies_.settle(rod(other), drive(other), other.state);
     settled.col(i) = difference(other, motion_);
   }
-  belief_.covariance = settled * settled.transpose();
+  belief_.covariance = settled.lazyProduct(settled.transpose());
   belief_.addNoise(kBeside, kBeside, square(kSettledX));
   belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kSettledSpeed));
 }
@@ -107,14 +107,15 @@ RodFilter::Belief::Vector RodFilter::difference(const RodMotion& of, const RodMo
 
 void RodFilter::advance(double dt, const SupplyLaw& supply, bool strikes, RodMotion& m) const noexcept {
   const RodSpring spring = rod(m);
+  const TwoBodyDrive by = drive(m);
   const double longest = std::abs(m.state.angle.offset) < kNear ? kLongest : kLongestLater;
   const int parts = std::max(1, static_cast<int>(std::ceil(dt / longest)));
   const double from = m.state.angle.offset;
   for (int i = 0; i < parts; ++i)
     if (strikes)
-      bodies_.moveToTool(spring, drive(m), {m.place, m.restitution}, dt / parts, m.state);
+      bodies_.moveToTool(spring, by, {m.place, m.restitution}, dt / parts, m.state);
     else
-      bodies_.move(spring, drive(m), dt / parts, m.state);
+      bodies_.move(spring, by, dt / parts, m.state);
   m.torque -= supply.stiffness * supply.lead(m.state.angle.offset - from, dt);
 }
 
@@ -137,7 +138,7 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   }
   if (hasStruck()) since_blow_ += dt;
   motion_ = there;
-  belief_.covariance.noalias() = moved * moved.transpose();
+  belief_.covariance = moved.lazyProduct(moved.transpose());
   const double torque = square(walks.torque) * dt, b = 1.0 / std::exp(motion_.log_inertia);
   belief_.addNoise(kTorque, kTorque, torque);
   belief_.addNoise(kSpeed, kSpeed, square(walks.speed) * dt + torque * square(b * dt) / 3.0);
