@@ -10,8 +10,9 @@ std::string lifeMarkdown(const std::vector<BoomRow>& boom, const std::vector<Ela
     text += format("| %s | %s | %+.1f %% | %+.1f %% | %+.1f %% |\n", r.machine.c_str(), r.sensors.c_str(),
                    100.0 * r.life_force, 100.0 * r.life_torque, 100.0 * r.life_section);
   for (const ElasticRow& r : elastic)
-    if (r.level == Level::kLinkage)
-      text += format("| %s | none | %+.1f %% | | |\n", r.machine.c_str(), 100.0 * r.errors.life);
+    if (r.level != Level::kRocker)
+      text +=
+          format("| %s, level %s | none | %+.1f %% | | |\n", r.machine.c_str(), nameOf(r.level), 100.0 * r.errors.life);
   return text;
 }
 
