@@ -152,15 +152,35 @@ TEST(SensorColumns, AnIndexThatIsLostAndFoundIsTwoSteps) {
   EXPECT_NE(judged.textOf("slip").find("slips so far: 2"), std::string::npos) << judged.textOf("slip");
 }
 
-TEST(SensorColumns, AnAngleThatLagsIsCoveredAndNamedAsWhatItIs) {
-  simulation::MachineSettings s = machineOfColumns(1000.0, 816);
-  s.crank.angle_lag = 2e-3;
-  const SensorJudged judged = judgeSensor(s);
-  EXPECT_GT(judged.covered, 0.88);
-  const std::string text = judged.textOf("angle lag");
-  EXPECT_NEAR(namedAfter(text, "angles are "), 2.0, 0.1) << text;
-  EXPECT_NE(text.find("crank_latency_s"), std::string::npos);
-  EXPECT_NE(text.find("crank_zero_rad"), std::string::npos);
+TEST(SensorColumns, AnAngleThatLagsIsNamedAndCostsNothing) {
+  struct LaggingCase {
+    double rate, jitter, lag;
+    unsigned seed;
+  };
+  for (const LaggingCase& c :
+       {LaggingCase{1000.0, 0.0, 2e-3, 816}, {1000.0, 2e-4, 3e-3, 826}, {500.0, 0.0, 3e-3, 827}}) {
+    simulation::MachineSettings s = machineOfColumns(c.rate, c.seed);
+    holdStamps(c.jitter, s);
+    s.crank.angle_lag = c.lag;
+    const SensorJudged judged = judgeSensor(s);
+    EXPECT_LT(std::max({judged.x, judged.z, judged.torque}), 0.01) << c.seed;
+    EXPECT_GT(judged.covered, 0.88) << c.seed;
+    const std::string text = judged.textOf("angle lag");
+    EXPECT_NEAR(namedAfter(text, "angles are "), 1e3 * c.lag, 0.05 * 1e3 * c.lag) << text;
+    EXPECT_NE(text.find("crank_latency_s"), std::string::npos);
+    EXPECT_NE(text.find("taken off"), std::string::npos);
+    EXPECT_EQ(judged.textOf("speed lag"), "") << c.seed;
+  }
+}
+
+/// An encoder off its centre looks a little like one that lags.
+TEST(SensorColumns, AnEccentricEncoderIsNoLagToTakeOff) {
+  for (const double degrees : {0.4, 1.0}) {
+    simulation::MachineSettings s = machineOfColumns(1000.0, 828);
+    s.crank.eccentricity[0] = {degrees * kDegree, 1.0};
+    const std::string text = judgeSensor(s).textOf("angle lag");
+    EXPECT_EQ(text.find("taken off"), std::string::npos) << text;
+  }
 }
 
 TEST(SensorColumns, WholeMillisecondsAreCoveredAndNamed) {

@@ -26,13 +26,6 @@ constexpr double kSlip = 3e-3;            // [s]: stamps that are off by so much
 constexpr double kForgetRestarts = 2.0;   // [s]
 constexpr double kForgetDoubts = 30.0;    // [s]
 
-/// Those of the settings; that of the motor's share is the coupling's.
-ConstantErrors::Vector deviationsOf(const CrankFilterSettings& settings, const ShaftModel& model) noexcept {
-  ConstantErrors::Vector deviations = settings.constant_deviations;
-  if (model.coupling()) deviations[ConstantErrors::kShare] = oddsDeviationOf(*model.coupling());
-  return deviations;
-}
-
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
@@ -43,7 +36,7 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
       encoder_(settings.angle_resolution, settings.sensor),
       timing_(settings.timing_noise),
       supply_(settings.initial_torque_deviation),
-      errors_(deviationsOf(settings, model)),
+      errors_(constantDeviations()),
       blows_({settings.blow_factor, settings.blow_deviation}),
       speed_variance_(square(settings.speed_noise)) {
   now_.state.drive_inertia = drive_inertia;
@@ -75,6 +68,7 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   has_speed_ = sample.speed.has_value();
   read_side_.reset();
   speed_trust_.restart();
+  angle_lag_.begin(s.speed);
   supply_.restart();
   outlier_ = 0.0;
   unexplained_ = 0;
@@ -217,12 +211,22 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   bool struck = predict(dt, true, now_) > 0;  // (1)
 
   WeighedSample sample = weighed(reading);  // (2)
+  const double read = sample.angle;
+  const auto takeOff = [&] {
+    const double behind = angle_lag_.behind(last.encoderSpeed() + speedJump(struck), now_.encoderSpeed(), dt);
+    sample.angle = CrankAngle::wrapToPi(read + behind);
+    return behind;
+  };
+  const bool taken_off = takeOffLag();
+  double behind = takeOff();
+  if (taken_off) return begin(sample);
   Innovation innovation = sample.ofAngle(now_);
   if (has_speed_) lost_time_ = timeLost(innovation);
   if (lost_time_ > 0.0) {
     now_ = last;
     dt += lost_time_;
     struck = predict(dt, true, now_) > 0;
+    behind = takeOff();
     innovation = sample.ofAngle(now_);
   }
   if (has_speed_) {
@@ -269,6 +273,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   before_load_ = load_;
   before_hull_ = now_hull_;
   step_ = dt;
+  angle_lag_.go(behind);
   outlier_ = 0.0;
   const bool revised = correct(last, dt, struck, innovation, sample, reading.angle);
   if (!now_.isSound(mostSpeed())) {

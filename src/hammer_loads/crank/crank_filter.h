@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "hammer_loads/crank/angle_lag.h"
 #include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
 #include "hammer_loads/crank/contact_rival.h"
@@ -107,6 +108,8 @@ class CrankFilter final : public CrankTracker {
   /// Logarithm of the likelihood of its angle before it was taken, but for a constant.
   double angleFit() const noexcept { return angle_fit_; }
   double speedNoise() const noexcept { return std::sqrt(speed_variance_); }  ///< of measured speeds, identified [rad/s]
+  /// What of the angles' lag is taken off the readings.
+  const AngleLag& angleLag() const noexcept { return angle_lag_; }
   /// Whether measured speeds are taken up, and why not.
   const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
   double timingNoise() const noexcept { return timing_.deviation(); }  ///< of stamps, identified [s]
@@ -141,6 +144,7 @@ class CrankFilter final : public CrankTracker {
   CrankUncertainty uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
   /// At now_ with the latest motion of the hull.
   ShaftLoad load() const noexcept { return hull_moved_ ? model_(now_.state.position.angle) : load_; }
+  ConstantErrors::Vector constantDeviations() const noexcept;
   WeighedSample weighed(const CrankSample& reading) noexcept;
   int predict(double dt, bool contact, CrankBelief& belief) const noexcept;
   bool isSpeedOfOtherSide(const WeighedSample& sample) const noexcept;
@@ -163,6 +167,7 @@ class CrankFilter final : public CrankTracker {
                     double reading) noexcept;
   void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
   void considerSensor() noexcept;
+  bool takeOffLag() noexcept;
   double speedJump(bool struck) const noexcept;
   void judgeSpeed(double dt, bool struck) noexcept;
   void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;
@@ -172,6 +177,7 @@ class CrankFilter final : public CrankTracker {
   void rememberBlow(const CrankBelief& last, double dt) noexcept;
   void learnSupply() noexcept;
   void doubtInertia(double dt) noexcept;
+  void forgetInertia() noexcept;
   void takeLoad() noexcept;
   Tracking begin(WeighedSample sample) noexcept;
   void anchor(const WeighedSample& sample) noexcept;
@@ -210,6 +216,7 @@ class CrankFilter final : public CrankTracker {
   double lost_time_{};   ///< of the last step, beyond what its stamps say [s]
   double stamps_off_{};  ///< standard deviation of what all stamps are off alike [s]
   SpeedTrust speed_trust_;
+  AngleLag angle_lag_;
   std::optional<SpeedTrust::Witness> witness_;  ///< of the last sample
   std::optional<Side> read_side_;               ///< of the blow, as the last reading shows it
   double outlier_{};                            ///< innovation of the outlier just seen [rad], 0: none

@@ -107,7 +107,7 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
 /// A count says for certain on which side of the blow the crank is, if the count's edge is there and the stamp is
 /// exact.
 std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
-  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || now_.motor) return std::nullopt;
+  if (encoder_.isFiner() || settings_.angle_noise > 0.0 || now_.motor || angle_lag_.isThere()) return std::nullopt;
   const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
   const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
   const auto [low, high] = encoder_.edges(reading);

@@ -57,6 +57,11 @@ void CrankFilter::doubtInertia(double dt) noexcept {
   if (!(consistency_.growth() > kUnexplained) || unlearn_after_ > 0.0) return;
   unlearn_after_ = kUnlearnEvery;
   doubt_load_ += 1.0;
+  forgetInertia();
+}
+
+/// (10) What was learned of the machine was of other readings.
+void CrankFilter::forgetInertia() noexcept {
   now_.state.drive_inertia = first_guess_;
   now_.by_constant.row(Belief::kInertia).setZero();
   now_.forgetInertiaCoupling();

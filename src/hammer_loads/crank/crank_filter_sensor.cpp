@@ -12,14 +12,23 @@ using Belief = CrankBelief;
 
 constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
+constexpr double kLagTakenOff = 1e-3;      // [s]: an encoder that is eccentric by 0.4 deg looks like half of it
 constexpr double kNotSlip = 0.04;          // [rad] from the blow: there the tool stops and throws the crank
 constexpr double kPartOfInterval = 0.3;    // of one: what a reading ahead by whole ones may miss them by
 constexpr double kBeganOfLate = 0.5;       // beginnings of late: some 1.4 s after a single one
 constexpr double kStrikeBegins = 0.6;      // [rad] before the blow: a rod that gives is calm until there
 constexpr double kRodMoves = 0.017;        // [rad] of a reading at most, there: worn pins, a rod that was learned
+// Guard: SensorColumns.AnEccentricEncoderIsNoLagToTakeOff of kLagTakenOff
 // Guard: RodWarnings.ARightSensorIsNotBlamedForARodThatGives of kStrikeBegins, kRodMoves
 
 }  // namespace
+
+/// Those of the settings; that of the motor's share is the coupling's.
+ConstantErrors::Vector CrankFilter::constantDeviations() const noexcept {
+  ConstantErrors::Vector deviations = settings_.constant_deviations;
+  if (model_.coupling()) deviations[ConstantErrors::kShare] = oddsDeviationOf(*model_.coupling());
+  return deviations;
+}
 
 /// (2) Angle and speed of the crank from those of its sensor, with their noise.
 WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
@@ -38,7 +47,8 @@ WeighedSample CrankFilter::weighed(const CrankSample& reading) noexcept {
 
 /// (10) What stamps and speeds may be off: as it is given, and as it has shown itself.
 void CrankFilter::considerSensor() noexcept {
-  const double ahead = speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0;
+  const double ahead =
+      std::hypot(angle_lag_.deviation(), speed_trust_.lags() ? std::min(0.0, speed_trust_.lag()) : 0.0);
   errors_.consider(ConstantErrors::kLatency,
                    std::hypot(settings_.constant_deviations[ConstantErrors::kLatency], std::hypot(stamps_off_, ahead)));
   if (!speed_trust_.knows()) return;
@@ -50,6 +60,20 @@ void CrankFilter::considerSensor() noexcept {
   };
   consider(ConstantErrors::kSpeedLag, speed_trust_.lag(), speed_trust_.lagDeviation());
   consider(ConstantErrors::kSpeedScale, speed_trust_.scale(), speed_trust_.scaleDeviation());
+}
+
+/// (2) Angles that are behind the speeds: from now on that is taken off the readings. What was learned of the sensor
+/// and of its speeds was of others.
+bool CrankFilter::takeOffLag() noexcept {
+  const double more = -speed_trust_.lag();
+  if (!speed_trust_.lags() || !(angle_lag_.isThere() || more > kLagTakenOff)) return false;
+  angle_lag_.take(more, speed_trust_.lagDeviation());
+  angle_lag_.begin(now_.encoderSpeed());
+  speed_trust_ = {};
+  errors_ = ConstantErrors(constantDeviations());
+  considerSensor();
+  forgetInertia();
+  return true;
 }
 
 /// Of the speed by the blow that was struck within the step [rad/s]; a motor of its own is not reached so soon.

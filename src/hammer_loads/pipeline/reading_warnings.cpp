@@ -9,7 +9,7 @@ namespace hammer_loads {
 namespace {
 
 /// A speed cannot be ahead of its crank: then the angle is behind it.
-void warnOfSpeeds(const SpeedTrust& speeds, std::vector<Warning>& warnings) {
+void warnOfSpeeds(const SpeedTrust& speeds, const AngleLag& taken_off, std::vector<Warning>& warnings) {
   const double lag = 1e3 * speeds.lag(), deviation = 1e3 * speeds.lagDeviation();
   if (speeds.lags() && lag > 0.0)
     warnings.push_back({"speed lag",
@@ -17,12 +17,19 @@ void warnOfSpeeds(const SpeedTrust& speeds, std::vector<Warning>& warnings) {
                                "drive's filter makes it: they serve the start alone",
                                lag, deviation),
                         true});
-  if (speeds.lags() && lag < 0.0)
+  if (speeds.lags() && lag < 0.0 && !taken_off.isThere())
     warnings.push_back({"angle lag",
                         format("crank angles are %.3g ms (deviation %.1g ms) behind the measured speeds: they are "
                                "filtered, or crank_latency_s is that much too small; at an even speed crank_zero_rad "
                                "looks alike; not corrected, the deviations hold it",
                                -lag, deviation),
+                        true});
+  if (taken_off.isThere())
+    warnings.push_back({"angle lag",
+                        format("crank angles are %.3g ms (deviation %.1g ms) behind the measured speeds: they are "
+                               "filtered, or crank_latency_s is that much too small; at an even speed crank_zero_rad "
+                               "looks alike; it is taken off the readings",
+                               1e3 * taken_off.lag(), 1e3 * taken_off.deviation()),
                         true});
   if (speeds.isOutOfScale())
     warnings.push_back({"speed scale",
@@ -35,7 +42,7 @@ void warnOfSpeeds(const SpeedTrust& speeds, std::vector<Warning>& warnings) {
 }  // namespace
 
 void warnOfReadings(const CrankFollower& crank, const CrankFilter& filter, std::vector<Warning>& warnings) {
-  warnOfSpeeds(filter.speedTrust(), warnings);
+  warnOfSpeeds(filter.speedTrust(), filter.angleLag(), warnings);
   if (crank.stamps().rounding() > 0.0)
     warnings.push_back({"whole stamps",
                         format("crank stamps are whole multiples of %.3g ms: all samples may be off by half of that "
