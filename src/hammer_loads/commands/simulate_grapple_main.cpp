@@ -40,10 +40,10 @@ void play(const GrappleParameters& grapple, const std::string& joint, double per
   const double turn = kTwoPi / period, half = 0.5 * (grapple.slider_closed - grapple.slider_open);
   sensor_msgs::JointState message;
   message.name = {joint};
-  ros::Rate rate(samples_per_second);
-  for (const ros::Time start = ros::Time::now(); ros::ok(); rate.sleep()) {
+  ros::WallRate rate(samples_per_second);  // differences of ROS times end the node where they are beyond 68 years
+  for (const double start = ros::Time::now().toSec(); ros::ok(); rate.sleep()) {
     message.header.stamp = ros::Time::now();
-    const double phase = turn * (message.header.stamp - start).toSec();
+    const double phase = turn * (message.header.stamp.toSec() - start);
     message.position = {grapple.slider_open + half * (1.0 + std::cos(phase))};
     message.velocity = {-turn * half * std::sin(phase)};
     publisher.publish(message);

@@ -38,7 +38,7 @@ LoadDisplay::LoadDisplay(ros::NodeHandle& node, ros::NodeHandle& private_node, d
   reactions_ = node.subscribe("hammer_loads/joint_reactions", kQueue, &LoadDisplay::onReactions, this);
   pulses_ = node.subscribe<Pulse>("hammer_loads/pulse", kQueue, [this](const Pulse::ConstPtr& m) { pulse_ = *m; });
   blows_ = node.subscribe<Blow>("hammer_loads/blow", kQueue, [this](const Blow::ConstPtr& m) { blow_ = *m; });
-  timer_ = node.createTimer(ros::Duration(1.0 / rate), [this](const ros::TimerEvent&) { picture(); });
+  timer_ = node.createWallTimer(ros::WallDuration(1.0 / rate), [this](const ros::WallTimerEvent&) { picture(); });
 }
 
 void LoadDisplay::onRunInfo(const RunInfo& info) {

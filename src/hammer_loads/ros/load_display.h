@@ -50,7 +50,7 @@ class LoadDisplay {
   tf2_ros::StaticTransformBroadcaster frames_;
   ros::Publisher text_;
   ros::Subscriber run_info_, sections_, reactions_, pulses_, blows_;
-  ros::Timer timer_;
+  ros::WallTimer timer_;  ///< pictures are for eyes; a timer of ROS time ends the node at the end of that
 };
 
 }  // namespace hammer_loads
