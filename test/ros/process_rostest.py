@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The node as a process: its exit codes, its errors, its log after an ordinary end."""
+import ctypes
 import glob
 import os
 import shutil
@@ -36,8 +37,14 @@ def command(name):
     return roslib.packages.find_node('hammer_loads', name)[0]
 
 
+def end_with_parent():
+    """In a new process: it is killed with the one that began it, however that ends."""
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
 class NodeProcess:
-    """A node of this package under a name of its own."""
+    """A node of this package under a name of its own. It does not outlive the test, whatever becomes of that."""
 
     def __init__(self, name, parameters, program='hammer_loads_node'):
         self.name = name
@@ -46,7 +53,7 @@ class NodeProcess:
         self.process = subprocess.Popen(
             [command(program), '__name:=' + name, 'crank:=/%s/crank' % name,
              'joint_states:=/%s/joints' % name],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, preexec_fn=end_with_parent)
 
     def end(self, sign=signal.SIGINT):
         self.process.send_signal(sign)
@@ -91,6 +98,18 @@ class ProcessTest(unittest.TestCase):
 
     def test_a_log_directory_that_cannot_be(self):
         self.expect_refused('bad_log', {'log_enabled': True, 'log_directory': '/proc/no/such'}, 'log_directory')
+
+    def test_no_node_outlives_a_test_that_fails(self):
+        test = ('import os, sys; sys.path.insert(0, %r); from process_rostest import NodeProcess; '
+                'print(NodeProcess("left", {"log_enabled": False}).process.pid, flush=True); ' %
+                os.path.dirname(os.path.realpath(__file__)) + 'input(); assert False')
+        failing = subprocess.Popen([sys.executable, '-c', test], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, universal_newlines=True)
+        node = '/proc/%d/exe' % int(failing.stdout.readline())
+        self.assertTrue(eventually(lambda: os.path.realpath(node).endswith('hammer_loads_node')))
+        failing.communicate('now')
+        self.assertNotEqual(failing.returncode, 0)
+        self.assertTrue(eventually(lambda: not os.path.exists(node)))
 
     def publish_session(self, name, seconds):
         """Replays the start of the 1 kHz session and waits for the last wrench. Samples and wrenches: next to a blow one or
