@@ -1,6 +1,7 @@
 """Uncertainty budgets: of a recording by the command, combined over runs, on the page."""
 import json
 import math
+import re
 import sqlite3
 import subprocess
 import unittest
@@ -39,6 +40,16 @@ class Budget(ReportTest):
         page = self.page_of(path)
         self.assertIn("rocker_mass_kg (64 %)", page.text)
         self.assertIn("Uncertainty budget", page.tables)
+
+    def test_names_of_bars_are_within_the_picture(self):
+        path = self.directory / "a.sqlite"
+        with_budget(path, self.ROWS + [("equivalent_range_3/joint_loads/boom_joint/total_torque_Nm", 9.0, 1.0, "readings", 1.0)])
+        self.page_of(path)
+        source = (self.directory / "page.html").read_text(encoding="utf-8")
+        names = re.findall(r'<text x="(\d+)" y="\d+" text-anchor="end">([^<]*)', source[source.index("Shares of the variance"):])
+        self.assertEqual(len(names), 2)
+        for x, name in names:
+            self.assertGreater(float(x), 6.0 * len(name), name)
 
     def test_a_file_without_one_says_so(self):
         path = self.directory / "b.sqlite"

@@ -50,6 +50,9 @@ def combined(quantity, of_runs):
     return Figure(quantity, value, math.sqrt(total), shares or {REST: 1.0})
 
 
+CHARACTER = 6.6  # width of one in a picture, in its units
+
+
 def picture(figures):
     """A bar for each figure, parts by source."""
     order = {}
@@ -58,10 +61,12 @@ def picture(figures):
             order[source] = order.get(source, 0.0) + share
     shown = sorted(order, key=lambda source: -order[source])[:len(COLOURS) - 1]
     colour = dict(zip(shown, COLOURS))
-    parts, height, left, width = [], 22, 190, 440
-    for at, figure in enumerate(figures):
+    names = [without_unit(figure.quantity) for figure in figures]
+    parts, height, width = [], 22, 440
+    left = math.ceil(CHARACTER * max(map(len, names), default=0)) + 10
+    for at, (name, figure) in enumerate(zip(names, figures)):
         y, x = at * height + 4, float(left)
-        parts.append(f'<text x="{left - 6}" y="{y + 12}" text-anchor="end">{text(without_unit(figure.quantity))}</text>')
+        parts.append(f'<text x="{left - 6}" y="{y + 12}" text-anchor="end">{text(name)}</text>')
         rest = 1.0 - sum(share for source, share in figure.shares if source in colour)
         for source, share in [one for one in figure.shares if one[0] in colour] + [(REST, rest)]:
             if share <= 0.0:
