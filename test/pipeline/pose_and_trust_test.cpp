@@ -92,6 +92,35 @@ TEST(PoseAndTrust, ACrankThatContradictsTheModelIsRefused) {
   }
 }
 
+TEST(PoseAndTrust, TwoStrokesInARowThatAreNotBelieved) {
+  CrankTrust trust{CrankSensor{}};
+  double angle = 0.0;
+  const auto stroke = [&](bool believed) {
+    for (int i = 0; i < 20; ++i) trust.follow(angle += 0.1, 1.0, kPoseStep);
+    trust.passBlow(believed);
+    return trust.isInconsistent();
+  };
+  EXPECT_FALSE(stroke(false));
+  EXPECT_FALSE(stroke(true));
+  EXPECT_FALSE(stroke(false));
+  EXPECT_TRUE(stroke(false));
+  EXPECT_TRUE(trust.isLost());
+  EXPECT_TRUE(stroke(false));
+  EXPECT_FALSE(stroke(true)) << "one ends it";
+  stroke(false);
+  trust.begin();
+  EXPECT_FALSE(stroke(false)) << "what was lost in a gap is no contradiction";
+}
+
+TEST(PoseAndTrust, ACrankThatRocksAtTheDeadCentreSaysNothing) {
+  CrankTrust trust{CrankSensor{}};
+  for (int i = 0; i < 10; ++i) {
+    trust.follow(i % 2 == 0 ? 0.4 : -0.4, 1.0, kPoseStep);
+    trust.passBlow(false);
+  }
+  EXPECT_FALSE(trust.isInconsistent());
+}
+
 TEST(PoseAndTrust, ACrankHasRunUpAfterARadian) {
   for (const double part : {0.8, 1.25}) {
     CrankTrust trust{CrankSensor{}};

@@ -40,6 +40,11 @@ void CrankFollower::checkUnit(StampNs stamp, const CrankSample& measured) noexce
   last_raw_stamp_ = stamp;
 }
 
+std::optional<Refusal> CrankFollower::otherUnit() const noexcept {
+  if (!unit_check_.looksWrong()) return std::nullopt;
+  return unit_check_.unit() == CrankUnit::kDegrees ? Refusal::kDegrees : Refusal::kSpeedUnit;
+}
+
 StampSequence::Repeats CrankFollower::repeatsOf(const CrankSample& measured) const noexcept {
   using Repeats = StampSequence::Repeats;
   if (measured.angle != last_raw_.angle || measured.speed != last_raw_.speed) return Repeats::kNo;
@@ -52,7 +57,7 @@ std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& m
   if (header < 0 || header > kLastStamp) return Refusal::kBadStamp;
   if (const auto refusal = gate_.refusalOf(measured)) {
     checkUnit(header, measured);
-    return refusal;
+    return refusal == Refusal::kImplausible ? otherUnit().value_or(*refusal) : refusal;
   }
   const StampSequence::Place place = sequence_.place(header - latency_, repeatsOf(measured));
   last_raw_ = measured;
@@ -67,10 +72,7 @@ std::optional<Refusal> CrankFollower::judge(StampNs header, const CrankSample& m
   measured_ = measured;
   checkUnit(header, measured);
   verdict_ = gate_.judge(stamp_, measured);
-  if (verdict_.refusal) return verdict_.refusal;
-  if (unit_check_.unit() == CrankUnit::kDegrees) return Refusal::kDegrees;
-  if (unit_check_.looksWrong()) return Refusal::kSpeedUnit;
-  return std::nullopt;
+  return verdict_.refusal ? verdict_.refusal : otherUnit();
 }
 
 CrankFollower::Taken CrankFollower::take(const HullMotion& hull) noexcept {

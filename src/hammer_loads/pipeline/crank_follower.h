@@ -61,6 +61,7 @@ class CrankFollower {
   StampSequence::Repeats repeatsOf(const CrankSample& measured) const noexcept;
   std::optional<Refusal> place(StampNs header, const CrankSample& measured) noexcept;
   void checkUnit(StampNs stamp, const CrankSample& measured) noexcept;
+  std::optional<Refusal> otherUnit() const noexcept;
   void restart() noexcept;
   void followLostTime() noexcept;
 

@@ -38,7 +38,15 @@ class CrankTrust {
     if (std::isfinite(strike_consistency)) inconsistent_ = strike_consistency > kMost;
   }
   /// Time ran back, or a gap: what the crank did meanwhile is not known.
-  void begin() noexcept { reading_.reset(); }
+  void begin() noexcept {
+    reading_.reset();
+    unbelieved_ = 0;
+  }
+  /// The blow was passed forward. believed: the estimate just before it was good enough to be published. A crank that
+  /// rocks at the dead centre says nothing.
+  void passBlow(bool believed) noexcept {
+    if (hasRunUp()) unbelieved_ = believed ? 0 : std::min(unbelieved_ + 1, kUnbelieved);
+  }
 
   /// How far the crank is slowest behind the place where such cranks are, by the first harmonic of its speed over the
   /// angle [rad]. Nothing before some turns.
@@ -49,13 +57,19 @@ class CrankTrust {
   bool turnsBackward() const noexcept { return backward_; }
   /// It has turned forward of late: one that only ever turned backward has not struck.
   bool hasRunUp() const noexcept { return forward_ > kRunUp; }
-  bool isInconsistent() const noexcept { return inconsistent_; }
+  bool isInconsistent() const noexcept { return inconsistent_ || isLost(); }
+  /// The estimate is not good enough before the blow, turn after turn.
+  bool isLost() const noexcept { return unbelieved_ == kUnbelieved; }
   std::optional<Refusal> refusal() const noexcept {
     if (backward_) return Refusal::kBackward;
-    return inconsistent_ ? std::make_optional(Refusal::kInconsistent) : std::nullopt;
+    return isInconsistent() ? std::make_optional(Refusal::kInconsistent) : std::nullopt;
   }
 
  private:
+  /// Strokes in a row. Wherever the model holds one in some hundred is not believed, after lost samples; with a zero
+  /// 30 deg off, on a machine whose rod gives, or one that runs away without a tool, nine of ten are not.
+  static constexpr int kUnbelieved = 2;
+  // Guard: PoseAndTrust.TwoStrokesInARowThatAreNotBelieved of kUnbelieved
   static constexpr double kRunUp = 1.0;  ///< [rad]: noise of readings is less, a blow's way more
   // Guard: PoseAndTrust.ACrankHasRunUpAfterARadian of kRunUp
   static constexpr double kTurns = 5.0;  ///< over which it is looked where the crank is slow
@@ -96,6 +110,7 @@ class CrankTrust {
   double window_turned_{}, window_time_{};
   double forward_{}, back_{};  ///< since it was furthest back, forward [rad]
   bool backward_{}, inconsistent_{};
+  int unbelieved_{};  ///< strokes in a row of which the estimate was not good enough to be published
 };
 
 }  // namespace hammer_loads

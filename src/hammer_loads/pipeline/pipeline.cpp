@@ -99,8 +99,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (elastic_.runs()) result_.crank = elastic_.crank();
   const CrankMotion motion = motionOf(result_.crank);
   const LinksBeside links(model_, elastic_.runs() ? linksAt(model_, motion.angle) : crank_.step().links());
-  if (!isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion)))
-    return withhold(Refusal::kImplausible);
+  settled_ = isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion));
+  if (!settled_) return withhold(Refusal::kImplausible);
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
   const HullWrench rod = weigh(links, drive);
   followBoom(links, drive);
@@ -140,10 +140,10 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
 
 /// Nothing: the sample may be published as far as the estimate goes.
 std::optional<Refusal> Pipeline::whyWithheld() noexcept {
+  settled_ = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
   if (const auto distrust = trust_.refusal()) return distrust;
   if (hull_.pitch().looksLikeDegrees()) return Refusal::kDegrees;
-  const bool settled = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
-  return settled ? std::nullopt : std::make_optional(Refusal::kUnsettled);
+  return settled_ ? std::nullopt : std::make_optional(Refusal::kUnsettled);
 }
 
 /// Deviations, and whether the blow's side is certain. Returns what a rod that gives adds to the wrench.
@@ -183,6 +183,10 @@ void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
   const double step = taken == CrankFollower::Taken::kContinued ? crank_.step().length() : 0.0;
   if (taken == CrankFollower::Taken::kBegan) trust_.begin();
   trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
+  if (taken == CrankFollower::Taken::kContinued) {
+    for (const CrankStep::Passage& passage : crank_.step())
+      if (passage.forward) trust_.passBlow(settled_);
+  }
   result_.inconsistent = result_.consistency > CrankTrust::kInconsistent;
 }
 

@@ -94,6 +94,7 @@ class Pipeline {
   WrenchSampler sampler_;
   std::optional<BoomFollower> boom_;
   double nominal_force_;  ///< peak at turn_rate_Hz and constant speed [N]; see isPlausible()
+  bool settled_{};        ///< the last sample's estimate is good enough to be published, whatever the crank is trusted
   bool boom_follows_{};   ///< the boom has had every step since the last restart
   SampleCounts counts_;
   SampleResult result_;

@@ -42,10 +42,19 @@ struct SampleCounts {
   std::uint64_t backward_passes{};   ///< passages of the blow backward, less those forward again
   MisuseCounts misuse;
 
+  /// Withheld because the readings are in another unit.
+  std::uint64_t inOtherUnit() const noexcept { return refusedFor(Refusal::kDegrees) + refusedFor(Refusal::kSpeedUnit); }
   /// Withheld because the readings are not those of such a machine.
   std::uint64_t contradicting() const noexcept {
-    return refusedFor(Refusal::kDegrees) + refusedFor(Refusal::kSpeedUnit) + refusedFor(Refusal::kBackward) +
-           refusedFor(Refusal::kInconsistent);
+    return inOtherUnit() + refusedFor(Refusal::kBackward) + refusedFor(Refusal::kInconsistent);
+  }
+  /// Since `before`, most readings are not those of such a machine. A unit is the same all along, but shows at work
+  /// only: a tenth of them tells it.
+  bool contradictSince(const SampleCounts& before) const noexcept {
+    constexpr std::uint64_t kUnitTells = 10;
+    const std::uint64_t good = accepted - before.accepted;
+    return contradicting() - before.contradicting() > good ||
+           kUnitTells * (inOtherUnit() - before.inOtherUnit()) > good;
   }
   std::uint64_t refusedFor(Refusal reason) const noexcept { return refused[static_cast<std::size_t>(reason)]; }
   std::uint64_t refusedTotal() const noexcept {

@@ -8,8 +8,6 @@
 #include "hammer_loads/pipeline/crank_trust.h"
 
 namespace hammer_loads {
-namespace {}  // namespace
-
 void TurnFollower::restart() noexcept {
   turn_.abandon();
   last_blow_.reset();
@@ -55,7 +53,10 @@ void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept
     if (!passage.may_strike) continue;
     recordTo(from, std::max(from, passage.time - kBesideBlow));
     finishBlow(result);
-    endTurn(passage);
+    if (run_up_)
+      endTurn(passage);
+    else
+      restart();  // a blow by speeds that are not known well enough to be published
     from = passage.time + kBesideBlow;
   }
   recordTo(from, step_->length());

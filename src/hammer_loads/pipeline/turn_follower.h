@@ -36,10 +36,12 @@ class TurnFollower {
 
   /// The last sample's loads were withheld.
   void withheld() noexcept {
+    run_up_ = false;
     if (pending_.isWaiting()) pending_.count(false);
   }
   /// They are published.
   void published(const SampleResult& result) noexcept {
+    run_up_ = true;
     if (pending_.isWaiting()) pending_.count(true);
     trackErrors(result);
   }
@@ -76,6 +78,7 @@ class TurnFollower {
   std::optional<StampNs> last_blow_;  ///< if the turn since then was seen whole
   std::uint64_t turns_{}, impossible_{}, backward_{}, blank_{};
   double peak_force_{};
+  bool run_up_{};  ///< the last sample's loads are published
 };
 
 }  // namespace hammer_loads

@@ -36,6 +36,11 @@ void warnOfUnits(const Pipeline& pipeline, const SampleCounts& counts, std::vect
                       now});
 }
 
+/// Angle or speed are in another unit, so whatever else the readings look like says nothing.
+bool isOtherUnit(const Pipeline& pipeline, const SampleCounts& counts) {
+  return pipeline.crank().unit() != CrankUnit::kRadians || counts.inOtherUnit() > counts.accepted;
+}
+
 void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
   const std::uint64_t samples = counts.accepted + counts.refusedTotal();
   if (counts.refusedFor(Refusal::kMissingJoint) == samples && samples > 0)
@@ -46,6 +51,7 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
   if (pipeline.crank().angleIsFrozen())
     warnings.push_back({"frozen", "crank: the angle stands still while the speed goes on", true});
   const std::uint64_t backward = counts.refusedFor(Refusal::kBackward);
+  if (isOtherUnit(pipeline, counts)) return;
   if (pipeline.crankTrust().turnsBackward() || backward > counts.accepted)
     warnings.push_back(
         {"backward",
@@ -128,10 +134,12 @@ std::string rodOf(const CrankFilter& filter) {
 /// What contradicts the model, by where in the turn it does. strike: before the blow as well.
 std::string contradictionOf(const Pipeline& pipeline, bool strike) {
   const CrankFilter& filter = *pipeline.crank().tracker().filter();
-  const std::string how_much = format(
-      "crank: readings differ from the model by %.2g times the expected variance, before "
-      "the blow by %.2g: ",
-      filter.consistency(), filter.strikeConsistency());
+  const std::string how_much = !pipeline.crankTrust().isLost() && std::isfinite(filter.consistency())
+                                   ? format(
+                                         "crank: readings differ from the model by %.2g times the expected "
+                                         "variance, before the blow by %.2g: ",
+                                         filter.consistency(), filter.strikeConsistency())
+                                   : "crank: the estimate is lost before the blow, turn after turn: ";
   if (!strike)
     return how_much +
            "what follows the blow is not in the model, a coupling that gives (shaft: flexible) or a tool that is met "
@@ -150,7 +158,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   const CrankFilter* filter = pipeline.crank().tracker().filter();
   const bool withheld = pipeline.counts().refusedFor(Refusal::kInconsistent) > 0;
-  if (filter == nullptr || pipeline.crankTrust().turnsBackward()) return;
+  if (filter == nullptr || pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
   if (pipeline.counts().blows < kLearned && !withheld) return;
   const bool gives = filter->rodEvidence().gives();
   if (filter->isLost())
@@ -168,6 +176,9 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   warnOfReadings(pipeline.crank(), *filter, warnings);
   const bool inconsistent = filter->consistency() > CrankTrust::kInconsistent;
   const bool strike = filter->strikeConsistency() > CrankTrust::kInconsistent;
+  const double behind = pipeline.crankTrust().slowBehind().value_or(0.0);
+  const bool far_off = withheld && std::abs(behind) > 2.0 * CrankTrust::kSlowestKnown;  // no rod makes that
+  if (far_off) return warnings.push_back({"inconsistent", contradictionOf(pipeline, true), true});
   if (gives) warnings.push_back({withheld ? "inconsistent" : "rod", rodOf(*filter), true});
   if (gives || (!inconsistent && !strike && !withheld && !filter->isUnexplained()))
     return warnOfConstants(filter->constantErrors(), pipeline.settings().crank_sensor, gives, warnings);

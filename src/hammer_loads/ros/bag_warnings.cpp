@@ -118,7 +118,7 @@ void warnOfMissing(const BagInputs& inputs, const std::vector<BagRun>& runs, con
 }
 
 bool isUseless(const BagReport& report) {
-  return report.wrenches == 0 || report.crank.contradicting() > report.crank.accepted ||
+  return report.wrenches == 0 || report.crank.contradictSince({}) ||
          (report.crank.accepted <= 1 && report.samples > 1);  // one sample has no motion
 }
 

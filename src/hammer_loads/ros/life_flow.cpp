@@ -78,8 +78,7 @@ LifeFlow::LifeFlow(const Pipeline& pipeline, const Settings& settings, HammerOut
       pieces_(pieces),
       machine_(life::ledgerMachine(settings.life, sha256Of({settings.machine}))),
       parameters_(sensorParameters(settings.yaml)),
-      contradicting_before_(pipeline.counts().contradicting()),
-      accepted_before_(pipeline.counts().accepted),
+      counts_before_(pipeline.counts()),
       scale_keys_(scaleKeys(settings.life)),
       period_(settings.life.period) {
   prepareTurnLoads(follower_.channels(), outputs_.turn_loads.message);
@@ -131,8 +130,7 @@ void LifeFlow::keep(life::LifePiece piece) {
 
 /// Why most of the readings cannot be those of this machine with these parameters; empty: they can.
 std::string LifeFlow::contradiction() const {
-  const SampleCounts& counts = pipeline_.counts();
-  if (counts.contradicting() - contradicting_before_ <= counts.accepted - accepted_before_) return {};
+  if (!pipeline_.counts().contradictSince(counts_before_)) return {};
   for (const Warning& warning : warningsOf(pipeline_))
     if (isContradiction(warning.key)) return warning.text;
   return "crank: most readings contradict the model";

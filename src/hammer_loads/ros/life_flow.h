@@ -50,8 +50,8 @@ class LifeFlow {
   HammerOutputs& outputs_;
   life::PieceSink* pieces_;
   life::LedgerMachine machine_;
-  std::string parameters_;                                    ///< digest of those of the sensors
-  std::uint64_t contradicting_before_{}, accepted_before_{};  ///< counts go on from run to run
+  std::string parameters_;      ///< digest of those of the sensors
+  SampleCounts counts_before_;  ///< counts go on from run to run
   /// Of one channel's full scale.
   struct ScaleKeys {
     std::string least, greatest;

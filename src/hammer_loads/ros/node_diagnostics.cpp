@@ -94,6 +94,9 @@ void NodeDiagnostics::describeCrank(Status& status) {
   } else if (pipeline.crankTrust().turnsBackward()) {
     status.summary(DiagnosticStatus::ERROR,
                    "turns backward: crank_direction must have the other sign; nothing is published");
+  } else if (pipeline.crankTrust().isLost()) {
+    status.summary(DiagnosticStatus::ERROR,
+                   "the estimate is lost before the blow, turn after turn; nothing is published");
   } else if (pipeline.crankTrust().isInconsistent()) {
     status.summaryf(DiagnosticStatus::ERROR,
                     "readings contradict the model by %.1f times the expected variance before the blow; nothing is "
