@@ -184,6 +184,30 @@ TEST(CrankTrust, AMachineThatRunsAwayWithoutAToolStrikesNoBlows) {
   EXPECT_LT(hardest, 1500.0);
 }
 
+/// A hard and lively rock: much is withheld after each blow, and what the path has there was never published.
+TEST(CrankTrust, ThePeakOfATurnIsOneThatWasPublished) {
+  simulation::MachineSettings machine = elasticMachine(1e9, 0.2);
+  machine.strike.rock_stiffness = 2e9;
+  machine.strike.rock_strength = 1e6;
+  machine.strike.rock_damping = 0.0;
+  const simulation::Session session = simulation::recordSession(machine);
+  std::size_t pulses = 0, withheld = 0;
+  double highest = 0.0, highest_pulse = 0.0;
+  test::Player player(test::settingsWith("{}"), false, session);
+  player.playTo(1e9, [&](double time, const SampleResult& result) {
+    if (!result.refusal) highest = std::max(highest, result.wrench.force_z);
+    withheld += result.refusal && time > 3.0;
+    for (std::size_t i = 0; i < result.turn_ends; ++i) {
+      if (!result.ends[i].pulse) continue;
+      ++pulses;
+      highest_pulse = std::max(highest_pulse, result.ends[i].pulse->amplitude);
+    }
+  });
+  EXPECT_GT(pulses, 15U);
+  EXPECT_GT(withheld, 50U) << "what there is to withhold";
+  EXPECT_LT(highest_pulse, 1.02 * highest);
+}
+
 TEST(CrankTrust, AZeroGivenInDegreesIsNamed) {
   const simulation::Session session = workingSession();
   const double degrees = 140.0;

@@ -10,6 +10,7 @@
 namespace hammer_loads {
 void TurnFollower::restart() noexcept {
   turn_.abandon();
+  peak_ = {};
   last_blow_.reset();
 }
 
@@ -34,7 +35,9 @@ void TurnFollower::recordTo(double from, double to) noexcept {
   const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kPulseStep)));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
-    turn_.add(instant(origin + time, step_->at(time)));
+    const TurnInstant point = instant(origin + time, step_->at(time));
+    turn_.add(point);
+    peak_.of_step = std::max(peak_.of_step, point.wrench.force_z);
   }
 }
 
@@ -46,6 +49,7 @@ void TurnFollower::countBackward(const CrankStep::Passage& passage) noexcept {
 
 void TurnFollower::follow(const HullMotion& hull, SampleResult& result) noexcept {
   hull_ = hull;
+  peak_.of_step = 0.0;
   double from = 0.0;
   for (const CrankStep::Passage& passage : *step_) {
     if (!passage.forward) turn_.abandon();
@@ -84,6 +88,8 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
   const double rate = before.acceleration / before.speed;
   end.pulse = turn_.end(instant(time, before));
+  if (peak_.withheld > std::max(peak_.published, peak_.of_step)) end.pulse.reset();
+  peak_ = {};
   if (end.pulse) {
     peak_force_ = end.pulse->amplitude;
     const LinksBeside links(*model_, linksAt(*model_, before.position.angle));

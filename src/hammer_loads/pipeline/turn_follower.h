@@ -1,8 +1,10 @@
 /// Turns from blow to blow: their blows and their pulses.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/pipeline/crank_step.h"
@@ -37,11 +39,13 @@ class TurnFollower {
   /// The last sample's loads were withheld.
   void withheld() noexcept {
     run_up_ = false;
+    peak_.withheld = std::max(peak_.withheld, std::exchange(peak_.of_step, 0.0));
     if (pending_.isWaiting()) pending_.count(false);
   }
   /// They are published.
   void published(const SampleResult& result) noexcept {
     run_up_ = true;
+    peak_.published = std::max(peak_.published, std::exchange(peak_.of_step, 0.0));
     if (pending_.isWaiting()) pending_.count(true);
     trackErrors(result);
   }
@@ -79,6 +83,11 @@ class TurnFollower {
   std::uint64_t turns_{}, impossible_{}, backward_{}, blank_{};
   double peak_force_{};
   bool run_up_{};  ///< the last sample's loads are published
+  /// Of Fz over the present turn [N]: of steps to a published sample, to a withheld one, and of the last step.
+  struct Peak {
+    double published{}, withheld{}, of_step{};
+  };
+  Peak peak_;
 };
 
 }  // namespace hammer_loads
