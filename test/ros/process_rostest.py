@@ -13,6 +13,7 @@ import unittest
 
 import rosbag
 import rosgraph
+import roslaunch.config
 import roslib.packages
 import rospy
 import rostest
@@ -98,6 +99,16 @@ class ProcessTest(unittest.TestCase):
 
     def test_a_log_directory_that_cannot_be(self):
         self.expect_refused('bad_log', {'log_enabled': True, 'log_directory': '/proc/no/such'}, 'log_directory')
+
+    def test_the_machine_of_the_demo_publishes_where_the_node_listens_in_any_namespace(self):
+        launch = os.path.join(self.directory, 'in_a_namespace.launch')
+        with open(launch, 'w') as file:
+            file.write('<launch><group ns="loader2"><include file="$(find hammer_loads)/launch/demo.launch"/></group></launch>')
+        nodes = {node.name: dict(node.remap_args) for node in roslaunch.config.load_config_default([launch], None).nodes}
+        for topic in ('crank', 'joint_states', 'hull_imu', 'cylinder_pressures'):
+            published = nodes['simulate_hammer'].get(topic, '')
+            self.assertTrue(published.startswith('/'), topic)
+            self.assertEqual(nodes['hammer_loads'].get(topic), published)
 
     def test_no_node_outlives_a_test_that_fails(self):
         test = ('import os, sys; sys.path.insert(0, %r); from process_rostest import NodeProcess; '
