@@ -47,16 +47,23 @@ bool StateArrays::overlap(const double* values, std::size_t length) const {
   return false;
 }
 
-ResultArrays::ResultArrays(std::vector<py::ssize_t> shape, py::object out)
-    : shape_(std::move(shape)), out_(std::move(out)) {
-  if (!out_.is_none() && !py::isinstance<py::dict>(out_)) raise({"out: must be a dictionary of arrays"});
+ResultArrays::ResultArrays(std::vector<py::ssize_t> shape, std::size_t count, py::object out)
+    : shape_(std::move(shape)), count_(count), out_(std::move(out)) {
+  if (out_.is_none()) {
+    std::vector<py::ssize_t> all = shape_;
+    all.insert(all.begin(), static_cast<py::ssize_t>(count));
+    memory_ = py::array_t<double>(all);
+  } else if (!py::isinstance<py::dict>(out_)) {
+    raise({"out: must be a dictionary of arrays"});
+  }
 }
 
 double* ResultArrays::add(const char* name) {
   using Exact = py::array_t<double, py::array::c_style>;
   Exact array;
   if (out_.is_none()) {
-    array = Exact(shape_);
+    const auto length = static_cast<std::size_t>(memory_.size()) / count_;
+    array = Exact(shape_, memory_.mutable_data() + data_.size() * length, memory_);
   } else {
     const py::dict given = out_;
     const bool there = given.contains(name) && Exact::check_(given[name]);

@@ -37,10 +37,12 @@ class StateArrays {
   std::size_t count_{1};
 };
 
-/// Arrays of one shape, by name, in the order in which they are added: new ones, or those of `out`, an earlier result.
+/// Arrays of one shape, by name, in the order in which they are added: new ones in one piece of memory, which costs a
+/// tenth of as many pieces where they are large and made again and again, or those of `out`, an earlier result.
 class ResultArrays {
  public:
-  explicit ResultArrays(std::vector<py::ssize_t> shape, py::object out = py::none());
+  /// count: of the arrays that will be added.
+  ResultArrays(std::vector<py::ssize_t> shape, std::size_t count, py::object out = py::none());
   /// ValueError where `out` has no array of this name that fits.
   double* add(const char* name);
   /// ValueError where two results, or a result and a state, share memory.
@@ -49,7 +51,9 @@ class ResultArrays {
 
  private:
   std::vector<py::ssize_t> shape_;
+  std::size_t count_;
   py::object out_;
+  py::array_t<double> memory_;
   std::vector<const double*> data_;
   py::dict arrays_;
 };

@@ -37,7 +37,7 @@ py::dict countCycles(const py::object& series, const std::optional<std::pair<dou
       cycles = life::rangesAndMeans(counter);
     }
   }
-  ResultArrays results({static_cast<py::ssize_t>(cycles.size())});
+  ResultArrays results({static_cast<py::ssize_t>(cycles.size())}, 3);
   double* range = results.add("range");
   double* mean = results.add("mean");
   double* count = results.add("count");

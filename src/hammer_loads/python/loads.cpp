@@ -140,7 +140,7 @@ py::dict wrenches(const Hammer& hammer, const py::object& angle, const py::objec
   const bool one_pitch = states.isNumber(3) || states.count() == 1;
   std::vector<double> scratch;
   const double pitch = states.count() > 0 && one_pitch ? *states.from(3, 0, 1, scratch) : 0.0;
-  ResultArrays results(states.shape(), options.out);
+  ResultArrays results(states.shape(), options.pins ? kAllColumns : kWrenchColumns.size(), options.out);
   Outputs out{};
   for (std::size_t c = 0; c < kWrenchColumns.size(); ++c) out[c] = results.add(kWrenchColumns[c]);
   for (std::size_t c = 0; options.pins && c < kPinColumns.size(); ++c)
@@ -163,10 +163,10 @@ py::dict turn(const Hammer& hammer, double speed, double step, const LoadOptions
   const TurnTable table{HullModel(hammer.mechanism(), levelOf(hammer, options.level)), speed, gravity, step,
                         options.pins};
   const std::size_t count = rowCount(table);
-  ResultArrays results({static_cast<py::ssize_t>(count)});
+  const std::array<const char*, 5> names{"crank_angle_deg", "time_s", "force_x_N", "force_z_N", "torque_y_Nm"};
+  ResultArrays results({static_cast<py::ssize_t>(count)}, names.size() + (options.pins ? kPinColumns.size() : 0));
   std::vector<double*> out;
-  for (const char* name : {"crank_angle_deg", "time_s", "force_x_N", "force_z_N", "torque_y_Nm"})
-    out.push_back(results.add(name));
+  for (const char* name : names) out.push_back(results.add(name));
   for (std::size_t c = 0; options.pins && c < kPinColumns.size(); ++c) out.push_back(results.add(kPinColumns[c]));
   {
     const py::gil_scoped_release others_may_run;

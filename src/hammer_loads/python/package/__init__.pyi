@@ -54,8 +54,8 @@ class Hammer:
         speed [rad/s], acceleration [rad/s2]: of the crank. pitch: of the hull [rad]; without it there is no weight.
         Arrays of one shape or what broadcasts to it; a nan gives nan. Returns hull_force_x_N, hull_force_z_N,
         hull_torque_y_Nm of that shape; with pins also drive_torque_y_Nm and Rij_x_N, Rij_z_N, force of link i on link j
-        (0 hull, 1 crank, 2 rod, 3 rocker). out: an earlier result, whose arrays are written over and returned; for a
-        million states new memory costs more than the loads.
+        (0 hull, 1 crank, 2 rod, 3 rocker). out: an earlier result, whose arrays are written over and returned; where
+        results are kept, new memory costs more than the loads of a million states.
         """
 
     def turn(self, speed: float = 31.416, *, step_deg: float = 1.0, pitch: Optional[float] = None,
