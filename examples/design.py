@@ -67,33 +67,53 @@ def levers_of(poses, offsets):
     return levers
 
 
-def working_turn(hammer):
-    """Hull force x, z and moment over ANGLE, of a turn whose blow gives ENERGY."""
+def links_of(hammer):
+    """Hull force x, z, moment and drive torque, and the links' inertia just before and after the blow.
+
+    Rows: the four per square of the crank's speed, the four per its acceleration, each over ANGLE; the inertias last.
+    """
     inertia = hammer.parameters["drive_inertia_kg_m2"]
+    names = ("hull_force_x_N", "hull_force_z_N", "hull_torque_y_Nm", "drive_torque_y_Nm")
 
-    def torque(angle, speed, acceleration):
-        return hammer.wrenches(angle, speed, acceleration, level="linkage", pins=True)["drive_torque_y_Nm"]
+    def loads(angle, speed, acceleration):
+        result = hammer.wrenches(angle, speed, acceleration, level="linkage", pins=True)
+        return [result[name] for name in names]
 
-    # The torque that a crank without speed needs is its inertia, that at constant speed half the inertia's slope.
-    before, after = torque(np.array([-1e-6, 1e-6]), 0.0, 1.0) + inertia
+    # The torque that a crank without speed needs is its inertia.
+    before, after = loads(np.array([-1e-6, 1e-6]), 0.0, 1.0)[3] + inertia
+    return np.array(loads(ANGLE, 1.0, 0.0) + loads(ANGLE, 0.0, 1.0) + [np.full(ANGLE.size, before),
+                                                                       np.full(ANGLE.size, after)])
+
+
+def turn_of(links, parameters):
+    """Hull force x, z and moment over ANGLE, of a turn whose blow gives ENERGY, and the part of its time at each angle."""
+    inertia = parameters["drive_inertia_kg_m2"]
     steady = ENERGY / (2.0 * np.pi)
+    by_square, by_acceleration, before, after = links[:4], links[4:8], links[8], links[9]
     at_blow = 2.0 * ENERGY / (before - after)  # square of the crank's speed
-    whole = torque(ANGLE, 0.0, 1.0) + inertia
+    whole = by_acceleration[3] + inertia
     square = (after * at_blow + 2.0 * steady * ANGLE) / whole
-    acceleration = (steady - torque(ANGLE, 1.0, 0.0) * square) / whole
-    loads = hammer.wrenches(ANGLE, np.sqrt(square), acceleration, level="linkage")
-    moment = loads["hull_torque_y_Nm"] - hammer.parameters["drive_reaction_ratio"] * inertia * acceleration
-    time = 1.0 / np.sqrt(square)  # that the crank spends at each angle
-    return loads["hull_force_x_N"], loads["hull_force_z_N"], moment, time / time.sum()
+    acceleration = (steady - by_square[3] * square) / whole
+    x, z, moment = by_square[:3] * square + by_acceleration[:3] * acceleration
+    time = 1.0 / np.sqrt(square)
+    return x, z, moment - parameters["drive_reaction_ratio"] * inertia * acceleration, time / time.sum()
+
+
+def working_turn(hammer):
+    return turn_of(links_of(hammer), hammer.parameters)
+
+
+def load_of(links, parameters, levers):
+    """N m per joule."""
+    x, z, moment, weight = turn_of(links, parameters)
+    torque = moment + levers[..., 1:] * x - levers[..., :1] * z  # pose, joint, angle
+    swing = torque - (torque * weight).sum(axis=-1, keepdims=True)
+    equivalent = ((swing ** 2) ** (0.5 * SN_SLOPE) * weight).sum(axis=-1) ** (1.0 / SN_SLOPE)
+    return np.sqrt((equivalent ** 2).mean()) / ENERGY
 
 
 def boom_load(hammer, levers):
-    """N m per joule."""
-    x, z, moment, weight = working_turn(hammer)
-    torque = moment + levers[..., 1:] * x - levers[..., :1] * z  # pose, joint, angle
-    swing = torque - (torque * weight).sum(axis=-1, keepdims=True)
-    equivalent = (abs(swing) ** SN_SLOPE * weight).sum(axis=-1) ** (1.0 / SN_SLOPE)
-    return float(np.sqrt((equivalent ** 2).mean())) / ENERGY
+    return float(load_of(links_of(hammer), hammer.parameters, levers))
 
 
 CHANGED = ("crank_length_m", "rocker_length_m", "pivot_distance_m", "rocker_com_distance_m", "rocker_com_angle_deg",
@@ -113,11 +133,27 @@ def designed(shipped, factors):
                            rod_inertia_about_com_kg_m2=old["rod_inertia_about_com_kg_m2"] * factors[5] * stretch ** 2)
 
 
+def columns_of(shipped, factors, step=1e-5):
+    """How each of factors changes links_of: hammers with this figure a little more and a little less."""
+    for change in step * np.eye(len(CHANGED)):
+        more, less = (links_of(designed(shipped, factors + sign * change)) for sign in (1.0, -1.0))
+        yield (more - less) / (2.0 * step)
+
+
+def gradient(shipped, factors, levers):
+    """Of boom_load by factors: along each column, by an imaginary step, which loses no digits."""
+    hammer, tiny = designed(shipped, factors), 1e-30j
+    links = links_of(hammer)
+    return np.array([load_of(links + tiny * column, hammer.parameters, levers).imag / tiny.imag
+                     for column in columns_of(shipped, factors)])
+
+
 def best(shipped, levers, within):
-    """The hammer with the least boom_load; gradients by differences, for the library has none by parameters."""
+    """The hammer with the least boom_load."""
     start = boom_load(shipped, levers)
     found = optimize.minimize(lambda factors: boom_load(designed(shipped, factors), levers) / start,
-                              np.ones(len(CHANGED)), method="SLSQP", bounds=[(1.0 - within, 1.0 + within)] * len(CHANGED),
+                              np.ones(len(CHANGED)), jac=lambda factors: gradient(shipped, factors, levers) / start,
+                              method="SLSQP", bounds=[(1.0 - within, 1.0 + within)] * len(CHANGED),
                               options={"ftol": 1e-7, "maxiter": 60})
     return designed(shipped, found.x)
 

@@ -105,6 +105,14 @@ class Design(unittest.TestCase):
         self.assertAlmostEqual((x * weight).sum() / abs(x).max(), 0.0, delta=5e-3)
         self.assertGreater((z * weight).sum(), 0.0)
 
+    def test_gradient_is_the_slope_of_the_load(self):
+        levers, factors = self.levers(), np.array([0.98, 1.01, 1.02, 0.97, 1.0, 1.05, 0.99])
+        told = design.gradient(self.hammer, factors, levers)
+        for key, slope, step in zip(design.CHANGED, told, 1e-3 * np.eye(len(factors))):
+            load = [design.boom_load(design.designed(self.hammer, factors + k * step), levers) for k in (-2, -1, 1, 2)]
+            self.assertAlmostEqual(slope, np.dot([1.0, -8.0, 8.0, -1.0], load) / 12e-3, delta=1e-6 * abs(told).max(),
+                                   msg=key)
+
     def test_found_design_is_better_and_keeps_the_change_point(self):
         levers = self.levers()
         found = design.best(self.hammer, levers, 0.05)
