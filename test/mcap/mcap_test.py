@@ -69,6 +69,7 @@ class Mcap(unittest.TestCase):
         self.assertTrue(sorted(rows, key=key) == sorted(expected, key=key))
         self.assertEqual({c["topic"]: (c["type"], c["metadata"]["md5sum"], c["metadata"].get("latching") == "true")
                           for c in head["channels"]}, connections)
+        self.assertEqual({tuple(c["encodings"]) for c in head["channels"]}, {("ros1", "ros1msg")})
         self.assertTrue(any(latched for _, _, latched in connections.values()))
 
     def test_overwriting(self):
