@@ -10,7 +10,10 @@ namespace {
 
 constexpr std::size_t kLongestLimit = 256;  // more than a cylinder's name has
 
-void copy(const JointVector& from, std::vector<double>& to) { std::copy(from.begin(), from.end(), to.begin()); }
+// Vectors of Eigen 3.3 have no begin() and end().
+void copy(const JointVector& from, std::vector<double>& to) { std::copy_n(from.data(), from.size(), to.begin()); }
+
+void assign(const JointVector& from, std::vector<double>& to) { to.assign(from.data(), from.data() + from.size()); }
 
 void copy(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
   to.x = from.x(), to.y = from.y(), to.z = from.z();
@@ -120,9 +123,9 @@ void fillVibration(const BoomFollower& follower, BoomVibration& message) {
   copy(state.tip.displacement.head<3>(), message.displacement_m);
   copy(state.tip.displacement.tail<3>(), message.rotation_rad);
   copy(state.tip.acceleration.head<3>(), message.acceleration_m_s2);
-  message.natural_frequency_Hz.assign(state.frequency.begin(), state.frequency.end());
-  message.natural_frequency_deviation_Hz.assign(state.frequency_deviation.begin(), state.frequency_deviation.end());
-  message.damping_ratio.assign(state.damping.begin(), state.damping.end());
+  assign(state.frequency, message.natural_frequency_Hz);
+  assign(state.frequency_deviation, message.natural_frequency_deviation_Hz);
+  assign(state.damping, message.damping_ratio);
   message.identified = state.identified;
   message.reduced_mass_kg = state.reduced.mass;
   message.reduced_stiffness_N_m = state.reduced.stiffness;
