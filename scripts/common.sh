@@ -56,7 +56,7 @@ missingPackages() {
 }
 
 installMissing() {
-  command -v dpkg-query > /dev/null || fail "needs Debian 12, or Ubuntu with ROS Noetic under /opt/ros"
+  command -v dpkg-query > /dev/null || fail "needs Debian 12 or 13, or Ubuntu with ROS Noetic under /opt/ros"
   local missing
   missing=$(missingPackages "$package_list")
   [ -z "$missing" ] && return 0
