@@ -1,16 +1,29 @@
-"""Hand-set constants of the rooms that estimate, found in their source: for scripts/sensitivity and test/doc."""
+"""Hand-set constants of the rooms that estimate, found in their source: for scripts/sensitivity and test/doc.
+
+Each is of one class, by what is to be asked of it:
+  tuned      an estimate depends on it; a test notices half or double: // Guard: Suite.Test of kName
+  limit      beyond it a reading or a file is refused, far from all that a machine has, so that no estimate depends on
+             it; its test says where it refuses: // Limit: Suite.Test of kName
+  numerical  a step, tolerance or rounding of the arithmetic: results are the same with half and with double, so that
+             no test may notice: // Numerical: kName
+  size       a dimension at compile time
+A factor 0.5, 1 or 2 of other constants is mathematics.
+"""
 import collections
 import pathlib
 import re
 
-ROOMS = ("crank", "boom", "pipeline")
+ROOMS = ("estimation", "crank", "boom", "pipeline")
 _NUMBER = re.compile(r"(?<![\w.\]])(?:\d[\d']*\.?\d*(?:[eE][-+]?\d+)?)(?![\w.])")
 _UNIT = re.compile(r"kTwoPi / 360\.0|360\.0 / kTwoPi|60\.0 / kTwoPi")
 _STATEMENT = re.compile(
     r"^([ ]*)((?:static |inline )*constexpr )((?:const )?(?:double|int|std::size_t|std::u?int64_t|Doubt|SwingLimits) )"
     r"(k[A-Z]\w*[^;()]*?(?:\([^;]*?\)[^;()]*?)*);", re.M)
 _DEFAULT = re.compile(r"^([ ]+)(double|int|std::size_t) ([a-z][a-z0-9_]*[a-z0-9])\{([^{};\n]+)\};", re.M)
-_GUARD = re.compile(r"// Guard: ([\w/]+\.[\w/]+) of ((?:\w+(?:,\s+(?://+ )?)?)+)")
+_NAMES = r"((?:\w+(?:,\s+(?://+ )?)?)+)"
+_GUARD = re.compile(r"// (Guard|Limit): ([\w/]+\.[\w/]+) of " + _NAMES)
+_NUMERICAL = re.compile(r"// Numerical: " + _NAMES)
+_MATHEMATICS = {0.5, 1.0, 2.0}
 
 
 # begin, end: of the names and values of one statement; words: where its `constexpr` begins, and ends
@@ -18,10 +31,10 @@ Head = collections.namedtuple("Head", "begin end kind type words")
 
 
 class Constant:
-    """One name. spans: where its numbers stand in the text of its file."""
+    """One name. spans: where its numbers stand in the text of its file; kind: as above, but for sizes."""
 
     def __init__(self, path, text, name, spans, head):
-        self.path, self.name, self.spans, self.head, self.guard = path, name, spans, head, None
+        self.path, self.name, self.spans, self.head, self.guard, self.kind = path, name, spans, head, None, "tuned"
         self.line = text.count("\n", 0, spans[0][0]) + 1
         self.value = ", ".join(text[a:b].strip() for a, b in spans)
 
@@ -71,6 +84,8 @@ def constants_of(path):
             value = re.compile(r"(?:\[\w*\])?\s*=?\s*").match(code, begin).end()
             if not _NUMBER.search(code, value, end) or _UNIT.fullmatch(code[value:end].strip()) or code[value:end] == "0":
                 continue  # made of others, or nothing to double
+            if re.search(r"\bk[A-Z]\w*", code[value:end]) and _numbers(code[value:end]) <= _MATHEMATICS:
+                continue
             spans = [(value, end)]
             if code[value] == "{":
                 spans = [m.span() for m in _NUMBER.finditer(code, value, end)]
@@ -80,15 +95,22 @@ def constants_of(path):
             if _NUMBER.search(default.group(4)) and float(_number(default.group(4))) not in (0.0, 1.0):
                 head = Head(default.start(3), default.end(), "default", default.group(2), None)
                 found.append(Constant(path, code, default.group(3), [default.span(4)], head))
-    for guard, names in _GUARD.findall(text):
-        for constant in found:
-            if constant.name in re.findall(r"\w+", names):
-                constant.guard = guard
+    named = lambda names: [constant for constant in found if constant.name in re.findall(r"\w+", names)]
+    for word, guard, names in _GUARD.findall(text):
+        for constant in named(names):
+            constant.guard, constant.kind = guard, "tuned" if word == "Guard" else "limit"
+    for names in _NUMERICAL.findall(text):
+        for constant in named(names):
+            constant.kind = "numerical"
     return sorted(found, key=lambda constant: constant.spans)
 
 
 def _number(text):
     return _NUMBER.search(text).group().replace("'", "")
+
+
+def _numbers(text):
+    return {float(number.group().replace("'", "")) for number in _NUMBER.finditer(text)}
 
 
 def sources(root):
@@ -120,7 +142,7 @@ def _includes(code_of):
 
 
 def all_constants(root):
-    """(tuned, sizes)"""
+    """(all but sizes, sizes)"""
     code_of = {path: without_comments(path.read_text()) for path in sources(root)}
     seen = _includes(code_of)
     tuned, sizes = [], []

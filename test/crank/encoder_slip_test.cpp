@@ -73,5 +73,13 @@ TEST(EncoderSlip, NorWhatTheTorqueCanDo) {
   EXPECT_EQ(slip.follow(0.035, kVariance, 0.04, 1.0, true), Step::kNone);
 }
 
+/// Half a turn further the sensor is another one.
+TEST(EncoderSlip, NorIsASensorThatIsSomewhereElse) {
+  for (const double step : {0.4, 0.625}) {
+    EncoderSlip slip = quiet();
+    EXPECT_EQ(slip.follow(step, kVariance, kByTorque, 1.0, true), step < 0.5 ? Step::kPerhaps : Step::kNone) << step;
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -90,5 +90,22 @@ TEST(LearnedNumbers, TheBlowsOfTenTurns) {
   expectAbout(1.0 - blows.prior().mean, 0.1 / 10.1);
 }
 
+/// A wrong first guess of the inertia passes for jitter: until 60 samples have come a large innovation counts as two
+/// deviations, later as three.
+TEST(LearnedNumbers, TheFirstSixtySamplesShowLittleJitter) {
+  constexpr double kOfStamps = 1e-6, kSpeed = 30.0, kOther = 1e-6;  // [s2], [rad/s], [rad2]
+  constexpr double kTotal = kOther + kSpeed * kSpeed * kOfStamps;
+  for (const int samples : {48, 75}) {
+    TimingNoise noise(std::sqrt(kOfStamps));
+    const double size = std::sqrt(0.5 * kTotal);
+    for (int i = 1; i < samples; ++i)  // that stamps jitter shows in the first one
+      noise.learn(i % 2 == 0 ? size : -size, i == 1 ? 0.99 * kTotal : kTotal, kSpeed);
+    const double before = noise.variance();
+    noise.learn(1.0, kTotal, kSpeed);
+    const double counts = (noise.variance() - before) * kSpeed * kSpeed / kTotal * (samples + 50.0);
+    expectAbout(counts, samples < 60 ? 4.0 - 1.0 : 9.0 - 1.0);
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

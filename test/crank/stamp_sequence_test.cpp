@@ -210,5 +210,83 @@ TEST(StampSequence, HeaderStampsAreHeldToTheirOrder) {
   EXPECT_EQ(sequence.place(kStart + kMs - 1, Repeats::kNo).kind, Kind::kOutOfOrder);
 }
 
+/// Each hundredth message comes late: after seven more than five of the last thousand have.
+TEST(StampSequence, IsRefittedWhereMoreThanFiveOfAThousandChangePlaces) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  std::mt19937 random(2);
+  int samples = 0;
+  for (; samples < 5000 && !sequence.isSteady(); ++samples) {
+    const int late = samples % 100 == 50 ? 2 : 0, jitter = static_cast<int>(random() % 100000);
+    sequence.place(kStart + (samples - late) * kMs + jitter, Repeats::kNo);
+  }
+  EXPECT_GT(samples, 600);
+  EXPECT_LT(samples, 900);
+}
+
+TEST(StampSequence, OneStampThatRepeatsIsNoBurstYet) {
+  StampSequence sequence(CrankStamps::kAuto, 0.25);
+  for (int i = 0; i < 4; ++i) sequence.place(kStart + i * kMs, Repeats::kNo);
+  EXPECT_EQ(sequence.place(kStart + 3 * kMs, Repeats::kNo).kind, Kind::kPlaced);
+  EXPECT_EQ(sequence.place(kStart + 4 * kMs, Repeats::kNo).kind, Kind::kPlaced);
+  EXPECT_EQ(sequence.place(kStart + 4 * kMs, Repeats::kNo).kind, Kind::kDuplicate);
+}
+
+/// Bursts of ten whose stamps wander slowly: a clock by a tenth of the time between them.
+TEST(SteadyClockFit, ExplainsBurstsThatComeRegularly) {
+  for (const double part : {0.075, 0.135}) {
+    SteadyClockFit fit;
+    fit.begin(kStart);
+    for (int i = 1; i < 20000; ++i) {
+      const double wander = std::sqrt(2.0) * part * 10.0 * std::sin(0.3 * (i / 10));
+      fit.add(kStart + static_cast<std::int64_t>((10 * (i / 10) + wander) * static_cast<double>(kMs)));
+    }
+    EXPECT_NEAR(fit.scatter() / (10.0 * static_cast<double>(kMs)), part, 0.012);
+    EXPECT_EQ(fit.explains(), part < 0.1) << part;
+  }
+}
+
+/// Every other stamp is early by a fifth of an interval, every other late.
+class EvenClock {
+ public:
+  explicit EvenClock(int samples) {
+    fit_.begin(kStart);
+    for (int i = 1; i < samples; ++i) add(i, i % 2 == 0 ? 0.2 : -0.2);
+    next_ = samples;
+  }
+  /// The next stamp, so many intervals late.
+  SteadyClockFit next(double late) const {
+    EvenClock other = *this;
+    other.add(next_, late);
+    return other.fit_;
+  }
+  void goOn(int samples, double interval) {
+    double at = next_;
+    for (int i = 0; i < samples; ++i) add(at += interval, 0.0);
+  }
+  const SteadyClockFit& fit() const { return fit_; }
+
+ private:
+  void add(double at, double late) {
+    fit_.add(kStart + static_cast<std::int64_t>((at + late) * static_cast<double>(kMs)));
+  }
+  SteadyClockFit fit_;
+  int next_{};
+};
+
+/// Odds of 20 to 1 by their scatter.
+TEST(SteadyClockFit, AStampInItsPlaceContradictsALoss) {
+  const EvenClock clock(2001);
+  EXPECT_NEAR(clock.fit().scatter(), 0.2 * static_cast<double>(kMs), 0.01 * static_cast<double>(kMs));
+  EXPECT_TRUE(clock.next(0.33).contradictsLoss());
+  EXPECT_FALSE(clock.next(0.42).contradictsLoss());
+}
+
+/// A quarter of the drift after 1500 samples of a line through 4096.
+TEST(SteadyClockFit, FollowsAClockThatDriftsWithinFourThousandSamples) {
+  EvenClock clock(30000);
+  clock.goOn(1500, 1.0001);
+  EXPECT_NEAR((clock.fit().interval() / static_cast<double>(kMs) - 1.0) / 1e-4, 0.25, 0.1);
+}
+
 }  // namespace
 }  // namespace hammer_loads

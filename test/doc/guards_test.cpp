@@ -1,5 +1,5 @@
-// Tests that tuned constants name as their guards: `// Guard: Suite.Test of kName, kName`. Whether they notice is asked
-// by scripts/sensitivity.
+// Tests that constants name as their guards: `// Guard: Suite.Test of kName, kName`, of limits `// Limit: ...`. Whether
+// they notice is asked by scripts/sensitivity.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -35,7 +35,7 @@ TEST(Guards, AreTests) {
   const std::set<std::string> tests =
       namesBelow(kGuardRoot / "test", std::regex("TEST(?:_[FP])?\\((\\w+),\\s*(\\w+)\\)"));
   const std::set<std::string> guards =
-      namesBelow(kGuardRoot / "src", std::regex("// Guard: (?:\\w+/)?(\\w+)\\.(\\w+)"));
+      namesBelow(kGuardRoot / "src", std::regex("// (?:Guard|Limit): (?:\\w+/)?(\\w+)\\.(\\w+)"));
   ASSERT_GT(guards.size(), 10U);
   for (const std::string& guard : guards) EXPECT_EQ(tests.count(guard), 1U) << guard;
 }

@@ -33,6 +33,7 @@ class StrikingCrank {
   double acceleration() const { return rate(offset_, speed_); }
   CrankAngle crankAngle() const { return {offset_, before_ ? Side::kBeforeBlow : Side::kAfterBlow}; }
   int blows() const { return blows_; }
+  double time() const { return time_; }
   double blowTime() const { return blow_time_; }
   double speedBefore() const { return speed_before_; }
 

@@ -13,6 +13,7 @@ constexpr double kMostAtBlow = 6.0;  // squared distance of five variables: 9 of
 
 constexpr double kWeighing = 0.1, kSmoothedRounding = 1e-6;
 // Guard: SmoothedRuns.StampsThatJitterWeighLess of kWeighing
+// Numerical: kSmoothedRounding
 
 /// Beliefs that a step of the model joins, and how.
 struct Joined {

@@ -10,8 +10,11 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kDecided = 12.0;  // logarithm of odds at which the less likely belief is given up
-constexpr double kChange = 9.0;    // as above at which the other one becomes the estimate
-constexpr double kMostFit = 8.0;   // as above that one sample may add: it may be an outlier
+// Guard: Rival.IsGivenUpAtAHundredThousandToOne of kDecided
+constexpr double kChange = 9.0;  // as above at which the other one becomes the estimate
+// Guard: Rival.IsBelievedAtEightThousandToOne of kChange
+constexpr double kMostFit = 8.0;  // as above that one sample may add: it may be an outlier
+// Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kMostFit
 
 }  // namespace
 

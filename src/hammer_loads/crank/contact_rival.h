@@ -16,7 +16,7 @@ class ContactRival {
   void drop() noexcept { belief_.reset(); }
   bool isThere() const noexcept { return belief_.has_value(); }
   /// The estimate is clearly more likely of the wrong branch than not.
-  bool isDoubtful() const noexcept { return belief_ && evidence_ > kDoubt; }
+  bool isDoubtful() const noexcept { return belief_ && evidence_ > odds::kLikely; }
   /// Only where it is there.
   CrankBelief& belief() noexcept { return *belief_; }
 
@@ -28,8 +28,8 @@ class ContactRival {
   bool choose(CrankBelief& estimate, bool& mirrored) noexcept;
 
  private:
-  static constexpr double kDoubt = 2.0;                             // logarithm of its odds
   static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
+  // Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kTurnsWith, kTurnsWithout
 
   std::optional<CrankBelief> belief_;
   double evidence_{};                                             ///< logarithm of its odds against the estimate

@@ -13,8 +13,11 @@ namespace {
 
 constexpr double kLeastFactor = 0.01;  // of a blow; the crank is not thrown back
 constexpr double kMostFactor = 4.0;
-constexpr double kMostDoubt = 1.0;     // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
+// Guard: BeliefBounds.OfABlowsFactor of kLeastFactor, kMostFactor
+constexpr double kMostDoubt = 1.0;  // deviation of a blow's factor: those of restitution 0 to 0.3 differ by 0.6
+// Guard: BeliefBounds.OfABlowThatIsUnlikeTheOthers of kMostDoubt
 constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothing strikes any more
+// Guard: BeliefBounds.OfADeadCentreWhereNothingStrikes of kTightFactor
 
 /// drawn: the factor is another one than before.
 void extend(const ShaftTransition& f, bool drawn, ShaftMatrix* transition) noexcept {
@@ -186,6 +189,7 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
   const ShaftState& state = belief.state;
   const double inv = 1.0 / (state.drive_inertia + load.inertia), here = acceleration(load, state);
   constexpr double kStep = 1e-6;  // [rad]: error 1e-6 by curvature, 1e-9 by rounding, both relative
+  // Numerical: kStep
   CrankAngle beside = state.position.angle;
   beside.offset += kStep;
   Eigen::RowVector4d by;  // the acceleration's derivatives

@@ -11,20 +11,29 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kDoubtfulAngle = 0.3;    // [rad] predicted deviation from which on the prediction is worth nothing
-constexpr double kKick = 0.35;            // of the speed: what no torque changes between two samples
-constexpr double kLeastInertia = 0.1;     // of the first guess: no drawing is further off
-constexpr double kMostInertia = 1000.0;   // times the first guess: a crank held at constant speed looks that heavy
-constexpr double kRelearn = 0.05;         // relative deviation of the inertia after what it cannot explain
-constexpr double kMostTorque = 3.0;       // times its first deviation: more is what a bad sample left behind
-constexpr double kSoundSpeeds = 2.0;      // times the largest plausible speed: more is a diverged filter
+constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
+// Guard: FilterTrouble.OfAPredictionThatIsWorthNothing of kDoubtfulAngle
+constexpr double kKick = 0.35;  // of the speed: what no torque changes between two samples
+// Guard: CrankFilterTest.AKickThatNoTorqueGivesIsAnOutlierHoweverSmall of kKick
+constexpr double kLeastInertia = 0.1;    // of the first guess: no drawing is further off
+constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held at constant speed looks that heavy
+constexpr double kRelearn = 0.05;        // relative deviation of the inertia after what it cannot explain
+// Guard: FilterAtWork.LeavesRoomToLearnTheInertiaAnew of kRelearn
+constexpr double kMostTorque = 3.0;  // times its first deviation: more is what a bad sample left behind
+// Guard: FilterTrouble.ATorqueThatNoDriveHasIsGivenUpWithTheRest of kMostTorque
+constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: more is a diverged filter
+// Guard: FilterTrouble.WhatItLearnsStaysWithinWhatAMachineMayHave of kLeastInertia, kMostInertia, kSoundSpeeds
 constexpr int kOneSided = 3;              // innovations in a row beyond 5 deviations: no jitter of stamps
 constexpr int kOneSidedLost = 10;         // the same where readings made no sense: they do again, elsewhere
 constexpr double kSurpriseLength = 50.0;  // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;    // of them: more than a supply's jolts
-constexpr double kSlip = 3e-3;            // [s]: stamps that are off by so much, again and again alike
-constexpr double kForgetRestarts = 2.0;   // [s]
-constexpr double kForgetDoubts = 30.0;    // [s]
+// Guard: FilterTrouble.SurprisesAreForgottenWithinFiftySamples of kSurpriseLength, kManySurprises
+constexpr double kSlip = 3e-3;  // [s]: stamps that are off by so much, again and again alike
+// Guard: CrankFilterTest.ASpeedThatSaysNothingDoesNoHarm of kSlip
+constexpr double kForgetRestarts = 2.0;  // [s]
+// Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kOneSided, kForgetRestarts
+constexpr double kForgetDoubts = 30.0;  // [s]
+// Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kForgetDoubts
 
 }  // namespace
 

@@ -18,6 +18,7 @@
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/timing_noise.h"
+#include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/crank/weighed_sample.h"
 
 namespace hammer_loads {
@@ -38,6 +39,7 @@ struct CrankFilterSettings {
   double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
   ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
   double blow_deviation{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
+  // Guard: FilterTrouble.TheFirstGuessOfABlowHoldsAnyTool of blow_deviation
 };
 
 /// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
@@ -113,7 +115,8 @@ class CrankFilter final : public CrankTracker {
   /// Whether measured speeds are taken up, and why not.
   const SpeedTrust& speedTrust() const noexcept { return speed_trust_; }
   double timingNoise() const noexcept { return timing_.deviation(); }  ///< of stamps, identified [s]
-  bool isProven() const noexcept override { return consistency() < kAgrees; }
+  /// A crank in degrees, which is followed as well as may be, gives 8 to 40.
+  bool isProven() const noexcept override { return consistency() < mismatch::kContradicts; }
   /// Mean of innovation^2 over its variance of the last some 500 samples; NaN before 200.
   double consistency() const noexcept override { return consistency_.mean(); }
   double strikeConsistency() const noexcept override { return strike_consistency_.mean(); }
@@ -131,11 +134,13 @@ class CrankFilter final : public CrankTracker {
   bool isUnexplained() const noexcept { return doubt_load_ > kOftenDoubted; }
 
  private:
-  static constexpr double kLearnSpeed = 5.0;  ///< [rad/s]: a slower crank is moved by friction and stopped by the tool
+  static constexpr double kLearnSpeed = kSlowCrank;
   static constexpr double kToolSeen = gate::kVeryRare;  ///< shows a tool
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
-  static constexpr double kJump = 0.5;    ///< [rad]: an innovation that no working machine makes between two samples
-  static constexpr double kAgrees = 4.0;  ///< a crank in degrees, which is followed as well as may be, gives 8 to 40
+  // Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kLost
+  // Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kOftenDoubted
+  static constexpr double kJump = 0.5;  ///< [rad]: an innovation that no working machine makes between two samples
+  // Guard: FilterTrouble.OfAReadingThatNoWorkingMachineGives of kJump
 
   /// The last two and the step between them.
   BetweenSamples lastStep() const noexcept {

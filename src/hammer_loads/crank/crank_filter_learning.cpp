@@ -10,8 +10,8 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kUnexplained = 3.0;   // mean innovation^2 over its variance
 constexpr double kUnlearnEvery = 3.0;  // [s]
+// Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kUnlearnEvery
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void CrankFilter::learnFrom(const Innovation& innovation, double ratio) noexcept
 /// (10) A machine that is not explained for seconds may have been learned wrong while the stamps' jitter was not known.
 void CrankFilter::doubtInertia(double dt) noexcept {
   unlearn_after_ -= dt;
-  if (!(consistency_.growth() > kUnexplained) || unlearn_after_ > 0.0) return;
+  if (!(consistency_.growth() > mismatch::kUnexplained) || unlearn_after_ > 0.0) return;
   unlearn_after_ = kUnlearnEvery;
   doubt_load_ += 1.0;
   forgetInertia();

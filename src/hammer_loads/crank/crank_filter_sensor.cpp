@@ -12,13 +12,15 @@ using Belief = CrankBelief;
 
 constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
 constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
-constexpr double kLagTakenOff = 1e-3;      // [s]: an encoder that is eccentric by 0.4 deg looks like half of it
-constexpr double kNotSlip = 0.04;          // [rad] from the blow: there the tool stops and throws the crank
-constexpr double kPartOfInterval = 0.3;    // of one: what a reading ahead by whole ones may miss them by
-constexpr double kBeganOfLate = 0.5;       // beginnings of late: some 1.4 s after a single one
-constexpr double kStrikeBegins = 0.6;      // [rad] before the blow: a rod that gives is calm until there
-constexpr double kRodMoves = 0.017;        // [rad] of a reading at most, there: worn pins, a rod that was learned
+// Guard: FilterAtWork.LearnsTheNoiseOfSpeedsWithinTwoHundredSamples of kSpeedNoiseGain, kLeastSpeedNoise
+constexpr double kLagTakenOff = 1e-3;  // [s]: an encoder that is eccentric by 0.4 deg looks like half of it
 // Guard: SensorColumns.AnEccentricEncoderIsNoLagToTakeOff of kLagTakenOff
+constexpr double kNotSlip = 0.04;  // [rad] from the blow: there the tool stops and throws the crank
+// Guard: SensorColumns.ASlipIsAStepAtItsInstant of kNotSlip
+constexpr double kBeganOfLate = 0.5;  // beginnings of late: some 1.4 s after a single one
+// Guard: FilterAtWork.JudgesNoSpeedsJustAfterABeginning of kBeganOfLate
+constexpr double kStrikeBegins = 0.6;  // [rad] before the blow: a rod that gives is calm until there
+constexpr double kRodMoves = 0.017;    // [rad] of a reading at most, there: worn pins, a rod that was learned
 // Guard: RodWarnings.ARightSensorIsNotBlamedForARodThatGives of kStrikeBegins, kRodMoves
 
 }  // namespace
@@ -117,9 +119,8 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
 double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
   const double speed = now_.encoderSpeed();
   if (!(interval_ > 0.0) || std::abs(speed) < kLearnSpeed || !innovation.exceeds(gate::kImpossible)) return 0.0;
-  const double intervals = innovation.value / (speed * interval_);
-  if (intervals < 1.0 - kPartOfInterval || std::abs(innovation.value) > kJump) return 0.0;
-  const double whole = std::nearbyint(intervals);
+  const double intervals = innovation.value / (speed * interval_), whole = std::nearbyint(intervals);
+  if (whole < 1.0 || std::abs(innovation.value) > kJump) return 0.0;
   const double rest = (intervals - whole) * speed * interval_;
   return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
 }

@@ -64,6 +64,7 @@ class Encoder {
   // Guard: EncoderCount.IsReadOffTheReadings of kFinest
   static constexpr double kMultipleTolerance = 1e-3;  // of a count; single-precision sensors round by 4e-4 of 2 pi/4096
   static constexpr int kEnough = 2;
+  // Guard: EncoderCount.TwoReadingsThatFitNothingAreOfAFinerSensor of kEnough
   static constexpr double kSame = kMultipleTolerance * kFinest;
   static constexpr int kEnoughStrays = 4;
   // Guard: EncoderCount.OutlivesAReadingThatFitsNothing of kEnoughStrays

@@ -55,6 +55,7 @@ class EncoderSlip {
 
  private:
   static constexpr double kMost = 0.5;  // [rad]: beyond it the sensor is another one, and the estimate begins anew
+  // Guard: EncoderSlip.NorIsASensorThatIsSomewhereElse of kMost
   static constexpr double kSame = 0.4;  // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kShortest = 0.6, kLongest = 1.5;  // of the step before
   static constexpr int kTurnsToTell = 5;                    // as many as a supply takes to be known

@@ -15,7 +15,9 @@ using Joint = GaussianBelief<kFlexibleVariables, ConstantErrors::kSize>;
 
 constexpr double kMostStiffnessChange = 0.1;  // of a logarithm by one sample
 constexpr double kMostLogStiffness = 1.4;     // a factor of two of the frequency either way
-constexpr double kMostTwist = 1.0;            // [rad]: more is a diverged filter
+// Guard: FlexibleBounds.OfTheCouplingsStiffness of kMostStiffnessChange, kMostLogStiffness
+constexpr double kMostTwist = 1.0;  // [rad]: more is a diverged filter
+// Guard: FlexibleBounds.OfTheTwist of kMostTwist
 
 Joint joint(const Belief& b) noexcept {
   Joint all;
@@ -76,6 +78,7 @@ struct AccelerationSlopes {
 
 AccelerationSlopes accelerationSlopes(const ShaftModel& model, const ShaftState& state) noexcept {
   constexpr double kStep = 1e-5;  // [rad]
+  // Numerical: kStep
   const ShaftLoad load = model(state.position.angle);
   const CouplingLaw law = lawOf(*model.coupling(), state);
   const double inv = 1.0 / (law.crank_inertia + load.inertia), e = acceleration(model, load, state);

@@ -28,8 +28,9 @@ class RodEvidence {
     if (at.offset > kRungOut) later_.add(bounded);
   }
   /// Standard deviation of a reading from which on it shows no rod [rad]: through noise beyond it the sensor's place is
-  /// taken for the rod's stiffness. Guarded by ElasticSession.ReadingsTooCoarseForARodLeaveLinkage.
+  /// taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
+  // Guard: RodEvidence.ReadingsWithoutExcessLeaveARingLittleRoom of kCoarsest
   /// Mean while the rod picks the rocker up, and when it has rung out [-].
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }
@@ -41,14 +42,16 @@ class RodEvidence {
     return std::clamp((pickedUp() - 1.0 + doubt) / kLeastExcess, 0.0, 1.0);
   }
   bool gives() const noexcept {
-    return picked_up_.count() > kEnough && pickedUp() > kGives && pickedUp() - 1.0 > kShare * (later() - 1.0);
+    return picked_up_.count() > kEnough && pickedUp() > mismatch::kSeen && pickedUp() - 1.0 > kShare * (later() - 1.0);
   }
 
  private:
   static constexpr double kLeastExcess = 3.0;  ///< above 1, of any rod whose ring readings show
+  // Guard: RodEvidence.ReadingsWithoutExcessLeaveARingLittleRoom of kLeastExcess
   static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;  ///< behind the blow
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
-  static constexpr double kGives = 2.0, kShare = 5.0;
+  static constexpr double kShare = 5.0;
+  // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kPickedUp, kRungOut, kEnough, kShare
   RunningMean<> picked_up_{400.0}, later_{1200.0};  ///< some 20 turns at 1 kHz
 };
 

@@ -11,16 +11,24 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kFirstRestitution = 0.16, kRestitutionDeviation = 0.1;
-constexpr double kPlaceDeviation = 5e-3;                                // [rad]: a millimetre
-constexpr double kWalks[] = {0.02, 0.005, 0.01, 5e-6, 3e-3};            // of the learned rows from blow to blow
+constexpr double kPlaceDeviation = 5e-3;  // [rad]: a millimetre
+// Guard: RodFilterStart.KnowsToolAndRodAsFarAsTheyAreGiven of kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
+constexpr double kWalks[] = {0.02, 0.005, 0.01, 5e-6, 3e-3};  // of the learned rows from blow to blow
+// Guard: RodFilterStart.WhatItLearnsWandersFromBlowToBlow of kWalks
 constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
+// Guard: RodFilterStart.ARodIsNeitherOfRubberNorOfDiamond of kLeastLog, kMostLog
 constexpr double kLongest = 2.5e-4, kLongestLater = 5e-4;  // [s] of a part: near the blow the lever changes fast
-constexpr double kNear = 0.25;                             // [rad]
+// Numerical: kLongest, kLongestLater
+constexpr double kNear = 0.25;  // [rad]
+// Numerical: kNear
 constexpr double kAngleDoubt = 1e-4, kSpeedDoubt = 0.02, kInertiaDoubt = 0.01;  // of a rigid rod's filter
-constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;                        // [rad], [rad/s]
-constexpr double kUnmodelled = 1.0;                                             // [rad/s/sqrt(s)] of the rocker's speed
+// Guard: RodFilterStart.ARigidRodsFilterIsDoubtedALittle of kAngleDoubt, kSpeedDoubt, kInertiaDoubt
+constexpr double kSettledX = 3e-5, kSettledSpeed = 0.02;  // [rad], [rad/s]
+// Guard: RodFilterStart.ARodAtRestRingsALittle of kSettledX, kSettledSpeed
+constexpr double kUnmodelled = 1.0;  // [rad/s/sqrt(s)] of the rocker's speed
+// Guard: RodFilterStart.TheRockersSpeedIsDoubtedByWhatTheModelLacks of kUnmodelled
 constexpr int kEnough = 8;
-constexpr double kAgrees = 2.0, kContradicts = 4.0;  // mean innovation^2 over its variance
+// Guard: RodFilterStart.IsProvenByEightSamplesAcrossABlow of kEnough
 
 }  // namespace
 
@@ -154,7 +162,7 @@ bool RodFilter::take(const WeighedSample& sample) noexcept {
   fit_ -= 0.5 * (square(innovation) / total + std::log(total));
   ++samples_;
   if (!std::isfinite(ratio_sum_) || exceeds(innovation, growth() * total, gate::kImpossible)) return false;
-  if (samples_ >= kEnough && growth() > kContradicts) return false;
+  if (samples_ >= kEnough && growth() > mismatch::kContradicts) return false;
   motion_ = displaced(belief_.correct(kAngle, variance, Belief::ConstantRow()) * innovation);
   motion_.restitution = std::clamp(motion_.restitution, 0.0, 1.0);
   motion_.log_stiffness = std::clamp(motion_.log_stiffness, kLeastLog[0], kMostLog[0]);
@@ -170,7 +178,8 @@ RodFilter::Belief::Matrix RodFilter::errors() const noexcept {
 
 void RodFilter::learn() noexcept {
   running_ = false;
-  proven_ = samples_ >= kEnough && hasStruck() && std::isfinite(ratio_sum_) && belief_.isSound() && growth() < kAgrees;
+  proven_ = samples_ >= kEnough && hasStruck() && std::isfinite(ratio_sum_) && belief_.isSound() &&
+            growth() < mismatch::kSeen;
   learned_ = proven_ ? motion_ : first_;
   learned_covariance_ =
       proven_ ? Learned(belief_.covariance.bottomRightCorner<kLearned, kLearned>()) : first_covariance_;

@@ -11,17 +11,21 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kSpeedTurns = 30.0;  // of lag and scale: some 6 s at work
-constexpr double kMostLag = 0.1;      // [s]: more is no filter of a drive that is controlled by it
 constexpr double kMostScale = 0.5;
 constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
 constexpr double kNotableScale = 0.01;  // likewise
 constexpr double kReleased = 0.5;       // of these and of the deviations: where what was seen is given up
-constexpr double kLeastSquare = 1e-4;   // of a residual, over that expected: no reading is a hundred times better
-constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
-constexpr double kMostOfOne = 0.999;    // of a correlation
+// Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kReleased
+constexpr double kLeastSquare = 1e-4;  // of a residual, over that expected: no reading is a hundred times better
+constexpr double kLeastTurns = 1.5;    // more than one: how far they scatter
+// Guard: SpeedTrust.KnowsAfterFiveTurns of kLeastTurns
+constexpr double kMostOfOne = 0.999;  // of a correlation
 // Guard: SpeedTrust.AnEvenSpeedWithoutNoiseSaysNothing of kLeastSquare
-// Guard: SpeedTrust.FindsTheLagOfAFilterWithItsDeviation of kSpeedTurns, kNotableLag, kMostLag
-// Guard: SpeedTrust.FindsAScaleApartFromALag of kNotableScale, kMostScale
+// Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kNotableLag
+// Guard: SpeedTrust.KnowsAsMuchAsThirtyTurnsShow of kSpeedTurns
+// Guard: SpeedTrust.FindsNoMoreThanAnyDriveHas of kMostScale
+// Guard: SpeedTrust.NamesAScaleFromAHundredthOn of kNotableScale
+// Numerical: kMostOfOne
 
 bool isSeen(double amount, double notable, double deviation, bool before) noexcept {
   const double part = before ? kReleased : 1.0;
@@ -65,7 +69,7 @@ void SpeedTrust::follow(double dt, const Witness& now) noexcept {
 
 /// The turn counts by what its own best fit leaves, so that one in which the estimate was lost counts little.
 void SpeedTrust::endTurn() noexcept {
-  constexpr int kFitted = 2;  // lag and scale
+  constexpr int kFitted = decltype(deviation_)::RowsAtCompileTime;  // lag and scale
   if (count_ <= 2 * kFitted) return;
   ++turns_;
   const Eigen::Matrix2d prior = Eigen::Vector2d(1.0 / square(kLag), 1.0 / square(kScale)).asDiagonal();
@@ -89,7 +93,7 @@ void SpeedTrust::endTurn() noexcept {
   const double share = 1.0 / std::max(1.0, beyond);
   const Eigen::Matrix2d covariance = (prior + share * information_).inverse();
   const Eigen::Vector2d now(lag_, scale_), found = now + covariance * (share * score_ - prior * now);
-  lag_ = std::clamp(found[0], -kMostLag, kMostLag), scale_ = std::clamp(found[1], -kMostScale, kMostScale);
+  lag_ = found[0], scale_ = std::clamp(found[1], -kMostScale, kMostScale);
   const Eigen::Vector2d change = Eigen::Vector2d(lag_, scale_) - now;
   scatter_ -= change.dot(2.0 * score_ - information_ * change);
   score_ -= information_ * change;

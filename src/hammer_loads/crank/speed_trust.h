@@ -57,7 +57,8 @@ class SpeedTrust {
  private:
   static constexpr double kLag = kUnknowns[indexOfUnknown("speed lag")].prior;  ///< [s]
   static constexpr double kScale = kUnknowns[indexOfUnknown("speed scale")].prior;
-  static constexpr int kTurnsToKnow = 5;  // some 1 s at work. Guard: SpeedTrust.IsSilentBeforeItKnows
+  static constexpr int kTurnsToKnow = 5;  // some 1 s at work
+  // Guard: SpeedTrust.KnowsAfterFiveTurns of kTurnsToKnow
 
   /// Of a speed, over the deviation expected of it: what is not explained, and its derivatives by lag and scale.
   using Row = Eigen::Vector3d;

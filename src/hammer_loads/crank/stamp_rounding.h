@@ -31,7 +31,8 @@ class StampRounding {
   static constexpr std::array<std::int64_t, 6> kSteps{10000000, 5000000, 2000000, 1000000, 500000, 100000};  ///< [ns]
   static constexpr std::int64_t kTolerance = 1000;  // [ns]: of stamps that were numbers of seconds on their way
   static constexpr int kMany = 100;                 // stamps that are judged together
-  // Guard: StampRounding.FindsTheStep of kMany; StampRounding.FineStampsHaveNone of kTolerance
+  // Guard: StampRounding.IsKnownAfterAHundredStamps of kMany
+  // Guard: StampRounding.StampsWithinAMicrosecondAreWhole of kTolerance
 
   static bool isWhole(std::int64_t difference, std::int64_t step) noexcept {
     const std::int64_t rest = std::llabs(difference) % step;

@@ -6,10 +6,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kOfLate = 1000.0;         // samples over which irregular stamps are counted
-constexpr double kMany = 5.0;              // of them: not a single late message
-constexpr double kSingle = 1.5;            // likewise
+constexpr double kOfLate = 1000.0;  // samples over which irregular stamps are counted
+constexpr double kMany = 5.0;       // of them: not a single late message
+// Guard: StampSequence.IsRefittedWhereMoreThanFiveOfAThousandChangePlaces of kOfLate, kMany
+constexpr double kSingle = 1.5;  // likewise
+// Guard: StampSequence.OneStampThatRepeatsIsNoBurstYet of kSingle
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
+// Numerical: kLeastStep
 
 }  // namespace
 

@@ -10,6 +10,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kMemorySamples = 4096.0;  // samples
+// Guard: SteadyClockFit.FollowsAClockThatDriftsWithinFourThousandSamples of kMemorySamples
 constexpr double kScatterSamples = 300.0;  // over which scatter is learned, but no fewer than kWarm runs
 constexpr int kWarm = 20;                  // runs from which on the line is good enough to judge by
 constexpr int kFirst = 4;                  // runs until there is a line
@@ -17,12 +18,14 @@ constexpr int kFirst = 4;                  // runs until there is a line
 constexpr int kKnown = 6;       // runs until regular bursts show themselves
 constexpr double kBurst = 2.0;  // samples in the mean
 // Guard: StampSequence.EqualStampsOfIrregularSamplesOnlyStepOn of kBurst
-constexpr double kRegular = 0.1;           // scatter of bursts over the time between them
-constexpr double kClip = gate::kVeryRare;  // root mean squares: a stamp further off counts as that far off
-constexpr double kGap = 6.0;               // root mean squares beyond which samples were lost for certain
-constexpr double kEvidence = 16.0;         // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
-constexpr double kNoLoss = 3.0;            // likewise that none was: 20 to 1
-constexpr double kLeastScatter = 0.15;     // of the interval: a run's beginning is not known better
+constexpr double kRegular = 0.1;  // scatter of bursts over the time between them
+// Guard: SteadyClockFit.ExplainsBurstsThatComeRegularly of kRegular
+constexpr double kClip = gate::kVeryRare;   // root mean squares: a stamp further off counts as that far off
+constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for certain
+constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
+constexpr double kNoLoss = 3.0;             // likewise that none was: 20 to 1
+// Guard: SteadyClockFit.AStampInItsPlaceContradictsALoss of kNoLoss
+constexpr double kLeastScatter = 0.15;  // of the interval: a run's beginning is not known better
 // Guard: StampSequence.WholeMillisecondsAndBurstsGetTheirInstantsBack of kWarm, kKnown, kEvidence, kLeastScatter
 constexpr double kGrown = 2.0;  // scatter about the line over that of white jitter with such steps
 // Guard: StampSequence.EqualStampsOfIrregularSamplesOnlyStepOn of kGrown

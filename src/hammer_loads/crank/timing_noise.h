@@ -46,6 +46,7 @@ class TimingNoise {
   static constexpr double kGain = 0.005;
   static constexpr int kLearning =
       60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
+  // Guard: LearnedNumbers.TheFirstSixtySamplesShowLittleJitter of kLearning
   static constexpr double kVisible = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
   // Guard: LearnedNumbers.SlowCranksShowNoJitter of kVisible
   static constexpr double kLargest = 0.02;  // [s]: more is no jitter

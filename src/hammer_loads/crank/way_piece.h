@@ -10,6 +10,10 @@ namespace hammer_loads {
 constexpr double kMaxStepAngle = 0.04;  ///< [rad] of the crank in one piece
 // Guard: CrankDynamics.PassesTheBlowInOneStepAsInMany of kMaxStepAngle
 constexpr int kMaxSteps = 4096;  ///< bounds the work for absurd speeds; steps get longer beyond it
+// Numerical: kMaxSteps
+/// [rad/s]: a slower crank is moved by friction and stopped by the tool; nothing jumps there.
+constexpr double kSlowCrank = 5.0;
+// Guard: BesideBlow.IsWhereSomethingJumps of kSlowCrank
 /// [rad/s]: a crank that creeps over the blow has no defined instant of passing it.
 constexpr double kCreeping = 1.0;
 /// So often in one way: then both sides push it back to the other, and it stays at the blow.

@@ -16,6 +16,22 @@ constexpr double kVeryRare = 4.0;    ///< 6 in 100 000: some four times a minute
 constexpr double kImpossible = 5.0;  ///< 6 in 10 million: twice an hour
 }  // namespace gate
 
+/// Logarithms of odds.
+namespace odds {
+constexpr double kLikely = 2.0;  ///< 7 to 1
+// Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kLikely
+}  // namespace odds
+
+/// Means of innovation^2 over its variance. A right model has 1, or a little less; what they are at machines that are
+/// wrong is said where they are used.
+namespace mismatch {
+constexpr double kSeen = 2.0;         ///< something else shows
+constexpr double kUnexplained = 3.0;  ///< it is to be said
+constexpr double kContradicts = 4.0;  ///< the model is wrong
+// Guard: PoseAndTrust.ACrankThatContradictsTheModelIsRefused of kContradicts
+// Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kSeen
+}  // namespace mismatch
+
 /// Whether an innovation of that variance is beyond this many deviations. One that is no number is not.
 constexpr bool exceeds(double innovation, double variance, double deviations) noexcept {
   return square(innovation) > square(deviations) * variance;

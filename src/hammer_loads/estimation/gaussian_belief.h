@@ -47,8 +47,7 @@ struct GaussianBelief {
       by_constant.row(changed[i]) = effect.row(i);
     }
     for (int i = 0; i < count; ++i) {
-      for (int k = 0; k <= i; ++k)
-        covariance(changed[i], changed[k]) = covariance(changed[k], changed[i]) = both(i, k);
+      for (int k = 0; k <= i; ++k) covariance(changed[i], changed[k]) = covariance(changed[k], changed[i]) = both(i, k);
     }
   }
   /// By any transition; step: what the constants' errors make of the mean within the step, the mean before it given.
