@@ -7,8 +7,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kRounded = 1e-12;     // of a column: what rounding makes of zero
+constexpr double kRounded = 1e-12;  // of a column: what rounding makes of zero
+// Numerical: kRounded
 constexpr double kOfRefreshAngle = 4;  // moves of joints that make 0.5 % of a deviation
+// Numerical: kOfRefreshAngle
 
 Wrench wrenchOf(const Eigen::Vector3d& in_plane, const Eigen::Vector3d& across) noexcept {
   return {{in_plane[0], across[0], in_plane[1]}, {across[1], in_plane[2], across[2]}};

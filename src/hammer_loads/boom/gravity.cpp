@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/chain_pose.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -19,7 +20,6 @@ Eigen::Vector3d gravityInTip(const Chain& chain, const JointVector& position, co
 }
 
 PitchOfChain pitchOf(const Chain& chain, const std::vector<std::string>& asked) {
-  constexpr double kAlongY = 0.7071067811865476;  // nearer to y than across
   ChainPose pose;
   forwardKinematics(chain, JointVector::Zero(chain.joints()), pose);
   const Eigen::Matrix3d R_BT = pose.tip().linear();
@@ -37,7 +37,8 @@ PitchOfChain pitchOf(const Chain& chain, const std::vector<std::string>& asked) 
   if (has_all)
     for (const std::string& name : asked) add(name, sideOf(*chain.jointIndex(name)));
   for (int j = 0; !has_all && j < chain.joints(); ++j)
-    if (std::abs(sideOf(j)) > kAlongY) add(chain.jointNames()[static_cast<std::size_t>(j)], sideOf(j));
+    if (2.0 * square(sideOf(j)) > 1.0)  // nearer to y than across
+      add(chain.jointNames()[static_cast<std::size_t>(j)], sideOf(j));
   result.offset = std::atan2(-R_BT(2, 0), R_BT(2, 2));
   return result;
 }

@@ -10,16 +10,23 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kCommonDeviation = 0.3;  // of log stiffness, of all cylinders together
-constexpr double kOilWalk = 0.004;        // of log stiffness in a second: oil that warms up, a pose that changes
-constexpr double kDampingWalk = 0.01;     // of log damping in a second
-constexpr double kForcePart = 0.05;       // deviation of the modal force over its root mean square
-constexpr double kForceTime = 0.01;       // for which a force stays wrong the same way [s]
-constexpr double kForceMemory = 2.0;      // of the mean square [s]
-constexpr double kUnknownRate = 0.05;     // joint velocity where nothing is known [rad/s]
+// Guard: IdentifierNumbers.OfOilAndDampingBeforeAnyReading of kCommonDeviation
+constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that warms up, a pose that changes
+constexpr double kDampingWalk = 0.01;  // of log damping in a second
+// Guard: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk
+constexpr double kForcePart = 0.05;   // deviation of the modal force over its root mean square
+constexpr double kForceTime = 0.01;   // for which a force stays wrong the same way [s]
+constexpr double kForceMemory = 2.0;  // of the mean square [s]
+// Guard: IdentifierNumbers.OfAForceThatLasts of kForcePart, kForceTime, kForceMemory
+constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
+// Guard: IdentifierNumbers.OfAMotionThatIsNotKnown of kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]
 constexpr double kContactWalkSeen = 3e5;  // where an IMU shows each landing: they are no noise then
-constexpr double kUnknownContact = 1e4;   // of it at the start [N]
+// Guard: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kContactWalkSeen
+constexpr double kUnknownContact = 1e4;  // of it at the start [N]
+// Guard: IdentifierNumbers.OfTheRocksForce of kContactWalk, kUnknownContact
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
+// Guard: IdentifierNumbers.OfTheDampingsBounds of kLeastDamping, kMostDamping
 
 }  // namespace
 
@@ -141,7 +148,7 @@ void ModeIdentifier::followContact(const JointVector& torque) noexcept {
 void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
   if (isExplained()) explained_for_ += step;
-  if (learns_ && !explains_ && !seeks_ && explained_for_ < kOilProven) seeks_ = explains_ = true, surprise_ = 1.0;
+  if (learns_ && !explains_ && !seeks_ && explained_for_ < kProven) seeks_ = explains_ = true, surprise_ = 1.0;
   const double share = std::min(1.0, step / kForceMemory);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];

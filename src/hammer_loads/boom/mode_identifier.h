@@ -51,9 +51,13 @@ struct CrankLead {
 class ModeIdentifier {
  public:
   static constexpr int kMaxChannels = 12;
+  static constexpr double kMostOil = 2.0;  ///< of log stiffness that is found: a frequency that is e times that given
+  // Guard: IdentifierNumbers.OfTheOilsBounds of kMostOil
   static constexpr double kDampingDeviation = 0.5;  ///< of the logarithm of a damping at the start
+  // Guard: IdentifierNumbers.OfOilAndDampingBeforeAnyReading of kDampingDeviation
   /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
+  // Guard: IdentifierNumbers.OfWhatAModesShapeLacks of kLeftFrequency, kLeftDamping
 
   /// learns: stiffnesses and damping; else they are exact as given, and only the motion is followed. own_deviation: of
   /// each cylinder's oil against the common one, standard [-].
@@ -93,7 +97,7 @@ class ModeIdentifier {
   /// but each pressure by itself, are linear about what was known before them.
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
   /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them, or may yet turn out to be.
-  bool explains() const noexcept { return explains_ || (learns_ && !seeks_ && explained_for_ <= kOilProven); }
+  bool explains() const noexcept { return explains_ || (learns_ && !seeks_ && explained_for_ <= kProven); }
   /// What was found of the oil does not hold: give modes of the oil as given.
   bool forgets() const noexcept { return !explains_; }
   /// Give modes of the oil as it is found, known or not.
@@ -138,6 +142,7 @@ class ModeIdentifier {
 
  private:
   static constexpr double kDelayDeviation = 2e-3;  ///< of a delay that is not known, standard [s]
+  // Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kDelayDeviation
   static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
   static_assert(kMaxStates <= kMostStates);
@@ -183,8 +188,10 @@ class ModeIdentifier {
   bool imuSpeaks() const noexcept;
   bool waitsForDelay() const noexcept;
   bool isExplained() const noexcept;
-  // Guards: ContactFollowing.WithoutPressuresABouncingHullTeachesNothing, SoftCylinder
-  static constexpr double kOilProven = 1.0;  ///< of agreement [s]: oil does not change from one second to the next
+  /// [s]: of agreement with the oil, which does not change from one second to the next; of frequencies that were lost;
+  /// of a hull without rock, whose mean force has no longer memory.
+  static constexpr double kProven = 1.0;
+  // Guard: IdentifiedOil.PressuresShowTheirDelayAfterASecondWithoutRock of kProven
   double byDelay(Clock clock, const State& row) const noexcept;
   bool delayShows(Clock clock) const noexcept;
   struct Kept {

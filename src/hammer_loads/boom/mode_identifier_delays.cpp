@@ -8,19 +8,22 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kDelayBegins = 0.2;       // after the frequencies are known [s]
-constexpr double kDelayWalk = 2e-5;        // of a delay in a second [s]: clocks drift by some 20 ppm
-constexpr double kOilWithDelay = 0.1;      // deviation of log stiffness, beside what was known without a delay
-constexpr double kDampingWithDelay = 0.5;  // likewise
-constexpr double kLost = 1.0;              // time with unknown frequencies while a delay is followed [s]
-constexpr double kFreeFor = 1.0;           // [s]: its mean force has no longer memory
-constexpr double kImuSpeaks = 0.1;         // [s]
+constexpr double kDelayBegins = 0.2;  // after the frequencies are known [s]
+constexpr double kDelayWalk = 2e-5;   // of a delay in a second [s]: clocks drift by some 20 ppm
+// Guard: IdentifiedOil.AClocksDelayWanders of kDelayWalk
+constexpr double kOilWithDelay = 0.1;  // deviation of log stiffness, beside what was known without a delay
+// Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kDelayBegins, kOilWithDelay
+constexpr double kImuSpeaks = 0.1;  // [s]
+// Guard: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kImuSpeaks
 constexpr double kWrongPart = 0.1;         // of a delay that is found
 constexpr double kWrongByPressures = 0.3;  // by them alone
 constexpr double kWrongOnRock = 0.6;       // where it has not been seen on a free hull: another's may be early
-constexpr double kDelayKnown = 2e-4;       // deviation [s]
-constexpr double kDoubt = 0.6;             // deviations of an expected lead: they are large, see ConstantErrors
-constexpr double kWrongLead = 0.3;         // of what is taken for the crank's: it may be a sensor's
+// Guard: IdentifiedOil.ADelayThatIsFoundOnRockMayBeAnothers of kWrongOnRock
+constexpr double kDelayKnown = 2e-4;  // deviation [s]
+// Guard: IdentifiedOil.ADelayThatIsFoundIsKnownByAPart of kWrongPart, kWrongByPressures, kDelayKnown
+constexpr double kDoubt = 0.6;      // deviations of an expected lead: they are large, see ConstantErrors
+constexpr double kWrongLead = 0.3;  // of what is taken for the crank's: it may be a sensor's
+// Guard: IdentifiedOil.WhatAllClocksHaveInCommonMayBeTheCranks of kDoubt, kWrongLead
 
 /// Of two of one sign the one nearer to 0; else 0.
 double lesserOf(double a, double b) noexcept {
@@ -37,7 +40,7 @@ void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (clock == Clock::kImu) surprise_ = 1.0;  // what was not explained may be by this
   for (int k = 0; k < count_; ++k) {
     covariance_(at(k, kOil), at(k, kOil)) += square(kOilWithDelay);
-    covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingWithDelay);
+    covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingDeviation);
   }
 }
 
@@ -53,7 +56,7 @@ void ModeIdentifier::advanceDelays(double step) noexcept {
   }
   // Where the rock bears on a hull unseen, a delay makes up for its force.
   lost_for_ = identified() ? 0.0 : lost_for_ + step;
-  if (lost_for_ > kLost) forgetOil();
+  if (lost_for_ > kProven) forgetOil();
 }
 
 bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < kImuSpeaks; }
@@ -61,7 +64,7 @@ bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < kImuSpeaks; 
 /// On rock, and until it is clear that there is none, pressures alone do not show their delay: whatever force they lack
 /// may be the rock's.
 bool ModeIdentifier::delayShows(Clock clock) const noexcept {
-  return clock == Clock::kImu || free_for_ > kFreeFor || imuSpeaks();
+  return clock == Clock::kImu || free_for_ > kProven || imuSpeaks();
 }
 
 /// On rock only the difference of two delays shows, for the rock's force is whatever both need. No stamps are early

@@ -9,9 +9,10 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kKnown = 0.03;                         // deviation of log frequency of a mode that is known
-constexpr double kMostFound = 2.0;                      // of log stiffness: a frequency that is e times that given
+constexpr double kKnown = 0.03;  // deviation of log frequency of a mode that is known
+// Guard: IdentifiedOil.IsIdentifiedAtThreePercentOfAFrequency of kKnown
 constexpr double kMostEarly = 0.004, kMostLate = 0.01;  // [s]
+// Guard: IdentifiedOil.StampsAreNeverLaterThanTenMillisecondsNorEarlierThanFour of kMostEarly, kMostLate
 
 }  // namespace
 
@@ -65,7 +66,7 @@ void ModeIdentifier::forgetOil() noexcept {
 void ModeIdentifier::useOil() noexcept {
   for (int k = 0; k < count_; ++k) {
     double& oil = state_[at(k, kOil)];
-    oil = std::clamp(oil, -kMostFound, kMostFound);
+    oil = std::clamp(oil, -kMostOil, kMostOil);
     stiffness_ratio_[k] *= growth(oil - used_oil_[k]), used_oil_[k] = oil;
   }
   for (int k = 0; k < count_; ++k) {

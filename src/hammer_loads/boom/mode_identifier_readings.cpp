@@ -3,17 +3,20 @@
 #include <cmath>
 
 #include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kFarOff = 3.0;                  // standard deviations beyond which a reading counts less
+constexpr double kFarOff = gate::kRare;          // standard deviations beyond which a reading counts less
 constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
 constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
-constexpr double kOilSurpriseShare = 5e-4;       // of one oil torque: 1.3 s of three at 500 Hz
-constexpr double kWorstSurprise = 25.0;          // what one can add at most
-constexpr std::size_t kTogether = 3;             // readings that are linear about one state
+// Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kSurpriseShare, kSurprised, kCalm
+constexpr double kOilSurpriseShare = 5e-4;  // of one oil torque: 1.3 s of three at 500 Hz
+// Guard: IdentifierNumbers.OfTheSurpriseByOilTorques of kOilSurpriseShare
+constexpr double kWorstSurprise = square(gate::kImpossible);  // what one can add at most
+constexpr std::size_t kTogether = 3;                          // readings that are linear about one state
 
 }  // namespace
 
@@ -188,7 +191,7 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
 
 /// Accelerations may be off as those of an oil not yet found, or of stamps that are late.
 bool ModeIdentifier::waitsForDelay() const noexcept {
-  return learns_ && !(identified() && (isDelayFollowed(Clock::kImu) || explained_for_ > kOilProven));
+  return learns_ && !(identified() && (isDelayFollowed(Clock::kImu) || explained_for_ > kProven));
 }
 
 /// By the oil that was found.

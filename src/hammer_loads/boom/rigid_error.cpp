@@ -49,6 +49,7 @@ double rigidError(const BoomModes& modes, double damping_ratio, const JointVecto
   };
   // During the pulse; then over one period of the slowest mode, in steps that resolve the fastest.
   constexpr int kSamples = 64;
+  // Numerical: kSamples
   std::array<PulseStep, kMaxJoints> pulse_step;
   for (int k = 0; k < modes.count; ++k)
     pulse_step[static_cast<std::size_t>(k)] = PulseStep(mode(k), mu, pulse_length / kSamples);

@@ -25,8 +25,8 @@ struct Seals {
 /// By the boom file; arm [m/rad]; torque of the oil [N m]; driven: rate of the joint beside its vibration [rad/s].
 inline Seals sealsOf(const Cylinder& cylinder, double arm, double oil_torque, double driven) noexcept {
   // A rod's speed [m/s] near standstill, as Stribeck's.
-  // Guard: RubbingBoom.DeviationsCoverSealsThatAreNotKnown
   constexpr double kSlowRod = 0.002;
+  // Guard: RubbingBoom.DeviationsCoverSealsThatAreNotKnown of kSlowRod
   const CylinderParameters& p = cylinder.parameters();
   const double size = std::abs(arm), force = std::abs(oil_torque / arm);
   return {size * (p.friction_force + p.friction * force),

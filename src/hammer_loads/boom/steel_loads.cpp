@@ -11,6 +11,7 @@ namespace {
 
 /// No product of it with lengths and levers of a chain that could be built overflows [N], [N m].
 constexpr double kMostLoad = 1e200;
+// Numerical: kMostLoad
 
 /// Of the root's frame, at a point, in axes of its own.
 HAMMER_LOADS_INLINE Wrench seenAt(const Eigen::Vector3d& p, const Eigen::Matrix3d& axes, const Wrench& w) noexcept {

@@ -41,13 +41,14 @@ class Errors : public console_bridge::OutputHandler {
 
  private:
   static constexpr std::size_t kMost = 1000;
+  // Numerical: kMost
   std::vector<std::string> lines_;
 };
 
 /// Beyond these no figure of a machine lies, and no product of figures overflows.
 constexpr double kMostOffset = 1e6;    // [m]
 constexpr double kMostInertia = 1e18;  // [kg m2]
-// Guard: FigureLimits.OfDescriptions of kMostOffset, kMostInertia
+// Limit: FigureLimits.OfDescriptions of kMostOffset, kMostInertia
 
 bool within(double value, double most) { return std::abs(value) <= most; }  // false for NaN
 

@@ -9,11 +9,13 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kSwingMemory = 1.0;           // [s]
 constexpr double kContactMemory = 0.5;         // of the rock's mean force: some turns [s]
 constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
-constexpr double kOilStep = 0.003;             // by which the modes' oil is off before they are found anew
-constexpr double kMostOil = 2.0;               // of the logarithm
+// Guard: VibrationNumbers.OfADisplacementAhead of kShort
+// Guard: VibrationNumbers.OfADisplacementThatIsNone of kSmall
+constexpr double kOilStep = 0.003;  // by which the modes' oil is off before they are found anew
+// Numerical: kOilStep
+constexpr double kMostOil = ModeIdentifier::kMostOil;
 
 }  // namespace
 
@@ -112,7 +114,7 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
 
 /// Mean of displacement and velocity, which take turns.
 void Vibration::followSwing(double step) noexcept {
-  const double share = std::min(1.0, step / kSwingMemory);
+  const double share = std::min(1.0, step / kSwingTime);
   for (int k = 0; k < modes_.count; ++k) {
     const double next = swing_[k] + share * (0.5 * (square(x_[k]) + square(v_[k] / modes_.omega[k])) - swing_[k]);
     swing_[k] = std::isfinite(next) ? next : 0.0;

@@ -23,6 +23,9 @@ struct VibrationSettings {
 /// The load must be the part that comes from motion relative to the hull, the links' mass being in the hull's already.
 class Vibration {
  public:
+  static constexpr double kSwingTime = 1.0;  ///< over which swings are followed [s]
+  // Guard: VibrationNumbers.OfTheUsualSwing of kSwingTime
+
   Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings);
 
   /// Pose at the end of the step that advance() takes next, g_B: gravity in the root's axes [m/s2]. Finds new modes

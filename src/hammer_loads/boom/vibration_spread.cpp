@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSameDeviation = 1e-3;  // of it
 constexpr double kFaded = 1e-4;          // of the displacement by the hammer's load [m sqrt(kg)]: 10 kg by 30 um
+// Numerical: kSameDeviation, kFaded
 
 }  // namespace
 
