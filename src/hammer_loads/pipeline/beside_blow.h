@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/estimation/gates.h"
 
 namespace hammer_loads {
@@ -12,10 +13,8 @@ namespace hammer_loads {
 /// WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored branch nowhere.
 /// angle_deviation: of the crank [rad]; NaN: not known.
 inline bool isBesideBlow(const CrankEstimate& crank, double angle_deviation) noexcept {
-  constexpr double kSlow = 5.0;  // [rad/s]
-  // Guard: BesideBlow.IsWhereSomethingJumps of kSlow
   const CrankPosition& at = crank.position;
-  return std::abs(at.angle.offset) < gate::kUsual * angle_deviation && std::abs(crank.speed) > kSlow &&
+  return std::abs(at.angle.offset) < gate::kUsual * angle_deviation && std::abs(crank.speed) > kSlowCrank &&
          !at.isMirrored();
 }
 

@@ -8,8 +8,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kUnexplainedMemory = 1.0;  // [s]
-
 void addVariance(double other, double& deviation) noexcept { deviation = std::hypot(deviation, other); }
 
 void addVariance(const Wrench& other, Wrench& deviation) noexcept {
@@ -34,7 +32,7 @@ void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noex
   const double felt = reading.specific_force.z() + boom_.gravityAtTip().z();
   const double explained = boom_.tipJacobian().row(2).dot(boom_.vibration().acceleration());
   const double force = state_.reduced.mass * (felt - explained);
-  unexplained_ += std::clamp(step / kUnexplainedMemory, 0.0, 1.0) * (force * force - unexplained_);
+  unexplained_ += std::clamp(step / Vibration::kSwingTime, 0.0, 1.0) * (force * force - unexplained_);
 }
 
 /// A rock that is not measured is an error of the load, as large as what shows of it.

@@ -2,11 +2,12 @@
 #include <algorithm>
 
 #include "hammer_loads/pipeline/boom_follower.h"
+#include "hammer_loads/pipeline/hull_speed.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kStillBeats = 1.0;  // after a blow [s]
+constexpr double kStillBeats = kLongestTurn;  // after a blow
 
 }  // namespace
 

@@ -13,8 +13,8 @@ namespace hammer_loads {
 namespace {
 
 /// A stamp that is later [s] is named, and may be taken for oil that is softer.
-// Guard: MistakenSensors.PressuresThatAreLateAreNamedAndAllowedFor
 constexpr double kLateStamp = 8e-4;
+// Guard: MistakenSensors.PressuresThatAreLateAreNamedAndAllowedFor of kLateStamp
 
 /// The mode whose damping is farthest from the boom file's, where that is more than the identifier expects: no oil
 /// makes it. -1: none.
@@ -45,7 +45,7 @@ double lagOfDamping(const Boom& boom, int odd) {
 /// A clock of its own, as the boom's modes show it. explained: late by this without one [s].
 bool isOff(const ModeIdentifier& identifier, Clock clock, double explained = 0.0) {
   constexpr double kKnown = 1e-4, kPart = 0.65;  // [s]; of the delay
-  // Guard: MistakenSensors.ImuStampsThatAreOffAreNamedAndAllowedFor
+  // Guard: MistakenSensors.ImuStampsThatAreOffAreNamedAndAllowedFor of kKnown, kPart
   const double delay = identifier.delay(clock);
   return std::abs(delay) > kLateStamp && !(delay > 0.0 && delay < explained) &&
          identifier.delayDeviation(clock) < kKnown + kPart * std::abs(delay);

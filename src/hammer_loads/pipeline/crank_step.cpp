@@ -63,7 +63,8 @@ double CrankStep::timeOfBlow(std::int64_t blow) const noexcept {
   const double sign = f_high < f_low ? -1.0 : 1.0;  // a crank that turns back
   f_low *= sign, f_high *= sign;
   constexpr double kAngleTolerance = 1e-11;  // [rad]: some 1e-12 s
-  int kept = 0;                              // which end stayed last time: +1 high, -1 low
+  // Numerical: kAngleTolerance
+  int kept = 0;  // which end stayed last time: +1 high, -1 low
   for (int i = 0; i < 60 && f_high > kAngleTolerance && f_low < -kAngleTolerance; ++i) {
     const double time = (low * f_high - high * f_low) / (f_high - f_low);
     const double f = sign * difference(at(time).position, at_blow);

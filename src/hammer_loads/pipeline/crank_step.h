@@ -13,7 +13,9 @@
 namespace hammer_loads {
 
 constexpr double kPulseStep = 1.25e-3;  ///< [s] between points of a path at most: 15 of them in the MO-100's pulse
-constexpr double kBesideBlow = 1e-7;    ///< [s] before and after the blow where its two sides are looked at
+// Numerical: kPulseStep
+constexpr double kBesideBlow = 1e-7;  ///< [s] before and after the blow where its two sides are looked at
+// Numerical: kBesideBlow
 
 /// The part of an estimate that a load needs.
 inline CrankMotion motionOf(const CrankEstimate& crank) noexcept {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "hammer_loads/crank/crank_sensor.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/pipeline/refusal.h"
@@ -20,10 +21,9 @@ class CrankTrust {
   /// CrankTracker::strikeConsistency() beyond which readings contradict the model. With a zero 30 deg off it is 5, with
   /// a crank that turns backward 6.5, with a zero 2 deg off 2.5, on machines whose rod gives below 2
   /// (crank_trust_test).
-  static constexpr double kMost = 4.0;
-  // Guard: PoseAndTrust.ACrankThatContradictsTheModelIsRefused of kMost
+  static constexpr double kMost = mismatch::kContradicts;
   /// Of CrankTracker::consistency(), what is said, but not withheld; a clean machine has 0.9, a zero 2 deg off 2.
-  static constexpr double kInconsistent = 3.0;
+  static constexpr double kInconsistent = mismatch::kUnexplained;
   static constexpr double kSlowestKnown = 0.2;  ///< slowBehind() of a right zero is less [rad] (crank_trust_test)
 
   explicit CrankTrust(const CrankSensor& sensor) noexcept : sensor_(sensor) {}
@@ -78,6 +78,7 @@ class CrankTrust {
   static constexpr double kSlowest = 0.94;
   // Guard: PoseAndTrust.ACrankIsSlowWhereSuchAreWithinFiveTurns of kTurns, kSlowest
   static constexpr double kWindow = 0.3;  ///< [rad] over which a speed is taken: jitter of stamps counts little
+  // Numerical: kWindow
 
   /// A hammer that stops falls back on its tool, by less than half a turn: the rocker passes the dead centre no other
   /// way.

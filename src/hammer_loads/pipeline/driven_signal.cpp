@@ -15,15 +15,21 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 // that drifts to one whose readings leave no doubt.
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
+// Numerical: kWalks, kWalksOfIntegral
 constexpr double kSteadyBegin = 0.2, kSteadyMemory = 2.0;  // [s]: a turn or less; of the signal's mean, which is weight
 // Guard: DrivenSignal.JumpsWithTheLoadAndSaysHowFarItIsOff of kSteadyMemory
-constexpr double kBlowPart = 0.3;                // of a blow's impulse, which is known when the crank has turned on
-constexpr double kMemoryOfReadings = 1000.0;     // readings
+// Guard: FollowerNumbers.ASignalsWeightIsItsMeanFromTheFirstTurnOn of kSteadyBegin
+constexpr double kBlowPart = 0.3;  // of a blow's impulse, which is known when the crank has turned on
+// Guard: FollowerNumbers.ABlowsImpulseIsDoubtedByAThird of kBlowPart
+constexpr double kMemoryOfReadings = 1000.0;  // readings
+// Guard: FollowerNumbers.ASignalsNoiseIsThatOfAThousandReadings of kMemoryOfReadings
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
 constexpr double kComplianceWalk = 0.02;         // of the first guess's deviation in a second: a pose that changes
-constexpr double kUnknownSlope = 1e3;            // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
-constexpr double kLeastNoise = 1e-3;             // of the first guess: a logarithm is taken of it
-constexpr double kUnknownSignal = 1e3;           // of the noise: smooth part at the start
+// Guard: FollowerNumbers.ASignalsComplianceWandersAsThePoseChanges of kComplianceWalk
+constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
+constexpr double kLeastNoise = 1e-3;    // of the first guess: a logarithm is taken of it
+constexpr double kUnknownSignal = 1e3;  // of the noise: smooth part at the start
+// Numerical: kUnknownSignal, kUnknownSlope, kLeastNoise
 
 /// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it
 /// the slope counts.

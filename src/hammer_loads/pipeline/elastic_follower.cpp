@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
@@ -11,19 +12,19 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kFrom = -0.30, kFromLatest = -0.05;     // [rad] where it begins: some 15 ms before the blow
+constexpr double kFrom = -0.30, kFromLatest = -0.05;  // [rad] where it begins: some 15 ms before the blow
+// Guard: ElasticSession.PlayIsLearned of kFrom
 constexpr double kTo = 2.2;                              // [rad]: by then no rod rings
 constexpr double kNeverStruck = 0.1;                     // [rad] beyond the dead centre
 constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
-constexpr double kSlow = 5.0;                            // [rad/s]
 
-constexpr double kEvidenceGain = 0.2, kDecides = 2.0, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
+constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
 
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
-  return s.angle.offset > (rod.hasStruck() ? kTo : kNeverStruck) || !(s.speed > kSlow);
+  return s.angle.offset > (rod.hasStruck() ? kTo : kNeverStruck) || !(s.speed > kSlowCrank);
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
 bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept {
   const CrankPosition& at = crank.estimate().position;
   return at.angle.side == Side::kBeforeBlow && at.angle.offset > kFrom && at.angle.offset < kFromLatest &&
-         crank.estimate().speed > kSlow && filter.hasSpeed() && filter.isPlausible() && !filter.isDoubtful() &&
+         crank.estimate().speed > kSlowCrank && filter.hasSpeed() && filter.isPlausible() && !filter.isDoubtful() &&
          !filter.belief().motor && filter.readingDeviation() < RodEvidence::kCoarsest;
 }
 
@@ -88,7 +89,7 @@ void ElasticFollower::judge() noexcept {
   const RodFilter& rod = likelier();
   const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
   evidence_ += kEvidenceGain * (gain - evidence_);
-  best_ = evidence_ > (best_ == nullptr ? kDecides : 0.0) ? &rod : nullptr;
+  best_ = evidence_ > (best_ == nullptr ? odds::kLikely : 0.0) ? &rod : nullptr;
 }
 
 CrankEstimate ElasticFollower::crank() const noexcept {

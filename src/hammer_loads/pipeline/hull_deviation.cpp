@@ -12,6 +12,7 @@ namespace {
 
 // Differences to one side: 1e-6 of a slope by what bends in them, 1e-9 by rounding.
 constexpr double kAngleStep = 1e-6, kSpeedStep = 1e-5, kAccelerationStep = 1e-2;  // [rad], [rad/s], [rad/s2]
+// Numerical: kAngleStep, kSpeedStep, kAccelerationStep
 
 using Gradient = Eigen::Matrix3d;  // rows: force_x, force_z, torque_y
 

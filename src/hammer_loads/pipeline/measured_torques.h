@@ -41,7 +41,7 @@ class MeasuredTorques {
 
  private:
   static constexpr double kMostJudged = 200.0;  ///< readings
-  static constexpr double kSwingTime = 1.0;     ///< of the torque's swing [s]
+  static constexpr double kSwingTime = Vibration::kSwingTime;
   struct Track {
     std::uint64_t readings{};         ///< taken
     double position{kNaN};            ///< of the joint, as its sensor shows it

@@ -57,6 +57,7 @@ class PressureTrust {
   static constexpr double kMostDelay = 8e-3;
   static constexpr double kDelayShown = 0.1, kUntilTriedAgain = 60.0;  ///< [s]
   // Guard: MistakenSensors.PressuresThatLagAreNamedAndNotUsed of kMostDelay, kDelayShown
+  // Guard: FollowerNumbers.PressuresThatWereLateAreTriedAgainAfterAMinute of kUntilTriedAgain
 
   double turning() const noexcept { return mean_.mean()[2]; }
 

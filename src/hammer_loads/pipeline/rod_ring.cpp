@@ -13,10 +13,11 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kLongest = 1e-3;           // [s] in which the lever counts as constant
-constexpr double kOver = 0.2;               // [s]: no rod rings longer
 constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a measured restitution: 0.03 to 0.08,
-                                            // with worn pins to 0.14; guarded by RodRing.RestitutionIsCovered
-constexpr double kBallistic = 1e-2;         // [rad]: below, the spring does nothing within a part
+                                            // with worn pins to 0.14
+// Guard: RodRing.RestitutionIsCovered of kRestitutionDoubt
+constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
+// Numerical: kLongest, kBallistic
 
 /// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
 double acceleration(const Oscillator& rod, double y, double speed) noexcept {
@@ -82,7 +83,6 @@ void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) 
 
 void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   if (!rings_ || !(to > from)) return;
-  if (!(to - from < kOver)) return rest();
   const HammerParameters& p = model_->mechanism().parameters();
   const int parts = static_cast<int>(std::ceil((to - from) / kLongest));
   const double time = (to - from) / parts;

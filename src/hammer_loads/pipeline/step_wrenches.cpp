@@ -7,7 +7,9 @@ namespace {
 
 constexpr double kNear = 1e-3;    // of the span: where slopes are looked at
 constexpr double kClearly = 1.5;  // 1 would do were slopes along the span on a line
+// Numerical: kClearly
 constexpr double kHardly = 1e-3;  // of a component: a change so small decides nothing
+// Numerical: kNear, kHardly
 
 using Components = std::array<double, kHullChannels>;
 

@@ -6,6 +6,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr std::size_t kCapacity = 4096;  // a turn of 0.2 s at 20 kHz
+// Numerical: kCapacity
 
 }  // namespace
 

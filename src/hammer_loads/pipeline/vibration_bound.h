@@ -33,6 +33,7 @@ class VibrationBound {
   /// After which motion that was wrong has gone [s]: twice what the lowest mode's damping needs for a factor e.
   static double decayTime(const Vibration& vibration) noexcept {
     constexpr double kLongest = 10.0;  // [s]
+    // Guard: VibratingBoom.AMotionThatNothingDampsIsOverAfterTenSeconds of kLongest
     if (!vibration.known()) return kLongest;
     const Mode lowest = vibration.mode(0);
     return std::min(kLongest, 2.0 / (lowest.zeta * lowest.omega));
@@ -40,7 +41,8 @@ class VibrationBound {
 
  private:
   static constexpr double kMostRate = 1.0;  // [rad/s]: no operator swings a boom as fast, no rock throws it so
-  double pushed_{};                         ///< [m sqrt(kg)/s]
+  // Guard: VibratingBoom.NoOperatorSwingsItFasterThanARadianASecond of kMostRate
+  double pushed_{};  ///< [m sqrt(kg)/s]
 };
 
 }  // namespace hammer_loads

@@ -1,0 +1,94 @@
+// Which joint angles show the boom's vibration, and how far they are believed: each within a factor of 1.25 of what is
+// said.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/bench/boom_errors.h"
+#include "hammer_loads/pipeline/mode_observer.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+/// The shipped boom as the operator holds it, at rest; angles of its second joint come at their own times.
+class ObservedBoom : public testing::Test {
+ protected:
+  ObservedBoom() {
+    position_[1] = -0.45, position_[2] = 1.0, position_[3] = -0.5;
+    boom_.vibration().identify();
+    for (int i = 0; i < 5000; ++i) held_.follow(motion(), 1e-3);
+    boom_.moveCompliant(motion(), {0.0, 0.0, -9.80665});
+    boom_.vibration().rest();
+    boom_.moveCompliant(motion(), {0.0, 0.0, -9.80665});
+  }
+  JointMotion motion() const {
+    const JointVector zero = JointVector::Zero(position_.size());
+    return {position_, zero, zero};
+  }
+  /// The joint's angle beside that at which it is held, so long after the one before.
+  void read(double interval, double beside) {
+    stamp_ += static_cast<StampNs>(1e9 * interval);
+    joints_.update(stamp_, {boom_.chain().jointNames()[1]}, {position_[1] + beside}, {});
+    observer_.joints(boom_, held_, stamp_, 1e-3, joints_);
+  }
+  const ModeIdentifier& found() const { return *boom_.vibration().identifier(); }
+
+  Settings settings_ = accuracy::shippedBoom("{}");
+  Boom boom_ = *settings_.boom;
+  JointVector position_ = JointVector::Zero(boom_.chain().joints());
+  HeldPose held_;
+  JointBuffer joints_{boom_.chain(), settings_.pipeline};
+  ModeObserver observer_{Eigen::Vector3d::Zero()};
+  StampNs stamp_{1000000000};
+};
+
+/// Above 100 Hz.
+TEST_F(ObservedBoom, AnglesThatComeRarelyShowNoVibration) {
+  for (int i = 0; i < 20; ++i) read(0.0125, 0.0);
+  EXPECT_EQ(found().channels(), 0);
+  for (int i = 0; i < 2; ++i) read(0.008, 0.0);
+  EXPECT_EQ(found().channels(), 1);
+}
+
+TEST_F(ObservedBoom, NorDoAnglesThatJump) {
+  read(0.005, 0.0);
+  read(0.005, 0.025);
+  EXPECT_EQ(found().channels(), 0);
+  read(0.005, 0.025 - 0.016);
+  EXPECT_EQ(found().channels(), 1);
+}
+
+/// An angle's offset is some 0.01 rad, so that the first one says little.
+TEST_F(ObservedBoom, OneAngleIsBelievedAsFarAsItsOffsetIsKnown) {
+  const BoomModes& modes = boom_.vibration().modes();
+  double variance = 0.0;  // before any reading, of the joint's vibration: ModeIdentifier's, 0.05 rad/s
+  for (int k = 0; k < modes.count; ++k)
+    variance += square(modes.shape(0, k) * 0.05 / modes.shape.col(k).cwiseAbs().maxCoeff() / modes.omega[k]);
+  read(0.005, 0.0);
+  read(0.005, 0.01);
+  const double gain = found().displacement()[1] / 0.01, said = variance / (variance + square(0.01) + square(2e-4));
+  EXPECT_GT(gain, 0.8 * said);
+  EXPECT_LT(gain, 1.25 * said);
+}
+
+/// A gyro's as well, 0.02 rad/s.
+TEST_F(ObservedBoom, OneRateIsBelievedAsFarAsItsOffsetIsKnown) {
+  const BoomModes& modes = boom_.vibration().modes();
+  const auto about_y = boom_.tipJacobian().row(4);
+  double variance = 0.0;
+  for (int k = 0; k < modes.count; ++k) {
+    JointVector modal = JointVector::Zero(modes.count);
+    modal[k] = 0.05 / modes.shape.col(k).cwiseAbs().maxCoeff();
+    variance += square(about_y.dot(jointsOf(modes, modal)));
+  }
+  ImuReading reading{-boom_.gravityAtTip(), {0.0, 0.01, 0.0}};
+  observer_.imu(boom_, held_, reading);
+  const double gain = about_y.dot(found().velocity()) / 0.01,
+               said = variance / (variance + square(0.02) + square(0.005));
+  EXPECT_GT(1.0 - gain, 0.8 * (1.0 - said));
+  EXPECT_LT(1.0 - gain, 1.25 * (1.0 - said));
+}
+
+}  // namespace
+}  // namespace hammer_loads
