@@ -16,8 +16,8 @@ from node_session import NodeSession, TURN, active_bags, bags, crank_stamps, exp
 from process_rostest import DEADLINE, eventually
 
 LOOPS = 3  # whole ones
-# Of the peak. A loop's first samples may overtake the clock, on a busy machine by a turn and more; then the estimate
-# begins anew with the clock. The turn in which it does is 7 % off the other loops', the next 1.3 %, then 0.1 %.
+# Of the peak, in the last turn. A loop's first samples may overtake the clock, on a busy machine by two turns; then the
+# estimate begins anew with the clock. The turn in which it does is 7 % off the other loops', the next 1.3 %, then 0.1 %.
 UNLIKE = 0.01
 
 
@@ -93,10 +93,10 @@ class LoopTest(unittest.TestCase):
     def test_each_loop_gives_the_same(self):
         first = {m.header.stamp: m.wrench.force for m in self.loops[0]}
         peak = max(abs(force.z) for force in first.values())
-        settled = crank_stamps(self.piece)[0] + rospy.Duration(3 * TURN)
+        settled = crank_stamps(self.piece)[0] + rospy.Duration(4 * TURN)
         for loop in self.loops[1:]:
             unlike = [abs(m.wrench.force.z - first[m.header.stamp].z) / peak for m in loop if m.header.stamp > settled]
-            self.assertGreater(len(unlike), 350)
+            self.assertGreater(len(unlike), 150)
             self.assertLess(max(unlike), UNLIKE)
 
 
