@@ -221,21 +221,16 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
 
   WeighedSample sample = weighed(reading);  // (2)
   const double read = sample.angle;
-  const auto takeOff = [&] {
-    const double behind = angle_lag_.behind(last.encoderSpeed() + speedJump(struck), now_.encoderSpeed(), dt);
-    sample.angle = CrankAngle::wrapToPi(read + behind);
-    return behind;
-  };
-  const bool taken_off = takeOffLag();
-  double behind = takeOff();
-  if (taken_off) return begin(sample);
+  const bool begins = findLag();
+  double behind = takeOffLag(last, dt, struck, read, sample);
+  if (begins) return begin(sample);
   Innovation innovation = sample.ofAngle(now_);
   if (has_speed_) lost_time_ = timeLost(innovation);
   if (lost_time_ > 0.0) {
     now_ = last;
     dt += lost_time_;
     struck = predict(dt, true, now_) > 0;
-    behind = takeOff();
+    behind = takeOffLag(last, dt, struck, read, sample);
     innovation = sample.ofAngle(now_);
   }
   if (has_speed_) {

@@ -172,7 +172,8 @@ class CrankFilter final : public CrankTracker {
                     double reading) noexcept;
   void takeBack(const CrankBelief& last, double dt, const WeighedSample& sample) noexcept;
   void considerSensor() noexcept;
-  bool takeOffLag() noexcept;
+  bool findLag() noexcept;
+  double takeOffLag(const CrankBelief& last, double dt, bool struck, double read, WeighedSample& sample) const noexcept;
   double speedJump(bool struck) const noexcept;
   void judgeSpeed(double dt, bool struck) noexcept;
   void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;

@@ -66,7 +66,7 @@ void CrankFilter::considerSensor() noexcept {
 
 /// (2) Angles that are behind the speeds: from now on that is taken off the readings. What was learned of the sensor
 /// and of its speeds was of others.
-bool CrankFilter::takeOffLag() noexcept {
+bool CrankFilter::findLag() noexcept {
   const double more = -speed_trust_.lag();
   if (!speed_trust_.lags() || !(angle_lag_.isThere() || more > kLagTakenOff)) return false;
   angle_lag_.take(more, speed_trust_.lagDeviation());
@@ -76,6 +76,14 @@ bool CrankFilter::takeOffLag() noexcept {
   considerSensor();
   forgetInertia();
   return true;
+}
+
+/// (2) read: the angle as it was read; returns how far it is behind [rad].
+double CrankFilter::takeOffLag(const CrankBelief& last, double dt, bool struck, double read,
+                               WeighedSample& sample) const noexcept {
+  const double behind = angle_lag_.behind(last.encoderSpeed() + speedJump(struck), now_.encoderSpeed(), dt);
+  sample.angle = CrankAngle::wrapToPi(read + behind);
+  return behind;
 }
 
 /// Of the speed by the blow that was struck within the step [rad/s]; a motor of its own is not reached so soon.
