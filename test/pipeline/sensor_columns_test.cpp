@@ -168,6 +168,7 @@ TEST(SensorColumns, AnAngleThatLagsIsNamedAndCostsNothing) {
     const std::string text = judged.textOf("angle lag");
     EXPECT_NEAR(namedAfter(text, "angles are "), 1e3 * c.lag, 0.05 * 1e3 * c.lag) << text;
     EXPECT_NE(text.find("crank_latency_s"), std::string::npos);
+    EXPECT_NE(text.find("crank_zero_rad"), std::string::npos);
     EXPECT_NE(text.find("taken off"), std::string::npos);
     EXPECT_EQ(judged.textOf("speed lag"), "") << c.seed;
   }
