@@ -66,7 +66,7 @@ TEST(NearColumns, AreThoseOfTheirPlaceToAHundredthOfTheLargest) {
       CrankAngle angle = CrankAngle::fromOffset(offset);
       angle.offset += beside;
       const MachineColumns::OnShaft there = model.columns(angle);
-      worst = worst.cwiseMax((near.near(model, angle) - there).cwiseAbs());
+      worst = worst.cwiseMax((near.at(model, angle) - there).cwiseAbs());
       largest = largest.cwiseMax(there.cwiseAbs());
     }
   }
@@ -80,7 +80,7 @@ TEST(NearColumns, AreEvaluatedAgainFurtherOffAndBeyondTheBlow) {
   NearColumns near;
   near.moveTo(model, {-1e-3, Side::kBeforeBlow});
   for (const CrankAngle angle : {CrankAngle{-4e-3, Side::kBeforeBlow}, CrankAngle{0.0, Side::kAfterBlow}}) {
-    EXPECT_EQ(near.near(model, angle), model.columns(angle));
+    EXPECT_EQ(near.at(model, angle), model.columns(angle));
     NearColumns moved = near;
     EXPECT_EQ(moved.moveTo(model, angle), model.columns(angle));
   }

@@ -177,7 +177,7 @@ bool CrankBelief::isSound(double most_speed) const noexcept {
 void addAcceleration(const ShaftModel& model, const CrankBelief& belief, double acceleration, double inverse_inertia,
                      CrankUncertainty& result) noexcept {
   if (model.isExact()) return;
-  const MachineColumns::OnShaft on_shaft = belief.near.near(model, belief.state.position.angle);
+  const MachineColumns::OnShaft on_shaft = belief.near.at(model, belief.state.position.angle);
   result.by_constant.row(CrankUncertainty::kAcceleration).tail<kMachineColumns>() +=
       inverse_inertia *
       (on_shaft.row(2) - square(belief.state.speed) * on_shaft.row(1) - acceleration * on_shaft.row(0));

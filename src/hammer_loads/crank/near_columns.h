@@ -13,7 +13,7 @@ namespace hammer_loads {
 class NearColumns {
  public:
   /// Of the place itself or of one beside it on the same branch.
-  MachineColumns::OnShaft near(const ShaftModel& model, CrankAngle angle) const noexcept {
+  MachineColumns::OnShaft at(const ShaftModel& model, CrankAngle angle) const noexcept {
     return serves(angle) ? on_shaft_ : model.columns(angle);
   }
   /// The same, and stands there from now on.

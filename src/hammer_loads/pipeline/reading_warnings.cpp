@@ -10,27 +10,25 @@ namespace {
 
 /// A speed cannot be ahead of its crank: then the angle is behind it.
 void warnOfSpeeds(const SpeedTrust& speeds, const AngleLag& taken_off, std::vector<Warning>& warnings) {
-  const double lag = 1e3 * speeds.lag(), deviation = 1e3 * speeds.lagDeviation();
+  const auto warnOfAngles = [&](double lag, double deviation, const char* what_is_done) {
+    warnings.push_back({"angle lag",
+                        format("crank angles are %.3g ms (deviation %.1g ms) behind the measured speeds: they are "
+                               "filtered, or crank_latency_s is that much too small; at an even speed crank_zero_rad "
+                               "looks alike; %s",
+                               1e3 * lag, 1e3 * deviation, what_is_done),
+                        true});
+  };
+  const double lag = speeds.lag(), deviation = speeds.lagDeviation();
   if (speeds.lags() && lag > 0.0)
     warnings.push_back({"speed lag",
                         format("crank speeds (velocity) lag behind the angles by %.3g ms (deviation %.1g ms), as a "
                                "drive's filter makes it: they serve the start alone",
-                               lag, deviation),
-                        true});
-  if (speeds.lags() && lag < 0.0 && !taken_off.isThere())
-    warnings.push_back({"angle lag",
-                        format("crank angles are %.3g ms (deviation %.1g ms) behind the measured speeds: they are "
-                               "filtered, or crank_latency_s is that much too small; at an even speed crank_zero_rad "
-                               "looks alike; not corrected, the deviations hold it",
-                               -lag, deviation),
+                               1e3 * lag, 1e3 * deviation),
                         true});
   if (taken_off.isThere())
-    warnings.push_back({"angle lag",
-                        format("crank angles are %.3g ms (deviation %.1g ms) behind the measured speeds: they are "
-                               "filtered, or crank_latency_s is that much too small; at an even speed crank_zero_rad "
-                               "looks alike; it is taken off the readings",
-                               1e3 * taken_off.lag(), 1e3 * taken_off.deviation()),
-                        true});
+    warnOfAngles(taken_off.lag(), taken_off.deviation(), "it is taken off the readings");
+  else if (speeds.lags() && lag < 0.0)
+    warnOfAngles(-lag, deviation, "not corrected, the deviations hold it");
   if (speeds.isOutOfScale())
     warnings.push_back({"speed scale",
                         format("crank speeds (velocity) are %.4g times those of the angles (deviation %.1g): they "

@@ -49,7 +49,7 @@ struct SampleCounts {
     return inOtherUnit() + refusedFor(Refusal::kBackward) + refusedFor(Refusal::kInconsistent);
   }
   /// Since `before`, most readings are not those of such a machine. A unit is the same all along, but shows at work
-  /// only: a tenth of them tells it.
+  /// only: a tenth of them is enough.
   bool contradictSince(const SampleCounts& before) const noexcept {
     constexpr std::uint64_t kUnitTells = 10;
     const std::uint64_t good = accepted - before.accepted;

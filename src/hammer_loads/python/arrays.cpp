@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace hammer_loads::python {
@@ -62,6 +64,7 @@ double* ResultArrays::add(const char* name) {
   using Exact = py::array_t<double, py::array::c_style>;
   Exact array;
   if (out_.is_none()) {
+    if (data_.size() == count_) throw std::logic_error(std::string(name) + ": more arrays than memory was taken for");
     const auto length = static_cast<std::size_t>(memory_.size()) / count_;
     array = Exact(shape_, memory_.mutable_data() + data_.size() * length, memory_);
   } else {
