@@ -117,7 +117,7 @@ class QuietSignal {
     for (int i = 0; i < readings; ++i) {
       signal.advance({kFollowStep, kFollowStep * load_, none_, none_, none_});
       load_ = Eigen::Vector3d(0.0, 1000.0 * normal_(random_), 0.0);
-      signal.read(noise * normal_(random_) + compliance * load_[1], kFollowStep, load_, true);
+      signal.read(noise * normal_(random_) + compliance * load_[1], kFollowStep, load_, {}, true);
     }
   }
 
@@ -165,7 +165,7 @@ TEST(FollowerNumbers, ASignalsWeightIsItsMeanFromTheFirstTurnOn) {
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
   for (int i = 0; i <= 200; ++i) {
     if (i > 0) signal.advance({kFollowStep, none, none, none, none});
-    signal.read(i == 0 ? 1.0 : 0.0, kFollowStep, none, false);
+    signal.read(i == 0 ? 1.0 : 0.0, kFollowStep, none, {}, false);
   }
   expectRoughly(-signal.swing(1e-6, none, none).velocity / 1e-6, 0.5);  // 0.2 s / (0.2 s + 0.2 s)
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 
 #include "hammer_loads/bench/boom_errors.h"
@@ -40,6 +41,26 @@ TEST(WrenchPath, GivesLoadAndImpulseAtAnyInstantBlowsIncluded) {
   EXPECT_NEAR(path.at(3 * test::kMs).impulse[1], path.at(2 * test::kMs).impulse[1] - 20e-3, 1e-12);
 }
 
+/// A blow of 3 N s after 1 ms, at which Fz falls from 300 to -50 N, its instant known to 0.1 ms.
+TEST(WrenchPath, SaysHowLikelyAnInstantIsOnTheOtherSideOfABlowAndWhatWouldBeAddedThere) {
+  WrenchPath path;
+  WrenchHistory step;
+  step.count = 1;
+  step.pieces[0] = {1e-3, {0.0, 300.0, 0.0}, {0.0, 300.0, 0.0}, {0.0, 300.0, 0.0}, true, {0.0, 3.0, 0.0}, 1e-4};
+  path.add(test::kMs, step, {}, {});
+  EXPECT_EQ(path.otherSide(test::kMs).probability, 0.0);  // what follows is not known yet
+  step.pieces[0] = {1e-3, {0.0, -50.0, 0.0}, {0.0, -50.0, 0.0}, {0.0, -50.0, 0.0}, false, {}, 0.0};
+  path.add(2 * test::kMs, step, {}, {});
+  const auto before = path.otherSide(test::kMs - 100000), after = path.otherSide(test::kMs + 100000);
+  EXPECT_NEAR(before.probability, 0.15866, 1e-5);  // of a normal distribution beyond one deviation
+  EXPECT_NEAR(after.probability, 0.15866, 1e-5);
+  EXPECT_NEAR(before.load[1], -350.0, 1e-9);
+  EXPECT_NEAR(after.load[1], 350.0, 1e-9);
+  EXPECT_NEAR(before.blow[1], 3.0, 1e-12);
+  EXPECT_NEAR(after.blow[1], -3.0, 1e-12);
+  EXPECT_LT(path.otherSide(2 * test::kMs).probability, 1e-12);
+}
+
 /// Mass on a spring under a load of steps: exact from step to step.
 struct SteppedOscillator {
   double mass, omega, x{}, v{}, force{};
@@ -72,7 +93,7 @@ Foretold foretell(double interval, double noise) {
     if (i > 0)
       signal.advance(
           {interval, interval * hull.force * along, none, {0.0, swing.velocity, 0.0}, {0.0, swing.way, 0.0}});
-    signal.read(9.8 + hull.acceleration() + noise * normal(random), interval, hull.force * along, true);
+    signal.read(9.8 + hull.acceleration() + noise * normal(random), interval, hull.force * along, {}, true);
     if (i % 3 != 0) continue;
     hull.force = 4000.0 * normal(random);
     if (i < 3000) continue;
@@ -108,9 +129,10 @@ struct VectorErrors {
   double rms{}, worst{}, covered[3]{};
 };
 
-/// Of published wrenches from 4 s on; the crank's side of the blow is judged elsewhere.
-VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise, double x, double z) {
-  simulation::MachineSettings m = accuracy::machineOnBoom(6.0);
+/// Of published wrenches; the crank's side of the blow is judged elsewhere.
+VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise, double x, double z, double from,
+                          double to) {
+  simulation::MachineSettings m = accuracy::machineOnBoom(to);
   m.seed = seed;
   m.on_boom.imu = {rate, x, z, 0.0, acceleration_noise, 0.03 * acceleration_noise};
   std::mt19937 random(seed);
@@ -125,9 +147,9 @@ VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise,
   double peak = 0.0;
   int count = 0;
   std::size_t i = 0;
-  player.playTo(6.0, [&](double time, const SampleResult& result) {
+  player.playTo(to, [&](double time, const SampleResult& result) {
     const simulation::OnBoomTruth& t = session.on_boom[i++];
-    if (time < 4.0 || result.refusal || result.outputs.empty()) return;
+    if (time < from || result.refusal || result.outputs.empty()) return;
     const HullWrench &w = result.outputs.front().wrench, &d = result.outputs.front().deviation.wrench;
     const double miss[3] = {w.force_x - t.load.force_x, w.force_z - t.load.force_z,
                             w.torque_y - t.load.torque_y - t.drive_reaction_y};
@@ -144,21 +166,27 @@ VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise,
   return e;
 }
 
-/// Not at 200 Hz yet: of the first seconds of work seed 243 has 0.56 % rms, 5.4 % worst, and covers 70 to 89 %.
+/// Seed 304 has a reading that is closer to a blow than the blow's instant is known.
 TEST(HullMotionFilter, GivesTheForcesVectorRightAfterBlowsTooAndHonestDeviations) {
   const struct {
     unsigned seed;
-    double rate, noise, x, z;
-  } machines[] = {{240, 1000.0, 0.1, 0.0, 0.0}, {242, 500.0, 0.3, 0.2, 0.3}};
-  for (const auto& machine : machines) {
-    const VectorErrors e = vectorErrors(machine.seed, machine.rate, machine.noise, machine.x, machine.z);
+    double rate, noise, x, z, from, to;
+  } machines[] = {{240, 1000.0, 0.1, 0.0, 0.0, 4.0, 6.0},
+                  {242, 500.0, 0.3, 0.2, 0.3, 4.0, 6.0},
+                  {304, 1000.0, 0.1, 0.0, 0.0, 4.0, 6.0},
+                  {309, 200.0, 0.3, 0.2, 0.3, 4.0, 6.0},
+                  {303, 200.0, 0.3, 0.2, 0.3, 16.0, 18.0}};
+  double all = 0.0;
+  for (const auto& m : machines) {
+    const VectorErrors e = vectorErrors(m.seed, m.rate, m.noise, m.x, m.z, m.from, m.to);
     EXPECT_LT(e.rms, 0.006);
     EXPECT_LT(e.worst, 0.04);
     for (const double part : e.covered) {
       EXPECT_GT(part, 0.88);
-      EXPECT_LT(part, 0.995);  // 88 to 99 %
+      all += part / 3.0 / std::size(machines);
     }
   }
+  EXPECT_LT(all, 0.99);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "hammer_loads/pipeline/crank_step.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hammer_loads/crank/way_piece.h"
 
@@ -90,6 +91,12 @@ CrankEstimate CrankStep::besides(const Passage& passage, Side side) const noexce
   estimate.position = {passage.blow, {0.0, side}};
   estimate.speed = isEarlier(passage, side) ? passage.speed_before : passage.speed_after;
   return estimate;
+}
+
+double CrankStep::timeDeviation(const Passage& passage) const noexcept {
+  const CrankUncertainty there = tracker_->uncertaintyBetween(timeBesides(passage, Side::kBeforeBlow), 1.0);
+  return std::sqrt(there.covariance()(CrankUncertainty::kAngle, CrankUncertainty::kAngle)) /
+         std::abs(passage.speed_before);
 }
 
 std::optional<CrankWays> CrankStep::waysBesides(const Passage& passage, Side side) const noexcept {

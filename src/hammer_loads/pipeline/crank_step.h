@@ -68,6 +68,8 @@ class CrankStep {
   /// Estimate on one side of a passage that is not smooth: exactly at the blow, so that nothing is lost to rounding
   /// there.
   CrankEstimate besides(const Passage& passage, Side side) const noexcept;
+  /// Of the instant of a passage, standard [s].
+  double timeDeviation(const Passage& passage) const noexcept;
   /// What the samples at the step's ends each say of at(time), of besides(passage, side); nothing where one of them
   /// does not reach there.
   std::optional<CrankWays> ways(double time) const noexcept { return tracker_->waysBetween(time); }

@@ -112,7 +112,8 @@ void DrivenSignal::carry(const Step& step, double slope_step, double walk, doubl
   const Eigen::Matrix<double, kStates, 3> PF = carried(P, step, h);
   P.leftCols<3>() = PF;
   P.topRows<3>() = PF.transpose();
-  P.topLeftCorner<3, 3>() = carried(P.topRows<3>(), step, h);
+  const Eigen::Matrix3d FPF = carried(P.topRows<3>(), step, h);
+  P.topLeftCorner<3, 3>() = 0.5 * (FPF + FPF.transpose());
   P(kIntegral, kIntegral) += q * hh * hh / 20.0, P(kSmooth, kSmooth) += q * hh / 3.0, P(kSlope, kSlope) += q;
   const auto both = [&](int i, int j, double value) { P(i, j) += value, P(j, i) += value; };
   both(kIntegral, kSmooth, q * hh * h / 8.0), both(kIntegral, kSlope, q * hh / 6.0), both(kSmooth, kSlope, q * h / 2.0);
@@ -120,13 +121,16 @@ void DrivenSignal::carry(const Step& step, double slope_step, double walk, doubl
   P.diagonal().tail<9>() += h * walk_;
 }
 
-void DrivenSignal::update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& c) noexcept {
+void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Doubt& doubt, bool counts,
+                          Candidate& c) noexcept {
   const bool itself = settings_.reads == Reads::kItself;
   const State PH = itself ? signalsOf(c.P, load) : State(c.P.col(kIntegral));
-  const double S = 1.0 + readOf(PH, load), off = reading - readOf(c.x, load);
-  const State gain = PH / S;
-  c.x += gain * off;
-  c.P -= gain.lazyProduct(PH.transpose());
+  const double p = doubt.probability, jump = c.x.segment<3>(kCompliance).dot(doubt.added);
+  const double S = 1.0 + readOf(PH, load) + p * (1.0 - p) * square(jump) / c.variance;
+  const double off = reading - readOf(c.x, load) - p * jump;
+  const State gain = PH / std::sqrt(S);  // products of its elements keep the covariance symmetric to the bit
+  c.x += gain * (off / std::sqrt(S));
+  c.P -= gain.lazyProduct(gain.transpose());
   if (!counts) return;
   const double share = 1.0 / std::min(counted_ + 10.0, kMemoryOfReadings);
   const double size = std::min(square(off) / S, kFarOff * c.variance);
@@ -138,10 +142,11 @@ void DrivenSignal::advance(const Step& step) noexcept {
   for (Candidate& c : candidates_) carry(step, step.length, walkOf(c), c.variance, c.x, c.P);
 }
 
-void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load, bool counts) noexcept {
+void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load, const Doubt& doubt,
+                        bool counts) noexcept {
   if (!begun_) return begin(reading, load);
   interval_ = interval_ > 0.0 ? interval_ + 0.05 * (step - interval_) : step;
-  for (Candidate& c : candidates_) update(reading, load, counts, c);
+  for (Candidate& c : candidates_) update(reading, load, doubt, counts, c);
   if (settings_.reads == Reads::kItself)
     steady_ += std::min(1.0, step / steady_time_) * (readOf(best().x, load) - steady_);
   steady_time_ = std::min(steady_time_ + step, kSteadyMemory);

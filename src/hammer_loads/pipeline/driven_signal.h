@@ -36,6 +36,12 @@ class DrivenSignal {
     Eigen::Vector3d velocity;  ///< by which the hull's vibration changes: x, z, turning
     Eigen::Vector3d way;       ///< the integral of that from 0
   };
+  /// A reading closer to a blow than its instant is known: with that probability this was added to the load (where a
+  /// signal is read) or to its impulse (where its integral is).
+  struct Doubt {
+    double probability{};
+    Eigen::Vector3d added = Eigen::Vector3d::Zero();
+  };
   struct Value {
     double signal{}, integral{};  ///< the integral only where it is read
     /// Of signal and integral.
@@ -50,6 +56,8 @@ class DrivenSignal {
 
   /// Readings are not continuous with those before; what the hull is stays known.
   void forgetMotion() noexcept { begun_ = false; }
+  /// The load has grown: readings up to now count for that part only in how the signal walks and is read.
+  void outdate(double part) noexcept { counted_ *= part; }
   /// All that is known is a number.
   bool isFinite() const noexcept { return 0.0 * (best().x.sum() + best().P.sum()) == 0.0; }
   const Settings& settings() const noexcept { return settings_; }
@@ -57,7 +65,7 @@ class DrivenSignal {
   void advance(const Step& step) noexcept;
   /// At the load there is; step: all since the last reading [s]; counts: the readings show how the signal walks, as
   /// they do while the hammer works.
-  void read(double reading, double step, const Eigen::Vector3d& load, bool counts) noexcept;
+  void read(double reading, double step, const Eigen::Vector3d& load, const Doubt& doubt, bool counts) noexcept;
 
   /// Change of the signal's integral over a step to come, and the integral of that from 0.
   struct Swing {
@@ -103,7 +111,8 @@ class DrivenSignal {
   void carry(const Step& step, double slope_step, double walk, double unit, State& x, Covariance& P) const noexcept;
   Swing swing(const State& x, double length, const Eigen::Vector3d& impulse,
               const Eigen::Vector3d& lasting) const noexcept;
-  void update(double reading, const Eigen::Vector3d& load, bool counts, Candidate& candidate) noexcept;
+  void update(double reading, const Eigen::Vector3d& load, const Doubt& doubt, bool counts,
+              Candidate& candidate) noexcept;
   double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: what a reading is of that
   double walkOf(const Candidate& candidate) const noexcept;
   const Candidate& best() const noexcept { return candidates_[best_]; }

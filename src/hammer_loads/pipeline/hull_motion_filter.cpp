@@ -80,7 +80,10 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
 /// At rest readings show noise alone.
 bool HullMotionFilter::works(const Eigen::Vector3d& load) noexcept {
   const double size = load.head<2>().norm();
-  greatest_load_ = std::max(greatest_load_, size);
+  if (size > greatest_load_) {
+    for (DrivenSignal* signal : {&x_, &z_, &turning_}) signal->outdate(square(greatest_load_ / size));
+    greatest_load_ = size;
+  }
   return size > kWorking * greatest_load_;
 }
 
@@ -117,9 +120,11 @@ void HullMotionFilter::take(const Reading& next) noexcept {
   }
   const bool counts = works(now.load);
   const ImuReading& r = next.reading;
-  x_.read(r.specific_force.x(), step, now.load, counts);
-  z_.read(r.specific_force.z(), step, now.load, counts);
-  turning_.read(r.rate.y(), step, now.load, counts);
+  const WrenchPath::OtherSide other = path_.otherSide(next.stamp);
+  const DrivenSignal::Doubt by_load{other.probability, other.load}, by_blow{other.probability, other.blow};
+  x_.read(r.specific_force.x(), step, now.load, by_load, counts);
+  z_.read(r.specific_force.z(), step, now.load, by_load, counts);
+  turning_.read(r.rate.y(), step, now.load, by_blow, counts);
   for (DrivenSignal* signal : {&x_, &z_, &turning_}) {
     if (signal->isFinite()) continue;
     *signal = DrivenSignal(signal->settings());

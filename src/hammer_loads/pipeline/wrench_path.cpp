@@ -21,6 +21,7 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
     const Eigen::Vector3d to = vectorOf(given.to) + (passed + h) * per_length * change + first;
     const Eigen::Vector3d mean = vectorOf(given.mean) + (passed + 0.5 * h) * per_length * change + first;
     const Eigen::Vector3d bump = 6.0 * (mean - 0.5 * (from + to));
+    if (blow_ && !blow_->jump) blow_->jump = from - begin.load;
     Piece& piece = pieces_[count_++ % kKept];
     piece = {start,
              h,
@@ -34,6 +35,7 @@ void WrenchPath::add(StampNs end, const WrenchHistory& step, const HullWrench& b
     begin = after(piece);
     passed += h;
     start = end - static_cast<StampNs>(std::llround((length - passed) / kSecondsPerNs));
+    if (given.ends_in_blow) blow_ = Blow{start, given.blow_deviation, piece.blow, std::nullopt};
   }
   end_ = end;
 }
@@ -64,6 +66,13 @@ WrenchPath::Instant WrenchPath::at(StampNs stamp) const noexcept {
   while (k + 1 < kept() && back(k).start > stamp) ++k;
   const Piece& piece = back(k);
   return within(piece, std::clamp(seconds(stamp - piece.start), 0.0, piece.duration));
+}
+
+WrenchPath::OtherSide WrenchPath::otherSide(StampNs stamp) const noexcept {
+  if (!blow_ || !blow_->jump || !(blow_->deviation > 0.0)) return {};
+  const double after = seconds(stamp - blow_->stamp), sign = after < 0.0 ? 1.0 : -1.0;
+  return {0.5 * std::erfc(std::abs(after) / (std::sqrt(2.0) * blow_->deviation)), sign * *blow_->jump,
+          sign * blow_->impulse};
 }
 
 }  // namespace hammer_loads

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "hammer_loads/pipeline/wrench_history.h"
 #include "hammer_loads/util/stamp.h"
@@ -12,16 +13,20 @@
 namespace hammer_loads {
 
 /// Force along x and z, moment about D: [N, N, N m], their impulse [N s, N s, N m s].
-
 class WrenchPath {
  public:
+  /// What would be added to an instant were it on the other side of the last blow, and the probability of that.
+  struct OtherSide {
+    double probability{};
+    Eigen::Vector3d load = Eigen::Vector3d::Zero(), blow = Eigen::Vector3d::Zero();
+  };
   struct Instant {
     Eigen::Vector3d load;
     Eigen::Vector3d impulse, blows;  ///< from the first step on: all, and that of the blows alone
     Eigen::Vector3d lasting;         ///< the impulse's integral as above [N s2, N s2, N m s2]
   };
 
-  void forget() noexcept { count_ = 0; }
+  void forget() noexcept { count_ = 0, blow_.reset(); }
   bool known() const noexcept { return count_ > 0; }
   /// Steps in the order of time, each to `end`. beside_from, beside_to: what acts beside the step's own load at its
   /// ends. A step that does not begin where the last one ended begins anew. No allocation.
@@ -31,8 +36,15 @@ class WrenchPath {
   StampNs end() const noexcept { return end_; }
   /// After the end: the load stays. Before what is remembered: as at its beginning.
   Instant at(StampNs stamp) const noexcept;
+  OtherSide otherSide(StampNs stamp) const noexcept;
 
  private:
+  struct Blow {
+    StampNs stamp{};
+    double deviation{};  ///< of the instant, standard [s]
+    Eigen::Vector3d impulse;
+    std::optional<Eigen::Vector3d> jump;  ///< of the load; none: what follows is not known yet
+  };
   struct Piece {
     StampNs start{};
     double duration{};                        ///< [s]
@@ -49,6 +61,7 @@ class WrenchPath {
   static Instant within(const Piece& piece, double time) noexcept;
 
   std::array<Piece, kKept> pieces_;
+  std::optional<Blow> blow_;
   std::uint64_t count_{};
   StampNs end_{};
 };
