@@ -65,6 +65,29 @@ TEST(TurnLoads, OfTheHullHaveThePulsesPeakAtAnyRate) {
   }
 }
 
+/// As outputs of a high rate have it at the instant closest to the extreme; the last sample may be 10 ms before it.
+TEST(TurnLoads, AnExtremeBetweenSamplesHasTheDeviationOfItsOwnPlace) {
+  std::vector<WrenchOutput> outputs;
+  int turns = 0;
+  run(test::settingsWith("output_rate_Hz: 4000\n"), sessionAt(100.0),
+      [&](const SampleResult& result, const LifeFollower& follower) {
+        outputs.insert(outputs.end(), result.outputs.begin(), result.outputs.end());
+        for (std::size_t i = 0; i < result.turn_ends; ++i) {
+          const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
+          if (turn == nullptr || !turn->whole) continue;
+          const StampNs instant = turn->minimum_instant[0];
+          const auto close = std::find_if(outputs.rbegin(), outputs.rend(),
+                                          [&](const WrenchOutput& output) { return output.stamp <= instant; });
+          ASSERT_NE(close, outputs.rend());
+          if (seconds(instant - close->stamp) > 1e-3) continue;  // withheld beside the blow
+          ++turns;
+          const double there = close->deviation.wrench.force_x;
+          EXPECT_NEAR(turn->of_minimum[0].deviation(), there, 0.2 * there) << turns;
+        }
+      });
+  EXPECT_GT(turns, 8);
+}
+
 TEST(TurnLoads, OfJointsAreThoseOfTheSamples) {
   double greatest = -1e300;
   std::optional<StampNs> blow;

@@ -17,7 +17,9 @@ LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& s
       values_(channels_.size()),
       deviations_(channels_.size()),
       common_(channels_.size()),
-      between_(channels_.size(), std::numeric_limits<double>::quiet_NaN()) {
+      between_(channels_.size(), std::numeric_limits<double>::quiet_NaN()),
+      deviations_there_(between_),
+      common_there_(between_) {
   turns_.fill(life::TurnLoadsRecorder(channels_.size()).endTurn(-1));
 }
 
@@ -73,8 +75,8 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
         if (!published) return;
         wrenchValues(wrench, between_.data());
         keepWhatBothEndsSay(load, place, end);
-        recorder_.between(step.stampAt(place.time), between_.data(), deviations_.data(), common_.data());
-        turn_.between(step.stampAt(place.time), between_.data(), deviations_.data(), common_.data());
+        recorder_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
+        turn_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
       },
       [&](double time) { endTurn(step.stampAt(time)); });
 }
@@ -83,15 +85,21 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
 /// published there; else as far as both have it: where a sample corrects the path, what lies between is of neither.
 void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place,
                                        const std::array<double, kHullChannels>& end) noexcept {
+  std::copy_n(deviations_.begin(), end.size(), deviations_there_.begin());
+  std::copy_n(common_.begin(), end.size(), common_there_.begin());
   const auto isWithin = [&](std::size_t i) {
     return between_[i] >= std::min(values_[i], end[i]) && between_[i] <= std::max(values_[i], end[i]);
   };
   bool all_within = true;
   for (std::size_t i = 0; i < end.size(); ++i) all_within = all_within && isWithin(i);
   if (all_within) return;
+  const CrankStep& step = pipeline_->crank().step();
+  const HullDeviation there = pipeline_->stepDeviation(place.time, place.crank(step));
+  wrenchValues(there.wrench, deviations_there_.data());
+  wrenchValues(there.common, common_there_.data());
   std::array<double, kHullChannels> forward, back, end_deviation;
   wrenchValues(pipeline_->result().deviation.wrench, end_deviation.data());
-  const std::optional<CrankWays> ways = place.ways(pipeline_->crank().step());
+  const std::optional<CrankWays> ways = place.ways(step);
   if (ways) {
     wrenchValues(load.at(ways->forward), forward.data());
     wrenchValues(load.at(ways->back), back.data());

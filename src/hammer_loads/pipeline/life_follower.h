@@ -63,8 +63,9 @@ class LifeFollower {
   std::optional<StampNs> last_blow_;     ///< the last one that was none but a blow
   /// Turns whose blow is not measured yet, and those just measured: as many as a result has ends, and one.
   std::array<life::TurnLoads, std::tuple_size<decltype(SampleResult::ends)>::value + 1> turns_;
-  std::size_t next_turn_{};  ///< in turns_
-  std::vector<double> values_, deviations_, common_, between_;
+  std::size_t next_turn_{};                                        ///< in turns_
+  std::vector<double> values_, deviations_, common_;               ///< at the last sample counted
+  std::vector<double> between_, deviations_there_, common_there_;  ///< between two: of the wrench, else not known
 };
 
 }  // namespace hammer_loads

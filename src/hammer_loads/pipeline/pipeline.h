@@ -49,6 +49,10 @@ class Pipeline {
   const SampleResult& end() noexcept;
 
   const SampleResult& result() const noexcept { return result_; }  ///< of the last sample
+  /// Of the wrench within the step of the last sample, see WrenchSampler.
+  HullDeviation stepDeviation(double time, const CrankEstimate& crank) const noexcept {
+    return sampler_.deviation(time, crank, result_);
+  }
   SampleCounts counts() const noexcept;
   const HullModel& model() const noexcept { return model_; }
   const CrankFollower& crank() const noexcept { return crank_; }

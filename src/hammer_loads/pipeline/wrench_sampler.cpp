@@ -116,16 +116,27 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
     boundMean(links, result.doubt.own, result.rod_momentum, output);
     return output;
   }
-  const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
   const CrankUncertainty doubt = tracker_->uncertaintyBetween(time, torque_part_);
-  LoadColumns unused;
-  output.deviation = hullDeviation(*hammer_, *model_, step_->driveInertia(), output.crank, there, hull, doubt, unused);
-  addHullMotion(*model_, drive_, there.here.links, output.crank.speed, hull, result.hull.covariance,
-                output.deviation.wrench);
-  output.deviation.wrench =
-      wrenchOf((vectorOf(output.deviation.wrench).cwiseAbs2() + vectorOf(result.rod_ring).cwiseAbs2()).cwiseSqrt());
+  const LinksBeside there(*model_, linksAt(*model_, output.crank.position.angle));
+  output.deviation = deviation(output.crank, doubt, there, hull, result);
   boundMean(there, doubt.own, result.rod_momentum, output);
   return output;
+}
+
+HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUncertainty& doubt,
+                                       const LinksBeside& there, const HullMotion& hull,
+                                       const SampleResult& result) const noexcept {
+  LoadColumns unused;
+  HullDeviation of = hullDeviation(*hammer_, *model_, step_->driveInertia(), crank, there, hull, doubt, unused);
+  addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of.wrench);
+  of.wrench = wrenchOf((vectorOf(of.wrench).cwiseAbs2() + vectorOf(result.rod_ring).cwiseAbs2()).cwiseSqrt());
+  return of;
+}
+
+HullDeviation WrenchSampler::deviation(double time, const CrankEstimate& crank,
+                                       const SampleResult& result) const noexcept {
+  return deviation(crank, tracker_->uncertaintyBetween(time, torque_part_),
+                   LinksBeside(*model_, linksAt(*model_, crank.position.angle)), result.hull.motion, result);
 }
 
 /// What a sample's error is of, the momenta at both ends bound; a constant's is the mean of its own. rod: momentum of

@@ -25,6 +25,8 @@ class WrenchSampler {
   /// Appends to the result's outputs those up to its sample, with which the step ended; links: at the sample. No
   /// allocation once the outputs have the room of mostOutputs().
   void sample(const LinksBeside& links, SampleResult& result) noexcept;
+  /// Of the wrench at an instant of the last sample's step, where the crank is as given; time: after its start [s].
+  HullDeviation deviation(double time, const CrankEstimate& crank, const SampleResult& result) const noexcept;
   /// Of one sample.
   std::size_t mostOutputs() const noexcept;
 
@@ -32,6 +34,8 @@ class WrenchSampler {
   bool begin(const SampleResult& result) noexcept;
   bool isDue(StampNs sample, StampNs& stamp) const noexcept;
   bool isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept;
+  HullDeviation deviation(const CrankEstimate& crank, const CrankUncertainty& doubt, const LinksBeside& there,
+                          const HullMotion& hull, const SampleResult& result) const noexcept;
   WrenchOutput output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept;
   void addUpTo(double time, const SampleResult& result) noexcept;
   void followHull(const HullMotion& hull) noexcept;
