@@ -118,6 +118,9 @@ TEST(CrankTrust, AnotherUnitIsWithheldAndNamed) {
   const Played turns = play(session, "{}", units(1.0, 1.0 / kTwoPi));
   expectWithheld(turns, "speed unit");
   EXPECT_NE(textOfWarning(turns, "speed unit").find("turns per second"), std::string::npos);
+  const Played angle = play(session, "{}", units(1.0 / kTwoPi, 1.0));
+  expectWithheld(angle, "angle unit");
+  EXPECT_NE(textOfWarning(angle, "angle unit").find("angle is in turns"), std::string::npos);
   for (const double speed : {degrees, 1.0}) {
     const Played in_degrees = play(session, "{}", units(degrees, speed));
     expectWithheld(in_degrees, "degrees");

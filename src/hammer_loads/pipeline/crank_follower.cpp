@@ -42,6 +42,7 @@ void CrankFollower::checkUnit(StampNs stamp, const CrankSample& measured) noexce
 
 std::optional<Refusal> CrankFollower::otherUnit() const noexcept {
   if (!unit_check_.looksWrong()) return std::nullopt;
+  if (unit_check_.unit() == CrankUnit::kAngleInTurns) return Refusal::kAngleUnit;
   return unit_check_.unit() == CrankUnit::kDegrees ? Refusal::kDegrees : Refusal::kSpeedUnit;
 }
 

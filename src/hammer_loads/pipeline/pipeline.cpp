@@ -86,7 +86,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   result_.outputs.clear();
   result_.refusal.reset();
   if (const auto refusal = crank_.judge(header, measured)) {
-    if (*refusal == Refusal::kDegrees || *refusal == Refusal::kSpeedUnit) turn_.discard();
+    if (isOfUnit(*refusal)) turn_.discard();
     return refuse(*refusal);
   }
   result_.stamp = crank_.stamp();

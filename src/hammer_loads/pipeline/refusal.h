@@ -21,6 +21,7 @@ enum class Refusal : std::size_t {
   kBadStamp,      ///< beyond the last time that a message can carry
   kDegrees,       ///< crank or boom are recognised to send degrees: withheld until that is over
   kSpeedUnit,     ///< as above, the crank's speed in rpm or in turns a second
+  kAngleUnit,     ///< as above, the crank's angle in turns
   kBackward,      ///< the crank turns backward: withheld until it has made half a turn forward
   kInconsistent,  ///< readings contradict the model, and have for some time: withheld until they agree
   kUnsettled,     ///< taken, but the estimate is not good enough to publish (start without speed, after a drop-out)
@@ -28,8 +29,12 @@ enum class Refusal : std::size_t {
 };
 
 constexpr std::array<const char*, static_cast<std::size_t>(Refusal::kCount)> kRefusalNames{
-    "missing joint", "short array", "not finite", "implausible", "out of order", "duplicate",
-    "bad stamp",     "degrees",     "speed unit", "backward",    "inconsistent", "unsettled"};
+    "missing joint", "short array", "not finite", "implausible", "out of order", "duplicate", "bad stamp",
+    "degrees",       "speed unit",  "angle unit", "backward",    "inconsistent", "unsettled"};
+
+constexpr bool isOfUnit(Refusal reason) noexcept {
+  return reason == Refusal::kDegrees || reason == Refusal::kSpeedUnit || reason == Refusal::kAngleUnit;
+}
 
 /// Crank samples since the start.
 struct SampleCounts {
@@ -43,7 +48,9 @@ struct SampleCounts {
   MisuseCounts misuse;
 
   /// Withheld because the readings are in another unit.
-  std::uint64_t inOtherUnit() const noexcept { return refusedFor(Refusal::kDegrees) + refusedFor(Refusal::kSpeedUnit); }
+  std::uint64_t inOtherUnit() const noexcept {
+    return refusedFor(Refusal::kDegrees) + refusedFor(Refusal::kSpeedUnit) + refusedFor(Refusal::kAngleUnit);
+  }
   /// Withheld because the readings are not those of such a machine.
   std::uint64_t contradicting() const noexcept {
     return inOtherUnit() + refusedFor(Refusal::kBackward) + refusedFor(Refusal::kInconsistent);

@@ -22,13 +22,23 @@ constexpr double kLeastTime = 0.2;  // [s] of suspicion: some bad samples are no
 constexpr int kEnough = 8;          // votes more for another unit than against
 // Guard: SensorBounds.OfUnits of kTolerance, kStretch, kLongestStep, kLeastTime, kEnough
 
-bool isNear(double ratio, double factor) noexcept { return ratio > factor / kTolerance && ratio < factor * kTolerance; }
-
-/// turned over predicted.
+/// The closest one within the tolerance; ratio: turned over predicted.
 CrankUnit unitOf(double ratio) noexcept {
-  if (isNear(ratio, kDegrees) || isNear(ratio, 1.0 / kDegrees)) return CrankUnit::kDegrees;
-  if (isNear(ratio, 1.0 / kRpm)) return CrankUnit::kSpeedInRpm;
-  return isNear(ratio, kTwoPi) ? CrankUnit::kSpeedInTurns : CrankUnit::kRadians;
+  constexpr struct {
+    double ratio;
+    CrankUnit unit;
+  } kUnits[] = {{kDegrees, CrankUnit::kDegrees},
+                {1.0 / kDegrees, CrankUnit::kDegrees},
+                {1.0 / kRpm, CrankUnit::kSpeedInRpm},
+                {1.0 / kTwoPi, CrankUnit::kAngleInTurns},
+                {kTwoPi, CrankUnit::kSpeedInTurns}};
+  CrankUnit closest = CrankUnit::kRadians;
+  double farthest = std::log(kTolerance);
+  for (const auto& known : kUnits) {
+    const double off = std::abs(std::log(ratio / known.ratio));  // of a ratio below zero not a number
+    if (off < farthest) farthest = off, closest = known.unit;
+  }
+  return closest;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ enum class CrankUnit {
   kDegrees,       ///< angle, speed or both
   kSpeedInRpm,    ///< turns a minute
   kSpeedInTurns,  ///< turns a second
+  kAngleInTurns,
 };
 
 /// The text of its warning.
@@ -24,6 +25,8 @@ constexpr const char* textOf(CrankUnit unit) noexcept {
       return "speed is in rpm, must be in rad/s";
     case CrankUnit::kSpeedInTurns:
       return "speed is in turns per second, must be in rad/s";
+    case CrankUnit::kAngleInTurns:
+      return "angle is in turns, must be in radians";
     case CrankUnit::kRadians:
       break;
   }
@@ -31,11 +34,11 @@ constexpr const char* textOf(CrankUnit unit) noexcept {
 }
 
 /// Compares what the crank's angle turns with what its speed says, over stretches of a radian or more: a factor of 57.3
-/// either way is degrees in one of them, 9.55 a speed in rpm, 1/6.28 one in turns a second. Where both would be in
-/// degrees, or no speed is measured, it looks for steps that repeat themselves, each faster than any crank, but not so
-/// if they were degrees. Needs the raw samples, those that are refused as well; judges within some 2 turns and takes
-/// nothing back before the samples contradict it. Degrees of both angle and speed below `max_speed` [deg/s] look like
-/// radians.
+/// either way is degrees in one of them, 1/9.55 a speed in rpm, 6.28 one in turns a second, 1/6.28 an angle in turns.
+/// Where both would be in degrees, or no speed is measured, it looks for steps that repeat themselves, each faster than
+/// any crank, but not so if they were degrees. Needs the raw samples, those that are refused as well; judges within
+/// some 2 turns and takes nothing back before the samples contradict it. Degrees of both angle and speed below
+/// `max_speed` [deg/s] look like radians.
 class UnitCheck {
  public:
   /// No crank is faster [rad/s].

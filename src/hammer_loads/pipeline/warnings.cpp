@@ -20,15 +20,19 @@ std::string count(std::uint64_t n) { return std::to_string(n); }
 void warnOfUnits(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
   const CrankUnit unit = pipeline.crank().unit();
   const bool boom = pipeline.hull().pitch().looksLikeDegrees();
-  const std::uint64_t degrees = counts.refusedFor(Refusal::kDegrees), speed = counts.refusedFor(Refusal::kSpeedUnit);
+  const std::uint64_t degrees = counts.refusedFor(Refusal::kDegrees), speed = counts.refusedFor(Refusal::kSpeedUnit),
+                      turns = counts.refusedFor(Refusal::kAngleUnit);
   const auto withheld = [](std::uint64_t samples) { return "; " + count(samples) + " samples withheld"; };
   if (degrees > 0 || unit == CrankUnit::kDegrees || boom)
     warnings.push_back({"degrees",
                         std::string(boom ? "boom joints" : "crank") +
                             ": angle or speed is in degrees, must be in radians" + withheld(degrees),
                         boom || unit == CrankUnit::kDegrees});
-  if (speed == 0 && (unit == CrankUnit::kRadians || unit == CrankUnit::kDegrees)) return;
+  if (turns > 0 || unit == CrankUnit::kAngleInTurns)
+    warnings.push_back({"angle unit", std::string("crank: ") + textOf(CrankUnit::kAngleInTurns) + withheld(turns),
+                        unit == CrankUnit::kAngleInTurns});
   const bool now = unit == CrankUnit::kSpeedInRpm || unit == CrankUnit::kSpeedInTurns;
+  if (speed == 0 && !now) return;
   warnings.push_back({"speed unit",
                       std::string("crank: ") +
                           (now ? textOf(unit) : "speed was in rpm or turns per second, must be in rad/s") +
