@@ -64,6 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
 struct Mistake {
   const char* name;
   const char* warning;
+  const char* says;  ///< what was found
   std::function<void(Session&)> make;
 };
 
@@ -83,14 +84,17 @@ const Session& sessionOn(bool rock) {
   return rock ? bears : free;
 }
 
-bool warnsOf(const Pipeline& pipeline, const std::string& key) {
-  const std::vector<Warning> warnings = warningsOf(pipeline);
-  return std::any_of(warnings.begin(), warnings.end(), [&](const Warning& w) { return w.key == key; });
+/// Empty: no such warning.
+std::string textOf(const Pipeline& pipeline, const std::string& key) {
+  for (const Warning& w : warningsOf(pipeline))
+    if (w.key == key) return w.text;
+  return "";
 }
 
 /// To the end; a warning, and whether the sensor is used.
 struct Played {
-  bool warned, used;
+  std::string warning;
+  bool used;
 };
 
 Played played(const Session& session, const std::string& sensor) {
@@ -99,7 +103,7 @@ Played played(const Session& session, const std::string& sensor) {
   player.imu_speaks = !by_pressures, player.pressures_speak = by_pressures;
   player.playTo(5.0, [](double, const SampleResult&) {});
   const SampleResult& last = player.pipeline.result();
-  return {warnsOf(player.pipeline, sensor),
+  return {textOf(player.pipeline, sensor),
           by_pressures ? last.boom != nullptr && last.boom->measured : player.pipeline.hull().motionKnown()};
 }
 
@@ -107,7 +111,7 @@ TEST(MistakenSensors, RightOnesAreUsed) {
   for (const bool rock : {false, true}) {
     for (const char* sensor : {"pressures", "imu"}) {
       const Played as_said = played(sessionOn(rock), sensor);
-      EXPECT_FALSE(as_said.warned) << sensor << rock;
+      EXPECT_EQ(as_said.warning, "") << sensor << rock;
       EXPECT_TRUE(as_said.used) << sensor << rock;
     }
   }
@@ -118,7 +122,7 @@ TEST_P(Mistaken, SensorsAreNamedAndNotUsed) {
     Session session = sessionOn(rock);
     GetParam().make(session);
     const Played mistaken = played(session, GetParam().warning);
-    EXPECT_TRUE(mistaken.warned) << rock;
+    EXPECT_NE(mistaken.warning.find(GetParam().says), std::string::npos) << rock << mistaken.warning;
     EXPECT_FALSE(mistaken.used) << rock;
   }
 }
@@ -221,28 +225,29 @@ using Chambers = std::array<double, 3>;
 
 INSTANTIATE_TEST_SUITE_P(
     Sensors, Mistaken,
-    testing::Values(Mistake{"bar", "pressures", ofPressures([](Chambers& bore, Chambers& rod) {
+    testing::Values(Mistake{"bar", "pressures", "must be in Pa", ofPressures([](Chambers& bore, Chambers& rod) {
                               for (Chambers* p : {&bore, &rod})
                                 for (double& one : *p) one *= 1e-5;
                             })},
-                    Mistake{"chambers of all exchanged", "pressures",
+                    Mistake{"chambers of all exchanged", "pressures", "across the tool",
                             ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore, rod); })},
-                    Mistake{"chambers of the boom's exchanged", "pressures",
+                    Mistake{"chambers of the boom's exchanged", "pressures", "across the tool",
                             ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore[0], rod[0]); })},
-                    Mistake{"chambers of the hammer's exchanged", "pressures",
+                    Mistake{"chambers of the hammer's exchanged", "pressures", "across the tool",
                             ofPressures([](Chambers& bore, Chambers& rod) { std::swap(bore[2], rod[2]); })},
-                    Mistake{"boom and arm exchanged", "pressures", ofPressures([](Chambers& bore, Chambers& rod) {
+                    Mistake{"boom and arm exchanged", "pressures", "across the tool",
+                            ofPressures([](Chambers& bore, Chambers& rod) {
                               std::swap(bore[0], bore[1]), std::swap(rod[0], rod[1]);
                             })},
-                    Mistake{"in g", "imu", ofImu([](Chambers& force, Chambers&) {
+                    Mistake{"in g", "imu", "in g, must be", ofImu([](Chambers& force, Chambers&) {
                               for (double& one : force) one /= 9.80665;
                             })},
-                    Mistake{"upside down", "imu",
+                    Mistake{"upside down", "imu", "turned by 1",
                             ofImu([](Chambers& force, Chambers&) { force[0] = -force[0], force[2] = -force[2]; })},
-                    Mistake{"degrees per second", "imu", ofImu([](Chambers&, Chambers& rate) {
+                    Mistake{"degrees per second", "imu", "in degrees per second", ofImu([](Chambers&, Chambers& rate) {
                               for (double& one : rate) one *= 57.3;
                             })},
-                    Mistake{"frozen", "imu", [](Session& s) {
+                    Mistake{"frozen", "imu", "stand still", [](Session& s) {
                               const simulation::HullImuReading held = *after(s.imu, 4.5);
                               for (simulation::HullImuReading& r : s.imu)
                                 if (r.stamp > held.stamp) r.specific_force = held.specific_force, r.rate = held.rate;

@@ -130,17 +130,24 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
 }
 
 /// Pressures that are not used.
-void warnOfTrust(const PressureTrust& trust, std::vector<Warning>& warnings) {
+void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warning>& warnings) {
+  constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of what air has
   if (trust.isLate()) {
     warnings.push_back({"pressure stamps",
                         "cylinder_pressures: not used, their stamps are about " + laterOrEarlier(trust.lateBy()) +
                             " than the crank's, more than can be allowed for",
                         true});
+  } else if (trust.isLost() && greatest < kOfNoCylinder) {
+    warnings.push_back(
+        {"pressures",
+         format("cylinder_pressures: not used, the greatest of all is %.3g, which holds no boom; must be "
+                "in Pa",
+                greatest),
+         true});
   } else if (trust.isLost()) {
     warnings.push_back({"pressures",
-                        format("cylinder_pressures: not used, they show a mean load of %.0f N across the tool and %.0f "
-                               "N along it: units (must be Pa), chambers or cylinders that are exchanged, masses of "
-                               "the description, or the tool is used as a lever",
+                        format("cylinder_pressures: not used, beside the weight they show a mean load of %.0f N across "
+                               "the tool, where neither rock nor blow makes one, and %.0f N along it",
                                trust.across(), trust.along()),
                         true});
   }
@@ -167,7 +174,7 @@ void warnOfVibration(const BoomFollower& follower, const BoomState* boom, bool i
 
 void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lost, std::vector<Warning>& warnings) {
   warnOfVibration(follower, boom, imu_lost, warnings);
-  warnOfTrust(follower.pressureTrust(), warnings);
+  warnOfTrust(follower.pressureTrust(), follower.pressures().greatest(), warnings);
   if (boom != nullptr && boom->contact_unknown)
     warnings.push_back(
         {"rock",
@@ -181,9 +188,7 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
     warnings.push_back(
         {"boom vibration",
          "boom: its vibration grew beyond all that the hammer, operator and rock can do and began anew, " +
-             std::to_string(follower.runaways()) +
-             " times; its loads are withheld after that: masses of the description, mode_refresh_angle_rad, the boom "
-             "file or sensors are wrong",
+             std::to_string(follower.runaways()) + " times; its loads are withheld after that",
          runs_away});
   if (!fault || runs_away) return;
   warnings.push_back({"boom joints",

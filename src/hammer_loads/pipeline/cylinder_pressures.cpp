@@ -29,6 +29,7 @@ bool CylinderPressures::update(StampNs stamp, std::size_t cylinder, Chamber cham
   track.before = track.now;
   track.now = {stamp, pressure};
   track.readings = goes_on ? 2 : 1;
+  greatest_ = std::max(greatest_, std::abs(pressure));
   ++accepted_;
   ++counts_[cylinder];
   return true;

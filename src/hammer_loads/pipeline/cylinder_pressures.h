@@ -38,6 +38,7 @@ class CylinderPressures {
   StampNs newest(std::size_t cylinder) const noexcept {
     return std::max(tracks_[cylinder][0].now.stamp, tracks_[cylinder][1].now.stamp);
   }
+  double greatest() const noexcept { return greatest_; }  ///< of all readings taken, either sign [Pa]
   std::uint64_t accepted() const noexcept { return accepted_; }
   std::uint64_t refused() const noexcept { return refused_; }
   /// Readings taken of a cylinder: what it has more than before is new.
@@ -65,6 +66,7 @@ class CylinderPressures {
   double max_age_;
   std::array<std::array<Track, 2>, kMaxJoints> tracks_;
   std::array<std::uint64_t, kMaxJoints> counts_{};
+  double greatest_{};
   std::uint64_t accepted_{}, refused_{};
 };
 

@@ -39,8 +39,7 @@ class ImuTrust {
     if (mean_.count() < trust::kLeastTime) return;
     const double off_square = square(mean().x() + weight.x) + square(mean().z() + weight.z);
     const double limit = (is_lost_ ? kBack : 1.0) * kMostPart;
-    is_off_ =
-        off_square > square(limit) * (square(weight.x) + square(weight.z)) || rate_square_.mean() > square(kMostRate);
+    is_off_ = off_square > square(limit) * (square(weight.x) + square(weight.z)) || turnsTooFast();
     is_lost_ = isFrozen() || (is_off_ && off_for_ == kOffFor);
   }
   /// Mean squares of what the hull has beside such a weight, its plane's, and of what it turns: along x and z [m2/s4],
@@ -51,6 +50,7 @@ class ImuTrust {
             turning_.mean()};
   }
   bool isLost() const noexcept { return is_lost_; }
+  bool turnsTooFast() const noexcept { return rate_square_.mean() > square(kMostRate); }
   bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
   const Eigen::Vector3d& mean() const noexcept { return mean_.mean(); }       ///< specific force [m/s2]
   double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]

@@ -189,6 +189,24 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld), true});
 }
 
+/// Of a unit that is not where or what it is said to be. weight: of the hull by the joint angles.
+std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
+  constexpr double kAlike = 1.2;  // factor between weights: what blows add to a mean of 2 s is less
+  if (trust.turnsTooFast())
+    return format(
+        "it turns by %.3g rad/s, root mean square, as no hull does (in degrees per second that is %.2g rad/s)",
+        trust.rate(), trust.rate() * kDegree);
+  const double size = trust.mean().norm(), expected = std::hypot(weight.x, weight.z);
+  const auto isAlike = [&](double other) { return size < kAlike * other && other < kAlike * size; };
+  const std::string mean = format("on the mean it shows (%.3g, %.3g, %.3g) m/s2 along x, y, z of the hull",
+                                  trust.mean().x(), trust.mean().y(), trust.mean().z());
+  if (isAlike(1.0)) return mean + ": its weight is in g, must be in m/s2";
+  if (!isAlike(expected)) return mean + format(", by the joint angles (%.3g, 0, %.3g)", -weight.x, -weight.z);
+  const double along = -(trust.mean().x() * weight.x + trust.mean().z() * weight.z) / (size * expected);
+  return mean + format(": turned by %.0f degrees from where imu_roll_rad, imu_pitch_rad and imu_yaw_rad put it",
+                       std::acos(std::clamp(along, -1.0, 1.0)) / kDegree);
+}
+
 void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
   if (counts.accepted == 0) return;
   const HullState& hull = pipeline.hull();
@@ -204,12 +222,7 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   if (trust.isFrozen()) {
     warnings.push_back({"imu", "hull_imu: not used, its readings stand still", true});
   } else if (trust.isLost()) {
-    warnings.push_back({"imu",
-                        format("hull_imu: not used, on the mean it shows (%.1f, %.1f) m/s2 along x and z of the hull "
-                               "and %.2g rad/s, by the joint angles it must be (%.1f, %.1f) and next to none: units "
-                               "(m/s2, rad/s), imu_roll_rad, imu_pitch_rad, imu_yaw_rad or the joints' zeros",
-                               trust.mean().x(), trust.mean().z(), trust.rate(), -weight.x, -weight.z),
-                        true});
+    warnings.push_back({"imu", "hull_imu: not used, " + faultOf(trust, weight), true});
   }
 }
 
