@@ -65,6 +65,29 @@ class Follower {
 
 constexpr HullWrench kLoad{-900.0, 7000.0, 300.0};
 
+/// A load that is no number, in one step: the vibration begins anew, its loads are withheld until what was wrong would
+/// have died out, and are then those of a follower that knew nothing of it.
+TEST(BoomFollower, AVibrationThatRunsAwayBeginsAnewAndIsWithheldForAWhile) {
+  Follower struck(BoomModel::kCompliant), other(BoomModel::kCompliant);
+  for (int i = 0; i < 50; ++i) ASSERT_FALSE(struck.sample(kLoad).fault) << "the channel";
+  EXPECT_EQ(struck.follower.runaways(), 0U);
+  const BoomState& first = struck.sample({kNaN, kNaN, kNaN});
+  ASSERT_TRUE(first.fault);
+  EXPECT_EQ(first.fault->kind, JointFault::Kind::kRunAway);
+  EXPECT_EQ(struck.follower.runaways(), 1U);
+  int withheld = 1;
+  while (struck.sample(kLoad).fault) {
+    ASSERT_EQ(struck.follower.state().fault->kind, JointFault::Kind::kRunAway);
+    ASSERT_LT(++withheld, 10001);
+  }
+  EXPECT_GT(withheld, 50) << "a boom swings for some periods";
+  EXPECT_EQ(struck.follower.runaways(), 1U);
+  for (int i = 0; i < 10000; ++i) struck.sample(kLoad), other.sample(kLoad);
+  const JointVector torque = struck.follower.state().loads.total;
+  ASSERT_TRUE(torque.allFinite());
+  EXPECT_NEAR((torque - other.follower.state().loads.total).norm(), 0.0, 1e-3 * torque.norm());
+}
+
 TEST(BoomFollower, RigidLoadsAreThoseOfTheInterpolatedPose) {
   Follower rigid(BoomModel::kRigid);
   rigid.follower.jointStates(0, kFour, {0.2, -0.36, 1.18, -0.85}, {0.0, 0.2, 0.3, -0.2});
