@@ -29,9 +29,11 @@ TEST(RubbingBoom, DeviationsCoverSealsThatAreNotKnown) {
     EXPECT_GT(usual.covered(), 0.85) << imu;
     const BoomErrors none = errorsOf("no seals", session, knownFriction(0.0, 0.0), sensors);
     EXPECT_LT(none.covered(), usual.covered()) << imu;
-    // Seals that were weighed are taken off.
+    // Seals that were weighed are taken off, as the operator and the vibration move the rods: joint sensors of 100 Hz
+    // show the vibration late, which costs twice as much.
     const BoomErrors weighed = errorsOf("weighed seals", session, knownFriction(0.02, 0.004), sensors);
-    EXPECT_LT(weighed.worstTorque(), 0.65 * none.worstTorque()) << imu;
+    EXPECT_GT(none.worstTorque(), 0.04) << imu;
+    EXPECT_LT(weighed.worstTorque(), 0.02) << imu;
     EXPECT_GT(weighed.covered(), 0.85) << imu;
   }
 }

@@ -53,7 +53,7 @@ void BoomFollower::takeMeasured(const BoomSample& sample, double step) noexcept 
   tip_.reset();
   if (pressures_.accepted() == 0) return;
   const BoomLoads& loads = state_.loads;
-  measured_.follow(boom_, motion_.position, loads.weight + loads.motion, motion_.velocity,
+  measured_.follow(boom_, motion_.position, loads.weight + loads.motion, held_.motion().velocity,
                    {sample.stamp, sample.stamp_noise}, pressures_);
   std::size_t measured = 0;
   for (std::size_t i = 0; i < boom_.cylinders().size(); ++i) {
