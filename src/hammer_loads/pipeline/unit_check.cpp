@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hammer_loads {
 namespace {
@@ -66,7 +67,10 @@ void UnitCheck::compareWithSpeed(double step, double predicted) noexcept {
   predicted_ += predicted;
   // In degrees the one of the two turns much further than the other; counts need some ten to be a ratio.
   if (std::abs(predicted_) < kStretch && (std::abs(turned_) < kStretch || std::abs(predicted_) < kLeastStretch)) return;
-  vote(speed_votes_, unitOf(turned_ / predicted_));
+  const CrankUnit unit = unitOf(turned_ / predicted_);
+  // An angle that stands still and then catches up looks like one unit and then like another.
+  if (unit != CrankUnit::kRadians && std::exchange(speed_unit_, unit) != unit) speed_votes_ = 0;
+  vote(speed_votes_, unit);
   turned_ = predicted_ = 0.0;
 }
 

@@ -67,6 +67,7 @@ class UnitCheck {
   double suspected_for_{};         ///< time since the votes became suspicious [s]
   double slow_time_{};             ///< moving within the bound since it was last beyond it [s]
   int speed_votes_{}, bound_votes_{};
+  CrankUnit speed_unit_{CrankUnit::kRadians};  ///< that speed_votes_ are for
   CrankUnit recognised_{CrankUnit::kRadians};
 };
 
