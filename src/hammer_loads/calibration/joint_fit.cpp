@@ -12,91 +12,22 @@ namespace {
 constexpr int kMostIterations = 40;
 constexpr int kLeastIterations = 8;
 constexpr int kUsualExcess = 2;  // iterations beyond the least: for the progress shown alone
-constexpr int kLocalIterations = 4;
-constexpr int kReplicas = 4;  // of the recording, by which the bias is found
+constexpr int kReplicas = 4;     // of the recording, by which the bias is found
 constexpr int kReplicaIterations = 3;
 constexpr double kBiasDoubt = 0.5;        // of the bias, left over when it is removed
 constexpr double kConverged = 0.01;       // of a deviation, change of every parameter
-constexpr double kNotExplained = 6.0;     // times the median mean square of the blows
 constexpr int kNeighbours = 3;            // blows on either side with which one may have errors in common
 constexpr double kMostTiming = 0.01;      // [s]
 constexpr double kMostAngleNoise = 0.1;   // [rad]
 constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
 
-using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
-
-/// Marquardt: a little more of the diagonal.
-LocalMatrix damped(const LocalMatrix& matrix, double part) {
-  LocalMatrix result = matrix;
-  result.diagonal() *= 1.0 + part;
-  return result;
-}
-
-/// No step longer than what the model's curvature bears.
-Locals limited(const Locals& step, const Locals& at) {
-  double part = 1.0;
-  for (const Eigen::Index k : {kSpeedBefore, kSpeedAfter}) {
-    if (std::abs(step[k]) > 0.3 * at[k]) part = std::min(part, 0.3 * at[k] / std::abs(step[k]));
-  }
-  const double most = 0.1 / std::max(at[kSpeedBefore], 1.0);
-  if (std::abs(step[kInstant]) > most) part = std::min(part, most / std::abs(step[kInstant]));
-  return part * step;
-}
-
-Globals limited(const Globals& step) {
+Globals limitedGlobals(const Globals& step) {
   static const Globals most = (Globals() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.3, 1e9, 1e9).finished();
   double part = 1.0;
   for (Eigen::Index k = 0; k < kGlobals; ++k) {
     if (std::abs(step[k]) > most[k]) part = std::min(part, most[k] / std::abs(step[k]));
   }
   return part * step;
-}
-
-/// The blow's own parameters, the shared ones given.
-void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise, int iterations) {
-  double cost = fit.cost(model, globals, noise);
-  double damping = 1e-3;
-  for (int i = 0; i < iterations; ++i) {
-    const NormalEquations e = fit.linearise(model, globals, noise);
-    const Locals before = fit.locals();
-    bool better = false;
-    for (int k = 0; k < 5 && !better; ++k) {
-      fit.setLocals(before + limited(Locals(damped(e.ll, damping).ldlt().solve(e.l)), before));
-      const double now = fit.cost(model, globals, noise);
-      better = now < cost;
-      if (better) {
-        cost = now, damping *= 0.1;
-      } else {
-        fit.setLocals(before), damping = damping * 10.0 + 1e-6;
-      }
-    }
-    if (!better) return;
-  }
-}
-
-/// Information of a blow on the shared parameters once its own are eliminated.
-struct Reduced {
-  GlobalMatrix matrix;
-  Globals score;
-  LocalMatrix inverse;
-  Eigen::Matrix<double, kLocals, kGlobals> by_global;  ///< -(change of locals per change of globals)
-  Locals own;                                          ///< change of locals with globals as they are
-  double angle_freedom, speed_freedom;                 ///< locals that the angles, that the speeds decide
-};
-
-/// Residuals that are free where this many are given.
-double freeOf(double given, double decided) { return std::max(given - decided, 0.3 * given); }
-
-Reduced reduce(const NormalEquations& e) {
-  Reduced r;
-  r.inverse = e.ll.ldlt().solve(LocalMatrix::Identity());
-  r.by_global = r.inverse * e.lg;
-  r.own = r.inverse * e.l;
-  r.matrix = e.gg - e.lg.transpose() * r.by_global;
-  r.score = e.g - e.lg.transpose() * r.own;
-  r.angle_freedom = (r.inverse * e.ll_angles).trace();
-  r.speed_freedom = (r.inverse * e.ll_speeds).trace();
-  return r;
 }
 
 /// A residual of which one kind of noise is asked: its variance is known + lever^2 noise^2.
@@ -120,22 +51,11 @@ double noiseOf(const std::vector<Leftover>& leftovers, double freedom, double mo
   return 0.5 * (low + high);
 }
 
-double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
-  double sum = 0.0, n = 0.0;
-  for (const ResidualAt& r : fit.residuals(model, globals, noise)) {
-    sum += square(r.angle / r.deviation.angle);
-    n += 1.0;
-  }
-  return sum / n;
-}
-
 /// Blows far off all others are not of this model.
 void leaveOut(JointFit& joint, const SegmentModel& model) {
   std::vector<double> squares;
   for (const SegmentFit& fit : joint.fits) squares.push_back(meanSquare(fit, model, joint.globals, joint.noise));
-  std::vector<double> sorted = squares;
-  std::sort(sorted.begin(), sorted.end());
-  const double most = kNotExplained * std::max(sorted[sorted.size() / 2], 0.05);
+  const double most = mostExplained(squares);
   std::vector<SegmentFit> kept;
   for (std::size_t i = 0; i < joint.fits.size(); ++i) {
     if (squares[i] <= most) kept.push_back(joint.fits[i]);
@@ -212,14 +132,14 @@ double improve(JointFit& joint, const SegmentModel& model, const Globals& start,
   Globals score = s.score;
   hold(free, matrix, score);
   const GlobalMatrix inverse = matrix.ldlt().solve(GlobalMatrix::Identity());
-  const Globals whole = limited(Globals(inverse * score));
+  const Globals whole = limitedGlobals(Globals(inverse * score));
   const JointFit before = joint;
   for (double part = 1.0; part > 0.01; part *= 0.4) {
     joint.globals = before.globals + part * whole;
     for (std::size_t i = 0; i < joint.fits.size(); ++i) {
       const Reduced& r = s.reduced[i];
       const Locals at = before.fits[i].locals();
-      joint.fits[i].setLocals(at + limited(Locals(part * (r.own - r.by_global * whole)), at));
+      joint.fits[i].setLocals(at + limitedLocals(Locals(part * (r.own - r.by_global * whole)), at));
     }
     if (costOf(joint, model, start) < s.cost + 1e-9 * std::abs(s.cost))
       return (part * whole).cwiseQuotient(inverse.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
@@ -292,7 +212,7 @@ JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel
   joint.noise = noise;
   for (const BlowSegment& segment : segments) {
     joint.fits.emplace_back(segment, start);
-    fitLocals(joint.fits.back(), model, start, noise, kLocalIterations);
+    fitLocals(joint.fits.back(), model, start, noise);
     report(progress, kOwn * static_cast<double>(joint.fits.size()) / static_cast<double>(segments.size()));
   }
   leaveOut(joint, model);
@@ -319,36 +239,7 @@ void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, do
   joint.globals -= bias;
   joint.covariance *= 1.0 + 1.0 / kReplicas;
   joint.covariance += kBiasDoubt * kBiasDoubt * bias * bias.transpose();
-  for (SegmentFit& fit : joint.fits) fitLocals(fit, model, joint.globals, joint.noise, kLocalIterations);
-}
-
-std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
-                                    const Globals& globals, const Noise& noise, const Progress& progress) {
-  std::vector<SegmentFit> fits;
-  for (const BlowSegment& segment : segments) {
-    fits.emplace_back(segment, globals);
-    fitLocals(fits.back(), model, globals, noise, 3 * kLocalIterations);
-    report(progress, static_cast<double>(fits.size()) / static_cast<double>(segments.size()));
-  }
-  return fits;
-}
-
-double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
-                    const Noise& noise, const Progress& progress) {
-  double sum = 0.0, freedom = 0.0;
-  std::vector<std::pair<double, double>> each;
-  for (const SegmentFit& fit : fittedAlone(segments, model, globals, noise, progress)) {
-    const auto n = static_cast<double>(fit.size());
-    const Reduced r = reduce(fit.linearise(model, globals, noise));
-    const double left = freeOf(n, r.angle_freedom);
-    each.emplace_back(n * meanSquare(fit, model, globals, noise) / left, left);
-  }
-  if (each.empty()) return 0.0;
-  std::sort(each.begin(), each.end());
-  const double most = kNotExplained * std::max(each[each.size() / 2].first, 0.05);
-  while (each.back().first > most) each.pop_back();  // blows without a tool are not the parameters' fault
-  for (const auto& [square_mean, free_samples] : each) sum += square_mean * free_samples, freedom += free_samples;
-  return freedom > 0.0 ? sum / freedom : 0.0;
+  for (SegmentFit& fit : joint.fits) fitLocals(fit, model, joint.globals, joint.noise);
 }
 
 }  // namespace hammer_loads::calibration

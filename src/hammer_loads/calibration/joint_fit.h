@@ -4,12 +4,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "hammer_loads/calibration/segment_fit.h"
+#include "hammer_loads/calibration/local_fit.h"
 #include "hammer_loads/util/progress.h"
 
 namespace hammer_loads::calibration {
-
-using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals>;
 
 using Free = Eigen::Matrix<bool, kGlobals, 1>;  ///< which parameters are to be found
 
@@ -38,13 +36,5 @@ JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel
 /// again; what they are off on the mean is taken off. count: of the encoder, in `seen` [rad]; 0: none.
 void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count,
                 const Progress& progress = {});
-
-/// Parameters of each blow alone, the shared parameters given.
-std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
-                                    const Globals& globals, const Noise& noise, const Progress& progress = {});
-
-/// The same; mean square as above, without the blows that are far off the others.
-double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
-                    const Noise& noise, const Progress& progress = {});
 
 }  // namespace hammer_loads::calibration

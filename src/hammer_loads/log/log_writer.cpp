@@ -1,7 +1,5 @@
 #include "hammer_loads/log/log_writer.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -114,7 +112,7 @@ void LogWriter::carryOut(LogOrder& order) {
       session_ = order.session;
       directory_ = order.directory;
       next_number_ = order.next_number;
-      findEarlierRuns();
+      kept_.findEarlierRuns(directory_, settings_);
       return begin(std::move(*order.name));
     case LogOrder::Kind::kStop:
       writeLast(order);
@@ -180,7 +178,7 @@ std::optional<LogFault> LogWriter::checkDisk() {
 }
 
 void LogWriter::begin(LogName name) {
-  deleteOldest();
+  totals_.files_deleted += kept_.makeRoom(settings_);
   const std::uint64_t chunk_size = std::min(kChunkSize, settings_.split_size / 4);
   file_ = std::make_unique<LogFile>(std::move(name), static_cast<std::uint32_t>(chunk_size));
   opened_ = Clock::now();
@@ -237,39 +235,9 @@ void LogWriter::stopFor(LogFault fault) {
 /// Enters a file that has just been closed.
 void LogWriter::settle() {
   if (!file_->isComplete()) return;
-  closed_.push_back({file_->path(), file_->size()});
-  closed_size_ += file_->size();
+  kept_.add(file_->path(), file_->size());
   totals_.bytes_written += file_->size();
   ++totals_.files_closed;
-}
-
-/// Bags of this prefix that are not being written. As shipped the unclosed ones only count: power cut after power cut
-/// would fill the disk. With log_prune_earlier_runs all count and may go, the oldest first.
-void LogWriter::findEarlierRuns() {
-  std::vector<FoundLog> found = findLogs(directory_, filePrefix(settings_));
-  unclosed_size_ = 0;
-  if (!settings_.prune_earlier_runs) {
-    for (const FoundLog& log : found) unclosed_size_ += log.is_unfinished ? log.size : 0;
-    return;
-  }
-  closed_.clear();
-  closed_size_ = 0;
-  for (FoundLog& log : found) {
-    closed_size_ += log.size;
-    closed_.push_back({std::move(log.path), log.size});
-  }
-}
-
-/// Makes room for one more file within log_total_mb. Without log_prune_earlier_runs only files of this process go:
-/// others may still be wanted.
-void LogWriter::deleteOldest() {
-  if (settings_.total_size == 0) return;
-  const std::uint64_t kept = unclosed_size_ + settings_.split_size;
-  while (!closed_.empty() && closed_size_ + kept > settings_.total_size) {
-    if (unlink(closed_.front().path.c_str()) == 0) ++totals_.files_deleted;
-    closed_size_ -= closed_.front().size;
-    closed_.pop_front();
-  }
 }
 
 void LogWriter::latch(LogOrder& order) {

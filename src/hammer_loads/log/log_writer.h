@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "hammer_loads/log/kept_logs.h"
 #include "hammer_loads/log/log_file.h"
 #include "hammer_loads/log/log_queue.h"
 #include "hammer_loads/log/log_settings.h"
@@ -58,10 +59,6 @@ class LogWriter {
     ros::Time time;
     std::vector<std::uint8_t> bytes;
   };
-  struct ClosedFile {
-    std::string path;
-    std::uint64_t size;
-  };
 
   static std::uint64_t latchedSize(std::size_t bytes) noexcept { return bytes + 1000; }  // with what it hangs on
 
@@ -77,10 +74,8 @@ class LogWriter {
   void end();
   void split();
   void writeLast(LogOrder& order);
-  void findEarlierRuns();
   void stopFor(LogFault fault);
   void settle();
-  void deleteOldest();
   void latch(LogOrder& order);
   void forget(const LogTopic* topic);
   void repeatLatched(const ros::Time* time);
@@ -100,10 +95,8 @@ class LogWriter {
   Clock::time_point opened_{}, next_check_{};
   std::uint64_t checked_allocation_{};  // of the file when the disk was looked at last [byte]
   std::vector<Latched> latched_;
-  std::deque<ClosedFile> closed_;  // oldest first
-  std::uint64_t closed_size_{};    // of them together [byte]
-  std::uint64_t unclosed_size_{};  // of bags that earlier runs left unclosed and that must stay [byte]
-  LogStatus totals_;               // only its sums
+  KeptLogs kept_;
+  LogStatus totals_;  // only its sums
 
   std::atomic<std::uint64_t> faulty_session_{};
   std::atomic<std::uint64_t> latched_size_{};  // of what is latched or waits to be [byte]

@@ -1,0 +1,111 @@
+#include "hammer_loads/calibration/local_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+constexpr double kNotExplained = 6.0;  // times the median mean square of the blows
+
+/// Marquardt: a little more of the diagonal.
+LocalMatrix damped(const LocalMatrix& matrix, double part) {
+  LocalMatrix result = matrix;
+  result.diagonal() *= 1.0 + part;
+  return result;
+}
+
+}  // namespace
+
+Locals limitedLocals(const Locals& step, const Locals& at) {
+  double part = 1.0;
+  for (const Eigen::Index k : {kSpeedBefore, kSpeedAfter}) {
+    if (std::abs(step[k]) > 0.3 * at[k]) part = std::min(part, 0.3 * at[k] / std::abs(step[k]));
+  }
+  const double most = 0.1 / std::max(at[kSpeedBefore], 1.0);
+  if (std::abs(step[kInstant]) > most) part = std::min(part, most / std::abs(step[kInstant]));
+  return part * step;
+}
+
+void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise, int iterations) {
+  double cost = fit.cost(model, globals, noise);
+  double damping = 1e-3;
+  for (int i = 0; i < iterations; ++i) {
+    const NormalEquations e = fit.linearise(model, globals, noise);
+    const Locals before = fit.locals();
+    bool better = false;
+    for (int k = 0; k < 5 && !better; ++k) {
+      fit.setLocals(before + limitedLocals(Locals(damped(e.ll, damping).ldlt().solve(e.l)), before));
+      const double now = fit.cost(model, globals, noise);
+      better = now < cost;
+      if (better) {
+        cost = now, damping *= 0.1;
+      } else {
+        fit.setLocals(before), damping = damping * 10.0 + 1e-6;
+      }
+    }
+    if (!better) return;
+  }
+}
+
+Reduced reduce(const NormalEquations& e) {
+  Reduced r;
+  r.inverse = e.ll.ldlt().solve(LocalMatrix::Identity());
+  r.by_global = r.inverse * e.lg;
+  r.own = r.inverse * e.l;
+  r.matrix = e.gg - e.lg.transpose() * r.by_global;
+  r.score = e.g - e.lg.transpose() * r.own;
+  r.angle_freedom = (r.inverse * e.ll_angles).trace();
+  r.speed_freedom = (r.inverse * e.ll_speeds).trace();
+  return r;
+}
+
+double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise) {
+  double sum = 0.0, n = 0.0;
+  for (const ResidualAt& r : fit.residuals(model, globals, noise)) {
+    sum += square(r.angle / r.deviation.angle);
+    n += 1.0;
+  }
+  return sum / n;
+}
+
+double mostExplained(std::vector<double> mean_squares) {
+  const auto median = mean_squares.begin() + static_cast<std::ptrdiff_t>(mean_squares.size() / 2);
+  std::nth_element(mean_squares.begin(), median, mean_squares.end());
+  return kNotExplained * std::max(*median, 0.05);
+}
+
+std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
+                                    const Globals& globals, const Noise& noise, const Progress& progress) {
+  std::vector<SegmentFit> fits;
+  for (const BlowSegment& segment : segments) {
+    fits.emplace_back(segment, globals);
+    fitLocals(fits.back(), model, globals, noise, 3 * kLocalIterations);
+    report(progress, static_cast<double>(fits.size()) / static_cast<double>(segments.size()));
+  }
+  return fits;
+}
+
+double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
+                    const Noise& noise, const Progress& progress) {
+  double sum = 0.0, freedom = 0.0;
+  std::vector<double> squares, free;  ///< mean squares of the blows, samples that are free
+  for (const SegmentFit& fit : fittedAlone(segments, model, globals, noise, progress)) {
+    const auto n = static_cast<double>(fit.size());
+    const Reduced r = reduce(fit.linearise(model, globals, noise));
+    free.push_back(freeOf(n, r.angle_freedom));
+    squares.push_back(n * meanSquare(fit, model, globals, noise) / free.back());
+  }
+  if (squares.empty()) return 0.0;
+  const double most = mostExplained(squares);
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    if (squares[i] > most) continue;  // blows without a tool are not the parameters' fault
+    sum += squares[i] * free[i], freedom += free[i];
+  }
+  return freedom > 0.0 ? sum / freedom : 0.0;
+}
+
+}  // namespace hammer_loads::calibration

@@ -1,0 +1,55 @@
+/// What each blow has of its own (instant, speeds, ...), the parameters that all share given.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <vector>
+
+#include "hammer_loads/calibration/segment_fit.h"
+#include "hammer_loads/util/progress.h"
+
+namespace hammer_loads::calibration {
+
+using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals>;
+using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
+
+constexpr int kLocalIterations = 4;
+
+/// The step, shortened to what the model's curvature bears.
+Locals limitedLocals(const Locals& step, const Locals& at);
+
+/// Levenberg-Marquardt over the blow's own parameters.
+void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise,
+               int iterations = kLocalIterations);
+
+/// Information of a blow on the shared parameters once its own are eliminated.
+struct Reduced {
+  GlobalMatrix matrix;
+  Globals score;
+  LocalMatrix inverse;
+  Eigen::Matrix<double, kLocals, kGlobals> by_global;  ///< -(change of locals per change of globals)
+  Locals own;                                          ///< change of locals with globals as they are
+  double angle_freedom, speed_freedom;                 ///< locals that the angles, that the speeds decide
+};
+
+Reduced reduce(const NormalEquations& e);
+
+/// Of `given` residuals those that are free where the locals decide `decided` of them.
+inline double freeOf(double given, double decided) { return std::max(given - decided, 0.3 * given); }
+
+/// Of the angles' residuals over their deviations.
+double meanSquare(const SegmentFit& fit, const SegmentModel& model, const Globals& globals, const Noise& noise);
+
+/// Blows of a larger mean square are not of this model. mean_squares: of all blows, not empty.
+double mostExplained(std::vector<double> mean_squares);
+
+/// Each blow alone.
+std::vector<SegmentFit> fittedAlone(const std::vector<BlowSegment>& segments, const SegmentModel& model,
+                                    const Globals& globals, const Noise& noise, const Progress& progress = {});
+
+/// The same; residuals over their deviations, squared, per degree of freedom, without the blows that are far off the
+/// others.
+double meanSquareOf(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& globals,
+                    const Noise& noise, const Progress& progress = {});
+
+}  // namespace hammer_loads::calibration
