@@ -4,124 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-
-#include "boom/vibrating_machine.h"
-#include "support/counting_new.h"
+#include "boom/identifier_session.h"
 
 namespace hammer_loads {
 namespace {
 
-using test::kMillisecond;
-
+using test::IdentifierSession;
 using test::kGravity;
-
-enum class Sensor { kImu, kSlowImu, kJoints, kPressures };
-
-/// Runs the machine and an identifier whose boom file gives another bulk modulus.
-class Session {
- public:
-  Session(double given_over_true, Sensor sensor, unsigned seed = 1, bool identify = true)
-      : parameters_(test::shippedBoomParameters()), machine_(parameters_, 1e9, seed), sensor_(sensor) {
-    parameters_.bulk_modulus = 1e9 * given_over_true;
-    boom_.emplace(*Boom::make(test::shippedUrdf(), parameters_).value);
-    const JointVector zero = JointVector::Zero(4);
-    boom_->moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
-    if (identify) boom_->vibration().identify();
-    boom_->vibration().rest();
-    boom_->moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
-    J_ = tipJacobian(boom_->pose());
-  }
-
-  void run(double seconds, double hammer_error = 0.0) {
-    const int steps = static_cast<int>(seconds / kMillisecond);
-    for (int i = 0; i < steps; ++i) {
-      time_ += kMillisecond;
-      const Wrench w = hammer_.at(time_);
-      const Eigen::Vector3d load = machine_.load(w);
-      machine_.step(load_, load);
-      load_ = load;
-      Wrench known = w;  // what the identifier is given of it
-      known.force *= 1.0 + hammer_error, known.torque *= 1.0 + hammer_error;
-      const JointVector to = boom_->hammerTorque(known);
-      const std::size_t before = test::allocations;
-      boom_->vibration().advance(kMillisecond, {torque_, to, 0.5 * (torque_ + to)});
-      torque_ = to;
-      observe(i);
-      allocations_ += test::allocations - before;
-      const JointVector hold = to + boom_->vibration().torque();
-      std::rotate(holds_.rbegin(), holds_.rbegin() + 1, holds_.rend());
-      holds_.front() = machine_.hold();
-      error_ += (hold.tail<3>() - holds_[lead_]).squaredNorm();
-      size_ += holds_[lead_].squaredNorm();
-    }
-  }
-  double frequencyError(int mode) const { return boom_->vibration().mode(mode).omega / machine_.omega[mode] - 1.0; }
-  double dampingError(int mode) const { return boom_->vibration().mode(mode).zeta / machine_.zeta[mode] - 1.0; }
-
-  const ModeIdentifier& identifier() const { return *boom_->vibration().identifier(); }
-  /// Of hammer + vibration on the joints against what the machine's cylinders carry, over some seconds, of its rms.
-  double torqueError(double seconds) {
-    error_ = size_ = 0.0;
-    run(seconds);
-    return std::sqrt(error_ / size_);
-  }
-
-  BoomParameters parameters_;
-  test::VibratingMachine machine_;
-  Sensor sensor_;
-  std::optional<Boom> boom_;
-  std::size_t allocations_{};
-  std::size_t late_{};  ///< readings by which the IMU is late
-  std::size_t lead_{};  ///< by so many the hammer leads the time in which torques are judged
-
- private:
-  void observe(int i) {
-    if (sensor_ == Sensor::kImu || (sensor_ == Sensor::kSlowImu && i % 5 == 0)) observeImu();
-    if (sensor_ == Sensor::kJoints && i % 5 == 0) observeJoints();
-    if (sensor_ == Sensor::kPressures && i % 2 == 0) observePressures();
-  }
-  void observeImu() {
-    std::rotate(readings_.rbegin(), readings_.rbegin() + 1, readings_.rend());
-    readings_.front() = machine_.imu(0.3, 0.005);
-    const Eigen::Vector3d imu = readings_[late_];
-    const Eigen::Vector3d g_T = boom_->gravityAtTip(), here = Eigen::Vector3d::Zero();
-    const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
-    VibrationReading along_x = tipAccelerationReading(J_, here, x, g_T, imu[0]),
-                     along_z = tipAccelerationReading(J_, here, z, g_T, imu[1]);
-    along_x.neglected = along_z.neglected = 1.0;  // as in the pipeline, whose links move in the hull
-    VibrationReading turning = tipRateReading(J_, y, imu[2]);
-    for (VibrationReading* one : {&along_x, &along_z, &turning}) one->clock = Clock::kImu;
-    see(0, along_x, 0.3, 0.3, 0.05);
-    see(1, along_z, 0.3, 0.3, 0.05);
-    see(2, turning, 0.005, 0.02, 0.005);
-  }
-  void observeJoints() {
-    for (int j = 1; j < 4; ++j) {
-      const double slow = 0.002 * std::sin(0.5 * time_ + j);  // of which joint_states alone know nothing
-      see(j, jointAngleReading(j, machine_.displacement()[j - 1] + slow + machine_.noise(2e-4)), 2e-4, 0.01, 0.002);
-    }
-  }
-  void observePressures() {
-    for (int j = 1; j < 4; ++j) {
-      const double hold = machine_.hold()[j - 1] * 1.0 + machine_.noise(200.0);
-      see(j, oilTorqueReading(j, hold), 200.0, 1000.0, 100.0);
-    }
-  }
-  void see(int channel, VibrationReading reading, double noise, double offset, double walk) {
-    reading.noise = noise, reading.offset_deviation = offset, reading.offset_walk = walk;
-    boom_->vibration().observe(channel, reading);
-  }
-
-  test::PulsingHammer hammer_;
-  Jacobian J_;
-  Eigen::Vector3d load_ = Eigen::Vector3d::Zero();
-  std::array<Eigen::Vector3d, 4> readings_{load_, load_, load_, load_};  ///< of the IMU, the newest first
-  std::array<Eigen::Vector3d, 4> holds_{readings_};                      ///< likewise of the cylinders
-  JointVector torque_ = JointVector::Zero(4);
-  double time_{}, error_{}, size_{};
-};
+using test::kMillisecond;
+using test::Sensor;
 
 struct WrongOil {
   double given_over_true;
@@ -135,7 +26,7 @@ TEST_P(Oil, IsIdentifiedFromANoisySensor) {
   const WrongOil& oil = GetParam();
   double worst_frequency = 0.0, worst_torque = 0.0;
   for (unsigned seed : {1U, 2U, 3U}) {
-    Session run(oil.given_over_true, oil.sensor, seed);
+    IdentifierSession run(oil.given_over_true, oil.sensor, seed);
     EXPECT_FALSE(run.identifier().identified());
     EXPECT_GT(std::abs(run.frequencyError(0)), 0.14);
     run.run(12.0);
@@ -152,7 +43,7 @@ TEST_P(Oil, IsIdentifiedFromANoisySensor) {
     worst_torque = std::max(worst_torque, run.torqueError(4.0));
   }
   EXPECT_LT(worst_torque, 0.05);
-  Session given(oil.given_over_true, oil.sensor, 1, false);
+  IdentifierSession given(oil.given_over_true, oil.sensor, 1, false);
   given.run(12.0);
   const double torque_as_given = given.torqueError(4.0);
   EXPECT_GT(torque_as_given, 0.25);
@@ -172,49 +63,10 @@ INSTANTIATE_TEST_SUITE_P(BulkModulus, Oil,
                                          WrongOil{1.4, Sensor::kPressures, "StiffPressures"}),
                          [](const auto& named) { return named.param.name; });
 
-/// Of oil and delay neither is taken for the other.
-TEST(ModeIdentifier, FindsByWhatStampsAreLate) {
-  for (double given_over_true : {0.7, 1.4}) {
-    for (std::size_t late : {0U, 1U, 2U, 3U}) {
-      Session run(given_over_true, Sensor::kImu);
-      run.late_ = late;
-      run.run(12.0);
-      const ModeIdentifier& found = run.identifier();
-      const double delay = kMillisecond * static_cast<double>(late);
-      EXPECT_NEAR(found.delay(Clock::kImu), delay, 0.1 * kMillisecond + 0.1 * delay) << late;
-      EXPECT_LT(found.delayDeviation(Clock::kImu), 0.1 * kMillisecond + 0.2 * delay) << late;
-      for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(run.frequencyError(k)), 0.01) << late << k;
-      EXPECT_LT(run.torqueError(4.0), 0.05) << late;
-    }
-  }
-}
-
-/// Only as much of a delay as is expected of the crank, and none where the sensor is right.
-TEST(ModeIdentifier, TakesFromADelayWhatTheCrankLeads) {
-  struct Case {
-    std::size_t late;
-    CrankLead expected;  ///< [ms]
-    double lead;         ///< [ms]
-  };
-  for (const Case& c : {Case{1, {1.0, 0.3}, 1.0}, Case{1, {0.9, 0.3}, 1.0}, Case{1, {0.0, 0.3}, 0.03},
-                        Case{3, {1.0, 0.3}, 1.0}, Case{0, {1.0, 0.3}, 0.0}, Case{1, {-1.0, 0.3}, 0.0}}) {
-    Session run(1.0, Sensor::kImu);
-    run.late_ = c.late;
-    run.boom_->vibration().expectCrankLead({kMillisecond * c.expected.mean, kMillisecond * c.expected.deviation});
-    run.run(8.0);
-    const ModeIdentifier& found = run.identifier();
-    const double late = kMillisecond * static_cast<double>(c.late), lead = kMillisecond * c.lead;
-    EXPECT_NEAR(found.crankLead(), lead, 0.15 * kMillisecond) << c.late << " " << c.expected.mean;
-    EXPECT_NEAR(found.crankLead() + found.delay(Clock::kImu), late, 0.1 * kMillisecond + 0.1 * late);
-    run.lead_ = static_cast<std::size_t>(std::lround(c.lead));
-    EXPECT_LT(run.torqueError(4.0), 0.02) << c.late << " " << c.expected.mean << ": in the crank's time it is 0.033";
-  }
-}
-
 /// Readings of one instant in one call or each in its own: pressures are the same, an IMU's differ by the second order.
 TEST(ModeIdentifier, ReadingsTogetherSayWhatTheySayOneByOne) {
   for (const Clock clock : {Clock::kPressures, Clock::kImu}) {
-    Session run(0.7, Sensor::kPressures);
+    IdentifierSession run(0.7, Sensor::kPressures);
     run.run(1.0);  // frequencies are still being learned
     const Vibration& before = run.boom_->vibration();
     Vibration together = before, apart = before;
@@ -241,7 +93,7 @@ TEST(ModeIdentifier, ReadingsTogetherSayWhatTheySayOneByOne) {
 }
 
 TEST(ModeIdentifier, WithoutReadingsNothingIsFound) {
-  Session run(0.7, Sensor::kImu);
+  IdentifierSession run(0.7, Sensor::kImu);
   const double before = run.identifier().frequencyDeviation(0);
   const JointVector torque = JointVector::Constant(4, 1e3);
   for (int i = 0; i < 5000; ++i) run.boom_->vibration().advance(kMillisecond, {torque, torque, torque});
@@ -251,7 +103,7 @@ TEST(ModeIdentifier, WithoutReadingsNothingIsFound) {
 }
 
 TEST(ModeIdentifier, SurvivesNonsenseAndAForceThatIsAFewPercentWrong) {
-  Session run(0.7, Sensor::kImu);
+  IdentifierSession run(0.7, Sensor::kImu);
   run.run(12.0, 0.05);
   // The third mode hangs on the same three stiffnesses, and is hardly moved.
   for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(run.frequencyError(k)), k < 2 ? 0.025 : 0.04) << k;
@@ -272,7 +124,7 @@ TEST(ModeIdentifier, SurvivesNonsenseAndAForceThatIsAFewPercentWrong) {
 }
 
 TEST(ModeIdentifier, AnotherPoseKeepsWhatIsKnown) {
-  Session run(0.7, Sensor::kImu);
+  IdentifierSession run(0.7, Sensor::kImu);
   run.run(6.0);
   const JointVector x = run.identifier().displacement(), v = run.identifier().velocity(), zero = JointVector::Zero(4);
   const double of_arm = run.identifier().oilCovariance(1, 1), with_hammer = run.identifier().oilCovariance(1, 2);
@@ -296,7 +148,7 @@ TEST(ModeIdentifier, AnotherPoseKeepsWhatIsKnown) {
 }
 
 TEST(ModeIdentifier, ModesAreThoseOfTheOilFound) {
-  Session run(0.7, Sensor::kPressures);
+  IdentifierSession run(0.7, Sensor::kPressures);
   run.run(12.0);
   Boom right = test::shippedBoom();  // of the machine's oil
   right.moveCompliant({test::workingPosition(), test::kZero, test::kZero}, test::kLevel);
@@ -310,7 +162,7 @@ TEST(ModeIdentifier, ModesAreThoseOfTheOilFound) {
 }
 
 TEST(VibrationSpread, WaitsWhereReadingsShowTheMotion) {
-  Session run(0.7, Sensor::kImu);
+  IdentifierSession run(0.7, Sensor::kImu);
   run.run(6.0);
   const Vibration& vibration = run.boom_->vibration();
   ASSERT_TRUE(vibration.followsReadings());

@@ -3,120 +3,14 @@
 #include "hammer_loads/boom/steel_loads.h"
 
 #include <gtest/gtest.h>
-#include <urdf_parser/urdf_parser.h>
 
-#include <Eigen/Eigenvalues>
-
-#include "boom/booms.h"
+#include "boom/mass_points.h"
 
 namespace hammer_loads {
 namespace {
 
-using Real = long double;
-using Vector = Eigen::Matrix<Real, 3, 1>;
-using Matrix = Eigen::Matrix<Real, 3, 3>;
-
+using namespace test::mass_points;
 using test::kGravity;
-
-struct Load {
-  Vector force = Vector::Zero(), moment = Vector::Zero();
-  void add(const Vector& p, const Vector& f) { force += f, moment += p.cross(f); }
-};
-
-struct Place {
-  Matrix R = Matrix::Identity();
-  Vector p = Vector::Zero();
-  Vector at(const Vector& point) const { return p + R * point; }
-};
-
-/// A point of mass on a link of the description.
-struct Point {
-  int link;  ///< index in the row
-  Vector p;
-  Real mass;
-};
-
-/// The row of links from base_link to hammer_hull, read from the description again, by hand.
-class Row {
- public:
-  explicit Row(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
-    for (urdf::LinkConstSharedPtr link = model_->getLink("hammer_hull"); link->parent_joint; link = link->getParent())
-      joints_.insert(joints_.begin(), link->parent_joint);
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const urdf::LinkConstSharedPtr link = model_->getLink(joints_[i]->child_link_name);
-      const int index = static_cast<int>(i) + 1;
-      names_[link->name] = index;
-      if (!link->inertial) continue;
-      const urdf::Inertial& b = *link->inertial;
-      Eigen::Matrix3d inertia;
-      inertia << b.ixx, b.ixy, b.ixz, b.ixy, b.iyy, b.iyz, b.ixz, b.iyz, b.izz;
-      const urdf::Vector3& c = b.origin.position;
-      addBody(index, {b.mass, {c.x, c.y, c.z}, inertia}, 1.0, points_);
-    }
-  }
-
-  int link(const std::string& name) const { return names_.at(name); }
-  const std::vector<Point>& points() const { return points_; }
-
-  /// Six points with the mass, centre and inertia of a body; sign -1 takes it away.
-  static void addBody(int link, const RigidBody& body, Real sign, std::vector<Point>& points) {
-    if (body.mass == 0.0) return;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(body.inertia);
-    const Eigen::Vector3d I = principal.eigenvalues();
-    for (int k = 0; k < 3; ++k) {
-      const Real spread = 0.5L * (Real(I[(k + 1) % 3]) + I[(k + 2) % 3] - I[k]);
-      // The eigenvectors are orthogonal to 1e-15 only, which is the error of this reference.
-      const Vector away =
-          std::sqrt(std::max(Real(0), 3 * spread / Real(body.mass))) * principal.eigenvectors().col(k).cast<Real>();
-      for (Real side : {-1.0L, 1.0L})
-        points.push_back({link, body.com.cast<Real>() + side * away, sign * Real(body.mass) / 6});
-    }
-  }
-
-  /// Places of the links at a time, joints moving with constant accelerations.
-  std::vector<Place> places(const JointMotion& m, Real t) const {
-    std::vector<Place> places(1);
-    int moving = 0;
-    for (const urdf::JointSharedPtr& joint : joints_) {
-      const urdf::Vector3& p = joint->parent_to_joint_origin_transform.position;
-      Place place = places.back();
-      place.p = place.at(Vector(p.x, p.y, p.z));
-      if (joint->type != urdf::Joint::FIXED) {
-        const Real q = m.position[moving] + t * m.velocity[moving] + t * t / 2 * m.acceleration[moving];
-        const Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
-        place.R = place.R * Eigen::AngleAxis<Real>(q, axis).toRotationMatrix();
-        ++moving;
-      }
-      places.push_back(place);
-    }
-    return places;
-  }
-
-  /// What the points' weight and inertia need, of those wanted: sum of m (a - g), about the base's origin.
-  template <typename Wanted>
-  Load demanded(const std::vector<Point>& points, const JointMotion& m, const Eigen::Vector3d& g, Wanted wanted) const {
-    constexpr Real h = 4e-3L;
-    constexpr Real kWeight[] = {-205.0L / 72, 8.0L / 5, -1.0L / 5, 8.0L / 315, -1.0L / 560};  // order 8
-    Load load;
-    for (int step = -4; step <= 4; ++step) {
-      const std::vector<Place> now = places(m, 0), then = places(m, step * h);
-      for (const Point& point : points) {
-        if (!wanted(point)) continue;
-        const auto link = static_cast<std::size_t>(point.link);
-        Vector a = kWeight[std::abs(step)] / (h * h) * then[link].at(point.p);
-        if (step == 0) a -= g.cast<Real>();
-        load.add(now[link].at(point.p), point.mass * a);
-      }
-    }
-    return load;
-  }
-
- private:
-  urdf::ModelInterfaceSharedPtr model_;
-  std::vector<urdf::JointSharedPtr> joints_;
-  std::map<std::string, int> names_;
-  std::vector<Point> points_;
-};
 
 /// A pose of the shipped boom with its joints moving, a base that leans, any hammer.
 struct Case {
@@ -369,45 +263,6 @@ TEST_F(Steel, StaticSectionIsTheWorkOfASmallYieldThere) {
   }
 }
 
-TEST(SteelByHand, CantileverOfABarWithALoadAtItsEnd) {
-  // 4 m bar of 80 kg, level, held at its joint; at its end 1 kN down and 500 N to the side.
-  const std::string urdf =
-      "<robot name=\"bar\"><link name=\"base_link\"/><link name=\"bar\"><inertial><origin xyz=\"2 0 0\"/>"
-      "<mass value=\"80\"/><inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"106.6666666\" iyz=\"0\" izz=\"106.6666666\"/>"
-      "</inertial></link><link name=\"hammer_hull\"/>"
-      "<joint name=\"j\" type=\"continuous\"><parent link=\"base_link\"/><child link=\"bar\"/><axis xyz=\"0 1 0\"/>"
-      "</joint><joint name=\"end\" type=\"fixed\"><parent link=\"bar\"/><child link=\"hammer_hull\"/>"
-      "<origin xyz=\"4 0 0\"/></joint></robot>";
-  BoomParameters parameters = test::shippedBoomParameters();
-  parameters.cylinders.clear();
-  parameters.sections = {{"quarter", "bar", {1.0, 0.0, 0.0}, 0.0, {}}, {"turned", "bar", {3.0, 0.0, 0.0}, 0.5, {}}};
-  Checked<Boom> made = Boom::make(urdf, parameters);
-  ASSERT_TRUE(made.value) << made.problems.front();
-  const JointVector zero = JointVector::Zero(1);
-  made.value->move({zero, zero, zero}, {0.0, 0.0, -kGravity});
-  SteelLoads loads;
-  ASSERT_TRUE(made.value->steelLoads({{0.0, 500.0, -1000.0}, Eigen::Vector3d::Zero()}, true, loads));
-  // Beyond 1 m: 60 kg with its centre 1.5 m away.
-  const Wrench& w = loads.section[0];
-  EXPECT_LT((w.force - Eigen::Vector3d(0.0, 500.0, -1000.0 - 60.0 * kGravity)).norm(), 1e-10);
-  // Down at x > 0 turns x towards -z: about +y.
-  EXPECT_LT((w.torque - Eigen::Vector3d(0.0, 3.0 * 1000.0 + 1.5 * 60.0 * kGravity, 3.0 * 500.0)).norm(), 1e-9);
-  // Turned by 0.5 rad about y: x of the cut points down by it. 20 kg beyond.
-  const double down = 1000.0 + 20.0 * kGravity;
-  EXPECT_NEAR(loads.section[1].force.x(), down * std::sin(0.5), 1e-9);
-  EXPECT_NEAR(loads.section[1].force.z(), -down * std::cos(0.5), 1e-9);
-  EXPECT_NEAR(loads.section[1].torque.y(), 1000.0 + 0.5 * 20.0 * kGravity, 1e-9);
-  EXPECT_NEAR(loads.joint[0].force.z(), -1000.0 - 80.0 * kGravity, 1e-9);
-  EXPECT_NEAR(loads.joint[0].torque.y(), 4000.0 + 160.0 * kGravity, 1e-9);
-  // Turning it faster and faster about its joint: the part beyond lags behind, 60 kg at 2.5 m, 45 kg m2.
-  JointVector fast = JointVector::Constant(1, 2.0), faster = JointVector::Constant(1, 3.0);
-  made.value->move({zero, fast, faster}, Eigen::Vector3d::Zero());
-  ASSERT_TRUE(made.value->steelLoads({}, true, loads));
-  EXPECT_NEAR(loads.section[0].force.x(), 60.0 * 2.5 * 4.0, 1e-9);
-  EXPECT_NEAR(loads.section[0].force.z(), 60.0 * 2.5 * 3.0, 1e-9);
-  EXPECT_NEAR(loads.section[0].torque.y(), -(60.0 * 2.5 * 1.5 + 60.0 * 9.0 / 12.0) * 3.0, 1e-9);
-}
-
 TEST_F(Steel, VibrationCountsAsWhatItAccelerates) {
   const JointVector zero = JointVector::Zero(4);
   boom_.moveCompliant({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
@@ -432,26 +287,6 @@ TEST_F(Steel, VibrationCountsAsWhatItAccelerates) {
   driven.move({test::workingPosition(), zero, zero}, {0.0, 0.0, -kGravity});
   driven.steelLoads(w, true, expected);
   EXPECT_GT(std::abs(loads.section[0].torque.y() - expected.section[0].torque.y()), 500.0);
-}
-
-TEST(SteelAtDeadCentre, OnlyWhatTheCylinderCrossesIsUnknown) {
-  BoomParameters parameters = test::shippedBoomParameters();
-  CylinderParameters& p = parameters.cylinders[0];
-  p.base_x = 0.25 - 1.0, p.base_z = 0.40, p.rod_x = 1.0, p.rod_z = 0.0, p.closed_length = 1.5, p.stroke = 0.6;
-  Checked<Boom> made = Boom::make(test::shippedUrdf(), parameters);
-  ASSERT_TRUE(made.value) << made.problems.front();
-  const JointVector zero = JointVector::Zero(4);
-  made.value->move({test::joints({0.0, 0.0, 1.0, -1.0}), zero, zero}, {0.0, 0.0, -kGravity});
-  SteelLoads loads;
-  EXPECT_TRUE(made.value->steelLoads({}, true, loads));
-  EXPECT_TRUE(std::isnan(loads.section[0].torque.y()));  // before the pin at 1.0 m
-  EXPECT_TRUE(loads.section[1].torque.allFinite());      // beyond it
-  EXPECT_TRUE(loads.section[2].torque.allFinite());
-  EXPECT_TRUE(loads.joint[0].torque.allFinite());
-  EXPECT_TRUE(std::isnan(loads.joint[1].force.x()));
-  EXPECT_TRUE(loads.joint[2].force.allFinite());
-  // Infinite is not the same as unknown.
-  EXPECT_FALSE(made.value->steelLoads({Eigen::Vector3d(1e300, 1e308, 0.0), {}}, true, loads));
 }
 
 }  // namespace
