@@ -16,7 +16,7 @@ target_compile_definitions(bench_test PRIVATE HAMMER_LOADS_ACCURACY="$<TARGET_FI
 add_dependencies(bench_test accuracy)
 
 # What measures time or takes millions of steps.
-foreach(test property/random_machines grapple/speed grapple/branch_property boom/boom_hot_path hammer/batch)
+foreach(test property/random_machines property/garbage_machines grapple/speed grapple/branch_property boom/boom_hot_path hammer/batch)
   set_property(SOURCE ${CMAKE_CURRENT_LIST_DIR}/${test}_test.cpp APPEND PROPERTY COMPILE_OPTIONS -O3)
 endforeach()
 

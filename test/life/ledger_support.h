@@ -23,6 +23,9 @@ constexpr std::int64_t kSecond = 1000000000;
 constexpr std::int64_t kDay = 86400 * kSecond;
 constexpr std::int64_t kStart = 20000 * kDay + 7 * 3600 * kSecond;  ///< 2024-10-04, 7 h
 
+using Problem = std::optional<std::string>;
+inline const Problem kWritten;  ///< none
+
 inline const std::vector<std::string> kInputs{"hull_wrench/force_z_N", "joint_loads/arm_joint/total_torque_Nm"};
 
 inline LifeSettings settings(std::int64_t classes = 200) {

@@ -13,7 +13,6 @@ namespace hammer_loads::life {
 namespace {
 
 using namespace test;
-using Problem = std::optional<std::string>;
 
 /// Two runs of some pieces each, into anything that takes pieces.
 void work(PieceSink& sink) {

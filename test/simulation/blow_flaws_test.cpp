@@ -1,24 +1,17 @@
-// The simulated machine's flaws: each does what its key says, and nothing else changes.
+// Flaws of the simulated machine's blow and drive: each does what its key says, energy and momentum balance.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/constants.h"
+#include "simulation/flawed_run.h"
 
 namespace hammer_loads::simulation {
 namespace {
 
-MachineSettings flawedRun() {
-  MachineSettings s = workingMo100();
-  s.duration = 8.0;
-  s.drive.start_time = 0.7;
-  s.drive.stop_time = 20.0;
-  return s;
-}
+using test::flawedRun;
 
 MachineSettings heavyLinks() {
   MachineSettings s = flawedRun();
@@ -37,12 +30,6 @@ void expectAllAccountedFor(const EnergyAccount& e) {
   EXPECT_NEAR(e.kinetic + e.blows + e.losses + e.stops, e.motor - e.friction + e.weight, 1e-6 + 1e-10 * e.motor);
   EXPECT_NEAR(e.stored, e.supply - e.motor - e.valves, 1e-6 + 1e-10 * e.motor);
 }
-
-double since(const MachineSettings& s, const CrankReading& reading) {
-  return 1e-9 * static_cast<double>(reading.stamp - s.start_stamp);
-}
-
-// --- The blow ---------------------------------------------------------------------------------------------------
 
 TEST(Blows, EveryWayOfMeetingTheToolBalancesItsEnergy) {
   for (int way = 0; way < 6; ++way) {
@@ -244,214 +231,6 @@ TEST(Coupling, MotorSwingsAgainstTheCrankAtItsFrequency) {
   }
   ASSERT_GT(rising.size(), 10U);
   EXPECT_NEAR(static_cast<double>(rising.size() - 1) / (rising.back() - rising.front()), 60.0, 0.5);
-}
-
-// --- The sensor -------------------------------------------------------------------------------------------------
-
-TEST(Stamps, FlawsOfTheMessagesLeaveMachineAndReadingsAsTheyAre) {
-  MachineSettings flawed = flawedRun();
-  flawed.crank.stamp_noise = 3e-4;
-  flawed.crank.stamps_late = true;
-  flawed.crank.stamp_step = 1e-3;
-  flawed.crank.latency = 2e-3;
-  const Session plain = recordSession(flawedRun()), other = recordSession(flawed);
-  ASSERT_EQ(plain.crank.size(), other.crank.size());
-  for (std::size_t i = 0; i < plain.crank.size(); ++i) {
-    ASSERT_EQ(plain.crank[i].angle, other.crank[i].angle);
-    ASSERT_EQ(plain.crank[i].speed, other.crank[i].speed);
-    ASSERT_EQ(plain.taken[i], other.taken[i]);
-  }
-}
-
-TEST(Stamps, NoiseHasItsDeviationOrOnlyDelays) {
-  for (const bool late : {false, true}) {
-    MachineSettings s = flawedRun();
-    s.crank.stamp_noise = 2e-4;
-    s.crank.stamps_late = late;
-    const Session session = recordSession(s);
-    double sum = 0.0, squares = 0.0, least = 1.0;
-    for (std::size_t i = 0; i < session.crank.size(); ++i) {
-      const double error = since(s, session.crank[i]) - session.taken[i];
-      sum += error, squares += error * error, least = std::min(least, error);
-    }
-    const double n = static_cast<double>(session.crank.size());
-    EXPECT_NEAR(std::sqrt(squares / n), 2e-4, 2e-4 * 4.0 / std::sqrt(2.0 * n));
-    EXPECT_NEAR(sum / n, late ? 2e-4 * std::sqrt(2.0 / 3.14159265) : 0.0, 4.0 * 2e-4 / std::sqrt(n));
-    if (late) {
-      EXPECT_GE(least, -1e-9);
-    }
-  }
-}
-
-TEST(Stamps, WholeMillisecondsRepeat) {
-  MachineSettings s = flawedRun();
-  s.crank.stamp_step = 1e-3;
-  const Session session = recordSession(s);
-  std::size_t repeated = 0;
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    ASSERT_EQ(session.crank[i].stamp % 1000000, 0);
-    const double late = session.taken[i] - since(s, session.crank[i]);
-    ASSERT_TRUE(late > -1e-9 && late < 1e-3 + 1e-9);
-    repeated += i > 0 && session.crank[i].stamp == session.crank[i - 1].stamp;
-  }
-  EXPECT_GT(repeated, 100U);
-}
-
-TEST(Stamps, BurstsCarryTheLastStamp) {
-  MachineSettings s = flawedRun();
-  s.crank.burst = 10;
-  const Session session = recordSession(s);
-  ASSERT_GT(session.crank.size(), 7900U);
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const std::size_t last = i / 10 * 10 + 9;
-    ASSERT_LT(last, session.crank.size());
-    ASSERT_NEAR(since(s, session.crank[i]), session.taken[last], 1e-9);
-  }
-}
-
-TEST(Stamps, DuplicatesComeTwice) {
-  MachineSettings s = flawedRun();
-  s.crank.duplicate_share = 0.05;
-  const Session session = recordSession(s);
-  std::set<std::int64_t> stamps;
-  for (const CrankReading& reading : session.crank) stamps.insert(reading.stamp);
-  const double share = static_cast<double>(session.crank.size() - stamps.size()) / static_cast<double>(stamps.size());
-  EXPECT_NEAR(share, 0.05, 4.0 * std::sqrt(0.05 / 8000.0));
-  EXPECT_EQ(session.crank.size(), session.truth.size());
-}
-
-/// The truth of a header stamp is that of a reading really taken then.
-TEST(Stamps, TruthIsThatOfTheStampLessTheLatency) {
-  MachineSettings s = flawedRun();
-  s.crank.stamp_noise = 3e-4;
-  s.crank.latency = 4e-3;
-  s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
-  const Session session = recordSession(s);
-  MachineSettings exact = s;
-  exact.crank.stamp_noise = exact.crank.latency = 0.0;
-  const Session taken = recordSession(exact);
-  double largest = 0.0;
-  for (std::size_t i = 3000; i < session.crank.size(); ++i) {
-    const double t = since(s, session.crank[i]) - s.crank.latency;
-    ASSERT_NEAR(session.truth[i].time, t, 2e-9);
-    // From the reading's own truth by its speed and acceleration, away from the blow.
-    const CrankTruth& at = taken.truth[i];
-    const double dt = t - at.time;
-    if (session.truth[i].turn != at.turn || std::abs(std::remainder(at.angle, kTwoPi)) < 0.1) continue;
-    const double moved = at.angle + dt * (at.speed + 0.5 * dt * at.acceleration);
-    largest = std::max(largest, std::abs(session.truth[i].angle - moved));
-  }
-  EXPECT_LT(largest, 1e-4);
-}
-
-TEST(Encoder, ReadingIsTheContractsFormula) {
-  MachineSettings s = flawedRun();
-  s.crank.counts = 0;
-  s.crank.unwound = true;
-  s.crank.speed_noise = 0.0;
-  s.crank.zero = 0.7;
-  s.crank.direction = -1;
-  s.crank.eccentricity[0] = {0.03, 0.4};
-  s.crank.eccentricity[1] = {0.01, -1.1};
-  const Session session = recordSession(s);
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const CrankTruth& t = session.truth[i];
-    const double phi = t.angle + kTwoPi * static_cast<double>(t.turn);
-    const auto reading = [](double a) {
-      return 0.7 - (a + 0.03 * (std::sin(a + 0.4) - std::sin(0.4)) + 0.01 * (std::sin(2 * a - 1.1) - std::sin(-1.1)));
-    };
-    ASSERT_NEAR(session.crank[i].angle, reading(phi), 1e-12);
-    ASSERT_NEAR(*session.crank[i].speed, t.speed * (reading(phi + 1e-5) - reading(phi - 1e-5)) / 2e-5, 1e-6);
-  }
-}
-
-TEST(Encoder, GearedOneCountsItsOwnTurns) {
-  MachineSettings s = flawedRun();
-  s.crank.ratio = 2.5;
-  s.crank.counts = 1024;
-  const Session session = recordSession(s);
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const CrankTruth& t = session.truth[i];
-    const double turned = 2.5 * (t.angle + kTwoPi * static_cast<double>(t.turn));
-    const double behind = std::remainder(turned - session.crank[i].angle, kTwoPi);
-    ASSERT_GE(behind, -1e-9);
-    ASSERT_LE(behind, kTwoPi / 1024 + 1e-9);
-    ASSERT_GE(session.crank[i].angle, 0.0);
-    ASSERT_LT(session.crank[i].angle, kTwoPi);
-  }
-}
-
-/// y by the equation itself, lag y' = speed - y, in small steps of Euler's.
-TEST(Encoder, FilteredSpeedsObeyTheFiltersEquation) {
-  MachineSettings s = flawedRun();
-  s.crank.speed_noise = 0.0;
-  s.crank.speed_lag = 5e-3;
-  s.crank.speed_scale = 1.05;
-  const Session session = recordSession(s);
-  MachineSettings fine = flawedRun();
-  fine.crank.rate = 50000.0;
-  fine.crank.jitter = fine.crank.speed_noise = 0.0;
-  fine.duration = 3.0;
-  const Session plain = recordSession(fine);
-  double y = 0.0, largest = 0.0;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < plain.truth.size(); ++i) {
-    const double time = plain.truth[i].time;
-    while (next < session.truth.size() && session.truth[next].time <= time) {
-      if (time > 1.0) largest = std::max(largest, std::abs(*session.crank[next].speed - 1.05 * y));
-      ++next;
-    }
-    y += 2e-5 / s.crank.speed_lag * (plain.truth[i].speed - y);
-  }
-  EXPECT_LT(largest, 0.05);  // Euler's own: half a step of 800 rad/s2, and what a step of it moves
-  EXPECT_GT(next, 2000U);
-}
-
-TEST(Encoder, AFilteredAngleIsBehindByTheSpeedTimesItsLag) {
-  MachineSettings s = flawedRun();
-  s.crank.counts = 0;
-  s.crank.angle_lag = 2e-3;
-  const Session session = recordSession(s);
-  double worst = 0.0;
-  for (std::size_t i = 3000; i < session.crank.size(); ++i) {
-    const CrankTruth& t = session.truth[i];
-    if (std::abs(std::remainder(t.angle, kTwoPi)) < 1.0) continue;
-    const double behind = std::remainder(t.angle - session.crank[i].angle, kTwoPi);
-    worst = std::max(worst, std::abs(behind - 2e-3 * (t.speed - 2e-3 * t.acceleration)));
-  }
-  EXPECT_LT(worst, 1.5e-3);  // the third term of the series, lag^3 times the jerk
-}
-
-TEST(Encoder, SlipsByItsAmountForItsTime) {
-  MachineSettings s = flawedRun();
-  const Session plain = recordSession(s);
-  s.crank.slip = {0.1, {4.0, 6.0}};
-  const Session session = recordSession(s);
-  ASSERT_EQ(plain.crank.size(), session.crank.size());
-  for (std::size_t i = 0; i < session.crank.size(); ++i) {
-    const bool slipped = session.truth[i].time >= 4.0 && session.truth[i].time < 6.0;
-    const double off = std::remainder(session.crank[i].angle - plain.crank[i].angle, kTwoPi);
-    ASSERT_NEAR(off, slipped ? 0.1 : 0.0, kTwoPi / 4096 + 1e-9);
-  }
-}
-
-TEST(Stamps, LostSamplesLeaveTheOthersAsTheyAre) {
-  MachineSettings s = flawedRun();
-  const Session plain = recordSession(s);
-  s.crank.loss_share = 0.05;
-  const Session session = recordSession(s);
-  EXPECT_NEAR(static_cast<double>(session.crank.size()) / static_cast<double>(plain.crank.size()), 0.95, 0.01);
-  std::set<std::int64_t> stamps;
-  for (const CrankReading& reading : plain.crank) stamps.insert(reading.stamp);
-  for (const CrankReading& reading : session.crank) ASSERT_EQ(stamps.count(reading.stamp), 1U);
-}
-
-TEST(Stamps, AreInOrderWhereAskedFor) {
-  MachineSettings s = flawedRun();
-  s.crank.stamp_noise = 1e-3;
-  s.crank.stamps_ordered = true;
-  const Session session = recordSession(s);
-  for (std::size_t i = 1; i < session.crank.size(); ++i) ASSERT_GT(session.crank[i].stamp, session.crank[i - 1].stamp);
 }
 
 }  // namespace

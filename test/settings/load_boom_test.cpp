@@ -1,0 +1,152 @@
+// A robot description with a boom file or without: when there is a boom, and faults of one line each.
+#include "boom/booms.h"
+#include "settings/hammer_yaml.h"
+#include "settings/load_support.h"
+
+namespace hammer_loads {
+namespace {
+
+using test::hammerYaml;
+using test::Lines;
+using test::loadShippedWith;
+using test::TemporaryFile;
+using test::withFirstReplaced;
+
+class LoadBoom : public testing::Test {
+ protected:
+  /// Settings of a description and a boom file's content; beside it what else is given.
+  static Checked<Settings> loaded(const std::string& urdf, const std::string& boom, const std::string& more = {}) {
+    const TemporaryFile boom_file(boom + more + "\n");
+    return loadFiles(configDirectory(), {boom_file.path()}, urdf);
+  }
+  static void expectOne(const Checked<Settings>& settings, const std::string& begins) {
+    EXPECT_FALSE(settings.value);
+    ASSERT_EQ(settings.problems.size(), 1U) << begins << (settings.problems.empty() ? "" : settings.problems.back());
+    EXPECT_EQ(settings.problems[0].rfind(begins, 0), 0U) << settings.problems[0];
+    EXPECT_EQ(settings.problems[0].find('\n'), std::string::npos);
+  }
+  const std::string urdf_ = test::shippedUrdf();
+  const std::string boom_ = test::textOf(configDirectory() + "/boom_eo2621.yaml");
+  const std::string rigid_ = "boom: rigid\n";
+};
+
+TEST_F(LoadBoom, WithoutDescriptionAndFileThereIsNone) {
+  const Checked<Settings> settings = loadShippedWith({});
+  ASSERT_TRUE(settings.value);
+  EXPECT_FALSE(settings.value->boom);
+  EXPECT_EQ(settings.value->pipeline.boom, BoomModel::kAuto);
+  EXPECT_EQ(settings.value->pipeline.boom_acceleration, BoomAcceleration::kNone);
+  EXPECT_EQ(settings.value->pipeline.joint_max_age, 0.2);
+  EXPECT_EQ(settings.value->pipeline.boom_wrench_links, Lines{});
+  EXPECT_EQ(settings.value->pipeline.tf_max_wait, 0.5);
+}
+
+TEST_F(LoadBoom, ShippedDescriptionAndFile) {
+  const Checked<Settings> settings = loaded(urdf_, boom_);
+  ASSERT_EQ(settings.problems, Lines{});
+  ASSERT_TRUE(settings.value->boom);
+  EXPECT_EQ(settings.value->boom->cylinders().size(), 3U);
+  const TemporaryFile dump(settings.value->yaml);
+  const Checked<Settings> again = loadFiles(configDirectory(), {dump.path()}, urdf_);
+  ASSERT_EQ(again.problems, Lines{});
+  EXPECT_EQ(again.value->yaml, settings.value->yaml);
+  EXPECT_EQ(again.value->boom->cylinders().size(), 3U);
+}
+
+TEST_F(LoadBoom, FromTheDescriptionAloneItIsRigid) {
+  for (const std::string& given : {rigid_, std::string("boom: auto\n")}) {
+    const Checked<Settings> settings = loaded(urdf_, given);
+    ASSERT_EQ(settings.problems, Lines{});
+    ASSERT_TRUE(settings.value->boom);
+    EXPECT_TRUE(settings.value->boom->cylinders().empty());
+    EXPECT_EQ(settings.value->boom->chain().joints(), 4);
+  }
+  expectOne(loaded(urdf_, "boom: compliant\n"), "boom: compliant, must be none, rigid or auto without a boom file");
+}
+
+TEST_F(LoadBoom, AnotherMachinesDescriptionIsANoteUnlessABoomIsAskedFor) {
+  const std::string other = withFirstReplaced(urdf_, "<link name=\"hammer_hull\"", "<link name=\"bucket\"");
+  const std::string foreign = "<robot name=\"other\"><link name=\"base_link\"/></robot>";
+  for (const std::string& more : {std::string("boom: auto\n"), std::string("stale_after_s: 0.3\n")}) {
+    const Checked<Settings> settings = loaded(foreign, more);
+    ASSERT_EQ(settings.problems, Lines{});
+    EXPECT_FALSE(settings.value->boom);
+    EXPECT_EQ(settings.value->notes,
+              Lines{"robot_description: has no link hammer_hull: no boom, the hammer's loads on its hull alone"});
+  }
+  // A boom file, or a model that needs the description, is meant for it.
+  expectOne(loaded(foreign, boom_), "robot_description: link hammer_hull: not in the model");
+  expectOne(loaded(foreign, rigid_), "robot_description: link hammer_hull: not in the model");
+  // What cannot be read is no other machine's.
+  expectOne(loaded(other, "boom: auto\n"), "robot_description: cannot be read: ");
+}
+
+TEST_F(LoadBoom, DifferencesOfVelocitiesAreForARigidBoom) {
+  const std::string difference = "boom_acceleration: difference\n";
+  EXPECT_EQ(loaded(urdf_, boom_, difference + "boom: rigid").problems, Lines{});
+  for (const char* model : {"boom: compliant", "boom: auto"})
+    expectOne(loaded(urdf_, boom_, difference + model), "boom_acceleration: difference, must be none with a boom");
+  EXPECT_EQ(loaded(urdf_, boom_, "boom_stiffness: identified\nboom: compliant").problems, Lines{});
+}
+
+TEST_F(LoadBoom, NoneIsNone) {
+  EXPECT_FALSE(loaded(urdf_, boom_, "boom: none").value.value().boom);
+  EXPECT_FALSE(loaded("", boom_, "boom: none").value.value().boom);
+  EXPECT_FALSE(loaded("no URDF", "boom: none").value.value().boom);
+  // Its keys are still judged.
+  expectOne(loaded("", withFirstReplaced(boom_, "bore_m: 0.110", "bore_m: wide"), "boom: none"),
+            "boom_cylinder_bore_m: wide m, must");
+}
+
+TEST_F(LoadBoom, AFileOrAModelWithoutDescription) {
+  expectOne(loaded("", boom_), "robot_description: missing, must be given (a URDF) with a boom file");
+  expectOne(loaded("", rigid_), "robot_description: missing, must be given (a URDF)");
+  expectOne(loaded("", "boom: compliant\n"), "robot_description: missing, must be given (a URDF)");
+}
+
+TEST_F(LoadBoom, EachFaultIsOneLine) {
+  expectOne(loaded("no URDF", boom_), "robot_description: ");
+  expectOne(loaded(withFirstReplaced(urdf_, "</robot>", ""), boom_), "robot_description: ");
+  expectOne(loaded(urdf_, withFirstReplaced(boom_, "tip_link: hammer_hull", "tip_link: hammer")),
+            "robot_description: link hammer: not in the model");
+  expectOne(loaded(urdf_, withFirstReplaced(boom_, "root_link: base_link", "root_link: hammer_tool")),
+            "robot_description: link hammer_hull: hangs on");
+  expectOne(loaded(withFirstReplaced(urdf_, "<mass value=\"230\"/>", "<mass value=\"-230\"/>"), boom_),
+            "robot_description: mass of link arm_link: -230 kg");
+  expectOne(loaded(urdf_, withFirstReplaced(boom_, "arm_cylinder_joint: arm_joint", "arm_cylinder_joint: elbow")),
+            "arm_cylinder_joint: elbow, must be a revolute joint of the chain");
+  expectOne(loaded(urdf_, withFirstReplaced(boom_, "arm_cylinder_stroke_m: 0.73", "arm_cylinder_stroke_m: 0.5")),
+            "arm_cylinder_closed_length_m: 1 m, cannot close the triangle");
+  expectOne(
+      loaded(urdf_, withFirstReplaced(boom_, "damping_ratio: 0.05", "dampening_ratio: 0.05") + "damping_ratio: 0.05"),
+      "dampening_ratio: unknown key, perhaps damping_ratio was meant");
+}
+
+TEST_F(LoadBoom, FaultsOfOneDescriptionComeTogether) {
+  std::string urdf = withFirstReplaced(urdf_, "<mass value=\"230\"/>", "<mass value=\"-230\"/>");
+  urdf = withFirstReplaced(urdf, "<mass value=\"400\"/>", "<mass value=\"-400\"/>");
+  EXPECT_EQ(loaded(urdf, boom_, "stale_after_s: -1").problems.size(), 3U);
+}
+
+TEST_F(LoadBoom, ItsLoadsMayBeCounted) {
+  const std::string arm = "hull_x_channel: joint_loads/arm_joint/total_torque_Nm\n";
+  EXPECT_EQ(loaded(urdf_, boom_, arm).problems, Lines{});
+  EXPECT_EQ(loaded(urdf_, boom_, "hull_x_channel: joint_loads/arm_cylinder/cylinder_force_N\n").problems, Lines{});
+  EXPECT_EQ(loaded("", "", arm).problems.size(), 1U);
+}
+
+TEST_F(LoadBoom, AMachineIsItsHammerAndItsBoom) {
+  const std::string machine = loaded(urdf_, boom_).value->machine;
+  EXPECT_EQ(loaded(urdf_, boom_, "crank_zero_rad: 0.1\nlife_classes: 64\n").value->machine, machine);
+  EXPECT_NE(loaded(urdf_, withFirstReplaced(boom_, "damping_ratio: 0.05", "damping_ratio: 0.06")).value->machine,
+            machine);
+  EXPECT_NE(loaded(urdf_ + "<!-- -->", boom_).value->machine, machine);
+  const auto of = [](const char* key, const char* value) {
+    return loadShippedWith({TemporaryFile(hammerYaml({{key, value}})).path()}).value->machine;
+  };
+  EXPECT_EQ(of("drive_inertia_kg_m2", "1.5"), of("drive_inertia_kg_m2", "2.5"));
+  EXPECT_NE(of("rocker_mass_kg", "36.5"), of("rocker_mass_kg", "37.5"));
+}
+
+}  // namespace
+}  // namespace hammer_loads

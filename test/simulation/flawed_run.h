@@ -1,0 +1,16 @@
+/// A run of the simulated machine that tests give flaws.
+#pragma once
+
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::simulation::test {
+
+inline MachineSettings flawedRun() {
+  MachineSettings s = workingMo100();
+  s.duration = 8.0;
+  s.drive.start_time = 0.7;
+  s.drive.stop_time = 20.0;
+  return s;
+}
+
+}  // namespace hammer_loads::simulation::test
