@@ -1,53 +1,20 @@
-/// process_bag --db as its user runs it: the tables say what the output bag says, the same bytes each time, and the
-/// file is whole or not there.
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/mount.h>
-#include <sys/wait.h>
-#include <unistd.h>
+/// process_bag --db as its user runs it: the tables say what the output bag and the console say.
 
-#include <chrono>
 #include <numeric>
-#include <thread>
 
-#include "commands/bag_files.h"
+#include "commands/bag_tables.h"
 #include "hammer_loads/Blow.h"
 #include "hammer_loads/HullLoads.h"
 #include "hammer_loads/LoadCycles.h"
 #include "hammer_loads/Pulse.h"
 #include "hammer_loads/TurnLoads.h"
-#include "hammer_loads/life/database.h"
 
 namespace hammer_loads {
 namespace {
 
-namespace fs = std::filesystem;
-using life::Database;
 using test::contentOf;
 using test::kSession;
-
-class Tables : public test::BagFiles {
- protected:
-  /// First column of each row, "NULL" for nothing.
-  std::vector<std::string> ask(const std::string& file, const std::string& sql) const {
-    Database database(path(file), Database::Use::kRead, 0);
-    std::vector<std::string> rows;
-    Database::Statement query(database, sql.c_str());
-    while (query.step()) rows.push_back(query.isNull(0) ? "NULL" : query.text(0));
-    EXPECT_EQ(database.problem(), "") << sql;
-    return rows;
-  }
-  /// First number of the first row, with every digit.
-  double number(const std::string& file, const std::string& sql) const {
-    Database database(path(file), Database::Use::kRead, 0);
-    Database::Statement query(database, sql.c_str());
-    EXPECT_TRUE(query.step()) << sql << ": " << database.problem();
-    return query.number(0);
-  }
-  test::Outcome tables(const std::string& bags, const std::string& file, const std::string& options = "") const {
-    return run("--no-bag " + bags + " --db " + path(file) + " " + options);
-  }
-};
+using test::Tables;
 
 /// Column by column: what a reader of the bag sees. NaN is NULL.
 TEST_F(Tables, SayWhatTheOutputBagSays) {
@@ -120,19 +87,6 @@ TEST_F(Tables, KnowTheLoadsOfTurnsAndTheirCycles) {
     for (const std::uint32_t turning_point : channel.residue) residue.push_back(std::to_string(turning_point));
     EXPECT_EQ(ask("out.sqlite", "SELECT class" + of_channel("residues") + " ORDER BY place"), residue);
   }
-}
-
-TEST_F(Tables, SameInputGivesTheSameBytesWithAndWithoutABag) {
-  ASSERT_EQ(tables(kSession, "one.sqlite").exit_code, 0);
-  ASSERT_EQ(run(kSession + " " + path("out.bag") + " --db " + path("two.sqlite")).exit_code, 0);
-  // Under another name, in another directory, from another one.
-  fs::create_directory(path("elsewhere"));
-  const std::string other = copy(kSession, "elsewhere/renamed.bag");
-  const test::Outcome third = test::runCommand("cd " + path("elsewhere") + " && " HAMMER_LOADS_PROCESS_BAG,
-                                               "--no-bag renamed.bag --db ../three.sqlite");
-  ASSERT_EQ(third.exit_code, 0) << third.err;
-  EXPECT_TRUE(contentOf(path("one.sqlite")) == contentOf(path("two.sqlite")));
-  EXPECT_TRUE(contentOf(path("one.sqlite")) == contentOf(path("three.sqlite")));
 }
 
 TEST_F(Tables, KnowInputParametersAndMachine) {
@@ -260,89 +214,6 @@ TEST_F(Tables, EachRunInfoIsARow) {
     EXPECT_EQ(ask("out.sqlite", std::string("SELECT DISTINCT run_id FROM ") + table + " ORDER BY 1"),
               (std::vector<std::string>{"1", "2"}))
         << table;
-}
-
-TEST_F(Tables, ABagWithoutAnyWrenchLeavesNoFile) {
-  {
-    rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Write);
-    sensor_msgs::JointState m;
-    m.name = {"hammer_crank_joint"};
-    m.position = {std::nan("")};
-    for (int i = 1; i < 50; ++i) bag.write("/hammer/crank", m.header.stamp = ros::Time(1.0 + 0.01 * i), m);
-  }
-  expectRefused(tables(path("in.bag"), "out.sqlite"), {"no wrench", "not finite 49"});
-  EXPECT_EQ(names(), std::vector<std::string>{"in.bag"});
-}
-
-TEST_F(Tables, ForceReplacesTheirOwnKindAlone) {
-  ASSERT_EQ(tables(kSession, "out.sqlite").exit_code, 0);
-  const std::string bytes = contentOf(path("out.sqlite"));
-  expectRefused(tables(kSession, "out.sqlite"), {path("out.sqlite"), "exists", "--force"});
-  ASSERT_EQ(tables(kSession, "out.sqlite", "--force").exit_code, 0);
-  EXPECT_TRUE(contentOf(path("out.sqlite")) == bytes);
-  Database(path("other.sqlite"), Database::Use::kWrite, 0).run("CREATE TABLE notes(text)");
-  std::ofstream(path("notes.sqlite")) << "not to be lost\n";
-  fs::create_symlink(path("out.sqlite"), path("link.sqlite"));
-  fs::create_directory(path("directory.sqlite"));
-  const std::string in = copy(kSession, "in.bag");
-  for (const char* name : {"other.sqlite", "notes.sqlite", "link.sqlite", "directory.sqlite", "in.bag"}) {
-    const std::string before = fs::is_regular_file(path(name)) ? contentOf(path(name)) : "";
-    expectRefused(tables(in, name, "--force"), {path(name)});
-    EXPECT_TRUE(before.empty() || contentOf(path(name)) == before) << name;
-  }
-  EXPECT_EQ(names().size(), 6U) << "nothing left behind";
-}
-
-TEST_F(Tables, WrongUsageIsNamed) {
-  EXPECT_EQ(run("--no-bag " + kSession).exit_code, 2) << "nothing to write";
-  EXPECT_EQ(run(kSession + " --db " + path("out.sqlite")).exit_code, 2) << "no OUT.bag, and not said so";
-  EXPECT_EQ(run(kSession + " " + path("out") + " --db " + path("out")).exit_code, 2) << "one name for two files";
-  EXPECT_EQ(tables(kSession, "out.sqlite", "--pins").exit_code, 2) << "pin forces are in a bag alone";
-  EXPECT_EQ(names().size(), 0U);
-}
-
-TEST_F(Tables, AFullDiskIsOneLineAndLeavesNothing) {
-  ASSERT_EQ(tables(kSession, "whole.sqlite").exit_code, 0);
-  const auto blocks = fs::file_size(path("whole.sqlite")) / 512;
-  for (const std::uintmax_t limit : {std::uintmax_t{2}, blocks / 2, blocks - 8}) {
-    const test::Outcome outcome = test::runCommand("ulimit -f " + std::to_string(limit) + "; " HAMMER_LOADS_PROCESS_BAG,
-                                                   "--no-bag " + kSession + " --db " + path("out.sqlite"));
-    expectRefused(outcome, {path("out.sqlite"), "cannot be written", "File too large"});
-    EXPECT_EQ(names(), std::vector<std::string>{"whole.sqlite"}) << limit;
-  }
-  fs::create_directory(path("disk"));
-  if (mount("tmpfs", path("disk").c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "only root mounts";
-  const test::Outcome outcome = tables(kSession, "disk/out.sqlite");
-  const bool empty = fs::is_empty(path("disk"));
-  umount(path("disk").c_str());
-  expectRefused(outcome, {path("disk/out.sqlite"), "cannot be written", "full"});
-  EXPECT_TRUE(empty);
-}
-
-TEST_F(Tables, AnInterruptionLeavesNothing) {
-  {
-    rosbag::Bag bag(path("long.bag"), rosbag::bagmode::Write);
-    test::forEachOfSession([&](const rosbag::MessageInstance& item) {
-      for (int i = 0; i < 40; ++i) bag.write(item.getTopic(), item.getTime() + ros::Duration(100.0 * i), item);
-    });
-  }
-  const pid_t child = fork();
-  if (child == 0) {
-    signal(SIGINT, SIG_DFL);
-    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-    execl(HAMMER_LOADS_PROCESS_BAG, "process_bag", "--no-bag", path("long.bag").c_str(), "--db",
-          path("out.sqlite").c_str(), nullptr);
-    _exit(127);
-  }
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (names().size() < 2 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  ASSERT_EQ(names().size(), 2U) << "the unfinished file";
-  kill(child, SIGINT);
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_EQ(names(), std::vector<std::string>{"long.bag"});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
+#include <std_msgs/String.h>
 #include <topic_tools/shape_shifter.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -44,8 +46,20 @@ inline geometry_msgs::WrenchStamped wrench(std::size_t i) {
   return message;
 }
 
+/// Does not fit into less space by compression.
+inline std_msgs::String noise(std::size_t size, std::size_t seed) {
+  std::mt19937 random(static_cast<unsigned>(seed));
+  std_msgs::String message;
+  message.data.resize(size);
+  for (char& c : message.data) c = static_cast<char>(random());
+  return message;
+}
+
 /// 1 ms apart.
 inline ros::Time at(std::size_t i) { return ros::Time(1000.0 + 1e-3 * static_cast<double>(i)); }
+
+/// The i-th of 50 kB.
+inline void send(BagLog& log, std::size_t i) { log.write("/noise", at(i), noise(50'000, i)); }
 
 /// One message of a bag.
 struct Entry {

@@ -1,103 +1,24 @@
-// Hostile input: whatever comes, loads are finite or refused and counted, and one turn after it all is well again.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-
-#include "hammer_loads/pipeline/pipeline.h"
-#include "hammer_loads/settings/load.h"
-#include "hammer_loads/simulation/session.h"
-#include "support/constants.h"
-#include "support/mo100.h"
+// Hostile input of the crank: whatever comes, loads are finite or refused and counted, and one turn after it all is
+// well again.
+#include "pipeline/input_attack.h"
 
 namespace hammer_loads {
 namespace {
 
 using simulation::CrankReading;
-using simulation::Session;
-using Names = std::vector<std::string>;
-using Numbers = std::vector<double>;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
-constexpr double kUndisturbedFrom = 3.0, kAttack = 4.0, kSoundFrom = 4.1, kUntil = 5.0;  // [s] of the session
-constexpr double kOneTurn = 0.25;           // [s]: the machine makes some 4.6 in a second
-constexpr double kUndisturbedError = 0.02;  // of Fz over its peak: undisturbed sessions stay within 0.012
+using test::allSettings;
+using test::kAttack;
 using test::kCrank;
-const Names kBoom{"boom_joint", "arm_joint", "hammer_joint"};
-const Numbers kBoomAngles{-0.35, 1.20, -0.85};
-
-const simulation::MachineSettings& attackedMachine() {
-  static const simulation::MachineSettings settings = [] {
-    simulation::MachineSettings s = simulation::workingMo100();
-    s.duration = kUntil;
-    for (simulation::JointMotion& joint : s.boom) joint.amplitude = 0.0;
-    return s;
-  }();
-  return settings;
-}
-
-const Session& attacked() {
-  static const Session recorded = simulation::recordSession(attackedMachine());
-  return recorded;
-}
-
-/// A pipeline at work and what it gives.
-class Victim {
- public:
-  explicit Victim(const PipelineSettings& settings) : pipeline_(test::mechanismOf(attackedMachine().hammer), settings) {
-    for (const auto& truth : attacked().truth) peak_ = std::max(peak_, std::abs(truth.load.force_z));
-  }
-
-  /// Good samples of [from, to) [s].
-  void work(double from, double to, const std::function<void(const CrankReading&)>& instead = {}) {
-    boom(kBoom, kBoomAngles);
-    for (std::size_t i = 0; i < attacked().crank.size(); ++i) {
-      const CrankReading& reading = attacked().crank[i];
-      const double time = attacked().truth[i].time;
-      if (time < from || time >= to) continue;
-      if (instead) {
-        instead(reading);
-        continue;
-      }
-      const SampleResult& loads = crank(reading.stamp, kCrank, {reading.angle}, {*reading.speed});
-      if (loads.refusal || loads.beside_blow) continue;
-      if (first_accepted_ < from) first_accepted_ = time;
-      worst_ = std::max(worst_, std::abs(loads.wrench.force_z - attacked().truth[i].load.force_z) / peak_);
-    }
-  }
-  const SampleResult& good(const CrankReading& r) { return crank(r.stamp, kCrank, {r.angle}, {*r.speed}); }
-  const SampleResult& crank(StampNs stamp, const Names& names, const Numbers& position, const Numbers& velocity) {
-    const SampleResult& loads = pipeline_.crankJoint(stamp, names, position, velocity);
-    if (!loads.refusal) {
-      for (const double value : {loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y, loads.crank.speed,
-                                 loads.crank.acceleration, loads.crank.position.angle.offset}) {
-        finite_ = finite_ && std::isfinite(value);
-      }
-    }
-    for (std::size_t i = 0; i < loads.turn_ends; ++i) {
-      const TurnEnd& end = loads.ends[i];
-      finite_ = finite_ && std::isfinite(end.blow.energy) && std::isfinite(end.blow.tool_impulse_z);
-      if (end.pulse)
-        finite_ = finite_ && std::isfinite(end.pulse->amplitude) && std::isfinite(end.pulse->turn_impulse_z);
-    }
-    return loads;
-  }
-  bool boom(const Names& names, const Numbers& position) { return pipeline_.boomJoints(0, names, position, {}); }
-
-  void forgetErrors() { worst_ = 0.0; }
-  bool finite() const { return finite_; }
-  double firstAccepted() const { return first_accepted_; }  ///< of the last work() [s]
-  double worst() const { return worst_; }                   ///< error of Fz over the peak [-]
-  std::uint64_t refused(Refusal reason) const { return pipeline_.counts().refused[static_cast<std::size_t>(reason)]; }
-  std::uint64_t accepted() const { return pipeline_.counts().accepted; }
-  const Pipeline& pipeline() const { return pipeline_; }
-
- private:
-  Pipeline pipeline_;
-  double peak_{}, worst_{}, first_accepted_{};
-  bool finite_{true};
-};
+using test::kInf;
+using test::kNan;
+using test::kOneTurn;
+using test::kSoundFrom;
+using test::kUndisturbedError;
+using test::kUndisturbedFrom;
+using test::kUntil;
+using test::Names;
+using test::Numbers;
+using test::Victim;
 
 struct Attack {
   const char* name;
@@ -243,16 +164,6 @@ std::vector<Attack> timeAttacks(CrankStamps stamps) {
   return attacks;
 }
 
-std::vector<PipelineSettings> allSettings() {
-  std::vector<PipelineSettings> all;
-  const PipelineSettings shipped = loadFiles(configDirectory(), {}).value->pipeline;
-  for (const auto& [name, level] : kRigidLevelNames) {
-    all.push_back(shipped);
-    all.back().level = level;
-  }
-  return all;
-}
-
 /// Good, attack, good.
 void expectSurvival(const Attack& attack, const PipelineSettings& settings) {
   SCOPED_TRACE(testing::Message() << attack.name << ", level " << static_cast<int>(settings.level));
@@ -299,70 +210,6 @@ TEST(InputAttack, StampsAndPublishersOfTheCrank) {
       for (const Attack& attack : timeAttacks(stamps)) expectSurvival(attack, settings);
     }
   }
-}
-
-struct BoomAttack {
-  const char* name;
-  Names names;
-  Numbers angles;
-};
-
-TEST(InputAttack, TheBoomsAngles) {
-  const Names million(1000000, "joint");
-  const BoomAttack attacks[] = {
-      {"NaN", kBoom, {kNan, kNan, kNan}},
-      {"infinite", kBoom, {kInf, -kInf, kInf}},
-      {"1e308", kBoom, {1e308, 1e308, 1e308}},
-      {"1e308 and its opposite", kBoom, {1e308, -1e308, 1e308}},
-      {"denormal", kBoom, {5e-324, -5e-324, 5e-324}},
-      {"no angles", kBoom, {}},
-      {"too few angles", kBoom, {-0.35}},
-      {"no names", {}, kBoomAngles},
-      {"empty names", {"", "", ""}, kBoomAngles},
-      {"a joint missing", {"boom_joint", "hammer_joint"}, {-0.35, -0.85}},
-      {"permuted", {"hammer_joint", "swing_joint", "arm_joint", "boom_joint"}, {-0.85, kNan, 1.2, -0.35}},
-      {"given twice", {"boom_joint", "boom_joint", "arm_joint"}, {-0.35, kNan, 1.2}},
-      {"degrees", kBoom, {-20.0, 68.8, -48.7}},
-      {"a million names", million, {}},
-      {"a million angles", kBoom, Numbers(1000000, kNan)}};
-  for (const BoomAttack& attack : attacks) {
-    for (const PipelineSettings& settings : allSettings()) {
-      SCOPED_TRACE(attack.name);
-      Victim victim(settings);
-      victim.work(kUndisturbedFrom, kAttack);
-      const std::uint64_t accepted = victim.accepted();
-      ASSERT_GT(accepted, 900u);
-      victim.boom(attack.names, attack.angles);
-      victim.work(kAttack, kSoundFrom, [&](const CrankReading& r) { victim.good(r); });
-      EXPECT_GT(victim.accepted(), accepted + 90u) << "the crank goes on";
-      EXPECT_TRUE(std::isfinite(victim.pipeline().hull().pitch().pitch()));
-      victim.forgetErrors();
-      victim.work(kSoundFrom, kUntil);
-      EXPECT_TRUE(victim.finite());
-      if (settings.level == Level::kRocker) {
-        EXPECT_LE(victim.worst(), kUndisturbedError) << "good angles count at once";
-      }
-    }
-  }
-}
-
-TEST(InputAttack, AnglesOfTheBoomThatCannotBeAreCounted) {
-  HullPitch pitch(kBoom, 0.1);
-  EXPECT_TRUE(pitch.update(kBoom, kBoomAngles));
-  EXPECT_DOUBLE_EQ(pitch.pitch(), 0.0);
-  std::uint64_t refused = 0;
-  for (const double bad : {kNan, kInf, -kInf, 1e308, -1e308, 1e5}) {
-    EXPECT_FALSE(pitch.update({"boom_joint"}, {bad})) << bad;
-    EXPECT_EQ(pitch.refused(), ++refused) << bad;
-    EXPECT_DOUBLE_EQ(pitch.pitch(), 0.0) << bad;
-  }
-  EXPECT_FALSE(pitch.update(kBoom, {}));
-  EXPECT_EQ(pitch.refused(), refused + 3);
-  EXPECT_FALSE(pitch.looksLikeDegrees());
-  EXPECT_TRUE(pitch.update(kBoom, {-20.0, 68.8, -48.7}));
-  EXPECT_TRUE(pitch.looksLikeDegrees());
-  EXPECT_TRUE(pitch.update(kBoom, kBoomAngles));
-  EXPECT_FALSE(pitch.looksLikeDegrees());
 }
 
 }  // namespace
