@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""report: one page, and tables, from what process_bag --db and the ledgers hold."""
+"""report, budget and certificate, by the name it has: pages and figures of what process_bag --db and ledgers hold."""
+import importlib
 import pathlib
 import sys
 
@@ -11,6 +12,6 @@ for home in (HERE.parent, HERE.parents[1] / SHARE, HERE.parent / SHARE):  # in t
         break
 sys.dont_write_bytecode = True  # the source tree stays as it is
 
-from report.command import main  # noqa: E402  (the path must be set first)
-
-sys.exit(main(sys.argv[1:]))
+MODULES = {"report": "command", "budget": "budget_command", "certificate": "certificate_command"}
+module = MODULES.get(pathlib.Path(sys.argv[0]).stem, "command")
+sys.exit(importlib.import_module("report." + module).main(sys.argv[1:]))
