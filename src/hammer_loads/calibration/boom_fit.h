@@ -23,7 +23,7 @@ struct BoomFit {
   Eigen::VectorXd x;             ///< as BoomModel orders it, in standard deviations before the recording
   Eigen::MatrixXd covariance;    ///< of x
   std::vector<double> noise;     ///< per cylinder: standard deviation of what is left of a row [N]
-  std::vector<double> together;  ///< per cylinder: this many rows in a row tell as much as one, >= 1 [-]
+  std::vector<double> together;  ///< per cylinder: this many rows in a row say as much as one, >= 1 [-]
   bool converged{};
 };
 

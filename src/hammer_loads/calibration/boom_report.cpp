@@ -126,7 +126,7 @@ std::string textOf(const BoomCalibration& c) {
     text += format("a boom weighed without it says that %.1f +- %.1f kg hang on the tip; %s\n", c.weight_check->value,
                    c.weight_check->deviation, c.weight_check->meaning.c_str());
   for (const Correlation& r : c.correlations)
-    text += format("cannot be told apart (correlation %+.2f): %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
+    text += format("cannot be separated (correlation %+.2f): %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
   for (const std::string& remark : c.remarks) text += "note: " + remark + "\n";
   return text;
 }
@@ -147,8 +147,7 @@ std::string yamlOf(const BoomCalibration& c, const std::string& given, const std
   std::string text = std::string(kBoomYamlBegins) + " " + onOneLine(source) + ":\n";
   for (const JointWeight& joint : c.joints) text += "# " + jointLine(joint);
   for (const CylinderFit& cylinder : c.cylinders) text += "# " + cylinderLine(cylinder);
-  return text +
-         "# A whole boom file, for boom:=FILE or --params. Values belong together: some cannot be told apart.\n" +
+  return text + "# A whole boom file, for boom:=FILE or --params. Values belong together: some cannot be separated.\n" +
          lines.text();
 }
 

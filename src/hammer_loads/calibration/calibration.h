@@ -58,7 +58,7 @@ struct Calibration {
   /// Of the key that is known least: what more blows would lessen of its deviation, over its limit. Infinity with a
   /// problem.
   double worstByBlows() const;
-  /// More of the recording would not serve: every key is known to half of its limit or better, as far as blows can tell
+  /// More of the recording would not serve: every key is known to half of its limit or better, as far as blows can show
   /// it. Then it adds 12 % to an error that is at the limit for another reason.
   bool isSettled() const { return worstByBlows() <= 0.5; }
 };

@@ -14,7 +14,7 @@ std::optional<std::string> readToReplace(const std::string& path, std::string& p
 /// cut included. The file's permissions stay. Nothing when it is done, else one line.
 std::optional<std::string> replaceFile(const std::string& path, const std::string& text);
 
-/// Others that replace files of the same directory wait while this lives: what one reads nobody else replaces. On the
+/// Others that replace files of the same directory wait while this lives: what one reads no other replaces. On the
 /// directory itself, so that no file is left beside it; links lead to the same lock.
 class ReplaceLock {
  public:

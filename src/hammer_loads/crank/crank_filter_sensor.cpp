@@ -133,7 +133,7 @@ double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
   return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
 }
 
-/// (5) Whether a step of the reading could be told from the crank's own and from what a rod that rings moves.
+/// (5) Whether a step of the reading would differ from the crank's own and from what a rod that rings moves.
 bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
   const CrankAngle& at = now_.state.position.angle;
   const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;

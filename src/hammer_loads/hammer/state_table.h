@@ -35,7 +35,7 @@ std::optional<CrankAngle> crankAngleFromText(const std::string& text);
 /// them one line each. Blank lines are skipped, but counted.
 Checked<std::vector<TableState>> readStates(std::istream& in);
 
-/// At most `most` lines, the last one telling how many were left out.
+/// At most `most` lines, the last one with how many were left out.
 std::vector<std::string> shortened(std::vector<std::string> lines, std::size_t most);
 
 }  // namespace hammer_loads

@@ -23,7 +23,7 @@ struct KnownHullMotion {
 };
 
 /// Three signals at the unit, each driven by the load of links and drive: force along x, force along z, turning about y
-/// by its rate. Readings wait for the crank sample after them, which tells the load at their stamps; nothing is taken
+/// by its rate. Readings wait for the crank sample after them, which gives the load at their stamps; nothing is taken
 /// from the future. The effective inertia of the hull at D - on its boom and oil, on rock - is learned and needs no
 /// boom file.
 class HullMotionFilter {

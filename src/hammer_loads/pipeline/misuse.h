@@ -15,7 +15,7 @@ struct MisuseCounts {
   std::uint64_t blank_strokes{};  ///< the rocker went through where the tool should have been
   std::uint64_t judged_blows{};   ///< at which cylinder pressures show the rock's force on the hull
   /// Of these: since the blow before it was never more than its error. The blow falls on the hull's retainer, or what
-  /// presses the hull down is too little to bring it back after its recoil; pressures cannot tell one from the other.
+  /// presses the hull down is too little to bring it back after its recoil; in the pressures both look alike.
   std::uint64_t unpressed_blows{};
   double placed_time{};  ///< of whole turns at which the boom's joints show where the hull is [s]
   double still_time{};   ///< of that: the hull had not moved for MisuseFollower::kPatience of hammering or more [s]

@@ -10,7 +10,7 @@ def stem(path):
 
 
 def bag_names(database):
-    """{bag_id: file name} of a merged file; a name that two bags share is told apart by its folder."""
+    """{bag_id: file name} of a merged file; where two bags share a name, with its folder."""
     bags = database.records("SELECT bag_id, bag FROM bags ORDER BY bag_id")
     short = [stem(row["bag"]) for row in bags]
     return {row["bag_id"]: name if short.count(name) == 1 else str(pathlib.PurePath(row["bag"]).with_suffix(""))

@@ -12,7 +12,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr std::uint64_t kNamingMessages = 64;             ///< whose readings tell runs with one first stamp apart
+constexpr std::uint64_t kNamingMessages = 64;             ///< whose readings distinguish runs with one first stamp
 constexpr StampNs kMarkEvery = 4LL * 1000 * 1000 * 1000;  ///< [ns]: a split is longer; a working day gives 7200 marks
 
 /// FNV-1a, 64 bit.
@@ -119,7 +119,7 @@ void LifeFlow::name() {
   unnamed_.clear();
 }
 
-/// With what tells whose it is.
+/// With the messages and marks that it belongs to.
 void LifeFlow::keep(life::LifePiece piece) {
   piece.messages = messages_ - std::exchange(messages_kept_, messages_);
   piece.marks.assign(marks_.begin(), marks_.end());

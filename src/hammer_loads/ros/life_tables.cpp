@@ -68,7 +68,7 @@ void LifeTables::write(const BudgetFigure& figure) {
     writer_->budget(run_, {figure.quantity, figure.value, figure.deviation, source.name, source.variance / all});
 }
 
-/// A channel's range has the parts of its own turns; of the boom's, whose constants are not told apart, those of all
+/// A channel's range has the parts of its own turns; of the boom's, whose constants are not separated, those of all
 /// constants and of the rest.
 void LifeTables::writeBudget() {
   for (const BudgetFigure& figure : budget_->figures()) write(figure);
