@@ -132,6 +132,7 @@ void warnOfOil(const Boom& boom, int odd, std::vector<Warning>& warnings) {
 /// Pressures that are not used.
 void warnOfTrust(const PressureTrust& trust, double greatest, std::vector<Warning>& warnings) {
   constexpr double kOfNoCylinder = 1e4;  // [Pa]: a tenth of what air has
+  // Guard: WarningNumbers.PressuresOfNoCylinderAreInAnotherUnit of kOfNoCylinder
   if (trust.isLate()) {
     warnings.push_back({"pressure stamps",
                         "cylinder_pressures: not used, their stamps are about " + laterOrEarlier(trust.lateBy()) +

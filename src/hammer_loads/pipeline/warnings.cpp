@@ -63,10 +63,12 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
          true});
 }
 
-/// Instants: jitter of header stamps as it is learned, or stamps refitted by sequence.
-void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, std::vector<Warning>& warnings) {
-  constexpr double kJitter = 1e-4;      // [s]: from there on the wrench is some 0.2 % worse
-  constexpr double kCountSpeed = 60.0;  // [rad/s]: jitter below half a count's deviation at 30 rad/s is not judged
+/// Instants: jitter of header stamps as it is learned, or stamps refitted by sequence. At work half a count's deviation
+/// hides a jitter.
+void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double speed_at_work,
+                  std::vector<Warning>& warnings) {
+  constexpr double kJitter = 1e-4;  // [s]: from there on the wrench is some 0.2 % worse
+  // Guard: WarningNumbers.StampsThatJitterByATenthOfAMillisecond of kJitter
   if (crank.stamps().isSteady())
     warnings.push_back({"stamps",
                         format("crank stamps repeat or change places and jitter by %.2g ms: samples are taken at equal "
@@ -74,7 +76,7 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, std::ve
                                1e-6 * crank.stamps().fit().scatter()),
                         true});
   const double count = filter.encoder().resolution() / std::sqrt(12.0);
-  if (filter.timingNoise() > std::max(kJitter, count / kCountSpeed))
+  if (filter.timingNoise() > std::max(kJitter, 0.5 * count / speed_at_work))
     warnings.push_back({"jitter",
                         format("crank stamps jitter by %.2g ms; stamps of the measurement's instant would be better",
                                1e3 * filter.timingNoise()),
@@ -160,6 +162,7 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
 /// What the filter's innovations look like.
 void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
+  // Guard: WarningNumbers.NothingIsSaidOfASensorBeforeTenBlows of kLearned
   const CrankFilter* filter = pipeline.crank().tracker().filter();
   const bool withheld = pipeline.counts().refusedFor(Refusal::kInconsistent) > 0;
   if (filter == nullptr || pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
@@ -176,7 +179,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          format("crank_angle_resolution_rad: %.9g rad is given, the readings have %.9g rad; 0 reads it off",
                 pipeline.settings().crank_angle_resolution, filter->encoder().resolution()),
          true});
-  warnOfStamps(pipeline.crank(), *filter, warnings);
+  warnOfStamps(pipeline.crank(), *filter, kTwoPi * pipeline.settings().turn_rate, warnings);
   warnOfReadings(pipeline.crank(), *filter, warnings);
   const bool inconsistent = filter->consistency() > CrankTrust::kInconsistent;
   const bool strike = filter->strikeConsistency() > CrankTrust::kInconsistent;
@@ -192,6 +195,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
 /// Of a unit that is not where or what it is said to be. weight: of the hull by the joint angles.
 std::string faultOf(const ImuTrust& trust, const Gravity& weight) {
   constexpr double kAlike = 1.2;  // factor between weights: what blows add to a mean of 2 s is less
+  // Guard: WarningNumbers.AWeightWithinAFifthOfOneIsInG of kAlike
   if (trust.turnsTooFast())
     return format(
         "it turns by %.3g rad/s, root mean square, as no hull does (in degrees per second that is %.2g rad/s)",
