@@ -9,6 +9,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr int kSettlingSamples = 5;  // without measured speeds: until then they are known from linearised steps
+// Guard: CrankWithoutSpeeds.IsWithheldForSomeSamplesAfterADropOut of kSettlingSamples
 constexpr double kSettledDeviations = gate::kRare;  // that the predicted error has
 constexpr double kFrozenCounts = 5;                 // a crank that turned further gives another angle
 // Guard: CrankTrust.AnotherUnitIsWithheldAndNamed of kFrozenCounts

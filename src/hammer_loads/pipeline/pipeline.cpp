@@ -15,6 +15,8 @@ namespace {
 // of a hammer at work.
 constexpr double kMostForce = 3.0, kMostForceUnproven = 0.5;  // once readings and model agree; before that
 constexpr double kMostSpeedUnproven = 2.0;                    // then the crank may be in degrees
+// Guard: ToldCrank.ForcesAreAtMostAHalfAndThenThreeOfTheNominalOne of kMostForce, kMostForceUnproven
+// Guard: ToldCrank.AFirstSampleIsNoFasterThanTwiceAWorkingMachine of kMostSpeedUnproven
 constexpr std::size_t kMostOutputs = 100'000;  // of one sample, without allocation: 10 kHz over a gap of 10 s
 // Numerical: kMostOutputs
 
