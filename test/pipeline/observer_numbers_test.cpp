@@ -33,6 +33,14 @@ class ObservedBoom : public testing::Test {
     observer_.joints(boom_, held_, stamp_, 1e-3, joints_);
   }
   const ModeIdentifier& found() const { return *boom_.vibration().identifier(); }
+  /// Of the modes, without any force.
+  JointVector foundAccelerations() const {
+    const BoomModes& modes = boom_.vibration().modes();
+    JointVector result(modes.count);
+    for (int k = 0; k < modes.count; ++k)
+      result[k] = acceleration({modes.omega[k], found().damping(k)}, found().motion(k), 0.0);
+    return result;
+  }
 
   Settings settings_ = accuracy::shippedBoom("{}");
   Boom boom_ = *settings_.boom;
@@ -88,6 +96,46 @@ TEST_F(ObservedBoom, OneRateIsBelievedAsFarAsItsOffsetIsKnown) {
                said = variance / (variance + square(0.02) + square(0.005));
   EXPECT_GT(1.0 - gain, 0.8 * (1.0 - said));
   EXPECT_LT(1.0 - gain, 1.25 * (1.0 - said));
+}
+
+/// Noise and offset are 0.3 m/s2 each; what the links in the hull make of it, 1 m/s2.
+TEST_F(ObservedBoom, OneAccelerationIsBelievedAsFarAsOffsetAndLinksAreKnown) {
+  const BoomModes& modes = boom_.vibration().modes();
+  const Eigen::Vector3d here = Eigen::Vector3d::Zero(), g_T = boom_.gravityAtTip();
+  Eigen::MatrixXd by_mode(2, modes.count);  // along x and z
+  for (int k = 0; k < modes.count; ++k) {
+    const JointVector joints = jointsOf(modes, JointVector::Unit(modes.count, k));
+    for (int axis : {0, 1}) {
+      const Eigen::Vector3d n_T = Eigen::Vector3d::Unit(2 * axis);
+      by_mode(axis, k) =
+          tipAccelerationReading(boom_.tipJacobian(), here, n_T, g_T, 0.0).acceleration.head(joints.size()).dot(joints);
+    }
+  }
+  const Eigen::Matrix2d before = by_mode * found().accelerationCovariance() * by_mode.transpose();
+  const double variance = square(0.3) + square(0.3) + square(1.0);
+  const Eigen::Vector2d read(0.0, 1.0);
+  observer_.imu(boom_, held_, {Eigen::Vector3d(0.0, 0.0, 1.0) - g_T, here});
+  const Eigen::Vector2d left = read - by_mode * foundAccelerations(),
+                        said = variance * (before + variance * Eigen::Matrix2d::Identity()).inverse() * read;
+  EXPECT_NEAR(left[1] / said[1], 1.0, 0.07);
+}
+
+/// Of the most that its cylinder can push, 0.02 of an offset and 0.004 of noise.
+TEST_F(ObservedBoom, OneTorqueIsBelievedAsFarAsItsOffsetIsKnown) {
+  const BoomModes& modes = boom_.vibration().modes();
+  const Cylinder& cylinder = boom_.cylinders()[0];
+  const double arm = boom_.cylinderPosition(0).arm;
+  const JointVector by_mode = -modes.inertia.row(cylinder.joint());
+  const double before = by_mode.dot(found().accelerationCovariance() * by_mode),
+               variance = (square(0.02) + square(0.004)) * square(cylinder.greatestPush() * arm), read = 100.0;
+  CylinderPressures pressures(0.1);
+  pressures.update(stamp_, 0, Chamber::kRod, 0.0);
+  pressures.update(stamp_, 0, Chamber::kBore,
+                   -(boom_.steadyTorque(cylinder.joint()) + read) / arm / cylinder.boreArea());
+  observer_.pressures(boom_, held_, stamp_, pressures);
+  const double left = 1.0 - by_mode.dot(foundAccelerations()) / read, said = variance / (before + variance);
+  EXPECT_GT(left, 0.8 * said);
+  EXPECT_LT(left, 1.25 * said);
 }
 
 }  // namespace

@@ -13,6 +13,9 @@ namespace {
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
 constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
+// Guard: MeasuredBoom.ALineGoesOnForTwentyMilliseconds of kLongestLine
+// Guard: MeasuredBoom.ReadingsThatDoNotFitMakeTheSwingDoubtful of kLag
+// Guard: MeasuredBoom.OverATenthOfASecondNothingWasForetold of kGap
 
 /// What seals take between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {

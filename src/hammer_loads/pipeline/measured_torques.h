@@ -18,6 +18,7 @@ class MeasuredTorques {
  public:
   /// ModeIdentifier::oilSurprise() from which on the readings do not follow the boom's motion, as when stamps lag.
   static constexpr double kSurprised = 1.0;
+  // Guard: MeasuredBoom.ReadingsThatDoNotFitMakeTheSwingDoubtful of kSurprised
 
   struct Torque {
     double value{};       ///< of the load on the cylinder's joint [N m]
@@ -41,6 +42,7 @@ class MeasuredTorques {
 
  private:
   static constexpr double kMostJudged = 200.0;  ///< readings
+  // Guard: MeasuredBoom.TwoHundredReadingsSayHowFarOneIsOff of kMostJudged
   static constexpr double kSwingTime = Vibration::kSwingTime;
   struct Track {
     std::uint64_t readings{};         ///< taken

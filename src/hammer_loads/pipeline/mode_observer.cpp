@@ -11,12 +11,14 @@ struct Doubt {
   double noise, offset, walk;
 };
 constexpr Doubt kAcceleration{0.3, 0.3, 0.05};  // [m/s2]
-constexpr Doubt kRate{0.005, 0.02, 0.005};      // [rad/s]
+// Guard: ObservedBoom.OneAccelerationIsBelievedAsFarAsOffsetAndLinksAreKnown of kAcceleration, kLinksInHull
+constexpr Doubt kRate{0.005, 0.02, 0.005};  // [rad/s]
 // Guard: ObservedBoom.OneRateIsBelievedAsFarAsItsOffsetIsKnown of kRate
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
 // Guard: ObservedBoom.OneAngleIsBelievedAsFarAsItsOffsetIsKnown of kAngle
-constexpr Doubt kTorque{0.004, 0.02, 0.002};      // of the torque that the cylinder's relief valve allows
-constexpr double kLinksInHull = 1.0;              // [m/s2]: modes take the links at the mean of their places
+constexpr Doubt kTorque{0.004, 0.02, 0.002};  // of the torque that the cylinder's relief valve allows
+constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at the mean of their places
+// Guard: ObservedBoom.OneTorqueIsBelievedAsFarAsItsOffsetIsKnown of kTorque
 constexpr double kSlowest = 0.01, kMoved = 0.02;  // [s] between joint states; [rad] a jump
 // Guard: ObservedBoom.AnglesThatComeRarelyShowNoVibration of kSlowest
 // Guard: ObservedBoom.NorDoAnglesThatJump of kMoved
