@@ -186,6 +186,18 @@ TEST_F(CrankDynamics, ABlowTakesItsPartOfTheSpeed) {
   }
 }
 
+/// The instant of a blow shows in the speed after it, but not where the crank creeps over it at less than 1 rad/s.
+TEST_F(CrankDynamics, ACrankThatCreepsOverTheBlowHasNoInstantOfPassingIt) {
+  for (const double speed : {0.8, 1.25}) {
+    ShaftState s = stateAt(0.0, speed, 100.0);
+    s.position.angle = {0.0, Side::kBeforeBlow};
+    ShaftLoad load;
+    ShaftTransition passing = ShaftTransition::Identity();
+    passBlow(rocker_, 0.7, s, load, passing);
+    EXPECT_EQ(passing(1, 0) != 0.0, speed > 1.0);
+  }
+}
+
 /// A state that a correction pushed beyond the blow stands where it would, had it passed in time.
 TEST_F(CrankDynamics, PassesLateAsInTime) {
   const Passing blow{0.7, true};

@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
+#include "hammer_loads/crank/belief_smoothing.h"
+#include "hammer_loads/crank/smoothed_crank.h"
+#include "hammer_loads/util/square.h"
 #include "support/constants.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
@@ -101,6 +107,51 @@ TEST(CrankTrack, KnowsAllOfATurnWhatItsBlowDid) {
     EXPECT_GT(std::abs(factor - samples[i].belief.factor), 0.2) << "another blow, another factor";
   }
   EXPECT_GT(turns, 5);
+}
+
+/// At the end of a recording its belief is the live filter's. Of the sensor's errors that are not seen 1.8 times as
+/// much counts, as noise covers less; of the torque's deviation a fifth, as its walk is that of the roughest supply.
+TEST(CrankTrack, CountsMoreOfTheSensorAndLessOfTheSupplyThanLive) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const auto track = std::make_shared<CrankTrack>(mechanism, Level::kRocker, 0.6, test::filterSettings());
+  record(4.0, 100.0, *track);
+  track->close();
+  SmoothedCrank smoothed(ShaftModel(mechanism, Level::kRocker), track);
+  while (track->isReady()) smoothed.update(0.0, {});
+  const CrankFilter& live = track->filter();
+  const auto accelerationVariance = [&](double part) {
+    return smoothed.uncertainty(part).own(CrankUncertainty::kAcceleration, CrankUncertainty::kAcceleration);
+  };
+  const ShaftLoad load = ShaftModel(mechanism, Level::kRocker)(live.state().position.angle);
+  const double by_torque = live.growth() * live.covariance()(CrankBelief::kTorque, CrankBelief::kTorque) /
+                           square(live.driveInertia() + load.inertia);
+  const double counted = 0.5 * (accelerationVariance(1.0) + accelerationVariance(-1.0)) - accelerationVariance(0.0);
+  EXPECT_NEAR(std::sqrt(counted / by_torque) / 0.2, 1.0, 0.2);
+  const auto bySensor = [](const CrankTracker& tracker) {
+    return tracker.uncertainty(1.0).by_constant.topLeftCorner<1, ConstantErrors::kTable>().squaredNorm();
+  };
+  EXPECT_NEAR(bySensor(smoothed) / bySensor(live) / 1.8, 1.0, 0.2);
+}
+
+/// Where the smoothed sample after a blow is far from what the blow makes of the one before, there was another blow.
+TEST(CrankTrack, ABlowThatIsFarOffEndsAnInterval) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100Parameters());
+  const ShaftModel model(mechanism, Level::kRocker);
+  const BlowPrior blow{0.8, 0.1};
+  const CrankWalks walks{74.0, 0.3, 5e-4, {}};
+  const FilterStep step{1e-3, {}, blow, walks, 600.0};
+  CrankBelief before;
+  before.state = {{0, {-0.01, Side::kBeforeBlow}}, 25.0, 100.0, 0.6};
+  before.least_inertia = 1e-6, before.most_inertia = 1e6, before.factor = 0.8;
+  before.covariance.diagonal() << 1e-8, 0.01, 100.0, 1e-4, 1e-4;
+  CrankBelief after = before;
+  ASSERT_EQ(after.predict(model, walks, blow, true, step.most_speed, step.length), 1);
+  const double certainty = after.covariance.inverse()(CrankBelief::kFactor, CrankBelief::kFactor);
+  for (const double part : {0.8, 1.25}) {
+    CrankBelief next = after;
+    next.factor += std::sqrt(part * 6.0 / certainty);
+    EXPECT_EQ(smoothedBelief(model, step, before, after, next).has_value(), part < 1.0);
+  }
 }
 
 TEST(CrankTrack, AnIntervalEndsWhereTheFilterRestarts) {

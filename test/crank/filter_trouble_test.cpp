@@ -64,6 +64,20 @@ TEST_F(FilterTrouble, AFilterThatBeginsAnewFiveTimesIsLostForAWhile) {
   EXPECT_LT(time, 0.5);
 }
 
+/// A lost one follows readings with little trust, until ten in a row say that the crank is elsewhere.
+TEST_F(FilterTrouble, ALostFilterGoesWhereTenReadingsAre) {
+  constexpr double kStep = 2e-5;
+  CrankFilter f = turning(kStep);
+  contradict(f, kStep, 20);
+  ASSERT_TRUE(f.isLost());
+  int samples = 0;
+  do {
+    turnOn(f, kStep, 0.4);
+  } while (++samples < 30 && f.state().position.angle.offset < angle_ + 0.2);
+  EXPECT_GE(samples, 8);
+  EXPECT_LE(samples, 12);
+}
+
 /// Two contradictions that contradict each other are a new beginning, unless there were many of late.
 TEST_F(FilterTrouble, SurprisesAreForgottenWithinFiftySamples) {
   constexpr double kStep = 5e-5;
@@ -190,6 +204,16 @@ TEST_F(FilterAtWork, IsUnexplainedAfterThreeTimesThreeSeconds) {
 }
 
 /// One that began anew of late is no judge of speeds: 1.4 s.
+TEST_F(FilterAtWork, DoubtsTheInertiaAtThreeTimesTheVariance) {
+  run(3.0, 0.0);
+  double innovations = filter_.consistency();
+  while (samples_ < 10000 && std::isfinite(filter_.consistency())) {
+    innovations = filter_.consistency();
+    run(1e-3, 0.0, 0.01);
+  }
+  expectWithin(innovations, 3.0);
+}
+
 TEST_F(FilterAtWork, JudgesNoSpeedsJustAfterABeginning) {
   run(3.0, 0.0);
   const double before = filter_.speedNoise();

@@ -10,6 +10,7 @@ namespace {
 using Vector = CrankBelief::Vector;
 
 constexpr double kMostAtBlow = 6.0;  // squared distance of five variables: 9 of 10 blows at the dead centre are below 3
+// Guard: CrankTrack.ABlowThatIsFarOffEndsAnInterval of kMostAtBlow
 
 constexpr double kWeighing = 0.1, kSmoothedRounding = 1e-6;
 // Guard: SmoothedRuns.StampsThatJitterWeighLess of kWeighing

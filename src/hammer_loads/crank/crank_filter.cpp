@@ -23,8 +23,9 @@ constexpr double kMostTorque = 3.0;  // times its first deviation: more is what 
 // Guard: FilterTrouble.ATorqueThatNoDriveHasIsGivenUpWithTheRest of kMostTorque
 constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: more is a diverged filter
 // Guard: FilterTrouble.WhatItLearnsStaysWithinWhatAMachineMayHave of kLeastInertia, kMostInertia, kSoundSpeeds
-constexpr int kOneSided = 3;              // innovations in a row beyond 5 deviations: no jitter of stamps
-constexpr int kOneSidedLost = 10;         // the same where readings made no sense: they do again, elsewhere
+constexpr int kOneSided = 3;       // innovations in a row beyond 5 deviations: no jitter of stamps
+constexpr int kOneSidedLost = 10;  // the same where readings made no sense: they do again, elsewhere
+// Guard: FilterTrouble.ALostFilterGoesWhereTenReadingsAre of kOneSidedLost
 constexpr double kSurpriseLength = 50.0;  // samples over which innovations beyond 5 deviations are counted
 constexpr double kManySurprises = 2.5;    // of them: more than a supply's jolts
 // Guard: FilterTrouble.SurprisesAreForgottenWithinFiftySamples of kSurpriseLength, kManySurprises

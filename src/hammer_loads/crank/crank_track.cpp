@@ -11,6 +11,7 @@ namespace {
 
 // Of the live filter's share of the sensor's errors that are not seen: its noise covers more of the rest.
 constexpr double kUnseenGrowth = 1.8;
+// Guard: CrankTrack.CountsMoreOfTheSensorAndLessOfTheSupplyThanLive of kUnseenGrowth
 
 }  // namespace
 

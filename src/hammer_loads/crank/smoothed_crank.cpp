@@ -10,6 +10,7 @@ namespace {
 /// Of the torque's deviation, beside what counts of the live filter's: its walk is for rough supplies, and the later
 /// samples leave little but that walk. With it 88 to 99 % of the errors are within two deviations.
 constexpr double kTorquePart = 0.2;
+// Guard: CrankTrack.CountsMoreOfTheSensorAndLessOfTheSupplyThanLive of kTorquePart
 
 }  // namespace
 

@@ -16,6 +16,7 @@ constexpr double kSlowCrank = 5.0;
 // Guard: BesideBlow.IsWhereSomethingJumps of kSlowCrank
 /// [rad/s]: a crank that creeps over the blow has no defined instant of passing it.
 constexpr double kCreeping = 1.0;
+// Guard: CrankDynamics.ACrankThatCreepsOverTheBlowHasNoInstantOfPassingIt of kCreeping
 /// So often in one way: then both sides push it back to the other, and it stays at the blow.
 constexpr int kMostCreepingPasses = 8;
 // Guard: FlexibleShaft.WhereBothSidesPushItBackItPassesAFewTimesOnly of kMostCreepingPasses

@@ -13,7 +13,8 @@ namespace gate {
 constexpr double kUsual = 2.0;  ///< 5 in 100
 constexpr double kRare = 3.0;   ///< 3 in 1000: three times a second
 // Guard: LearnedNumbers.TheFirstSixtySamplesShowLittleJitter of kUsual, kRare
-constexpr double kVeryRare = 4.0;    ///< 6 in 100 000: some four times a minute
+constexpr double kVeryRare = 4.0;  ///< 6 in 100 000: some four times a minute
+// Guard: FieldCrank.ABlowUnlikeTheFirstOnesIsOneBlow of kVeryRare
 constexpr double kImpossible = 5.0;  ///< 6 in 10 million: twice an hour
 // Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kImpossible
 }  // namespace gate
@@ -32,6 +33,7 @@ constexpr double kUnexplained = 3.0;  ///< it is to be said
 constexpr double kContradicts = 4.0;  ///< the model is wrong
 // Guard: PoseAndTrust.ACrankThatContradictsTheModelIsRefused of kContradicts
 // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kSeen
+// Guard: FilterAtWork.DoubtsTheInertiaAtThreeTimesTheVariance of kUnexplained
 }  // namespace mismatch
 
 /// Whether an innovation of that variance is beyond this many deviations. One that is no number is not.
