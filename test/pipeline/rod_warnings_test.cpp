@@ -106,5 +106,31 @@ TEST(RodWarnings, ARigidRodIsNotBlamed) {
   EXPECT_TRUE(names(coupling, "coupling")) << coupling;
 }
 
+/// Up to 3 deg of the zero and 1.5 deg of the eccentricity are such a rod's, what is beyond is not.
+TEST(RodWarnings, WhatNoRodMakesIsNamedBesideIt) {
+  const auto heard = [](double zero, double eccentricity) {
+    simulation::MachineSettings machine = simulation::workingMo100();
+    machine.hammer = settingsOfRods().mechanism.parameters();
+    machine.level = Level::kLinkage;
+    machine.duration = 8.0;
+    machine.drive.start_time = 0.1, machine.drive.stop_time = 20.0;
+    machine.rod = {1e9, 0.5, 0.0};
+    machine.crank.zero = zero * kDegree;
+    machine.crank.eccentricity[0] = {eccentricity * kDegree, 0.7};
+    for (simulation::JointMotion& joint : machine.boom) joint.mean = joint.amplitude = 0.0;
+    return heardOf(machine, Level::kLinkage);
+  };
+  for (const double off : {-2.0, -4.0}) {
+    const std::string text = heard(off, 0.0);
+    EXPECT_TRUE(names(text, "rod, pins and bearings give")) << text;
+    EXPECT_EQ(names(text, "zero: "), off < -3.0) << text;
+  }
+  for (const double off : {2.0, 3.5}) {
+    const std::string text = heard(0.0, off);
+    EXPECT_TRUE(names(text, "rod, pins and bearings give")) << text;
+    EXPECT_EQ(names(text, "eccentricity: "), off > 3.0) << text;
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -25,6 +25,7 @@ class CrankTrust {
   /// Of CrankTracker::consistency(), what is said, but not withheld; a clean machine has 0.9, a zero 2 deg off 2.
   static constexpr double kInconsistent = mismatch::kUnexplained;
   static constexpr double kSlowestKnown = 0.2;  ///< slowBehind() of a right zero is less [rad] (crank_trust_test)
+  // Guard: CrankTrust.AZeroFarOffIsWithheldOnAMachineWhoseRodGives of kSlowestKnown
 
   explicit CrankTrust(const CrankSensor& sensor) noexcept : sensor_(sensor) {}
 

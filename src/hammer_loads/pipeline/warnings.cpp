@@ -86,6 +86,7 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
 /// What a rod that gives makes of the sensor's place, if the crank's filter takes it for rigid: the zero looks smaller
 /// by 0.2 to 3 deg (rods of 2e8 to 1e10 N/m, play to 0.5 mm, 200 Hz to 1 kHz), the encoder eccentric by 1 deg.
 constexpr double kRodLooksLikeZero = 3.0 * kDegree, kRodLooksEccentric = 1.5 * kDegree;
+// Guard: RodWarnings.WhatNoRodMakesIsNamedBesideIt of kRodLooksLikeZero, kRodLooksEccentric
 
 /// How far an amount is beyond what such a rod explains.
 double beyondRod(const Unknown& unknown, double amount) {
