@@ -14,15 +14,17 @@ constexpr double kNearCounts = 4.0;       // counts from the blow within which t
 constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
 constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
-constexpr double kAtBlow = 0.3;  // [rad] from the blow: no jitter takes a sample further to the other side
+// Guard: FilterAtBlow.ACrankAtRestStandsThereWithinFourCounts of kNearCounts
+// Guard: FilterAtBlow.AToolMayTakeMostOfTheSpeed of kToolDeviation
 
 }  // namespace
 
 /// Read after the blow and stamped before it; or the reverse, if it is the speed before the blow: the tool may be met
-/// before the count of the dead centre. A motor beyond a coupling keeps its speed at the blow.
+/// before the count of the dead centre. A motor beyond a coupling keeps its speed at the blow. Nearer to the other dead
+/// centre an angle of the other sign is none of the other side.
 bool CrankFilter::isSpeedOfOtherSide(const WeighedSample& sample) const noexcept {
   const CrankAngle& angle = now_.state.position.angle;
-  const bool stays = mirrored_ || now_.motor || now_.tool_met || std::abs(angle.offset) > kAtBlow;
+  const bool stays = mirrored_ || now_.motor || now_.tool_met || std::abs(angle.offset) > 0.25 * kTwoPi;
   if (stays || !sample.speed || !(sample.timing_variance > 0.0)) return false;
   if (angle.side == Side::kBeforeBlow) return sample.angle > 0.0;
   const double off = *sample.speed - now_.state.speed / now_.factor;
