@@ -41,6 +41,23 @@ TEST_F(VibrationNumbers, OfTheUsualSwing) {
   expectAround(first / square(boom_.vibration().usualSwing()[0]), std::exp(1.0));
 }
 
+/// Of a steady force, some two thirds of which are the least that counts.
+TEST_F(VibrationNumbers, OfTheRocksMeanForce) {
+  constexpr double kForce = 2e4;
+  const JointVector by_newton = boom_.hammerTorque({{0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}}), none = JointVector::Zero(4);
+  double time = 0.0;
+  for (; boom_.vibration().contact() == 0.0 && time < 5.0; time += 1e-3) {
+    boom_.vibration().followContact(by_newton, (1.0 - std::exp(-1.0)) * kForce);
+    boom_.vibration().advance(1e-3, {none, none, none});
+    for (int joint = 1; joint < 4; ++joint) {
+      VibrationReading reading = oilTorqueReading(joint, kForce * by_newton[joint]);
+      reading.noise = 100.0, reading.clock = Clock::kPressures;
+      boom_.vibration().observe(joint, reading);
+    }
+  }
+  expectAround(time, 0.5);
+}
+
 TEST_F(VibrationNumbers, OfADisplacementAhead) {
   const JointVector rate = strike(1.0);
   expectAround(boom_.vibration().displacementAfter(10.0).norm() / rate.norm(), 0.02);

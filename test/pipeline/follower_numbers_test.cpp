@@ -194,6 +194,14 @@ class StillHull {
     }
     return filter.at(stamp_).value_or(KnownHullMotion{});
   }
+  /// Under a load that grows from nothing to this within a sample, of which no reading has come [N].
+  KnownHullMotion pushed(double load) {
+    WrenchHistory step;
+    step.count = 1;
+    step.pieces[0] = {1e-3, {0.0, 0.0, 0.0}, {0.0, load, 0.0}, {0.0, 0.5 * load, 0.0}, false, {}};
+    filter.follow(stamp_ += 1000000, step, {});
+    return filter.at(stamp_).value_or(KnownHullMotion{});
+  }
 
  private:
   StampNs stamp_{1000000000};
@@ -202,6 +210,14 @@ class StillHull {
   double last_{};
   int count_{};
 };
+
+/// It is five times as heavy as its rocker at least: so far may a first load move it.
+TEST(FollowerNumbers, AHullIsNoLighterThanFiveRockers) {
+  StillHull hull;
+  hull.after(20, 0.0, 1e-4);
+  const double load = 1e5, moved = std::sqrt(hull.pushed(load).covariance(1, 1));
+  expectRoughly(moved, load / (5.0 * test::mo100Parameters().rocker_mass));
+}
 
 /// What such a unit adds to all its readings alike.
 TEST(FollowerNumbers, AnImusOffsetsAreInTheHullsMotion) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "boom/booms.h"
+#include "hammer_loads/pipeline/boom_follower.h"
 #include "hammer_loads/util/square.h"
 #include "support/constants.h"
 
@@ -103,6 +104,42 @@ TEST_F(MeasuredBoom, ReadingsThatDoNotFitMakeTheSwingDoubtful) {
       EXPECT_LT(torque().deviation, 0.05 * kSwing);
     else
       expectRoundly(torque().deviation, 0.4 * std::sqrt(surprise) * kSwing / std::sqrt(2.0));
+  }
+}
+
+/// Less than a twentieth of the boom's weight, as well as that is known, is no rock that bears on the hull.
+TEST(MeasuredRock, BearsFromATwentiethOfTheBoomsWeightOn) {
+  constexpr double kToTool = 0.2;  // [m]
+  const Boom shipped = test::shippedBoom();
+  const double least = 0.05 * test::kGravity * massFrom(shipped.chain(), shipped.pose(), 1).mass;
+  for (const double part : {0.8, 1.25}) {
+    PipelineSettings settings;
+    settings.boom = BoomModel::kCompliant;
+    settings.joint_max_age = 0.2;
+    settings.gravity = test::kGravity;
+    settings.boom_acceleration = BoomAcceleration::kDifference;
+    BoomFollower follower(test::shippedBoom(), settings, kToTool);
+    const JointVector working = test::workingPosition();
+    const std::vector<double> angles(working.data(), working.data() + working.size());
+    WrenchHistory step;
+    step.count = 1;
+    step.pieces[0].duration = 1e-3;
+    for (int i = 1; i < 5000; ++i) {
+      const StampNs stamp = i * test::kMs;
+      follower.jointStates(stamp, test::kFour, angles, {});
+      const BoomState& state = follower.sample({stamp, {}}, step);
+      ASSERT_FALSE(state.fault);
+      const Boom& boom = follower.boom();
+      const JointVector torque =
+          state.loads.weight + boom.hammerTorque({{0.0, 0.0, part * least}, {0.0, kToTool * part * least, 0.0}});
+      for (std::size_t c = 0; c < boom.cylinders().size(); ++c) {
+        const double push = -torque[boom.cylinders()[c].joint()] / boom.cylinderPosition(c).arm;
+        follower.pressure(stamp, c, Chamber::kRod, 0.0);
+        follower.pressure(stamp, c, Chamber::kBore, push / boom.cylinders()[c].boreArea());
+      }
+    }
+    EXPECT_TRUE(follower.contactKnown());
+    EXPECT_EQ(follower.boom().vibration().contact() > 0.0, part > 1.0);
   }
 }
 

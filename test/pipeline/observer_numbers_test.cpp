@@ -7,6 +7,7 @@
 #include "hammer_loads/bench/boom_errors.h"
 #include "hammer_loads/pipeline/mode_observer.h"
 #include "hammer_loads/util/square.h"
+#include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {
 namespace {
@@ -136,6 +137,25 @@ TEST_F(ObservedBoom, OneTorqueIsBelievedAsFarAsItsOffsetIsKnown) {
   const double left = 1.0 - by_mode.dot(foundAccelerations()) / read, said = variance / (before + variance);
   EXPECT_GT(left, 0.8 * said);
   EXPECT_LT(left, 1.25 * said);
+}
+
+/// A zero that is off makes a right IMU look late; one that is late as well is late by the rest alone [s].
+TEST(CrankLead, IsThatOfTheZeroAndNoMore) {
+  simulation::MachineSettings machine = test::machineOnBoom(1.0, 50.0);
+  machine.crank.zero = 1.5 * kDegree;
+  machine.drive.start_time = 0.1;
+  machine.duration = 6.0;
+  const simulation::Session right = simulation::recordSession(machine);
+  const Settings settings =
+      test::withExactHammer(accuracy::shippedBoom("{boom: compliant, hull_motion: model, boom_stiffness: identified}"));
+  for (const double late : {0.0, 1e-3}) {
+    simulation::Session session = right;
+    for (simulation::HullImuReading& r : session.imu) r.stamp += std::llround(1e9 * late);
+    test::Player player(settings, true, session);
+    player.pressures_speak = false;
+    player.playTo(machine.duration, [](double, const SampleResult&) {});
+    EXPECT_NEAR(player.pipeline.boom()->boom().vibration().identifier()->delay(Clock::kImu), late, 0.3e-3);
+  }
 }
 
 }  // namespace

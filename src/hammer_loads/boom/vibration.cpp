@@ -9,7 +9,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kContactMemory = 0.5;         // of the rock's mean force: some turns [s]
+constexpr double kContactMemory = 0.5;  // of the rock's mean force: some turns [s]
+// Guard: VibrationNumbers.OfTheRocksMeanForce of kContactMemory
 constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
 // Guard: VibrationNumbers.OfADisplacementAhead of kShort
 // Guard: VibrationNumbers.OfADisplacementThatIsNone of kSmall

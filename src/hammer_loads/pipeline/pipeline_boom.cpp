@@ -10,6 +10,7 @@ namespace {
 constexpr double kAtWork = 0.3;  // of the nominal speed: blows are struck
 // Guard: ToldCrank.ABoomIsNotKnownToRestUnderAMachineAtWork of kAtWork
 constexpr double kLeadOfZero = 0.8;  // of the time that the crank needs at the blow: what a zero makes of the vibration
+// Guard: CrankLead.IsThatOfTheZeroAndNoMore of kLeadOfZero
 
 }  // namespace
 
