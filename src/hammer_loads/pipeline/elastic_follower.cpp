@@ -14,17 +14,24 @@ namespace {
 
 constexpr double kFrom = -0.30, kFromLatest = -0.05;  // [rad] where it begins: some 15 ms before the blow
 // Guard: ElasticSession.PlayIsLearned of kFrom
-constexpr double kTo = 2.2;                              // [rad]: by then no rod rings
-constexpr double kNeverStruck = 0.1;                     // [rad] beyond the dead centre
+// Guard: ElasticNumbers.ItDoesNotBeginJustBeforeTheBlow of kFromLatest
+constexpr double kTo = 2.2;  // [rad]: by then no rod rings
+// Guard: ElasticSession.TightPinsDoNotPassForWornOnes of kTo
 constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
+// Guard: ElasticNumbers.AGapOfTenMillisecondsEndsIt of kLongestKnown
+// Guard: ElasticNumbers.AContactLastsForHalfAMillisecond of kContact
 
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
+// Guard: ElasticNumbers.ARodThatWasReplacedIsForgottenWithinThreeBlows of kEvidenceGain
+// Guard: ElasticNumbers.OneClearBlowIsEnough of kGivenUp
 
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
+// Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
 
+/// One that was never struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
-  return s.angle.offset > (rod.hasStruck() ? kTo : kNeverStruck) || !(s.speed > kSlowCrank);
+  return s.angle.offset > kTo || !(s.speed > kSlowCrank);
 }
 
 }  // namespace
