@@ -154,10 +154,11 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
   const std::optional<double> behind = pipeline.crankTrust().slowBehind();
   if (behind && std::abs(*behind) > CrankTrust::kSlowestKnown)
     return how_much + zeroFarOff(pipeline.settings().crank_sensor, *behind);
-  return how_much + format(
-                        "the crank is slowest where it must be, so the zero is right; masses and lengths of the hammer "
-                        "file, or a coupling between crank and encoder (%s), do not fit",
-                        pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible");
+  return how_much +
+         format(
+             "the crank is slowest where it must be, so crank_zero_rad is right to some %.1g rad; within that it, "
+             "masses and lengths of the hammer file, or a coupling between crank and encoder (%s), do not fit",
+             CrankTrust::kSlowestKnown, pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible");
 }
 
 /// What the filter's innovations look like.
