@@ -114,12 +114,7 @@ TEST_F(LogTest, OutlivesWriteErrors) {
     setrlimit(RLIMIT_FSIZE, &limit);
     BagLog log(settings_);
     ASSERT_TRUE(log.start().empty());
-    std::size_t sent = 0;
-    ASSERT_TRUE(waitFor([&] {
-      if (log.health().queue_fill < 0.5) send(log, sent++);
-      return !log.isRecording();
-    }));
-    ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kDiskFull; }));
+    ASSERT_TRUE(sendUntilFull(log));
     const LogHealth health = log.health();
     EXPECT_NE(health.reason.find("File too large"), std::string::npos) << health.reason;
     EXPECT_NE(health.reason.find("rosbag reindex"), std::string::npos) << health.reason;

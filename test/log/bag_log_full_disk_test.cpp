@@ -59,12 +59,7 @@ class SmallDiskTest : public LogTest {
   /// Writes noise until the log gives up; whatever bag that leaves must be whole.
   void fillUp(BagLog& log, const std::string& reason) {
     ASSERT_TRUE(log.start().empty());
-    std::size_t sent = 0;
-    ASSERT_TRUE(waitFor([&] {
-      if (log.health().queue_fill < 0.5) send(log, sent++);
-      return !log.isRecording();
-    }));
-    ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kDiskFull; }));
+    ASSERT_TRUE(sendUntilFull(log));
     const LogHealth health = log.health();
     EXPECT_NE(health.reason.find(reason), std::string::npos) << health.reason;
     EXPECT_EQ(health.files_closed, 1u);

@@ -61,6 +61,16 @@ inline ros::Time at(std::size_t i) { return ros::Time(1000.0 + 1e-3 * static_cas
 /// The i-th of 50 kB.
 inline void send(BagLog& log, std::size_t i) { log.write("/noise", at(i), noise(50'000, i)); }
 
+/// Sends until the log gives up for want of space; false: it does not.
+inline bool sendUntilFull(BagLog& log) {
+  std::size_t sent = 0;
+  return waitFor([&] {
+           if (log.health().queue_fill < 0.5) send(log, sent++);
+           return !log.isRecording();
+         }) &&
+         waitFor([&] { return log.health().state == LogState::kDiskFull; });
+}
+
 /// One message of a bag.
 struct Entry {
   std::string topic, datatype, md5sum, definition, caller;

@@ -1,23 +1,8 @@
 // Hostile angles of the boom: the crank's loads go on, and good angles count at once.
 #include "pipeline/input_attack.h"
 
-namespace hammer_loads {
+namespace hammer_loads::test {
 namespace {
-
-using simulation::CrankReading;
-using test::allSettings;
-using test::kAttack;
-using test::kBoom;
-using test::kBoomAngles;
-using test::kInf;
-using test::kNan;
-using test::kSoundFrom;
-using test::kUndisturbedError;
-using test::kUndisturbedFrom;
-using test::kUntil;
-using test::Names;
-using test::Numbers;
-using test::Victim;
 
 struct BoomAttack {
   const char* name;
@@ -84,4 +69,4 @@ TEST(InputAttack, AnglesOfTheBoomThatCannotBeAreCounted) {
 }
 
 }  // namespace
-}  // namespace hammer_loads
+}  // namespace hammer_loads::test

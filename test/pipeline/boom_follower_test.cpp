@@ -4,66 +4,12 @@
 
 #include <chrono>
 
-#include "boom/booms.h"
-#include "hammer_loads/util/constants.h"
-#include "support/constants.h"
+#include "pipeline/standing_boom.h"
 #include "support/counting_new.h"
 #include "support/wall_clock.h"
 
-namespace hammer_loads {
+namespace hammer_loads::test {
 namespace {
-
-using test::kGravity;
-using test::kMs;
-constexpr double kStrikingDistance = 0.1975;
-using test::kFour;
-const std::vector<double> kWorking{0.2, -0.35, 1.20, -0.85};
-
-PipelineSettings modelled(BoomModel model) {
-  PipelineSettings s;
-  s.boom = model;
-  s.joint_max_age = 0.2;
-  s.gravity = kGravity;
-  s.boom_acceleration = BoomAcceleration::kDifference;
-  return s;
-}
-
-/// A step without blows under a steady load.
-WrenchHistory steadyStep(double duration, const HullWrench& w) {
-  WrenchHistory step;
-  step.count = 1;
-  step.pieces[0].duration = duration;
-  step.pieces[0].from = step.pieces[0].to = step.pieces[0].mean = w;
-  return step;
-}
-
-HalfSinePulse pulseOf(double length) {
-  HalfSinePulse pulse;
-  pulse.amplitude = 8e3;
-  pulse.frequency = kPi / length;
-  return pulse;
-}
-
-Boom boomWithoutFile() { return std::move(*Boom::make(test::shippedUrdf()).value); }
-
-/// A boom that stands at the working pose; a sample every millisecond.
-class Follower {
- public:
-  explicit Follower(BoomModel model, Boom boom = test::shippedBoom())
-      : follower(std::move(boom), modelled(model), kStrikingDistance) {}
-
-  const BoomState& sample(const HullWrench& w, const WrenchHistory& step, int ms = 1) {
-    now += ms * kMs;
-    follower.jointStates(now, kFour, kWorking, {});
-    return follower.sample({now, w}, step);
-  }
-  const BoomState& sample(const HullWrench& w) { return sample(w, steadyStep(1e-3, w)); }
-
-  BoomFollower follower;
-  StampNs now{};
-};
-
-constexpr HullWrench kLoad{-900.0, 7000.0, 300.0};
 
 /// A load that is no number, in one step: the vibration begins anew, its loads are withheld until what was wrong would
 /// have died out, and are then those of a follower that knew nothing of it.
@@ -96,9 +42,8 @@ TEST(BoomFollower, RigidLoadsAreThoseOfTheInterpolatedPose) {
   ASSERT_FALSE(state.fault);
   EXPECT_EQ(state.stamp, 5 * kMs);
 
-  Boom boom = test::shippedBoom();
-  boom.move({test::joints({0.2, -0.35, 1.19, -0.855}), test::joints({0.0, 0.25, 0.25, -0.175}),
-             test::joints({0.0, 10.0, -10.0, 5.0})},
+  Boom boom = shippedBoom();
+  boom.move({joints({0.2, -0.35, 1.19, -0.855}), joints({0.0, 0.25, 0.25, -0.175}), joints({0.0, 10.0, -10.0, 5.0})},
             {0.0, 0.0, -kGravity});
   BoomLoads expected;
   boom.loads({{kLoad.force_x, 0.0, kLoad.force_z}, {0.0, kLoad.torque_y, 0.0}}, true, expected);
@@ -183,77 +128,6 @@ TEST(BoomFollower, SaysWhichJointIsNotKnownAndGoesOnWhenItIs) {
   EXPECT_TRUE(compliant.follower.state().tip.velocity.isZero(0.0));
 }
 
-TEST(BoomFollower, AutoIsCompliantUntilALongPulseShowsThatRigidSuffices) {
-  Follower automatic(BoomModel::kAuto);
-  automatic.sample(kLoad);
-  EXPECT_TRUE(automatic.sample(kLoad).choice.compliant);
-  EXPECT_FALSE(automatic.follower.state().choice.judged);
-  const double slowest = 1.0 / automatic.follower.state().frequency[0];
-
-  automatic.follower.turnEnded(pulseOf(100.0 * slowest), 300.0);
-  EXPECT_FALSE(automatic.sample(kLoad).choice.compliant);
-  EXPECT_TRUE(automatic.follower.state().loads.vibration.isZero(0.0));
-  BoomChoice choice = automatic.follower.state().choice;
-  EXPECT_TRUE(choice.judged);
-  EXPECT_LT(choice.rigid_error, choice.rigid_tolerance);
-  EXPECT_EQ(choice.rigid_tolerance, 0.05);
-  EXPECT_NEAR(choice.pulse_length, 100.0 * slowest, 1e-9);
-  EXPECT_NEAR(choice.lowest_frequency, 1.0 / slowest, 1e-9);
-
-  // What the hammer does: 18 ms.
-  automatic.follower.turnEnded(pulseOf(0.018), 300.0);
-  choice = automatic.sample(kLoad).choice;
-  EXPECT_TRUE(choice.compliant);
-  EXPECT_GT(choice.rigid_error, 0.5);
-  // The vibration went on meanwhile, as in a boom that is always compliant.
-  Follower always(BoomModel::kCompliant);
-  for (int i = 0; i < 4; ++i) always.sample(kLoad);
-  const JointVector went_on = automatic.follower.state().loads.vibration,
-                    went = always.follower.state().loads.vibration;
-  EXPECT_LT((went_on - went).norm(), 1e-4 * went.norm()) << "but for levers that the vibration itself changes";
-  // A turn without a pulse tells nothing new.
-  automatic.follower.turnEnded(std::nullopt, 300.0);
-  EXPECT_TRUE(automatic.sample(kLoad).choice.compliant);
-}
-
-TEST(BoomFollower, WithoutCylindersTheBoomIsRigid) {
-  Follower automatic(BoomModel::kAuto, boomWithoutFile());
-  automatic.sample(kLoad);
-  automatic.follower.turnEnded(pulseOf(0.018), 300.0);
-  const BoomState& state = automatic.sample(kLoad);
-  ASSERT_FALSE(state.fault);
-  EXPECT_FALSE(state.choice.compliant);
-  EXPECT_FALSE(state.choice.judged);
-  EXPECT_FALSE(state.hold_down);
-  EXPECT_TRUE(std::isinf(state.reduced.mass));
-  EXPECT_EQ(state.frequency.size(), 0);
-  Follower rigid(BoomModel::kRigid);
-  rigid.sample(kLoad);
-  EXPECT_EQ(rigid.follower.state().loads.total, state.loads.total);
-}
-
-TEST(BoomFollower, ADeadPointIsTakenAsRigid) {
-  BoomParameters parameters = test::shippedBoomParameters();
-  // The arm's cylinder, in line with its joint at the working pose.
-  CylinderParameters& arm = parameters.cylinders[1];
-  arm.base_x = 2.60 - 1.3, arm.base_z = 0.0;
-  arm.rod_x = 0.4 * std::cos(1.20), arm.rod_z = 0.4 * std::sin(1.20);
-  arm.closed_length = 1.0, arm.stroke = 0.99;
-  const Checked<Boom> made = Boom::make(test::shippedUrdf(), parameters);
-  ASSERT_TRUE(made.value) << made.problems.front();
-  Follower compliant(BoomModel::kCompliant, *made.value);
-  compliant.sample(kLoad);
-  const BoomState& state = compliant.sample(kLoad);
-  ASSERT_FALSE(state.fault);
-  EXPECT_TRUE(state.dead_centre);
-  EXPECT_FALSE(state.choice.compliant);
-  EXPECT_TRUE(state.loads.cylinder[1].dead_centre);
-  EXPECT_TRUE(state.loads.total.allFinite());
-  Follower rigid(BoomModel::kRigid, *made.value);
-  rigid.sample(kLoad);
-  EXPECT_EQ(state.loads.total, rigid.follower.state().loads.total);
-}
-
 TEST(BoomFollower, TellsTheHullsLoadAtALink) {
   Follower rigid(BoomModel::kRigid);
   rigid.follower.jointStates(0, kFour, {0.0, 0.0, 0.4, 0.0}, {});
@@ -284,7 +158,7 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanPressForceAtTheTool) {
 
   // The same force at the tool's end, moments about the rear edge by hand: all masses against the force.
   const Boom& boom = rigid.follower.boom();
-  const Pose& X_BH = boom.pose().tip();
+  const hammer_loads::Pose& X_BH = boom.pose().tip();
   const Eigen::Vector3d tool = X_BH * Eigen::Vector3d(-kStrikingDistance, 0.0, -0.75);
   const Eigen::Vector3d force = 3000.0 * X_BH.linear().col(2);
   const double rear = boom.parameters().supports->rear_x;
@@ -301,7 +175,7 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanPressForceAtTheTool) {
   // Without cylinders only the machine's weight is left.
   BoomParameters parameters = boom.parameters();
   parameters.cylinders.clear();
-  Follower bare(BoomModel::kRigid, *Boom::make(test::shippedUrdf(), parameters).value);
+  Follower bare(BoomModel::kRigid, *Boom::make(shippedUrdf(), parameters).value);
   bare.sample({});
   bare.follower.turnEnded(std::nullopt, 3000.0);
   EXPECT_EQ(bare.follower.firstToGive(), "rear edge");
@@ -310,7 +184,7 @@ TEST(BoomFollower, HoldsDownAgainstTheMeanPressForceAtTheTool) {
 /// A kilohertz session of a moving boom, 50 joint states and 5 turns a second, wrenches at four links.
 class BoomSession {
  public:
-  BoomSession() : follower_(test::shippedBoom(), modelled(BoomModel::kAuto), kStrikingDistance) {
+  BoomSession() : follower_(shippedBoom(), modelled(BoomModel::kAuto), kStrikingDistance) {
     step_.count = 1;
     step_.pieces[0].duration = 1e-3;
   }
@@ -350,9 +224,9 @@ class BoomSession {
 TEST(BoomFollower, AllocatesNothing) {
   BoomSession session;
   session.sample();
-  const std::size_t before = test::allocations;
+  const std::size_t before = allocations;
   for (int i = 0; i < 5000; ++i) session.sample();
-  EXPECT_EQ(test::allocations, before);
+  EXPECT_EQ(allocations, before);
   EXPECT_TRUE(std::isfinite(session.sum()));
 }
 
@@ -368,8 +242,8 @@ TEST(BoomFollower, TakesAtMostThreeMicrosecondsASample) {
   }
   RecordProperty("least_us", format("%.2f", least));
   EXPECT_TRUE(std::isfinite(session.sum()));
-  test::expectTimeWithin(least, 3.0, "[us] a sample of the quickest batch");
+  expectTimeWithin(least, 3.0, "[us] a sample of the quickest batch");
 }
 
 }  // namespace
-}  // namespace hammer_loads
+}  // namespace hammer_loads::test

@@ -2,23 +2,8 @@
 // well again.
 #include "pipeline/input_attack.h"
 
-namespace hammer_loads {
+namespace hammer_loads::test {
 namespace {
-
-using simulation::CrankReading;
-using test::allSettings;
-using test::kAttack;
-using test::kCrank;
-using test::kInf;
-using test::kNan;
-using test::kOneTurn;
-using test::kSoundFrom;
-using test::kUndisturbedError;
-using test::kUndisturbedFrom;
-using test::kUntil;
-using test::Names;
-using test::Numbers;
-using test::Victim;
 
 struct Attack {
   const char* name;
@@ -213,4 +198,4 @@ TEST(InputAttack, StampsAndPublishersOfTheCrank) {
 }
 
 }  // namespace
-}  // namespace hammer_loads
+}  // namespace hammer_loads::test

@@ -49,7 +49,9 @@ struct SampleCounts {
 
   /// Withheld because the readings are in another unit.
   std::uint64_t inOtherUnit() const noexcept {
-    return refusedFor(Refusal::kDegrees) + refusedFor(Refusal::kSpeedUnit) + refusedFor(Refusal::kAngleUnit);
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < refused.size(); ++i) sum += isOfUnit(static_cast<Refusal>(i)) ? refused[i] : 0;
+    return sum;
   }
   /// Withheld because the readings are not those of such a machine.
   std::uint64_t contradicting() const noexcept {
