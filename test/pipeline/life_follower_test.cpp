@@ -88,6 +88,37 @@ TEST(TurnLoads, AnExtremeBetweenSamplesHasTheDeviationOfItsOwnPlace) {
   EXPECT_GT(turns, 8);
 }
 
+/// Instants within 8 ms of one [s].
+std::vector<double> aroundBlow(double time) {
+  std::vector<double> times;
+  for (int i = -80; i <= 80; ++i) times.push_back(time + 1e-4 * i);
+  return times;
+}
+
+/// At 100 Hz the next sample is 9 to 20 deg from the blow, where the force is a fifth less.
+TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.crank.rate = 100.0;
+  machine.crank.zero = 2.0 * kTwoPi / 360.0;
+  machine.duration = 12.0;
+  std::size_t judged = 0, withheld = 0;
+  run(test::settingsWith("{}"), simulation::recordSession(machine),
+      [&](const SampleResult& result, const LifeFollower& follower) {
+        for (std::size_t i = 0; i < result.turn_ends; ++i) {
+          const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
+          const double end = 1e-9 * static_cast<double>(result.ends[i].stamp - machine.start_stamp);
+          const bool is_judged = turn != nullptr && turn->whole && end > 6.0 && std::exchange(withheld, 0) > 0;
+          if (!is_judged) continue;
+          ++judged;
+          double truth = 0.0;
+          for (const auto& at : simulation::truthAt(machine, aroundBlow(end))) truth = std::min(truth, at.load.force_x);
+          EXPECT_NEAR(turn->minimum[0], truth, 0.13 * std::abs(truth)) << end;
+        }
+        withheld += result.beside_blow;
+      });
+  EXPECT_GT(judged, 5U);
+}
+
 TEST(TurnLoads, OfJointsAreThoseOfTheSamples) {
   double greatest = -1e300;
   std::optional<StampNs> blow;

@@ -59,21 +59,25 @@ double sinceBlow(const std::vector<simulation::BlowTruth>& blows, double time) {
 }
 
 ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& session, const MachineSettings& machine) {
-  std::vector<double> times;
-  for (const WrenchAt& w : run.wrenches) times.push_back(w.time);
-  const std::vector<CrankTruth> truth = simulation::truthAt(machine, times);
+  const std::vector<CrankTruth> truth = simulation::truthAt(machine, run.accepted);
   Gathering whole, strike, after;
   LifeError life;
   std::array<double, 3> largest{};
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (times[k] < kFrom || times[k] > machine.duration - 3.0) continue;
+  auto published = run.wrenches.begin();
+  for (std::size_t k = 0; k < run.accepted.size(); ++k) {
+    const double time = run.accepted[k];
+    const bool is_withheld = published == run.wrenches.end() || published->time != time;
+    const WrenchAt wrench = is_withheld ? WrenchAt{} : *published++;
+    if (time < kFrom || time > machine.duration - 3.0) continue;
     const std::array<double, 3> values = valuesOf(truth[k]);
     for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
-    whole.add(run.wrenches[k], values);
-    life.add(run.wrenches[k].force_z, values[1]);
-    if (truth[k].angle >= kPi) strike.add(run.wrenches[k], values);
-    const double since = sinceBlow(session.blows, times[k]);
-    if (since >= kAfterFrom && since <= kAfterTo) after.add(run.wrenches[k], values);
+    life.right.add(values[1]);
+    if (is_withheld) continue;
+    life.estimated.add(wrench.force_z);
+    whole.add(wrench, values);
+    if (truth[k].angle >= kPi) strike.add(wrench, values);
+    const double since = sinceBlow(session.blows, time);
+    if (since >= kAfterFrom && since <= kAfterTo) after.add(wrench, values);
   }
   return {whole.over(largest), strike.over(largest), after.over(after.truthRms()), life.error()};
 }

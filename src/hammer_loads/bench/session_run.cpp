@@ -21,7 +21,9 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
       }
       run.blows.push_back(blow);
     }
-    if (loads.refusal || loads.beside_blow) return;
+    if (loads.refusal) return;
+    run.accepted.push_back(seconds(loads.stamp));
+    if (loads.beside_blow) return;
     const HullWrench deviation = loads.outputs.empty() ? HullWrench{} : loads.outputs.front().deviation.wrench;
     run.wrenches.push_back({seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y,
                             deviation.force_x, deviation.force_z, deviation.torque_y});

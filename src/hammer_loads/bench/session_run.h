@@ -8,7 +8,8 @@
 namespace hammer_loads::accuracy {
 
 struct SessionRun {
-  std::vector<WrenchAt> wrenches;  ///< of accepted samples, at the stamps they are published with
+  std::vector<WrenchAt> wrenches;  ///< at the stamps they are published with
+  std::vector<double> accepted;    ///< stamps of these and of the samples withheld beside the blow [s]
   std::vector<BlowAt> blows;
   SampleCounts counts;
 };

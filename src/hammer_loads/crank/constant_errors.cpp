@@ -76,7 +76,9 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   double share = 0.0;  // of b that is certain
   for (int i = 0; i < kPlace; ++i) {
     const double variance = growth * covariance(i, i);
-    doubt[i] = square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + variance + by_hammer[i];
+    const double of_sensor = square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + variance;
+    if (i == kZero) zero_seen_ = std::sqrt(std::max(0.0, square(estimate_[i]) - square(gate::kUsual) * of_sensor));
+    doubt[i] = of_sensor + by_hammer[i];
     deviation_[i] =
         std::sqrt(doubt[i] + (square(kUnmodelledDeviations) - 1.0) * variance + square(kUnmodelledCounts * count));
     const double excess = square(estimate_[i]) - doubt[i];

@@ -70,6 +70,9 @@ class ConstantErrors {
   /// 0 before some turns. deviation: of the sensor's place alone.
   const Vector& estimate() const noexcept { return estimate_; }
   const Vector& deviation() const noexcept { return deviation_; }
+  /// How far the readings say that the blow is from where the sensor's zero has it, as if the hammer were right and
+  /// beyond what a clean machine shows [rad]; 0 before some turns.
+  double zeroSeen() const noexcept { return zero_seen_; }
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }
   /// L with L L^T = moment(): its columns are errors that are independent of each other.
@@ -100,6 +103,7 @@ class ConstantErrors {
       Eigen::Matrix<double, kPlace, kMachineColumns>::Zero()};  ///< what the hammer's errors make of fit_'s score
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
+  double zero_seen_{};       ///< [rad]
   double stepped_{};         ///< variance of the zero's steps [rad2]
   int turns_{}, samples_{};  ///< samples: of this turn
 };

@@ -3,19 +3,25 @@
 
 #include <cmath>
 
-#include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/estimation/gates.h"
 
 namespace hammer_loads {
 
-/// The wrench jumps at the blow (MO-100: by 9 % of its peak), so there it is one of two values and nothing says which;
-/// WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored branch nowhere.
-/// angle_deviation: of the crank [rad]; NaN: not known.
-inline bool isBesideBlow(const CrankEstimate& crank, double angle_deviation) noexcept {
+/// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong.
+/// angle_deviation: its own [rad]; NaN: not known.
+inline double deviationFromBlow(const CrankTracker& tracker, double angle_deviation) noexcept {
+  const CrankFilter* filter = tracker.filter();
+  return filter == nullptr ? angle_deviation : std::hypot(angle_deviation, filter->constantErrors().zeroSeen());
+}
+
+/// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
+/// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored
+/// branch nowhere. deviation: of the crank from the blow [rad]; NaN: not known.
+inline bool isBesideBlow(const CrankEstimate& crank, double deviation) noexcept {
   const CrankPosition& at = crank.position;
-  return std::abs(at.angle.offset) < gate::kUsual * angle_deviation && std::abs(crank.speed) > kSlowCrank &&
-         !at.isMirrored();
+  return std::abs(at.angle.offset) < gate::kUsual * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
 }
 
 }  // namespace hammer_loads

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "hammer_loads/pipeline/beside_blow.h"
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {
@@ -48,8 +49,7 @@ void LifeFollower::follow() noexcept {
       recorder_.gap();
       turn_.restart();
     }
-    if (!result.beside_blow) count(result);
-    published_ = !result.beside_blow;
+    count(result);
     last_ = result.stamp;
     if (!since_) since_ = last_;
   }
@@ -58,6 +58,7 @@ void LifeFollower::follow() noexcept {
 
 void LifeFollower::count(const SampleResult& result) noexcept {
   channelValues(result, boom_, values_.data(), deviations_.data(), common_.data());
+  if (result.beside_blow) return;
   recorder_.sample(result.stamp, values_.data(), deviations_.data(), common_.data());
   turn_.add(result.stamp, values_.data(), deviations_.data(), common_.data());
 }
@@ -66,19 +67,31 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   const StepLoad load{pipeline_->model(), drive, result.hull.motion};
-  const bool published = published_ && !result.beside_blow;
   std::array<double, kHullChannels> end;
   wrenchValues(result.wrench, end.data());
   forEachStepWrench(
       load, step,
-      [&](const StepPlace& place, const HullWrench& wrench) {
-        if (!published) return;
-        wrenchValues(wrench, between_.data());
+      [&](StepPlace place, const HullWrench&) {
+        if (!moveToKnown(place)) return;
+        wrenchValues(load.at(place.crank(step)), between_.data());
         keepWhatBothEndsSay(load, place, end);
         recorder_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
         turn_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
       },
       [&](double time) { endTurn(step.stampAt(time)); });
+}
+
+/// What is closer to the blow than the crank's angle is known counts as little as a sample there: of the blow's sides,
+/// the place is moved to where they are known. False: it is not in the step.
+bool LifeFollower::moveToKnown(StepPlace& place) const noexcept {
+  const CrankStep& step = pipeline_->crank().step();
+  const CrankEstimate crank = place.crank(step);
+  const double deviation = deviationFromBlow(pipeline_->crank().tracker(), pipeline_->result().deviation.angle);
+  if (!isBesideBlow(crank, deviation)) return true;
+  if (place.passage == nullptr) return false;
+  const bool earlier = place.passage->forward == (place.side == Side::kBeforeBlow);
+  place = {place.time + (earlier ? -1.0 : 1.0) * gate::kUsual * deviation / std::abs(crank.speed)};
+  return place.time > 0.0 && place.time < step.length();
 }
 
 /// A load beyond those at both ends counts where the step's path has it from either end, within the deviations

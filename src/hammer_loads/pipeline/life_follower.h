@@ -15,8 +15,8 @@
 namespace hammer_loads {
 
 /// Takes what a pipeline's samples gave: every channel at each sample whose loads are published, the hull wrench
-/// between two such where it is extreme and on both sides of a blow, as far as both say so, in time order. Beside the
-/// pipeline, which does not know of it. How a run goes:
+/// between two such where it is extreme and as close to both sides of a blow as is known, as far as both say so, in
+/// time order. Beside the pipeline, which does not know of it. How a run goes:
 ///
 ///     const SampleResult& result = pipeline.crankSample(...);
 ///     if (follower.due()) use(follower.take());
@@ -47,6 +47,7 @@ class LifeFollower {
  private:
   void count(const SampleResult& result) noexcept;
   void followStep(const SampleResult& result) noexcept;
+  bool moveToKnown(StepPlace& place) const noexcept;
   void keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place,
                            const std::array<double, kHullChannels>& end) noexcept;
   void endTurn(StampNs stamp) noexcept;
@@ -59,7 +60,6 @@ class LifeFollower {
   life::TurnLoadsRecorder turn_;
   std::optional<life::LifePiece> total_;
   std::optional<StampNs> since_, last_;  ///< first and last sample counted; last_: none after a gap
-  bool published_{};                     ///< the loads at the last sample
   std::optional<StampNs> last_blow_;     ///< the last one that was none but a blow
   /// Turns whose blow is not measured yet, and those just measured: as many as a result has ends, and one.
   std::array<life::TurnLoads, std::tuple_size<decltype(SampleResult::ends)>::value + 1> turns_;

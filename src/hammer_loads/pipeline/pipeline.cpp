@@ -162,9 +162,10 @@ HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive)
   result_.rod_ring = rod.deviation;
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, gives ? elastic_.speedBeside() : rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + vectorOf(rod.deviation).cwiseAbs2()).cwiseSqrt());
+  const CrankTracker& tracker = crank_.tracker();
+  const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
   result_.beside_blow =
-      gives ? elastic_.isBesideBlow()
-            : !crank_.tracker().readingShowsSide() && isBesideBlow(result_.crank, result_.deviation.angle);
+      gives ? elastic_.isBesideBlow() : isBesideBlow(result_.crank, deviationFromBlow(tracker, of_angle));
   return rod.wrench;
 }
 

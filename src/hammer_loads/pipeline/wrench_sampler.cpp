@@ -53,7 +53,8 @@ void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexc
 /// Whether it is clear on which side of the blow the output is; a mean does not depend on it.
 bool WrenchSampler::isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept {
   if (kind_ == OutputKind::kMean) return true;
-  return output.stamp == result.stamp ? !result.beside_blow : !isBesideBlow(output.crank, output.deviation.angle);
+  if (output.stamp == result.stamp) return !result.beside_blow;
+  return !isBesideBlow(output.crank, deviationFromBlow(*tracker_, output.deviation.angle));
 }
 
 /// Stamp of the next output, if it is not after the sample.
