@@ -129,12 +129,12 @@ TEST(PoseAndTrust, ACrankHasRunUpAfterARadian) {
   }
 }
 
-/// A crank that is slowest 0.94 rad after the blow; over so many turns.
+/// A crank that is slowest 0.86 rad after the blow; over so many turns.
 std::optional<double> slowBehind(double turns) {
   CrankTrust trust{CrankSensor{}};
   double angle = 0.0;
   while (angle < turns * kTwoPi) {
-    angle += kPoseStep * (30.0 - 8.0 * std::cos(angle - 0.94));
+    angle += kPoseStep * (30.0 - 8.0 * std::cos(angle - 0.86));
     trust.follow(angle, 1.0, kPoseStep);
   }
   return trust.slowBehind();
@@ -143,7 +143,7 @@ std::optional<double> slowBehind(double turns) {
 TEST(PoseAndTrust, ACrankIsSlowWhereSuchAreWithinFiveTurns) {
   EXPECT_FALSE(slowBehind(0.8 * 5.0));
   ASSERT_TRUE(slowBehind(1.25 * 5.0));
-  EXPECT_NEAR(*slowBehind(20.0), 0.0, 0.2);
+  EXPECT_NEAR(*slowBehind(20.0), 0.0, 0.15) << "steps of 0.2 to 0.4 rad";
 }
 
 }  // namespace

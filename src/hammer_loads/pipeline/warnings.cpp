@@ -186,7 +186,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   const bool inconsistent = filter->consistency() > CrankTrust::kInconsistent;
   const bool strike = filter->strikeConsistency() > CrankTrust::kInconsistent;
   const double behind = pipeline.crankTrust().slowBehind().value_or(0.0);
-  const bool far_off = withheld && std::abs(behind) > 2.0 * CrankTrust::kSlowestKnown;  // no rod makes that
+  const bool far_off = withheld && std::abs(behind) > CrankTrust::kSlowestKnown;  // no rod makes that
   if (far_off) return warnings.push_back({"inconsistent", contradictionOf(pipeline, true), true});
   if (gives) warnings.push_back({withheld ? "inconsistent" : "rod", rodOf(*filter), true});
   if (gives || (!inconsistent && !strike && !withheld && !filter->isUnexplained()))
