@@ -2,6 +2,7 @@
 // what is said.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -84,6 +85,27 @@ TEST_F(ElasticNumbers, AContactLastsForHalfAMillisecond) {
   });
   EXPECT_GT(longest, 0.35e-3);
   EXPECT_LT(longest, 0.625e-3);
+}
+
+/// Where the tool is met is not known to a hundredth of a degree: a reading just after that has the force of the run-up
+/// before it.
+TEST_F(ElasticNumbers, AReadingWhereTheToolMayBeMetIsWithheld) {
+  const simulation::Session session = sessionOf(1e9, 16.0);
+  const auto sinceBlow = [&](double time) {
+    const auto next = std::upper_bound(session.blows.begin(), session.blows.end(), time,
+                                       [](double t, const simulation::BlowTruth& blow) { return t < blow.time; });
+    return next == session.blows.begin() ? 1.0 : time - std::prev(next)->time;
+  };
+  std::size_t i = 0;
+  int touching = 0, wrong = 0;
+  play(session, [&](const Pipeline&, const SampleResult& result) {
+    const simulation::CrankTruth& truth = session.truth[i++];
+    if (truth.time < 3.0 || sinceBlow(truth.time) > 2e-4) return;
+    ++touching;
+    wrong += !result.refusal && !result.beside_blow && std::abs(result.wrench.force_x - truth.load.force_x) > 5e3;
+  });
+  EXPECT_GT(touching, 8);
+  EXPECT_LT(3 * wrong, touching);
 }
 
 /// After lost readings it begins where the next one comes early enough before the blow.

@@ -171,7 +171,8 @@ bool ElasticFollower::isBesideBlow() const noexcept {
   const LinkMotion links = filter().bodies().links(m.state.angle);
   const double way = links.rocker.sin_psi + m.state.beside - m.place;
   const double speed = -(links.rocker.u * m.state.speed + m.state.beside_speed);
-  return way < 2.0 * speed * filter().deviation(RodFilter::kAngle) / m.state.speed;
+  const double of_angle = speed / m.state.speed * filter().deviation(RodFilter::kAngle);
+  return way < gate::kUsual * std::hypot(of_angle, filter().deviation(RodFilter::kPlace));
 }
 
 }  // namespace hammer_loads
