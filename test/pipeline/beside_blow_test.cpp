@@ -5,6 +5,7 @@
 
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
+#include "hammer_loads/util/square.h"
 #include "pipeline/shipped_machine.h"
 
 namespace hammer_loads {
@@ -100,6 +101,31 @@ TEST(BesideBlow, MeansGoOn) {
   const Published p = published(5e-5, OutputKind::kMean, 0.0, 411);
   EXPECT_GT(p.beside, 0u);
   EXPECT_EQ(p.outputs, p.samples);
+}
+
+/// Some ms pass until the readings show that a blow was none; until then its force is published, and said to be as
+/// doubtful as blank blows are frequent.
+TEST(BesideBlow, ABlowThatMayHaveBeenNoneIsSaidToBeDoubtful) {
+  const Settings shipped = *load(configDirectory(), {}).value;
+  simulation::MachineSettings machine = test::shippedMachine(shipped, 30.0, 431);
+  machine.blow.blank_share = 0.1;
+  const simulation::Session session = simulation::recordSession(machine);
+  Pipeline pipeline(shipped.mechanism, shipped.pipeline);
+  double square_error = 0.0, square_said = 0.0, said_later = 0.0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const SampleResult& r =
+        pipeline.crankSample(session.crank[i].stamp, {session.crank[i].angle, session.crank[i].speed});
+    const double offset = r.crank.position.angle.offset;
+    if (r.refusal || r.beside_blow || session.truth[i].time < 4.0 || offset < 0.0) continue;
+    if (offset > 0.5) said_later = std::max(said_later, r.branch_doubt.force_x);
+    if (offset > 0.1) continue;
+    square_error += square(r.wrench.force_x - session.truth[i].load.force_x);
+    square_said += square(r.deviation.wrench.force_x);
+  }
+  EXPECT_GT(square_error, 1e8) << "blank blows";
+  EXPECT_GT(square_said, 0.05 * square_error);
+  EXPECT_LT(square_said, 2.0 * square_error);
+  EXPECT_LT(said_later, 100.0) << "half a radian after the blow it is known";
 }
 
 TEST(BesideBlow, IsWhereSomethingJumps) {

@@ -77,7 +77,7 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   for (int i = 0; i < kPlace; ++i) {
     const double variance = growth * covariance(i, i);
     const double of_sensor = square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + variance;
-    if (i == kZero) zero_seen_ = std::sqrt(std::max(0.0, square(estimate_[i]) - square(gate::kUsual) * of_sensor));
+    if (i == kZero) zero_seen_ = exceeds(estimate_[i], of_sensor, gate::kUsual) ? std::abs(estimate_[i]) : 0.0;
     doubt[i] = of_sensor + by_hammer[i];
     deviation_[i] =
         std::sqrt(doubt[i] + (square(kUnmodelledDeviations) - 1.0) * variance + square(kUnmodelledCounts * count));

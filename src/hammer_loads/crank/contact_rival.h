@@ -1,6 +1,7 @@
 /// Whether the rocker met the tool: a second belief for as long as it takes to know.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "hammer_loads/crank/weighed_sample.h"
@@ -17,6 +18,8 @@ class ContactRival {
   bool isThere() const noexcept { return belief_.has_value(); }
   /// The estimate is clearly more likely of the wrong branch than not.
   bool isDoubtful() const noexcept { return belief_ && evidence_ > odds::kLikely; }
+  /// That it is right and the estimate wrong; 0: there is none.
+  double probability() const noexcept { return belief_ ? 1.0 / (1.0 + std::exp(-evidence_)) : 0.0; }
   /// Only where it is there.
   CrankBelief& belief() noexcept { return *belief_; }
 

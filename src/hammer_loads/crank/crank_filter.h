@@ -75,6 +75,7 @@ class CrankFilter final : public CrankTracker {
   bool isPlausible() const noexcept override;
   BlowFactor blowFactor() const noexcept override;
   bool isDoubtful() const noexcept override { return rival_.isDoubtful(); }
+  double otherBranch() const noexcept override { return rival_.probability(); }
   bool readingShowsSide() const noexcept override { return read_side_.has_value(); }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }

@@ -108,6 +108,8 @@ class CrankTracker {
   virtual double struckInertia() const noexcept { return driveInertia(); }
   /// Whether the last blow was one at all is not clear yet: what is estimated may be of the wrong branch.
   virtual bool isDoubtful() const noexcept { return false; }
+  /// Probability that it was the other way: no blow where the estimate has one, or a blow where it has none.
+  virtual double otherBranch() const noexcept { return 0.0; }
   /// The last sample's reading itself shows on which side of the blow it was taken: an encoder's edge, an exact stamp.
   virtual bool readingShowsSide() const noexcept { return false; }
   /// Enough samples have come, and they fit the model: until then a wrong unit may not show.

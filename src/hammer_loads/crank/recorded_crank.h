@@ -37,6 +37,7 @@ class RecordedCrank final : public CrankTracker {
   BlowFactor blowFactor() const noexcept override { return filter_.blowFactor(); }
   double driveInertia() const noexcept override { return filter_.driveInertia(); }
   bool isDoubtful() const noexcept override { return filter_.isDoubtful(); }
+  double otherBranch() const noexcept override { return filter_.otherBranch(); }
   bool readingShowsSide() const noexcept override { return filter_.readingShowsSide(); }
   bool isProven() const noexcept override { return filter_.isProven(); }
   double consistency() const noexcept override { return filter_.consistency(); }

@@ -149,6 +149,17 @@ std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   return settled_ ? std::nullopt : std::make_optional(Refusal::kUnsettled);
 }
 
+/// What the wrench is off if the last blow met no tool, or one that the estimate does not know of, by its probability.
+HullWrench Pipeline::branchDoubt(const DriveReaction& drive) const noexcept {
+  const double probability = crank_.tracker().otherBranch();
+  if (!(probability > 0.0)) return {};
+  CrankMotion other = motionOf(result_.crank);
+  const HullWrench here = hullWrench(model_, drive, other, hull_.motion().motion);
+  other.angle.side = other.angle.side == Side::kAfterBlow ? Side::kBeforeBlow : Side::kAfterBlow;
+  const HullWrench there = hullWrench(model_, drive, other, hull_.motion().motion);
+  return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)).cwiseAbs());
+}
+
 /// Deviations, and whether the blow's side is certain. Returns what a rod that gives adds to the wrench.
 HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive) noexcept {
   const bool gives = elastic_.runs();
@@ -160,8 +171,11 @@ HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive)
       gives ? elastic_.beside(drive)
             : ElasticFollower::Beside{{}, rockerWrench(mechanism_, links.here.links, rod_.acceleration())};
   result_.rod_ring = rod.deviation;
+  result_.branch_doubt = branchDoubt(drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, gives ? elastic_.speedBeside() : rod_.speed());
-  result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + vectorOf(rod.deviation).cwiseAbs2()).cwiseSqrt());
+  result_.deviation.wrench = wrenchOf(
+      (vectorOf(own).cwiseAbs2() + vectorOf(rod.deviation).cwiseAbs2() + vectorOf(result_.branch_doubt).cwiseAbs2())
+          .cwiseSqrt());
   const CrankTracker& tracker = crank_.tracker();
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
   result_.beside_blow =

@@ -52,6 +52,7 @@ struct SampleResult {
   CrankUncertainty doubt;    ///< of the crank's motion; zero where the estimator has none
   LoadColumns load_columns;  ///< of the wrench
   HullWrench rod_momentum;   ///< that the rocker has beside a rigid rod's, as far as is not known [N s, N m s]
+  HullWrench branch_doubt;   ///< as below, while it is not known yet whether the last blow met the tool
   HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
   HullDeviation deviation;   ///< at the sample, with what the hull's motion adds
   double consistency{};      ///< CrankTracker::consistency()
