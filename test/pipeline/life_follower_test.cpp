@@ -119,6 +119,37 @@ TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
   EXPECT_GT(judged, 5U);
 }
 
+/// Where the rod's spring is followed, loads between samples are not those of a rigid path.
+TEST(TurnLoads, OfARodThatGivesAreAsPublished) {
+  const Settings settings = test::settingsWith("level: elastic\n");
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.hammer = settings.mechanism.parameters();
+  machine.level = Level::kLinkage;
+  machine.rod = {4e8, 1.0, 1e-4};
+  machine.seed = 2;
+  machine.crank.counts = 4096;
+  machine.duration = 8.0;
+  machine.crank.drop_outs.clear();
+  std::array<double, 2> published{}, counted{};  // least and greatest of force_x
+  std::size_t turns = 0;
+  run(settings, simulation::recordSession(machine), [&](const SampleResult& result, const LifeFollower& follower) {
+    for (const WrenchOutput& output : result.outputs) {
+      published[0] = std::min(published[0], output.wrench.force_x);
+      published[1] = std::max(published[1], output.wrench.force_x);
+    }
+    for (std::size_t i = 0; i < result.turn_ends; ++i) {
+      const life::TurnLoads* turn = follower.turnLoads(result.ends[i]);
+      if (turn == nullptr || !turn->whole) continue;
+      ++turns;
+      counted[0] = std::min(counted[0], turn->minimum[0]), counted[1] = std::max(counted[1], turn->maximum[0]);
+    }
+  });
+  EXPECT_GT(turns, 5U);
+  EXPECT_LT(published[0], -8e3);
+  EXPECT_GE(counted[0], 1.02 * published[0]);
+  EXPECT_LE(counted[1], 1.02 * published[1]);
+}
+
 TEST(TurnLoads, OfJointsAreThoseOfTheSamples) {
   double greatest = -1e300;
   std::optional<StampNs> blow;

@@ -67,12 +67,13 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   const StepLoad load{pipeline_->model(), drive, result.hull.motion};
+  const bool rod_gives = pipeline_->elastic().runs();  // then the loads between are not those of this path
   std::array<double, kHullChannels> end;
   wrenchValues(result.wrench, end.data());
   forEachStepWrench(
       load, step,
       [&](StepPlace place, const HullWrench&) {
-        if (!moveToKnown(place)) return;
+        if (rod_gives || !moveToKnown(place)) return;
         wrenchValues(load.at(place.crank(step)), between_.data());
         keepWhatBothEndsSay(load, place, end);
         recorder_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
