@@ -1,5 +1,5 @@
 """Every message of a log against what the official reader finds in the MCAP made of it. Needs node, npm and, for the first
-time, network: without them it fails."""
+time, network: without them it fails. Only a node that is too old for that reader (Debian 11) makes it skip."""
 import json
 import math
 import os
@@ -20,6 +20,10 @@ SESSION = HERE.parent / "data" / "mo100_100hz.bag"
 def run(*command, **options):
     return subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           universal_newlines=True, **options)
+
+
+def node_version():
+    return int(run("node", "--version").stdout.lstrip("v").split(".")[0])
 
 
 def plain(value):
@@ -46,6 +50,7 @@ class Mcap(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.directory)
         self.mcap = self.directory / "out.mcap"
 
+    @unittest.skipIf(node_version() < 14, "the official reader is written for node 14 and later")
     def test_every_message_by_the_official_reader(self):
         for name in ("package.json", "package-lock.json", "read.js"):
             shutil.copy(HERE / name, self.directory)
