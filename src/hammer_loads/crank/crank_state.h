@@ -26,7 +26,7 @@ struct CrankPosition {
     const bool up = angle.offset > 0.0;
     blow += up ? 1 : -1;
     angle.offset += up ? -kTwoPi : kTwoPi;
-    angle.side = angle.side == Side::kAfterBlow ? Side::kBeforeBlow : Side::kAfterBlow;
+    angle.side = opposite(angle.side);
   }
 
   /// Turns by delta [rad], |delta| < pi, on the branch where it stands or its smooth continuation.

@@ -11,6 +11,8 @@ namespace hammer_loads {
 /// its transfer functions jump, so the blow itself has two states.
 enum class Side { kAfterBlow, kBeforeBlow };
 
+constexpr Side opposite(Side side) noexcept { return side == Side::kAfterBlow ? Side::kBeforeBlow : Side::kAfterBlow; }
+
 /// Crank angle as its offset from the nearest blow: exact however close to the blow, for any winding.
 ///
 /// With phi the crank angle counter-clockwise from A->D (model.md 1): offset = phi - 2 pi n [rad].

@@ -70,12 +70,12 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
   const bool rod_gives = pipeline_->elastic().runs();  // then the loads between are not those of this path
   std::array<double, kHullChannels> end;
   wrenchValues(result.wrench, end.data());
-  forEachStepWrench(
+  forEachStepExtreme(
       load, step,
-      [&](StepPlace place, const HullWrench&) {
-        if (rod_gives || !moveToKnown(place)) return;
-        wrenchValues(load.at(place.crank(step)), between_.data());
-        keepWhatBothEndsSay(load, place, end);
+      [&](StepPlace place, CrankEstimate crank) {
+        if (rod_gives || !moveToKnown(place, crank)) return;
+        wrenchValues(load.at(crank), between_.data());
+        keepWhatBothEndsSay(load, place, crank, end);
         recorder_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
         turn_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
       },
@@ -84,20 +84,21 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
 
 /// What is closer to the blow than the crank's angle is known counts as little as a sample there: of the blow's sides,
 /// the place is moved to where they are known. False: it is not in the step.
-bool LifeFollower::moveToKnown(StepPlace& place) const noexcept {
+bool LifeFollower::moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept {
   const CrankStep& step = pipeline_->crank().step();
-  const CrankEstimate crank = place.crank(step);
   const double deviation = deviationFromBlow(pipeline_->crank().tracker(), pipeline_->result().deviation.angle);
   if (!isBesideBlow(crank, deviation)) return true;
   if (place.passage == nullptr) return false;
   const bool earlier = place.passage->forward == (place.side == Side::kBeforeBlow);
   place = {place.time + (earlier ? -1.0 : 1.0) * gate::kUsual * deviation / std::abs(crank.speed)};
-  return place.time > 0.0 && place.time < step.length();
+  if (!(place.time > 0.0 && place.time < step.length())) return false;
+  crank = step.at(place.time);
+  return true;
 }
 
 /// A load beyond those at both ends counts where the step's path has it from either end, within the deviations
 /// published there; else as far as both have it: where a sample corrects the path, what lies between is of neither.
-void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place,
+void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place, const CrankEstimate& crank,
                                        const std::array<double, kHullChannels>& end) noexcept {
   std::copy_n(deviations_.begin(), end.size(), deviations_there_.begin());
   std::copy_n(common_.begin(), end.size(), common_there_.begin());
@@ -108,7 +109,7 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   for (std::size_t i = 0; i < end.size(); ++i) all_within = all_within && isWithin(i);
   if (all_within) return;
   const CrankStep& step = pipeline_->crank().step();
-  const HullDeviation there = pipeline_->stepDeviation(place.time, place.crank(step));
+  const HullDeviation there = pipeline_->stepDeviation(place.time, crank);
   wrenchValues(there.wrench, deviations_there_.data());
   wrenchValues(there.common, common_there_.data());
   std::array<double, kHullChannels> forward, back, end_deviation;

@@ -47,8 +47,8 @@ class LifeFollower {
  private:
   void count(const SampleResult& result) noexcept;
   void followStep(const SampleResult& result) noexcept;
-  bool moveToKnown(StepPlace& place) const noexcept;
-  void keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place,
+  bool moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept;
+  void keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place, const CrankEstimate& crank,
                            const std::array<double, kHullChannels>& end) noexcept;
   void endTurn(StampNs stamp) noexcept;
   void confirmTurns(const SampleResult& result) noexcept;

@@ -155,7 +155,7 @@ HullWrench Pipeline::branchDoubt(const DriveReaction& drive) const noexcept {
   if (!(probability > 0.0)) return {};
   CrankMotion other = motionOf(result_.crank);
   const HullWrench here = hullWrench(model_, drive, other, hull_.motion().motion);
-  other.angle.side = other.angle.side == Side::kAfterBlow ? Side::kBeforeBlow : Side::kAfterBlow;
+  other.angle.side = opposite(other.angle.side);
   const HullWrench there = hullWrench(model_, drive, other, hull_.motion().motion);
   return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)).cwiseAbs());
 }
@@ -173,9 +173,7 @@ HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive)
   result_.rod_ring = rod.deviation;
   result_.branch_doubt = branchDoubt(drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, gives ? elastic_.speedBeside() : rod_.speed());
-  result_.deviation.wrench = wrenchOf(
-      (vectorOf(own).cwiseAbs2() + vectorOf(rod.deviation).cwiseAbs2() + vectorOf(result_.branch_doubt).cwiseAbs2())
-          .cwiseSqrt());
+  result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());
   const CrankTracker& tracker = crank_.tracker();
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
   result_.beside_blow =

@@ -42,6 +42,11 @@ struct WrenchOutput {
 };
 
 struct SampleResult {
+  /// Of the wrench's deviation, what is beside the crank's motion: squares [N2, N2, N2 m2].
+  Eigen::Vector3d squaresBeside() const noexcept {
+    return vectorOf(rod_ring).cwiseAbs2() + vectorOf(branch_doubt).cwiseAbs2();
+  }
+
   StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence
   StampNs sample_stamp{};          ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void

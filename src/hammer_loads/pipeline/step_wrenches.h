@@ -51,12 +51,11 @@ struct StepPlace {
   }
 };
 
-/// Calls wrench(place, wrench) in order of time for each extreme inside the step and for both sides of each blow, and
-/// turn(time) between them where a blow may end a turn. Times are after the step's start [s]. Of
+/// Calls at(place, crank) in order of time where a component of the wrench is extreme inside the step and on both sides
+/// of each blow, and turn(time) between them where a blow may end a turn. Times are after the step's start [s]. Of
 /// extremes closer than 1.25 ms one may be missed; points on the way to them are given as well.
-template <typename OnWrench, typename OnTurn>
-void forEachStepWrench(const StepLoad& load, const CrankStep& step, const OnWrench& wrench,
-                       const OnTurn& turn) noexcept {
+template <typename OnPlace, typename OnTurn>
+void forEachStepExtreme(const StepLoad& load, const CrankStep& step, const OnPlace& at, const OnTurn& turn) noexcept {
   const auto alongSpan = [&](const SmoothSpan& span) {
     if (!(span.to > span.from)) return;
     const int count = std::max(1, static_cast<int>(std::ceil((span.to - span.from) / kPulseStep)));
@@ -67,9 +66,8 @@ void forEachStepWrench(const StepLoad& load, const CrankStep& step, const OnWren
       part.to = last ? span.to : span.from + (span.to - span.from) * i / count;
       part.finish = last ? span.finish : step.at(part.to);
       const ExtremeInstants extremes = extremeInstants(load, step, part);
-      for (std::size_t k = 0; k < extremes.count; ++k)
-        wrench(StepPlace{extremes.time[k]}, load.at(step.at(extremes.time[k])));
-      if (!last) wrench(StepPlace{part.to}, load.at(part.finish));
+      for (std::size_t k = 0; k < extremes.count; ++k) at(StepPlace{extremes.time[k]}, step.at(extremes.time[k]));
+      if (!last) at(StepPlace{part.to}, part.finish);
     }
   };
   SmoothSpan span{0.0, 0.0, step.at(0.0), {}};
@@ -80,11 +78,11 @@ void forEachStepWrench(const StepLoad& load, const CrankStep& step, const OnWren
     span.to = passage.time;
     span.finish = on(first);
     alongSpan(span);
-    wrench(StepPlace{passage.time, &passage, first}, load.at(span.finish));
+    at(StepPlace{passage.time, &passage, first}, span.finish);
     if (passage.may_strike) turn(passage.time);
     span.begin = on(second);
     span.from = passage.time;
-    wrench(StepPlace{passage.time, &passage, second}, load.at(span.begin));
+    at(StepPlace{passage.time, &passage, second}, span.begin);
   }
   span.to = step.length();
   span.finish = step.at(span.to);

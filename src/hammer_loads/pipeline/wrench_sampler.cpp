@@ -130,8 +130,7 @@ HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUn
   LoadColumns unused;
   HullDeviation of = hullDeviation(*hammer_, *model_, step_->driveInertia(), crank, there, hull, doubt, unused);
   addHullMotion(*model_, drive_, there.here.links, crank.speed, hull, result.hull.covariance, of.wrench);
-  const Eigen::Vector3d beside = vectorOf(result.rod_ring).cwiseAbs2() + vectorOf(result.branch_doubt).cwiseAbs2();
-  of.wrench = wrenchOf((vectorOf(of.wrench).cwiseAbs2() + beside).cwiseSqrt());
+  of.wrench = wrenchOf((vectorOf(of.wrench).cwiseAbs2() + result.squaresBeside()).cwiseSqrt());
   return of;
 }
 
