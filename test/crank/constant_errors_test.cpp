@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <vector>
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "support/filter_settings.h"
@@ -97,6 +98,22 @@ TEST(ConstantErrors, WhatTheFirstFourTurnsShowIsForgotten) {
   for (int turn = 0; turn < 4; ++turn) learnTurn(errors, 0.1, 40, 1e-6, 1.0, 0.0);
   for (int turn = 0; turn < 2; ++turn) learnTurn(errors, 0.02, 40, 1e-6, 1.0, 0.0);
   EXPECT_NEAR(errors.estimate()[0], 0.02, 1e-3);
+}
+
+/// On which side of the blow a sample is cannot wait for it.
+TEST(ConstantErrors, AZeroIsSeenBeforeAnythingElseIsConcluded) {
+  const auto seen = [](double zero, double variance) {
+    ConstantErrors errors;
+    std::vector<double> after;
+    for (int turn = 0; turn < 8; ++turn) {
+      learnTurn(errors, zero, 40, variance, 1.0, 0.0);
+      after.push_back(errors.zeroSeen());
+    }
+    return after;
+  };
+  for (const double s : seen(0.03, 1e-6)) EXPECT_NEAR(s, 0.03, 2e-3);
+  for (const double s : seen(0.002, 1e-6)) EXPECT_EQ(s, 0.0) << "a clean machine's";
+  for (const double s : seen(0.03, 0.1)) EXPECT_EQ(s, 0.0) << "not seen well enough";
 }
 
 TEST(ConstantErrors, AreThoseOfThreeHundredTurns) {

@@ -67,13 +67,15 @@ std::vector<double> aroundBlow(double time) {
   return times;
 }
 
-/// At 100 Hz the next sample is 9 to 20 deg from the blow, where the force is a fifth less.
+/// At 100 Hz the next sample is 9 to 20 deg from the blow, where the force is a fifth less. The model of a machine
+/// whose zero is 2 deg off has a tenth more than there is, the more the closer to the blow.
 TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.crank.rate = 100.0;
   machine.crank.zero = 2.0 * kTwoPi / 360.0;
   machine.duration = 12.0;
   std::size_t judged = 0, withheld = 0;
+  double sum = 0.0, most = 0.0;  // of the true extreme
   run(test::settingsWith("{}"), simulation::recordSession(machine),
       [&](const SampleResult& result, const LifeFollower& follower) {
         for (std::size_t i = 0; i < result.turn_ends; ++i) {
@@ -84,11 +86,15 @@ TEST(TurnLoads, ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme) {
           ++judged;
           double truth = 0.0;
           for (const auto& at : simulation::truthAt(machine, aroundBlow(end))) truth = std::min(truth, at.load.force_x);
-          EXPECT_NEAR(turn->minimum[0], truth, 0.13 * std::abs(truth)) << end;
+          sum += turn->minimum[0] / truth;
+          most = std::max(most, turn->minimum[0] / truth);
+          EXPECT_NEAR(turn->minimum[0], truth, 2.0 * turn->of_minimum[0].deviation()) << end;
         }
         withheld += result.beside_blow;
       });
   EXPECT_GT(judged, 5U);
+  EXPECT_GT(sum, 0.9 * static_cast<double>(judged));
+  EXPECT_LT(most, 1.02);
 }
 
 /// Where the rod's spring is followed, loads between samples are not those of a rigid path.

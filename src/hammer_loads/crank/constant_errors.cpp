@@ -57,28 +57,32 @@ void ConstantErrors::considerPriors() noexcept {
 
 void ConstantErrors::endTurn(double growth, double count) noexcept {
   const int samples = std::exchange(samples_, 0);
-  if (++turns_ == kFirstTurns) {
+  ++turns_;
+  const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
+  Matrix covariance = Matrix::Zero();
+  covariance.topLeftCorner<kPlace, kPlace>() = fit_.covarianceOfFirst<kPlace>();
+  const auto ofSensor = [&](int i) {  // variance of what is seen, as if the hammer were right
+    return square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + growth * covariance(i, i);
+  };
+  const double zero = covariance.row(kZero).dot(fit_.score());
+  zero_seen_ = exceeds(zero, ofSensor(kZero), gate::kUsual) ? std::abs(zero) : 0.0;
+  if (turns_ == kFirstTurns) {
     fit_.begin(prior_);
     beside_.setZero();
   }
   if (turns_ < kTurnsToKnow) return;
-  Matrix covariance = Matrix::Zero();
-  covariance.topLeftCorner<kPlace, kPlace>() = fit_.covarianceOfFirst<kPlace>();
   for (int i = 0; i < kTable; ++i)
     if (kUnknowns[static_cast<std::size_t>(i)].use == Unknown::Use::kTakenUp)
       covariance(i, i) = 1.0 / fit_.information()(i, i);
   estimate_ = covariance * fit_.score();
   const Eigen::Matrix<double, kPlace, 1> by_hammer =
       (covariance.topLeftCorner<kPlace, kPlace>() * beside_).rowwise().squaredNorm();
-  const double unmodelled = std::max(1.0, kSamplesToFollow / std::max(1, samples));
   // Variance of what is seen; b^2 is by so much less than its estimate's square; what remains after it.
   Vector doubt = Vector::Zero(), certain = Vector::Zero();
   double share = 0.0;  // of b that is certain
   for (int i = 0; i < kPlace; ++i) {
     const double variance = growth * covariance(i, i);
-    const double of_sensor = square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + variance;
-    if (i == kZero) zero_seen_ = exceeds(estimate_[i], of_sensor, gate::kUsual) ? std::abs(estimate_[i]) : 0.0;
-    doubt[i] = of_sensor + by_hammer[i];
+    doubt[i] = ofSensor(i) + by_hammer[i];
     deviation_[i] =
         std::sqrt(doubt[i] + (square(kUnmodelledDeviations) - 1.0) * variance + square(kUnmodelledCounts * count));
     const double excess = square(estimate_[i]) - doubt[i];

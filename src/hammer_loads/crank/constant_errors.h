@@ -70,8 +70,8 @@ class ConstantErrors {
   /// 0 before some turns. deviation: of the sensor's place alone.
   const Vector& estimate() const noexcept { return estimate_; }
   const Vector& deviation() const noexcept { return deviation_; }
-  /// How far the readings say that the blow is from where the sensor's zero has it, as if the hammer were right [rad];
-  /// 0 before some turns, and where a clean machine may show as much.
+  /// How far the readings say that the blow is from where the sensor's zero has it, as if the hammer were right [rad]:
+  /// from the first turn that shows it on, before anything else is concluded; 0 where a clean machine may show as much.
   double zeroSeen() const noexcept { return zero_seen_; }
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }

@@ -18,10 +18,10 @@ inline double deviationFromBlow(const CrankTracker& tracker, double angle_deviat
 
 /// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
 /// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored
-/// branch nowhere. deviation: of the crank from the blow [rad]; NaN: not known.
-inline bool isBesideBlow(const CrankEstimate& crank, double deviation) noexcept {
+/// branch nowhere. deviation: of the crank from the blow [rad]; NaN: not known. gate: so many of them.
+inline bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate = gate::kUsual) noexcept {
   const CrankPosition& at = crank.position;
-  return std::abs(at.angle.offset) < gate::kUsual * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
+  return std::abs(at.angle.offset) < gate * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
 }
 
 }  // namespace hammer_loads

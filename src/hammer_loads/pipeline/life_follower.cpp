@@ -8,6 +8,12 @@
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {
+namespace {
+
+constexpr double kKnown = gate::kRare;  // deviations from the blow: no reading stands for what is counted closer
+// Guard: TurnLoads.ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme of kKnown
+
+}  // namespace
 
 LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& settings)
     : pipeline_(&pipeline),
@@ -87,17 +93,18 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
 bool LifeFollower::moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const double deviation = deviationFromBlow(pipeline_->crank().tracker(), pipeline_->result().deviation.angle);
-  if (!isBesideBlow(crank, deviation)) return true;
+  if (!isBesideBlow(crank, deviation, kKnown)) return true;
   if (place.passage == nullptr) return false;
   const bool earlier = place.passage->forward == (place.side == Side::kBeforeBlow);
-  place = {place.time + (earlier ? -1.0 : 1.0) * gate::kUsual * deviation / std::abs(crank.speed)};
+  place = {place.time + (earlier ? -1.0 : 1.0) * kKnown * deviation / std::abs(crank.speed)};
   if (!(place.time > 0.0 && place.time < step.length())) return false;
   crank = step.at(place.time);
   return true;
 }
 
 /// A load beyond those at both ends counts where the step's path has it from either end, within the deviations
-/// published there; else as far as both have it: where a sample corrects the path, what lies between is of neither.
+/// published there, but for constants, which are off on both ways alike; else as far as both have it: where a sample
+/// corrects the path, what lies between is of neither.
 void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place, const CrankEstimate& crank,
                                        const std::array<double, kHullChannels>& end) noexcept {
   std::copy_n(deviations_.begin(), end.size(), deviations_there_.begin());
@@ -112,8 +119,9 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   const HullDeviation there = pipeline_->stepDeviation(place.time, crank);
   wrenchValues(there.wrench, deviations_there_.data());
   wrenchValues(there.common, common_there_.data());
-  std::array<double, kHullChannels> forward, back, end_deviation;
+  std::array<double, kHullChannels> forward, back, end_deviation, end_common;
   wrenchValues(pipeline_->result().deviation.wrench, end_deviation.data());
+  wrenchValues(pipeline_->result().deviation.common, end_common.data());
   const std::optional<CrankWays> ways = place.ways(step);
   if (ways) {
     wrenchValues(load.at(ways->forward), forward.data());
@@ -121,7 +129,9 @@ void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& pl
   }
   for (std::size_t i = 0; i < end.size(); ++i) {
     const double least = std::min(values_[i], end[i]), greatest = std::max(values_[i], end[i]);
-    if (ways && std::abs(forward[i] - back[i]) <= deviations_[i] + end_deviation[i]) continue;
+    const double own = life::LoadError::at(i, deviations_.data(), common_.data()).own +
+                       life::LoadError::at(i, end_deviation.data(), end_common.data()).own;
+    if (ways && std::abs(forward[i] - back[i]) <= own) continue;
     const double above = ways ? std::max(0.0, std::min(forward[i], back[i]) - greatest) : 0.0;
     const double below = ways ? std::max(0.0, least - std::max(forward[i], back[i])) : 0.0;
     between_[i] = std::clamp(between_[i], least - below, greatest + above);
