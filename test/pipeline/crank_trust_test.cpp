@@ -187,6 +187,35 @@ TEST(CrankTrust, AMachineThatRunsAwayWithoutAToolStrikesNoBlows) {
   EXPECT_LT(hardest, 1500.0);
 }
 
+/// The first stroke that finds no tool, on a machine whose rod gives: near the dead centre readings speak for either
+/// branch by turns, half a radian behind it for the right one.
+TEST(CrankTrust, TheFirstStrokeWithoutAToolIsFollowedOnTheRightBranch) {
+  for (const double stiffness : {4e8, 1e9, 4e9}) {
+    const double tool_lost = 4.2;
+    simulation::MachineSettings machine = elasticMachine(stiffness, 0.6);
+    machine.crank.counts = 4096;
+    machine.strike.no_tool_from = tool_lost;
+    machine.strike.no_tool_to = tool_lost + 1.0;
+    const simulation::Session session = simulation::recordSession(machine);
+    test::Player player(test::settingsWith("{}"), false, session);
+    std::size_t published = 0, samples = 0, i = 0;
+    double square_error = 0.0, square_true = 0.0;
+    player.playTo(1e9, [&](double time, const SampleResult& result) {
+      const simulation::CrankTruth& truth = session.truth[i++];
+      const double offset = CrankAngle::wrapToPi(truth.angle);
+      if (!(time > tool_lost && time < tool_lost + 0.9) || !(offset > 0.8)) return;
+      ++samples;
+      if (result.refusal) return;
+      ++published;
+      square_error += square(result.wrench.force_x - truth.load.force_x);
+      square_true += square(truth.load.force_x);
+    });
+    EXPECT_GT(samples, 100U);
+    EXPECT_GT(10 * published, 9 * samples) << stiffness;
+    EXPECT_LT(square_error, square(0.02) * square_true) << stiffness;
+  }
+}
+
 /// A hard and lively rock: much is withheld after each blow, and what the path has there was never published.
 TEST(CrankTrust, ThePeakOfATurnIsOneThatWasPublished) {
   simulation::MachineSettings machine = elasticMachine(1e9, 0.2);

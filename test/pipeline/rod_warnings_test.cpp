@@ -64,9 +64,11 @@ TEST(RodWarnings, ARightSensorIsNotBlamedForARodThatGives) {
   }
 }
 
-/// Coarse or rare readings show less of the rod, and less of the zero.
+/// Coarse or rare readings show less of the rod, and less of the zero. Where the rigid model follows less than half of
+/// such a recording, what else could be is named behind the rod.
 TEST(RodWarnings, NorByCoarseOrRareReadings) {
   std::mt19937_64 random(4302);
+  int lost_most = 0;
   for (std::uint64_t i = 0; i < 9; ++i) {
     simulation::MachineSettings machine = drawnMachine(random, 4330 + i);
     const double rates[] = {1000.0, 500.0, 200.0};
@@ -76,10 +78,13 @@ TEST(RodWarnings, NorByCoarseOrRareReadings) {
     SCOPED_TRACE(testing::Message() << machine.rod.stiffness << " N/m, " << machine.rod.damping_ratio << ", "
                                     << machine.rod.play << " m\n"
                                     << text);
+    const bool lost = names(text, "as where rod, pins and bearings give");
+    lost_most += lost;
     for (const char* innocent :
          {"run calibrate", "eccentric", "coupling", "masses", "hammer file", "slipped", "behind"})
-      EXPECT_FALSE(names(text, innocent)) << innocent;
+      EXPECT_FALSE(!lost && names(text, innocent)) << innocent;
   }
+  EXPECT_LE(lost_most, 1);
 }
 
 /// The other way round: a rigid rod is not blamed for a sensor or a shaft.
@@ -96,6 +101,11 @@ TEST(RodWarnings, ARigidRodIsNotBlamed) {
     const std::string text = rigid([&](auto& m) { m.crank.zero = off * kDegree; });
     EXPECT_TRUE(names(text, "zero: ")) << off << text;
     EXPECT_FALSE(names(text, "rod, pins")) << off << text;
+  }
+  for (const double off : {6.0, 10.0}) {  // withheld: what is wrong before the blow is no rod
+    const std::string text = rigid([&](auto& m) { m.crank.zero = -off * kDegree; });
+    EXPECT_TRUE(names(text, "crank_zero_rad")) << off << text;
+    EXPECT_FALSE(names(text, "level: elastic")) << off << text;
   }
   EXPECT_FALSE(names(rigid([](auto& m) { m.crank.eccentricity[0] = {1.2 * kDegree, 0.7}; }), "rod, pins"));
   EXPECT_FALSE(names(rigid([](auto& m) { m.strike = {}, m.blow.tool_early = 0.05; }), "rod, pins"));
@@ -123,7 +133,7 @@ TEST(RodWarnings, WhatNoRodMakesIsNamedBesideIt) {
   for (const double off : {-2.0, -4.0}) {
     const std::string text = heard(off, 0.0);
     EXPECT_TRUE(names(text, "rod, pins and bearings give")) << text;
-    EXPECT_EQ(names(text, "zero: "), off < -3.0) << text;
+    EXPECT_EQ(names(text, "crank_zero_rad is right to some"), off < -3.0) << text;
   }
   for (const double off : {2.0, 3.5}) {
     const std::string text = heard(0.0, off);

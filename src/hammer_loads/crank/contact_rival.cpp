@@ -4,13 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kDecided = 12.0;  // logarithm of odds at which the less likely belief is given up
-// Guard: Rival.IsGivenUpAtAHundredThousandToOne of kDecided
+constexpr double kDecided = 12.0;  // logarithm of odds: the less likely belief is set aside, and never less likely
+// Guard: Rival.IsSetAsideAtAHundredThousandToOne of kDecided
+constexpr double kRungOut = 30.0 * kDegree;  // from the blow: a rod that gives has rung out
+// Guard: Rival.IsLookedAtAgainBehindTheDeadCentre of kRungOut
 constexpr double kChange = 9.0;  // as above at which the other one becomes the estimate
 // Guard: Rival.IsBelievedAtEightThousandToOne of kChange
 constexpr double kMostFit = 8.0;  // as above that one sample may add: it may be an outlier
@@ -21,6 +24,7 @@ constexpr double kMostFit = 8.0;  // as above that one sample may add: it may be
 void ContactRival::begin(const CrankBelief& belief) noexcept {
   belief_ = belief;
   evidence_ = std::log(turns_without_ / turns_with_);
+  aside_ = false;
 }
 
 void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
@@ -36,15 +40,18 @@ void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, 
     if (!speed.exceeds(gate::kImpossible))
       belief.correct(CrankBelief::kSpeed, speed.value, speed.variance, speed.by_error, sample.of_speed);
   }
-  evidence_ += std::clamp(own_fit - fit, -kMostFit, kMostFit) / growth;
+  evidence_ = std::max(-kDecided, evidence_ + std::clamp(own_fit - fit, -kMostFit, kMostFit) / growth);
   if (!belief.isSound(most_speed)) drop();
 }
 
 bool ContactRival::choose(CrankBelief& estimate, bool& mirrored) noexcept {
+  aside_ = aside_ || evidence_ == -kDecided;
+  if (aside_ && !mirrored && std::abs(estimate.state.position.angle.offset) < kRungOut) return false;
   const bool change = evidence_ > kChange;
   if (change) {
     std::swap(estimate, *belief_);
-    evidence_ = -evidence_;
+    evidence_ = -kChange;
+    aside_ = false;
     mirrored = !mirrored;
   }
   if (evidence_ > -kDecided) return change;

@@ -9,17 +9,21 @@
 namespace hammer_loads {
 
 /// At each blow a second belief goes on without contact: a rocker that finds no tool passes the dead centre onto the
-/// mirrored branch and comes back a turn later. Both beliefs take the same samples until one is far more likely.
+/// mirrored branch and comes back a turn later. Both beliefs take the same samples until one is far more likely. Near
+/// the dead centre a rod that gives may make the right one the unlikely one: it is set aside there, and looked at again
+/// behind.
 class ContactRival {
  public:
-  /// belief: about to pass the blow with contact.
+  /// belief: about to pass the blow with contact, or on the other branch than the estimate.
   void begin(const CrankBelief& belief) noexcept;
   void drop() noexcept { belief_.reset(); }
   bool isThere() const noexcept { return belief_.has_value(); }
+  /// It is there and not set aside.
+  bool isOpen() const noexcept { return belief_ && !aside_; }
   /// The estimate is clearly more likely of the wrong branch than not.
-  bool isDoubtful() const noexcept { return belief_ && evidence_ > odds::kLikely; }
-  /// That it is right and the estimate wrong; 0: there is none.
-  double probability() const noexcept { return belief_ ? 1.0 / (1.0 + std::exp(-evidence_)) : 0.0; }
+  bool isDoubtful() const noexcept { return isOpen() && evidence_ > odds::kLikely; }
+  /// That it is right and the estimate wrong; 0: it is not open.
+  double probability() const noexcept { return isOpen() ? 1.0 / (1.0 + std::exp(-evidence_)) : 0.0; }
   /// Only where it is there.
   CrankBelief& belief() noexcept { return *belief_; }
 
@@ -27,7 +31,8 @@ class ContactRival {
   /// fit: logarithm of the sample's likelihood by the estimate; growth: of variances, by the consistency.
   void follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
               double most_speed) noexcept;
-  /// Exchanges the beliefs where the rival is far more likely: true. Gives it up where it is far less likely.
+  /// Exchanges the beliefs where the rival is far more likely: true. Sets it aside where it is far less likely, and
+  /// gives it up where it still is behind the dead centre.
   bool choose(CrankBelief& estimate, bool& mirrored) noexcept;
 
  private:
@@ -35,7 +40,8 @@ class ContactRival {
   // Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kTurnsWith, kTurnsWithout
 
   std::optional<CrankBelief> belief_;
-  double evidence_{};                                             ///< logarithm of its odds against the estimate
+  double evidence_{};  ///< logarithm of its odds against the estimate
+  bool aside_{};
   double turns_with_{kTurnsWith}, turns_without_{kTurnsWithout};  ///< contact, so far
 };
 

@@ -143,7 +143,7 @@ void CrankFilter::meetRival(const CrankBelief& belief) noexcept {
 
 /// (9) What the estimate cannot explain, the rival can.
 bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept {
-  if (!rival_.isThere()) return false;
+  if (!rival_.isOpen()) return false;
   CrankBelief rival = rival_.belief();
   predict(dt, mirrored_, rival);
   return !sample.ofAngle(rival).exceeds(gate::kRare);

@@ -140,7 +140,7 @@ bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& 
   const bool rings = rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
-  return lost_time_ == 0.0 && !rings && at_work && !mirrored_ && !rival_.isThere() && nearest > kNotSlip;
+  return lost_time_ == 0.0 && !rings && at_work && !mirrored_ && !rival_.isOpen() && nearest > kNotSlip;
 }
 
 /// (5) A slip that has shown itself is taken off the reading.

@@ -37,11 +37,13 @@ class CrankTrust {
     followTurning(turned);
     followSpeed(sensor_.angle(reading), turned, step);
     if (std::isfinite(strike_consistency)) inconsistent_ = strike_consistency > kMost;
+    contradicted_ = contradicted_ || inconsistent_ || isLost();
   }
   /// Time ran back, or a gap: what the crank did meanwhile is not known.
   void begin() noexcept {
     reading_.reset();
     unbelieved_ = 0;
+    contradicted_ = false;
   }
   /// The blow was passed forward. believed: the estimate just before it was good enough to be published. A crank that
   /// rocks at the dead centre says nothing.
@@ -58,7 +60,13 @@ class CrankTrust {
   bool turnsBackward() const noexcept { return backward_; }
   /// It has turned forward of late: one that only ever turned backward has not struck.
   bool hasRunUp() const noexcept { return forward_ > kRunUp; }
-  bool isInconsistent() const noexcept { return inconsistent_ || isLost(); }
+  /// Where the zero is far off it stays so: a stroke that agrees is chance.
+  bool isInconsistent() const noexcept { return inconsistent_ || isLost() || (contradicted_ && isZeroFarOff()); }
+  /// The crank is slowest where no right zero has it.
+  bool isZeroFarOff() const noexcept {
+    const std::optional<double> behind = slowBehind();
+    return behind && std::abs(*behind) > kSlowestKnown;
+  }
   /// The estimate is not good enough before the blow, turn after turn.
   bool isLost() const noexcept { return unbelieved_ == kUnbelieved; }
   std::optional<Refusal> refusal() const noexcept {
@@ -112,6 +120,7 @@ class CrankTrust {
   double window_turned_{}, window_time_{};
   double forward_{}, back_{};  ///< since it was furthest back, forward [rad]
   bool backward_{}, inconsistent_{};
+  bool contradicted_{};  ///< it was inconsistent since it began
   int unbelieved_{};  ///< strokes in a row of which the estimate was not good enough to be published
 };
 

@@ -84,14 +84,15 @@ void warnOfStamps(const CrankFollower& crank, const CrankFilter& filter, double 
 }
 
 /// What a rod that gives makes of the sensor's place, if the crank's filter takes it for rigid: the zero looks smaller
-/// by 0.2 to 3 deg (rods of 2e8 to 1e10 N/m, play to 0.5 mm, 200 Hz to 1 kHz), the encoder eccentric by 1 deg.
-constexpr double kRodLooksLikeZero = 3.0 * kDegree, kRodLooksEccentric = 1.5 * kDegree;
-// Guard: RodWarnings.WhatNoRodMakesIsNamedBesideIt of kRodLooksLikeZero, kRodLooksEccentric
+/// by 0.2 to 3 deg (rods of 2e8 to 1e10 N/m, play to 0.5 mm, 200 Hz to 1 kHz), more is withheld; the encoder eccentric
+/// by 1 deg.
+constexpr double kRodLooksEccentric = 1.5 * kDegree;
+// Guard: RodWarnings.WhatNoRodMakesIsNamedBesideIt of kRodLooksEccentric
 
 /// How far an amount is beyond what such a rod explains.
 double beyondRod(const Unknown& unknown, double amount) {
-  if (std::string_view(unknown.name) != "zero") return std::max(0.0, std::abs(amount) - kRodLooksEccentric);
-  return amount > 0.0 ? amount : std::max(0.0, -amount - kRodLooksLikeZero);
+  if (std::string_view(unknown.name) == "zero") return std::max(0.0, amount);
+  return std::max(0.0, std::abs(amount) - kRodLooksEccentric);
 }
 
 /// Constants whose error the innovations show, by their table. gives: the rod does.
@@ -151,14 +152,42 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
     return how_much +
            "what follows the blow is not in the model, a coupling that gives (shaft: flexible) or a tool that is met "
            "again; the deviations there are too small";
-  const std::optional<double> behind = pipeline.crankTrust().slowBehind();
-  if (behind && std::abs(*behind) > CrankTrust::kSlowestKnown)
-    return how_much + zeroFarOff(pipeline.settings().crank_sensor, *behind);
-  return how_much +
+  if (pipeline.crankTrust().isZeroFarOff())
+    return how_much + zeroFarOff(pipeline.settings().crank_sensor, *pipeline.crankTrust().slowBehind());
+  const std::string rod =
+      filter.rodEvidence().gives()
+          ? format("just after it by %.2g, as where rod, pins and bearings give: ", filter.rodEvidence().pickedUp())
+          : "";
+  return how_much + rod +
          format(
              "the crank is slowest where it must be, so crank_zero_rad is right to some %.1g rad; within that it, "
              "masses and lengths of the hammer file, or a coupling between crank and encoder (%s), do not fit",
              CrankTrust::kSlowestKnown, pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible");
+}
+
+/// It was withheld, and is no longer.
+std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
+  return format(
+      "crank: %s samples withheld while readings contradicted the model before the blow; now they differ from it by "
+      "%.2g times the expected variance, before the blow by %.2g",
+      count(withheld).c_str(), filter.consistency(), filter.strikeConsistency());
+}
+
+/// Of readings and model. gives: the rod does, and that explains them.
+void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gives, std::vector<Warning>& warnings) {
+  const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
+  const bool strike = filter.strikeConsistency() > CrankTrust::kInconsistent;
+  const bool now = filter.consistency() > CrankTrust::kInconsistent || strike || filter.isUnexplained() ||
+                   pipeline.crankTrust().isInconsistent() || withheld > pipeline.counts().accepted;
+  const bool far_off = withheld > 0 && pipeline.crankTrust().isZeroFarOff();  // no rod makes that
+  if (far_off || (now && !gives))
+    return warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld > 0), true});
+  if (gives) {
+    warnings.push_back({withheld > 0 ? "inconsistent" : "rod", rodOf(filter), true});
+  } else if (withheld > 0) {
+    warnings.push_back({"inconsistent", agreesAgain(filter, withheld), false});
+  }
+  warnOfConstants(filter.constantErrors(), pipeline.settings().crank_sensor, gives, warnings);
 }
 
 /// What the filter's innovations look like.
@@ -166,10 +195,11 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   constexpr std::uint64_t kLearned = 10;  // blows: before them the filter is still learning
   // Guard: WarningNumbers.NothingIsSaidOfASensorBeforeTenBlows of kLearned
   const CrankFilter* filter = pipeline.crank().tracker().filter();
-  const bool withheld = pipeline.counts().refusedFor(Refusal::kInconsistent) > 0;
+  const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
   if (filter == nullptr || pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
-  if (pipeline.counts().blows < kLearned && !withheld) return;
-  const bool gives = filter->rodEvidence().gives();
+  if (pipeline.counts().blows < kLearned && withheld == 0) return;
+  // A rod alone hardly makes most of a recording contradict the model before the blow.
+  const bool gives = filter->rodEvidence().gives() && withheld <= pipeline.counts().accepted;
   if (filter->isLost())
     warnings.push_back({"lost",
                         std::string("crank: the estimate restarts again and again; readings and ") +
@@ -183,15 +213,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
          true});
   warnOfStamps(pipeline.crank(), *filter, kTwoPi * pipeline.settings().turn_rate, warnings);
   warnOfReadings(pipeline.crank(), *filter, warnings);
-  const bool inconsistent = filter->consistency() > CrankTrust::kInconsistent;
-  const bool strike = filter->strikeConsistency() > CrankTrust::kInconsistent;
-  const double behind = pipeline.crankTrust().slowBehind().value_or(0.0);
-  const bool far_off = withheld && std::abs(behind) > CrankTrust::kSlowestKnown;  // no rod makes that
-  if (far_off) return warnings.push_back({"inconsistent", contradictionOf(pipeline, true), true});
-  if (gives) warnings.push_back({withheld ? "inconsistent" : "rod", rodOf(*filter), true});
-  if (gives || (!inconsistent && !strike && !withheld && !filter->isUnexplained()))
-    return warnOfConstants(filter->constantErrors(), pipeline.settings().crank_sensor, gives, warnings);
-  warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld), true});
+  warnOfMismatch(pipeline, *filter, gives, warnings);
 }
 
 /// Of a unit that is not where or what it is said to be. weight: of the hull by the joint angles.
