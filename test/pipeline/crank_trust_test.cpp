@@ -139,6 +139,18 @@ TEST(CrankTrust, AZeroFarOffIsWithheldAndNamedBySize) {
   }
 }
 
+/// What was withheld stays counted; what it was then is not said of the hammer now.
+TEST(CrankTrust, ACrankThatAgreesAgainIsNamedAsThat) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 14.0;
+  const simulation::Session session = simulation::recordSession(machine);
+  const auto until = session.crank.front().stamp + 5'000'000'000;
+  const Played played = play(session, "{}", [until](CrankReading& r) { r.angle += r.stamp < until ? 0.5 : 0.0; });
+  const std::string text = textOfWarning(played, "inconsistent");
+  EXPECT_NE(text.find("samples withheld while readings contradicted the model"), std::string::npos) << text;
+  EXPECT_EQ(text.find("hammer file"), std::string::npos) << text;
+}
+
 simulation::MachineSettings elasticMachine(double stiffness, double damping_ratio) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.rod = {stiffness, damping_ratio, 0.0};
