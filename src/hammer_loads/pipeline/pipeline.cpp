@@ -149,13 +149,19 @@ std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   return settled_ ? std::nullopt : std::make_optional(Refusal::kUnsettled);
 }
 
-/// What the wrench is off if the last blow met no tool, or one that the estimate does not know of, by its probability.
-HullWrench Pipeline::branchDoubt(const DriveReaction& drive) const noexcept {
-  const double probability = crank_.tracker().otherBranch();
+/// What the wrench is off if the last blow met no tool, or one that the estimate does not know of, by its probability;
+/// and, where a slow crank lands on the tool or leaves it, if that takes what moves.
+HullWrench Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept {
+  const bool lands = std::abs(result_.crank.speed) < kSlowCrank && transmissionAngle(links) < settings_.near_blow;
+  const double probability = lands ? 1.0 : crank_.tracker().otherBranch();
   if (!(probability > 0.0)) return {};
   CrankMotion other = motionOf(result_.crank);
   const HullWrench here = hullWrench(model_, drive, other, hull_.motion().motion);
-  other.angle.side = opposite(other.angle.side);
+  if (lands) {
+    other.speed = other.acceleration = 0.0;
+  } else {
+    other.angle.side = opposite(other.angle.side);
+  }
   const HullWrench there = hullWrench(model_, drive, other, hull_.motion().motion);
   return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)).cwiseAbs());
 }
@@ -171,7 +177,7 @@ HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive)
       gives ? elastic_.beside(drive)
             : ElasticFollower::Beside{{}, rockerWrench(mechanism_, links.here.links, rod_.acceleration())};
   result_.rod_ring = rod.deviation;
-  result_.branch_doubt = branchDoubt(drive);
+  result_.contact_doubt = contactDoubt(links.here.links, drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, gives ? elastic_.speedBeside() : rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());
   const CrankTracker& tracker = crank_.tracker();

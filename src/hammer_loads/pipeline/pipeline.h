@@ -70,7 +70,7 @@ class Pipeline {
   void restart(bool revised) noexcept;
   void follow(CrankFollower::Taken taken) noexcept;
   std::optional<Refusal> whyWithheld() noexcept;
-  HullWrench branchDoubt(const DriveReaction& drive) const noexcept;
+  HullWrench contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
   HullWrench weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
   void fill(const LinksBeside& links, const DriveReaction& drive, const HullWrench& rod) noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;

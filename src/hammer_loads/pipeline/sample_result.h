@@ -44,7 +44,7 @@ struct WrenchOutput {
 struct SampleResult {
   /// Of the wrench's deviation, what is beside the crank's motion: squares [N2, N2, N2 m2].
   Eigen::Vector3d squaresBeside() const noexcept {
-    return vectorOf(rod_ring).cwiseAbs2() + vectorOf(branch_doubt).cwiseAbs2();
+    return vectorOf(rod_ring).cwiseAbs2() + vectorOf(contact_doubt).cwiseAbs2();
   }
 
   StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence
@@ -57,7 +57,7 @@ struct SampleResult {
   CrankUncertainty doubt;    ///< of the crank's motion; zero where the estimator has none
   LoadColumns load_columns;  ///< of the wrench
   HullWrench rod_momentum;   ///< that the rocker has beside a rigid rod's, as far as is not known [N s, N m s]
-  HullWrench branch_doubt;   ///< as below, while it is not known yet whether the last blow met the tool
+  HullWrench contact_doubt;  ///< as below, of where it is not known whether the tool was met
   HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
   HullDeviation deviation;   ///< at the sample, with what the hull's motion adds
   double consistency{};      ///< CrankTracker::consistency()
