@@ -156,7 +156,8 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
     return how_much + zeroFarOff(pipeline.settings().crank_sensor, *pipeline.crankTrust().slowBehind());
   const std::string rod =
       filter.rodEvidence().gives()
-          ? format("just after it by %.2g, as where rod, pins and bearings give: ", filter.rodEvidence().pickedUp())
+          ? format("just after it they differ by %.2g times, as where rod, pins and bearings give: ",
+                   filter.rodEvidence().pickedUp())
           : "";
   return how_much + rod +
          format(
