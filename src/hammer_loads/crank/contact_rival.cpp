@@ -27,6 +27,12 @@ void ContactRival::begin(const CrankBelief& belief) noexcept {
   aside_ = false;
 }
 
+void ContactRival::beginAnew(const CrankBelief& estimate) noexcept {
+  begin(estimate);
+  Side& side = belief_->state.position.angle.side;
+  side = opposite(side);
+}
+
 void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, double fit, double growth,
                           double most_speed) noexcept {
   CrankBelief& belief = *belief_;

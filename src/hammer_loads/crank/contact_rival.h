@@ -14,8 +14,10 @@ namespace hammer_loads {
 /// behind.
 class ContactRival {
  public:
-  /// belief: about to pass the blow with contact, or on the other branch than the estimate.
+  /// belief: about to pass the blow with contact.
   void begin(const CrankBelief& belief) noexcept;
+  /// At a restart, which does not show whether there was contact at the last blow. estimate: as if there was.
+  void beginAnew(const CrankBelief& estimate) noexcept;
   void drop() noexcept { belief_.reset(); }
   bool isThere() const noexcept { return belief_.has_value(); }
   /// It is there and not set aside.
@@ -40,8 +42,8 @@ class ContactRival {
   // Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kTurnsWith, kTurnsWithout
 
   std::optional<CrankBelief> belief_;
-  double evidence_{};  ///< logarithm of its odds against the estimate
-  bool aside_{};
+  double evidence_{};                                             ///< logarithm of its odds against the estimate
+  bool aside_{};                                                  ///< it was far less likely since it began
   double turns_with_{kTurnsWith}, turns_without_{kTurnsWithout};  ///< contact, so far
 };
 

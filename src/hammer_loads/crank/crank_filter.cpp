@@ -36,13 +36,6 @@ constexpr double kForgetRestarts = 2.0;  // [s]
 constexpr double kForgetDoubts = 30.0;  // [s]
 // Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kForgetDoubts
 
-/// As if the last blow had been without contact, or the reverse.
-CrankBelief onOtherBranch(CrankBelief belief) noexcept {
-  Side& side = belief.state.position.angle.side;
-  side = opposite(side);
-  return belief;
-}
-
 }  // namespace
 
 CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const CrankFilterSettings& settings)
@@ -163,8 +156,7 @@ Tracking CrankFilter::begin(WeighedSample sample) noexcept {
   restart_load_ += 1.0;
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
   anchor(sample);
-  // A restart does not show whether there was contact at the last blow.
-  if (now_.state.speed > kLearnSpeed) rival_.begin(onOtherBranch(now_));
+  if (now_.state.speed > kLearnSpeed) rival_.beginAnew(now_);
   return Tracking::kRestarted;
 }
 

@@ -61,11 +61,11 @@ class CrankTrust {
   /// It has turned forward of late: one that only ever turned backward has not struck.
   bool hasRunUp() const noexcept { return forward_ > kRunUp; }
   /// Where the zero is far off it stays so: a stroke that agrees is chance.
-  bool isInconsistent() const noexcept { return inconsistent_ || isLost() || (contradicted_ && isZeroFarOff()); }
-  /// The crank is slowest where no right zero has it.
-  bool isZeroFarOff() const noexcept {
+  bool isInconsistent() const noexcept { return inconsistent_ || isLost() || (contradicted_ && zeroFarOff()); }
+  /// slowBehind() where no right zero makes that [rad].
+  std::optional<double> zeroFarOff() const noexcept {
     const std::optional<double> behind = slowBehind();
-    return behind && std::abs(*behind) > kSlowestKnown;
+    return behind && std::abs(*behind) > kSlowestKnown ? behind : std::nullopt;
   }
   /// The estimate is not good enough before the blow, turn after turn.
   bool isLost() const noexcept { return unbelieved_ == kUnbelieved; }
@@ -83,7 +83,8 @@ class CrankTrust {
   // Guard: PoseAndTrust.ACrankHasRunUpAfterARadian of kRunUp
   static constexpr double kTurns = 5.0;  ///< over which it is looked where the crank is slow
   /// [rad] after the blow: 0.83 to 0.99 on all machines of the recordings that their drive keeps at work, whatever
-  /// their rod, rock and boom (crank_trust_test), 0.72 to 0.99 on 69 simulated ones whose rod gives (rod_warnings_test).
+  /// their rod, rock and boom (crank_trust_test), 0.72 to 0.99 on 69 simulated ones whose rod gives
+  /// (rod_warnings_test).
   static constexpr double kSlowest = 0.86;
   // Guard: PoseAndTrust.ACrankIsSlowWhereSuchAreWithinFiveTurns of kTurns, kSlowest
   static constexpr double kWindow = 0.3;  ///< [rad] over which a speed is taken: jitter of stamps counts little
@@ -121,7 +122,7 @@ class CrankTrust {
   double forward_{}, back_{};  ///< since it was furthest back, forward [rad]
   bool backward_{}, inconsistent_{};
   bool contradicted_{};  ///< it was inconsistent since it began
-  int unbelieved_{};  ///< strokes in a row of which the estimate was not good enough to be published
+  int unbelieved_{};     ///< strokes in a row of which the estimate was not good enough to be published
 };
 
 }  // namespace hammer_loads

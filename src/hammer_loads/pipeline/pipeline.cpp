@@ -155,14 +155,15 @@ HullWrench Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& 
   const bool lands = std::abs(result_.crank.speed) < kSlowCrank && transmissionAngle(links) < settings_.near_blow;
   const double probability = lands ? 1.0 : crank_.tracker().otherBranch();
   if (!(probability > 0.0)) return {};
+  const HullMotion& hull = hull_.motion().motion;
   CrankMotion other = motionOf(result_.crank);
-  const HullWrench here = hullWrench(model_, drive, other, hull_.motion().motion);
+  const HullWrench here = hullWrench(model_, drive, links, other, hull);
   if (lands) {
     other.speed = other.acceleration = 0.0;
   } else {
     other.angle.side = opposite(other.angle.side);
   }
-  const HullWrench there = hullWrench(model_, drive, other, hull_.motion().motion);
+  const HullWrench there = hullWrench(model_, drive, other, hull);
   return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)).cwiseAbs());
 }
 

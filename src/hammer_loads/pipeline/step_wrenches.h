@@ -43,9 +43,6 @@ struct StepPlace {
   const CrankStep::Passage* passage{};  ///< null: at the time
   Side side{};                          ///< of the passage
 
-  CrankEstimate crank(const CrankStep& step) const noexcept {
-    return passage != nullptr && !passage->smooth ? step.besides(*passage, side) : step.at(time);
-  }
   std::optional<CrankWays> ways(const CrankStep& step) const noexcept {
     return passage != nullptr && !passage->smooth ? step.waysBesides(*passage, side) : step.ways(time);
   }

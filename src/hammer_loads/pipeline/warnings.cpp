@@ -152,8 +152,8 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
     return how_much +
            "what follows the blow is not in the model, a coupling that gives (shaft: flexible) or a tool that is met "
            "again; the deviations there are too small";
-  if (pipeline.crankTrust().isZeroFarOff())
-    return how_much + zeroFarOff(pipeline.settings().crank_sensor, *pipeline.crankTrust().slowBehind());
+  if (const std::optional<double> behind = pipeline.crankTrust().zeroFarOff())
+    return how_much + zeroFarOff(pipeline.settings().crank_sensor, *behind);
   const std::string rod =
       filter.rodEvidence().gives()
           ? format("just after it they differ by %.2g times, as where rod, pins and bearings give: ",
@@ -180,7 +180,7 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
   const bool strike = filter.strikeConsistency() > CrankTrust::kInconsistent;
   const bool now = filter.consistency() > CrankTrust::kInconsistent || strike || filter.isUnexplained() ||
                    pipeline.crankTrust().isInconsistent() || withheld > pipeline.counts().accepted;
-  const bool far_off = withheld > 0 && pipeline.crankTrust().isZeroFarOff();  // no rod makes that
+  const bool far_off = withheld > 0 && pipeline.crankTrust().zeroFarOff();  // no rod makes that
   if (far_off || (now && !gives))
     return warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld > 0), true});
   if (gives) {
