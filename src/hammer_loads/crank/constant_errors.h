@@ -79,9 +79,9 @@ class ConstantErrors {
   const Matrix& root() const noexcept { return root_; }
   /// Derivatives by the constants, as columns of independent errors of one standard deviation each.
   template <typename Derived>
-  static Eigen::Matrix<double, Derived::RowsAtCompileTime, kSize> columns(const Eigen::MatrixBase<Derived>& by,
+  static ByConstants<Derived::RowsAtCompileTime, kSize> columns(const Eigen::MatrixBase<Derived>& by,
                                                                           const Matrix& root) noexcept {
-    Eigen::Matrix<double, Derived::RowsAtCompileTime, kSize> result = by;
+    ByConstants<Derived::RowsAtCompileTime, kSize> result = by;
     result.template leftCols<kTable>() = by.template leftCols<kTable>().lazyProduct(root);
     return result;
   }
@@ -99,8 +99,8 @@ class ConstantErrors {
 
   Vector prior_;
   ConstantFit<kTable> fit_;
-  Eigen::Matrix<double, kPlace, kMachineColumns> beside_{
-      Eigen::Matrix<double, kPlace, kMachineColumns>::Zero()};  ///< what the hammer's errors make of fit_'s score
+  ByConstants<kPlace, kMachineColumns> beside_{
+      ByConstants<kPlace, kMachineColumns>::Zero()};  ///< what the hammer's errors make of fit_'s score
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
   double zero_seen_{};       ///< [rad]

@@ -105,7 +105,7 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   BlowFactor blowFactor(double growth, const ConstantErrors::Matrix& root) const noexcept {
     const double of_factor = std::sqrt(growth * covariance(kFactor, kFactor)),
                  of_inertia = std::sqrt(growth * covariance(kInertia, kInertia));
-    Eigen::Matrix<double, 2, ConstantErrors::kSize> by;
+    ByConstants<2, ConstantErrors::kSize> by;
     by << by_constant.row(kFactor), by_constant.row(kInertia);
     return {factor, of_factor, state.drive_inertia, of_inertia, struck_early, ConstantErrors::columns(by, root)};
   }

@@ -36,7 +36,7 @@ struct CrankUncertainty {
   Eigen::Matrix3d own{Eigen::Matrix3d::Zero()};  ///< covariance of angle [rad], speed [rad/s], acceleration [rad/s2]
   /// One standard deviation each of errors that are independent of each other; by rows as above, the last relative to
   /// the drive's inertia.
-  Eigen::Matrix<double, 4, ConstantErrors::kSize> by_constant{Eigen::Matrix<double, 4, ConstantErrors::kSize>::Zero()};
+  ByConstants<4, ConstantErrors::kSize> by_constant{ByConstants<4, ConstantErrors::kSize>::Zero()};
   double inertia{};  ///< of the drive's inertia, relative, beside the constants
 
   /// Of the speed where the crank passes an angle, which an error of its angle delays. rate: acceleration over speed
@@ -63,7 +63,7 @@ struct BlowFactor {
   bool early{};                ///< it acted before the dead centre, where the crank passed with its speed after
   /// What independent errors of constants make of the factor [-] and, relatively, of the inertia, a standard deviation
   /// each.
-  Eigen::Matrix<double, 2, ConstantErrors::kSize> by_constant{Eigen::Matrix<double, 2, ConstantErrors::kSize>::Zero()};
+  ByConstants<2, ConstantErrors::kSize> by_constant{ByConstants<2, ConstantErrors::kSize>::Zero()};
 };
 
 /// How a sample was taken.

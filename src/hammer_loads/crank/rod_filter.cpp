@@ -13,11 +13,11 @@ namespace {
 constexpr double kFirstRestitution = 0.16, kRestitutionDeviation = 0.1;
 constexpr double kPlaceDeviation = 5e-3;  // [rad]: a millimetre
 // Guard: RodFilterStart.KnowsToolAndRodAsFarAsTheyAreGiven of kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
-constexpr double kWalks[] = {0.02, 0.005, 0.01, 5e-6, 3e-3};  // of the learned rows from blow to blow
+constexpr double kWalks[] = {0.005, 0.01, 5e-6, 0.02, 3e-3};  // of the learned rows from blow to blow
 // Guard: RodFilterStart.WhatItLearnsWandersFromBlowToBlow of kWalks
 constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
 // Guard: RodFilterStart.ARodIsNeitherOfRubberNorOfDiamond of kLeastLog, kMostLog
-constexpr double kLongest = 2.5e-4, kLongestLater = 5e-4;  // [s] of a part: near the blow the lever changes fast
+constexpr double kLongest = 5e-4, kLongestLater = 1e-3;  // [s] of a part: near the blow the lever changes fast
 // Numerical: kLongest, kLongestLater
 constexpr double kNear = 0.25;  // [rad]
 // Numerical: kNear
@@ -40,7 +40,7 @@ RodFilter::RodFilter(const Mechanism& mechanism, Pins pins) noexcept : bodies_(m
   learned_.log_stiffness = std::log(prior.rod.stiffness);
   learned_.log_damping = std::log(prior.rod.damping_ratio);
   Eigen::Matrix<double, kLearned, 1> deviations;
-  deviations << kRestitutionDeviation, prior.log_stiffness, prior.log_damping, play, kPlaceDeviation;
+  deviations << prior.log_stiffness, prior.log_damping, play, kRestitutionDeviation, kPlaceDeviation;
   learned_covariance_ = deviations.cwiseAbs2().asDiagonal();
   first_ = learned_;
   first_covariance_ = learned_covariance_;
@@ -82,7 +82,7 @@ void RodFilter::begin(const CrankFilter& crank, Gravity gravity) noexcept {
     bodies_.settle(rod(other), drive(other), other.state);
     settled.col(i) = difference(other, motion_);
   }
-  belief_.covariance = settled.lazyProduct(settled.transpose());
+  belief_.covariance = covarianceOf(settled);
   belief_.addNoise(kBeside, kBeside, square(kSettledX));
   belief_.addNoise(kBesideSpeed, kBesideSpeed, square(kSettledSpeed));
 }
@@ -95,10 +95,10 @@ RodMotion RodFilter::displaced(const Belief::Vector& by) const noexcept {
   m.state.beside_speed += by[kBesideSpeed];
   m.torque += by[kTorque];
   m.log_inertia += by[kInertia];
-  m.restitution += by[kRestitution];
   m.log_stiffness += by[kStiffness];
   m.log_damping += by[kDamping];
   m.play = std::max(0.0, m.play + by[kPlay]);
+  m.restitution += by[kRestitution];
   m.place += by[kPlace];
   return m;
 }
@@ -108,8 +108,8 @@ RodFilter::Belief::Vector RodFilter::difference(const RodMotion& of, const RodMo
   Belief::Vector d;
   d << s.angle.offset - from.state.angle.offset, s.speed - from.state.speed, s.beside - from.state.beside,
       s.beside_speed - from.state.beside_speed, of.torque - from.torque, of.log_inertia - from.log_inertia,
-      of.restitution - from.restitution, of.log_stiffness - from.log_stiffness, of.log_damping - from.log_damping,
-      of.play - from.play, of.place - from.place;
+      of.log_stiffness - from.log_stiffness, of.log_damping - from.log_damping, of.play - from.play,
+      of.restitution - from.restitution, of.place - from.place;
   return d;
 }
 
@@ -133,10 +133,11 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   RodMotion there = motion_;
   advance(dt, walks.supply, true, there);
   const bool struck = there.state.angle.side == Side::kAfterBlow;
+  const Eigen::Index count = struck && !hasStruck() ? kSize : kRestitution;  // of the columns that a step moves
   if (!hasStruck())
     rocker_before_ = bodies_.links(motion_.state.angle).rocker.u * motion_.state.speed + motion_.state.beside_speed;
   Belief::Matrix moved = root;
-  for (Eigen::Index i = 0; i < kSize; ++i) {
+  for (Eigen::Index i = 0; i < count; ++i) {
     if (!(root(i, i) > 0.0)) continue;
     RodMotion other = displaced(root.col(i));
     advance(dt, walks.supply, struck, other);
@@ -146,7 +147,7 @@ void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexce
   }
   if (hasStruck()) since_blow_ += dt;
   motion_ = there;
-  belief_.covariance = moved.lazyProduct(moved.transpose());
+  belief_.covariance = covarianceOf(moved);
   const double torque = square(walks.torque) * dt, b = 1.0 / std::exp(motion_.log_inertia);
   belief_.addNoise(kTorque, kTorque, torque);
   belief_.addNoise(kSpeed, kSpeed, square(walks.speed) * dt + torque * square(b * dt) / 3.0);

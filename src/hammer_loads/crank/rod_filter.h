@@ -34,10 +34,10 @@ class RodFilter {
     kBesideSpeed,
     kTorque,
     kInertia,
-    kRestitution,
     kStiffness,
     kDamping,
     kPlay,
+    kRestitution,  ///< from here on: what counts at the tool alone
     kPlace,
     kSize
   };
@@ -87,7 +87,7 @@ class RodFilter {
   Gravity gravity_;
   RodMotion motion_;
   Belief belief_;
-  static constexpr Eigen::Index kLearned = kSize - kRestitution;  ///< the last rows
+  static constexpr Eigen::Index kLearned = kSize - kStiffness;  ///< the last rows
   using Learned = Eigen::Matrix<double, kLearned, kLearned>;
   RodMotion first_, learned_;  ///< rod, restitution, rod and place alone
   Learned first_covariance_;

@@ -23,4 +23,14 @@ Eigen::Matrix<double, size, size> covarianceRoot(const Eigen::Matrix<double, siz
   return root;
 }
 
+/// The way back: of errors that are independent of each other, a column each. Symmetric to the last bit.
+template <int size>
+Eigen::Matrix<double, size, size> covarianceOf(const Eigen::Matrix<double, size, size>& errors) noexcept {
+  const Eigen::Matrix<double, size, size, Eigen::RowMajor> rows = errors;
+  Eigen::Matrix<double, size, size> covariance;
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index k = 0; k <= i; ++k) covariance(i, k) = covariance(k, i) = rows.row(i).dot(rows.row(k));
+  return covariance;
+}
+
 }  // namespace hammer_loads

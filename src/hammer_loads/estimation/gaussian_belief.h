@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "hammer_loads/util/by_constants.h"
+
 namespace hammer_loads {
 
 /// Schmidt's consider filter (Friedland's separate bias): x are `variables` that are corrected; p are the errors of
@@ -25,7 +27,7 @@ struct GaussianBelief {
   using Vector = Eigen::Matrix<double, variables, 1>;
   using Row = Eigen::Matrix<double, 1, variables>;  ///< derivative of a number by the variables
   using Matrix = Eigen::Matrix<double, variables, variables>;
-  using Effect = Eigen::Matrix<double, variables, constants>;
+  using Effect = ByConstants<variables, constants>;
   using ConstantRow = Eigen::Matrix<double, 1, constants>;  ///< derivative of a number by the constants
   using ConstantMatrix = Eigen::Matrix<double, constants, constants>;
 
@@ -40,7 +42,7 @@ struct GaussianBelief {
     constexpr int count = sizeof...(rows);
     const Eigen::Matrix<double, count, variables> moved = f * covariance;
     const Eigen::Matrix<double, count, count> both = moved * f.transpose();
-    const Eigen::Matrix<double, count, constants> effect = f * by_constant;
+    const ByConstants<count, constants> effect = f * by_constant;
     for (int i = 0; i < count; ++i) {
       covariance.row(changed[i]) = moved.row(i);
       covariance.col(changed[i]) = moved.row(i).transpose();

@@ -14,7 +14,7 @@ namespace hammer_loads {
 /// Models of the other hammers of MachineColumns; in their order.
 class WrenchColumns {
  public:
-  using Matrix = Eigen::Matrix<double, 3, kMachineColumns>;  ///< rows: force_x [N], force_z [N], torque_y [N m]
+  using Matrix = MachineColumns::Effect;  ///< rows: force_x [N], force_z [N], torque_y [N m]
 
   explicit WrenchColumns(const HullModel& model);
   WrenchColumns(const WrenchColumns&) = delete;

@@ -17,6 +17,23 @@ ShaftLoad loadOf(const Mechanism& mechanism, Level level, const LinkMotion& link
                                   : shaftLoadRocker(mechanism, links.rocker, gravity);
 }
 
+/// Of inertia, half its slope, weight torque by the links' masses.
+LinkMasses::Effect effectOnShaft(const LinkMotion& l, Gravity gravity) noexcept {
+  using M = LinkMasses;
+  const double u = l.rocker.u, v = l.v, bend = v * (v - 1.0);
+  M::Effect by = M::Effect::Zero();
+  const auto weight = [&](int i, Planar rate) { by(2, i) = gravity.z * rate.re + gravity.x * rate.im; };
+  weight(M::kCrank, l.phi), weight(M::kCrank + 1, turned(l.phi));
+  weight(M::kRod, v * l.beta), weight(M::kRod + 1, turned(v * l.beta));
+  weight(M::kRocker, u * l.psi);
+  by.col(M::kCrankInertia) << 1.0, 0.0, 0.0;
+  by.col(M::kRodInertia) << v * v, v * l.dv, 0.0;
+  by.col(M::kRockerInertia) << u * u, u * l.rocker.du, 0.0;
+  by.col(M::kCoupling) << 2.0 * v * l.delta.re, l.dv * l.delta.re - bend * l.delta.im, 0.0;
+  by.col(M::kCoupling + 1) << -2.0 * v * l.delta.im, -l.dv * l.delta.im - bend * l.delta.re, 0.0;
+  return by;
+}
+
 }  // namespace
 
 MachineColumns::MachineColumns(const Mechanism& mechanism, Level level) : mechanism_(mechanism), level_(level) {
@@ -26,24 +43,32 @@ MachineColumns::MachineColumns(const Mechanism& mechanism, Level level) : mechan
     if (!(p.deviations[i] > 0.0) || constant.enters == Enters::kLearned || constant.enters == Enters::kFollows)
       continue;
     const auto other = shifted(p, constant, MachineColumn::kStep * constant.away * p.deviations[i]);
-    if (other) columns_.push_back({*other, level, constant.enters, MachineColumn::kStep, constant.key});
+    if (other) add(*other, level, constant.enters, MachineColumn::kStep, constant.key);
   }
   if (level != Level::kLinkage)
-    columns_.push_back(
-        {mechanism, Level::kLinkage, Enters::kLoads, 1.0, level == Level::kPulse ? "level pulse" : "level rocker"});
+    add(mechanism, Level::kLinkage, Enters::kLoads, 1.0, level == Level::kPulse ? "level pulse" : "level rocker");
+}
+
+void MachineColumns::add(const Mechanism& other, Level level, Enters enters, double step, const std::string& name) {
+  const bool of_masses = enters == Enters::kLoads && haveLikeMotion(other, mechanism_);
+  const LinkMasses::Vector change = (LinkMasses::of(other, level) - LinkMasses::of(mechanism_, level_)) / step;
+  const auto column = static_cast<Eigen::Index>(columns_.size());
+  for (Eigen::Index i = 0; of_masses && i < change.size(); ++i)
+    if (change[i] != 0.0) parts_.push_back({column, i, change[i]});
+  columns_.push_back({other, level, enters, step, name, of_masses});
 }
 
 MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravity) const noexcept {
   const LinkMotion links = linkMotion(mechanism_.linkage(), angle);
   const ShaftLoad here = loadOf(mechanism_, level_, links, gravity);
-  OnShaft effects = OnShaft::Zero();
+  OnShaft effects = byMasses(effectOnShaft(links, gravity));
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const MachineColumn& c = columns_[i];
-    if (c.enters == Enters::kBlow) continue;
+    if (c.enters == Enters::kBlow || c.of_masses) continue;
     const ShaftLoad there = loadOf(c.mechanism, c.level, c.linksAt(angle, links), gravity);
-    effects.col(static_cast<Eigen::Index>(i)) << there.inertia - here.inertia,
-        there.half_inertia_slope - here.half_inertia_slope, there.weight_torque - here.weight_torque;
-    effects.col(static_cast<Eigen::Index>(i)) *= 1.0 / c.step;
+    const double by = 1.0 / c.step;
+    effects.col(static_cast<Eigen::Index>(i)) << by * (there.inertia - here.inertia),
+        by * (there.half_inertia_slope - here.half_inertia_slope), by * (there.weight_torque - here.weight_torque);
   }
   return effects;
 }

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "hammer_loads/linkage/hammer_constants.h"
+#include "hammer_loads/linkage/link_masses.h"
 #include "hammer_loads/linkage/shaft_load.h"
+#include "hammer_loads/util/by_constants.h"
 
 namespace hammer_loads {
 
@@ -27,6 +29,7 @@ struct MachineColumn {
   HammerConstant::Enters enters;
   double step;       ///< kStep, or 1 of what a level leaves out
   std::string name;  ///< key of the constant, or the level that leaves something out
+  bool of_masses;    ///< what it changes of a given motion's loads is linear in LinkMasses
 
   /// links: of the hammer itself at the angle.
   LinkMotion linksAt(CrankAngle angle, const LinkMotion& links) const noexcept {
@@ -36,19 +39,33 @@ struct MachineColumn {
 
 class MachineColumns {
  public:
-  /// One standard deviation of each column on the shaft's load: of inertia, half its slope, torque.
-  using OnShaft = Eigen::Matrix<double, 3, kMachineColumns>;
+  /// One standard deviation of each column on three loads; on the shaft: of inertia, half its slope, weight's torque.
+  using Effect = ByConstants<3, kMachineColumns>;
+  using OnShaft = Effect;
 
   MachineColumns(const Mechanism& mechanism, Level level);
 
   const std::vector<MachineColumn>& columns() const noexcept { return columns_; }
+  /// One standard deviation of each column that is of masses, on loads of a given motion; by: those of LinkMasses.
+  Effect byMasses(const LinkMasses::Effect& by) const noexcept {
+    Effect effects = Effect::Zero();
+    for (const Part& part : parts_) effects.col(part.column) += part.size * by.col(part.mass);
+    return effects;
+  }
   /// load: at the angle, without what the hull's own motion adds.
   OnShaft onShaft(CrankAngle angle, Gravity gravity) const noexcept;
 
  private:
+  struct Part {  ///< of LinkMasses [its unit]
+    Eigen::Index column, mass;
+    double size;
+  };
+  void add(const Mechanism& other, Level level, HammerConstant::Enters enters, double step, const std::string& name);
+
   Mechanism mechanism_;
   Level level_;
   std::vector<MachineColumn> columns_;
+  std::vector<Part> parts_;
 };
 
 /// Whether a hammer can exist whose constant, of kHammerConstants, is off by its deviation.

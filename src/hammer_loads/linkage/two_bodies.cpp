@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kBallistic = 1e-4;  // [rad]: below, the spring does nothing within a step
 
+constexpr double kContact = 1.2e-4;  // [s] of a step within which pins with play may part or meet
+// Numerical: kContact
+
 /// y'' = pull - square y - 2 decay y' over a time.
 void oscillate(double square, double decay, double pull, double time, double& y, double& speed) noexcept {
   if (!(square * time * time > kBallistic * kBallistic)) {
@@ -41,10 +44,11 @@ double rigidRockerAngle(const LinkMotion& links) noexcept {
 
 /// Everything in the equations but x, its rate and the crank's acceleration.
 struct TwoBodies::Local {
-  double reflected{}, coupling{}, own{};  ///< J, B, M22 - B^2/J [kg m2]
-  double on_crank{}, on_rocker{};         ///< F1 without the spring, F2 [N m]
-  double lever{}, secant_lever{};         ///< h = -d(stretch)/dx, -stretch/x [m]
-  double by_crank{};                      ///< d(stretch)/dphi at x [m]
+  double reflected{}, coupling{};     ///< J, B [kg m2]
+  double per_reflected{}, per_own{};  ///< 1/J, 1/(M22 - B^2/J) [1/(kg m2)]
+  double on_crank{}, on_rocker{};     ///< F1 without the spring, F2 [N m]
+  double lever{}, secant_lever{};     ///< h = -d(stretch)/dx, -stretch/x [m]
+  double by_crank{};                  ///< d(stretch)/dphi at x [m]
 };
 
 TwoBodies::TwoBodies(const Mechanism& mechanism) noexcept : mechanism_(&mechanism) {
@@ -72,7 +76,8 @@ TwoBodies::Local TwoBodies::local(const TwoBodyDrive& drive, const TwoBodyState&
   Local a;
   a.coupling = both.re + u * rocker_;
   a.reflected = drive.inertia + crank_ + u * (both.re + a.coupling);
-  a.own = rocker_ - a.coupling * a.coupling / a.reflected;
+  a.per_reflected = 1.0 / a.reflected;
+  a.per_own = 1.0 / (rocker_ - a.coupling * a.coupling * a.per_reflected);
   a.on_rocker = on_rocker - rocker_ * links.rocker.du * ww + slope * ww;
   a.on_crank = drive.torque + weight(crank_weight_, links.phi) + u * on_rocker - a.coupling * links.rocker.du * ww -
                slope * v * v + u * slope * ww;
@@ -84,34 +89,44 @@ TwoBodies::Local TwoBodies::local(const TwoBodyDrive& drive, const TwoBodyState&
 }
 
 void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& s) const noexcept {
+  const TwoBodyState from = s;
   TwoBodyState middle = s;
   middle.angle.offset += 0.5 * dt * s.speed;
   middle.beside += 0.5 * dt * s.beside_speed;
   const Local a = local(drive, middle, links(middle.angle));
-  const double damping = rod.damping();
-  const double stretch = -a.secant_lever * middle.beside, half = 0.5 * rod.play;
-  const double rate = a.by_crank * s.speed - a.lever * s.beside_speed;
-  const bool free = half > 0.0 && (std::abs(stretch) < half || pushes(rod, damping, stretch, rate) == 0.0);
+  const double damping = rod.damping(), half = 0.5 * rod.play;
+  const auto isFree = [&](double beside, double beside_speed, double speed) {
+    const double stretch = -a.secant_lever * beside, rate = a.by_crank * speed - a.lever * beside_speed;
+    return half > 0.0 && (std::abs(stretch) < half || pushes(rod, damping, stretch, rate) == 0.0);
+  };
+  const bool free = isFree(middle.beside, s.beside_speed, s.speed);
   // tension = -stiff x - damped x' - apart, at the middle's levers
   const double stiff = free ? 0.0 : rod.stiffness * a.secant_lever;
   const double damped = free ? 0.0 : damping * a.lever;
-  const double apart =
-      free ? 0.0 : (half > 0.0 ? rod.stiffness * std::copysign(half, stretch) : 0.0) - damping * a.by_crank * s.speed;
-  const double per = a.lever / a.own,
-               pull = (a.on_rocker - a.coupling / a.reflected * a.on_crank) / a.own - per * apart;
+  const double to_side = half > 0.0 ? rod.stiffness * std::copysign(half, -a.secant_lever * middle.beside) : 0.0;
+  const double apart = free ? 0.0 : to_side - damping * a.by_crank * s.speed;
+  const double per = a.lever * a.per_own, back = a.coupling * a.per_reflected;
+  const double pull = (a.on_rocker - back * a.on_crank) * a.per_own - per * apart;
   const double x = s.beside, y = s.beside_speed;
   oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.beside, s.beside_speed);
   const double gained = s.beside_speed - y;
   const double tension = -stiff * 0.5 * (x + s.beside) - damped * (s.beside - x) / dt - apart;
-  const double force = a.on_crank - tension * a.by_crank, back = a.coupling / a.reflected;
-  s.angle.offset += dt * (s.speed + 0.5 * dt * force / a.reflected) - back * (s.beside - x - dt * y);
-  s.speed += dt * force / a.reflected - back * gained;
+  const double rate_of_crank = (a.on_crank - tension * a.by_crank) * a.per_reflected;
+  s.angle.offset += dt * (s.speed + 0.5 * dt * rate_of_crank) - back * (s.beside - x - dt * y);
+  s.speed += dt * rate_of_crank - back * gained;
+  // Pins that part or meet within the step: it is made of two.
+  if (half > 0.0 && dt > kContact &&
+      (isFree(x, y, from.speed) != free || isFree(s.beside, s.beside_speed, s.speed) != free)) {
+    s = from;
+    move(rod, drive, 0.5 * dt, s);
+    move(rod, drive, 0.5 * dt, s);
+  }
 }
 
 void TwoBodies::settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& s) const noexcept {
   s.beside = s.beside_speed = 0.0;
   const Local a = local(drive, s, links(s.angle));
-  const double pull = a.on_rocker - a.coupling / a.reflected * a.on_crank;
+  const double pull = a.on_rocker - a.coupling * a.per_reflected * a.on_crank;
   s.beside = pull / (rod.stiffness * a.lever * a.lever) + std::copysign(0.5 * rod.play, pull) / std::abs(a.lever);
 }
 
@@ -160,8 +175,8 @@ TwoBodyAccelerations TwoBodies::accelerations(const RodSpring& rod, const TwoBod
   const double rate = a.by_crank * s.speed - a.lever * s.beside_speed;
   const double tension = half > 0.0 ? pushes(rod, damping, stretch, rate) : rod.stiffness * stretch + damping * rate;
   const double on_crank = a.on_crank - tension * a.by_crank;
-  const double beside = (a.on_rocker + tension * a.lever - a.coupling / a.reflected * on_crank) / a.own;
-  const double crank = (on_crank - a.coupling * beside) / a.reflected;
+  const double beside = (a.on_rocker + tension * a.lever - a.coupling * a.per_reflected * on_crank) * a.per_own;
+  const double crank = (on_crank - a.coupling * beside) * a.per_reflected;
   return {crank, links.rocker.u * crank + links.rocker.du * s.speed * s.speed + beside};
 }
 

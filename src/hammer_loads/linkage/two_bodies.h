@@ -42,7 +42,8 @@ class TwoBodies {
   /// Refers to the mechanism, which must outlive it.
   explicit TwoBodies(const Mechanism& mechanism) noexcept;
 
-  /// By dt [s] > 0, some quarter of a millisecond, over which levers count as constant.
+  /// By dt [s] > 0, over which levers count as constant: half a millisecond beside the blow, one elsewhere. Where pins
+  /// with play part or meet, it is made of parts.
   void move(const RodSpring& rod, const TwoBodyDrive& drive, double dt, TwoBodyState& state) const noexcept;
   /// At a state.
   TwoBodyAccelerations accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& state,

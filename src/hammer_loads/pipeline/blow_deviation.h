@@ -9,7 +9,7 @@ namespace hammer_loads {
 
 /// Errors of a CrankBlow by independent errors of constants, one standard deviation each, in the order of
 /// ConstantErrors: rows speed [rad/s], factor [-], drive inertia (relative).
-using BlowColumns = Eigen::Matrix<double, 3, ConstantErrors::kSize>;
+using BlowColumns = ByConstants<3, ConstantErrors::kSize>;
 
 /// blow: measuredBlow() of `crank`, whose deviations get the part of constants. Each cause by a difference.
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,

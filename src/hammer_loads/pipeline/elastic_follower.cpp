@@ -132,7 +132,7 @@ Eigen::Vector3d ElasticFollower::variance(const DriveReaction& drive) const noex
   const Eigen::Vector3d here = all(filter().motion());
   const RodFilter::Belief::Matrix errors = filter().errors();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < RodFilter::kSize; ++i)
+  for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i)
     if (errors(i, i) > 0.0) sum += (all(filter().displaced(errors.col(i))) - here).cwiseAbs2();
   return sum;
 }
@@ -172,7 +172,8 @@ bool ElasticFollower::isBesideBlow() const noexcept {
   const double way = links.rocker.sin_psi + m.state.beside - m.place;
   const double speed = -(links.rocker.u * m.state.speed + m.state.beside_speed);
   const double of_angle = speed / m.state.speed * filter().deviation(RodFilter::kAngle);
-  return way < gate::kUsual * std::hypot(of_angle, filter().deviation(RodFilter::kPlace));
+  // The place stands for the middle of a contact, which has begun before it.
+  return way < 0.5 * kContact * speed + gate::kUsual * std::hypot(of_angle, filter().deviation(RodFilter::kPlace));
 }
 
 }  // namespace hammer_loads

@@ -41,7 +41,7 @@ inline HullDeviation hullDeviation(const HullModel& model, const DriveReaction& 
 /// the sensor's constants, of the hammer's (their order: ConstantErrors), of the learned drive inertia. Rows: force_x
 /// [N], force_z [N], torque_y [N m].
 constexpr int kLoadColumns = ConstantErrors::kSize + 1;
-using LoadColumns = Eigen::Matrix<double, 3, kLoadColumns>;
+using LoadColumns = ByConstants<3, kLoadColumns>;
 
 /// By samples and constants together, J P J^T + (J V + dload/dp)(J V + dload/dp)^T (Schmidt's consider filter).
 HullDeviation hullDeviation(const WrenchColumns& hammer, const HullModel& model, double drive_inertia,
@@ -59,7 +59,7 @@ HullWrench momentumDeviation(const HullModel& model, const DriveReaction& drive,
 
 /// Errors of the momentum that are independent of each other, one standard deviation each, in the order of LoadColumns.
 /// Rows: x, z [N s].
-using MomentumColumns = Eigen::Matrix<double, 2, kLoadColumns>;
+using MomentumColumns = ByConstants<2, kLoadColumns>;
 
 /// Of the momentum of the links where the crank is at an angle with a speed [rad/s]; of_speed: errors of that [rad/s].
 MomentumColumns momentumColumns(const WrenchColumns& hammer, const HullModel& model, CrankAngle angle, double speed,
