@@ -88,7 +88,7 @@ class Loader:
         found = self.store.row("SELECT bag_id FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
         if found is None:
             return
-        for table in COPIED + ["run_figures"] + [t for t in OPTIONAL["turns"] if self.store.columns(t)]:
+        for table in COPIED + ["run_figures"] + [t for t in ["run_cylinders"] if self._columns_of(t)] + [t for t in OPTIONAL["turns"] if self.store.columns(t)]:
             self.store.execute(f"DELETE FROM {table} WHERE run_id IN (SELECT run_id FROM runs WHERE bag_id = ?)", found[0])
         self.store.execute("DELETE FROM runs WHERE bag_id = ?", found[0])
         self.store.execute("DELETE FROM bags WHERE bag_id = ?", found[0])
@@ -110,8 +110,19 @@ class Loader:
             self.store.insert("runs", names, [[run[name] for name in names]])
             self.store.insert("run_figures", ["run_id", "quantity", "count", "least", "mean", "greatest", "total"],
                               figures(source, own, run_id))
+            self._add_cylinders(source, own, run_id)
         for table in self.tables:
             self._copy(source, table, first - 1)
+
+    def _add_cylinders(self, source, own, run_id):
+        """Databases of older versions, and targets merged by them, have none."""
+        if not source.columns("boom_cylinders") or not self._columns_of("run_cylinders"):
+            return
+        self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_deviation",
+                                            "doubtful"],
+                          [(run_id, *row) for row in source.rows(
+                              "SELECT cylinder, count(*), avg(stiffness_ratio), avg(stiffness_ratio_deviation), "
+                              "avg(doubtful) FROM boom_cylinders WHERE run_id = ? GROUP BY cylinder", own)])
 
     def _add_parameters(self, source, run):
         key = (run["parameters_sha256"], run["version"])

@@ -59,6 +59,19 @@ class Queries(MergeTest):
         self.assertAlmostEqual(float(row["unpressed_blows_per_hour"]), 5 * 3600 / 80, delta=0.5)
         self.assertEqual(row["still_s_per_hour"], "")
 
+    def test_boom_health_by_month(self):
+        """A cylinder that softens from one month to the next; what is doubtful is in no trend."""
+        for at, stiffness in enumerate((1.0, 0.98, 0.8)):
+            oil = {"boom_cylinder": (stiffness, 0.0, 0), "arm_cylinder": (1.2, 0.0, 1)}
+            self.merge(self.add(f"o{at}", "olive", of=sample.Machine("olive", oil=oil), seed=at,
+                                first=40 * 86400 * at))
+        rows = [row for row in self.answer("boom_health") if row["machine"] == "olive"]
+        self.assertEqual([(row["cylinder"], row["month"], row["runs"]) for row in rows],
+                         [("boom_cylinder", month, "1") for month in ("2023-11", "2023-12", "2024-02")])
+        for row, change in zip(rows, (0.0, -2.0, -20.0)):
+            self.assertAlmostEqual(float(row["change_percent"]), change, delta=0.2)
+            self.assertAlmostEqual(float(row["deviation"]), 0.01, delta=1e-6)
+
     def test_sensors_to_calibrate_takes_warnings(self):
         """Sound figures and a warning: the sensor asks for it; a warning about something else does not."""
         self.assertEqual([row["machine"] for row in self.answer("sensors_to_calibrate")], ["blue"])

@@ -44,6 +44,10 @@ CREATE TABLE cycles(run_id INTEGER, channel INTEGER, steps INTEGER, low INTEGER,
   PRIMARY KEY(run_id, channel, steps, low)) WITHOUT ROWID;
 CREATE TABLE residues(run_id INTEGER, channel INTEGER, place INTEGER, class INTEGER,
   PRIMARY KEY(run_id, channel, place)) WITHOUT ROWID;
+CREATE TABLE boom_cylinders(run_id INTEGER, turn INTEGER, cylinder TEXT, joint_angle_rad REAL, stiffness_ratio REAL,
+  stiffness_ratio_deviation REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder));
+CREATE TABLE boom_modes(run_id INTEGER, turn INTEGER, mode INTEGER, frequency_Hz REAL, frequency_deviation_Hz REAL,
+  damping_ratio REAL, damping_ratio_deviation REAL, PRIMARY KEY(run_id, turn, mode));
 CREATE TABLE traces(run_id INTEGER, kind TEXT, turn INTEGER, place INTEGER, time_s REAL, force_x_N REAL,
   force_z_N REAL, torque_y_Nm REAL, force_z_deviation_N REAL, crank_angle_rad REAL);
 """
@@ -114,9 +118,10 @@ class Machine:
     """What differs between two machines of a fleet."""
 
     def __init__(self, name="mo100", peak_N=40600.0, rate_Hz=5.0, noise=0.04, consistency=0.9, jitter_s=2e-5,
-                 stiff=1.0, curve=True, parameters=None, misuse=(0, 0, None, None)):
+                 stiff=1.0, curve=True, parameters=None, misuse=(0, 0, None, None), oil=None):
         self.name, self.peak_N, self.rate_Hz, self.noise = name, peak_N, rate_Hz, noise
         self.consistency, self.jitter_s, self.stiff, self.curve = consistency, jitter_s, stiff, curve
+        self.oil = oil or {}  # by cylinder: stiffness over the boom file's, change from run to run, doubtful
         self.misuse = misuse  # blank strokes, blows judged, of these unpressed, seconds at one place
         self.parameters = {"rocker_mass_kg": ("35.2", "35.2"), "hammer": (name, "mo100"),
                            "crank_ratio": ("1.0", "1.0"), **(parameters or {})}
@@ -161,6 +166,7 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
     db.executemany(f"INSERT INTO turns VALUES({','.join('?' * (3 + len(PULSE)))})", pulses)
     db.executemany(f"INSERT INTO blows VALUES({','.join('?' * (3 + len(BLOW)))})", blows)
     db.executemany("INSERT INTO turn_loads VALUES(?,?,?,?,?,?)", loads)
+    write_oil(db, run_id, machine, turns, rng)
     for i, (name, _, _, scale) in enumerate(channels):
         low, high = (min(series[i]), max(series[i])) if series.get(i) else (None, None)
         stress = name.startswith("stress/") and machine.curve
@@ -191,6 +197,17 @@ def write_run(db, run_id, machine, seconds, first_ns, seed, boom, classes, warni
     db.executemany("INSERT INTO warnings VALUES(?,?,?,?)",
                    [(run_id, i, key, line) for i, (key, line) in enumerate(warnings)])
     return stamp
+
+
+def write_oil(db, run_id, machine, turns, rng):
+    """As a boom that is watched gives it: every turn a value near the last one, and its modes."""
+    for name, (stiffness, change, doubtful) in machine.oil.items():
+        db.executemany("INSERT INTO boom_cylinders VALUES(?,?,?,?,?,?,?)",
+                       [(run_id, turn, name, -0.5, stiffness + change * (run_id - 1) + rng.gauss(0.0, 0.002), 0.01, doubtful)
+                        for turn in range(1, turns + 1)])
+    for mode in range(1, len(machine.oil) + 1):
+        db.executemany("INSERT INTO boom_modes VALUES(?,?,?,?,?,?,?)",
+                       [(run_id, turn, mode, 4.0 * mode + 0.01 * (turn % 10), 0.1, 0.05, 0.005) for turn in range(1, turns + 1)])
 
 
 def write_trace(db, run_id, kind, turn, pulse, rng):

@@ -4,11 +4,34 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "settings/temporary_file.h"
 
 namespace hammer_loads {
 namespace {
+
+TEST(TableWriter, KeepsTheBoomsHealth) {
+  const test::TemporaryFile file("");
+  {
+    TableWriter writer(file.path(), {{"turn", true}}, {{"turn", true}});
+    writer.boomCylinder(1, {7, "arm_cylinder", -0.5, 0.9, 0.01, true});
+    writer.boomMode(1, {7, 2, 8.5, 0.1, 0.05, std::numeric_limits<double>::quiet_NaN()});
+    writer.finish();
+    ASSERT_EQ(writer.problem(), "");
+  }
+  life::Database database(file.path(), life::Database::Use::kRead, 0);
+  life::Database::Statement rows(
+      database,
+      "SELECT turn, joint_angle_rad, stiffness_ratio, stiffness_ratio_deviation, doubtful, mode, frequency_Hz, "
+      "frequency_deviation_Hz, damping_ratio, damping_ratio_deviation FROM boom_cylinders JOIN boom_modes "
+      "USING(run_id, turn) WHERE run_id = 1 AND cylinder = 'arm_cylinder'");
+  ASSERT_TRUE(rows.step());
+  const double expected[] = {7, -0.5, 0.9, 0.01, 1, 2, 8.5, 0.1, 0.05};
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(rows.number(i), expected[i]) << i;
+  EXPECT_TRUE(std::isnan(rows.number(9)));
+  EXPECT_FALSE(rows.step());
+}
 
 /// What nothing measured is NULL, which is not zero.
 TEST(TableWriter, MisuseThatIsNotKnownIsNull) {

@@ -178,17 +178,27 @@ void Vibration::useIdentified() noexcept {
   for (int k = 0; k < modes_.count; ++k) modes_.omega[k] = modes_.given_omega[k] * identifier_->frequencyRatio(k);
 }
 
+Vibration::OilFound Vibration::oilFound(const LogOil& by) const noexcept {
+  double variance = 0.0;
+  for (int i = 0; i < modes_.count; ++i)
+    for (int j = 0; j < modes_.count; ++j) variance += by[i] * by[j] * identifier_->oilCovariance(i, j);
+  return {by.dot(log_oil_ + identifier_->oil()), std::sqrt(std::max(variance, 0.0))};
+}
+
+std::optional<Vibration::OilFound> Vibration::oilFound(std::size_t cylinder) const noexcept {
+  const int own = static_cast<int>(cylinder);
+  if (!identifies() || own >= modes_.count || !identifier_->identified()) return std::nullopt;
+  return oilFound(LogOil(LogOil::Unit(own)));
+}
+
 std::optional<Vibration::OilAgainstOthers> Vibration::oilAgainstOthers(std::size_t cylinder) const noexcept {
   const int count = modes_.count, own = static_cast<int>(cylinder);
   if (!identifies() || count < 2 || own >= count || !identifier_->identified()) return std::nullopt;
   LogOil by = LogOil::Zero();
   by.head(count).setConstant(-1.0 / (count - 1));
   by[own] = 1.0;
-  double variance = 0.0;
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j) variance += by[i] * by[j] * identifier_->oilCovariance(i, j);
-  return OilAgainstOthers{by.dot(log_oil_ + identifier_->oil()), std::sqrt(std::max(variance, 0.0)),
-                          by.cwiseProduct(own_oil_).norm()};
+  const OilFound found = oilFound(by);
+  return OilAgainstOthers{found.stiffer, found.deviation, by.cwiseProduct(own_oil_).norm()};
 }
 
 void Vibration::restIfNotFinite() noexcept {

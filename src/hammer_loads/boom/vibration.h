@@ -77,6 +77,12 @@ class Vibration {
   };
   /// Nothing while frequencies are not found, and without other cylinders.
   std::optional<OilAgainstOthers> oilAgainstOthers(std::size_t cylinder) const noexcept;
+  /// Of a cylinder's oil over that of the boom file: logarithm of stiffness as found, its standard deviation.
+  struct OilFound {
+    double stiffer{}, deviation{};
+  };
+  /// As above.
+  std::optional<OilFound> oilFound(std::size_t cylinder) const noexcept;
   /// What follows the readings, if anything does.
   const std::optional<ModeIdentifier>& identifier() const noexcept { return identifier_; }
   /// Displacement and velocity are those of the readings: all frequencies are known, or the rock bears on the hull.
@@ -117,6 +123,7 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
+  OilFound oilFound(const LogOil& by) const noexcept;  ///< of that sum over the cylinders
   LogOil oilToTake() const noexcept;
   void useMotion() noexcept;
   void takeMotion() noexcept;

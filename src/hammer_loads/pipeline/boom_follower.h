@@ -121,6 +121,10 @@ class BoomFollower {
   /// Measured pressures show the rock's force on the hull.
   bool contactKnown() const noexcept { return known_ && source() == Known::kMeasured; }
   const Boom& boom() const noexcept { return boom_; }
+  /// Of a cylinder's joint, at the last sample [rad].
+  double jointAngle(std::size_t cylinder) const noexcept {
+    return motion_.position[boom_.cylinders()[cylinder].joint()];
+  }
   const JointBuffer& joints() const noexcept { return joints_; }
   const CylinderPressures& pressures() const noexcept { return pressures_; }
   const PressureTrust& pressureTrust() const noexcept { return trust_; }

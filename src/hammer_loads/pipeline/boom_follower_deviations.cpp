@@ -8,7 +8,9 @@
 namespace hammer_loads {
 namespace {
 
-void addVariance(double other, double& deviation) noexcept { deviation = std::hypot(deviation, other); }
+void addVariance(double other, double& deviation) noexcept {
+  deviation = std::sqrt(square(deviation) + square(other));
+}
 
 void addVariance(const Wrench& other, Wrench& deviation) noexcept {
   for (int i = 0; i < 3; ++i) {

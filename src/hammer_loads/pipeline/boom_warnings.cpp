@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/pipeline/boom_health.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
@@ -15,19 +16,6 @@ namespace {
 /// A stamp that is later [s] is named, and may be taken for oil that is softer.
 constexpr double kLateStamp = 8e-4;
 // Guard: MistakenSensors.PressuresThatAreLateAreNamedAndAllowedFor of kLateStamp
-
-/// The mode whose damping is farthest from the boom file's, where that is more than the identifier expects: no oil
-/// makes it. -1: none.
-int modeOfOddDamping(const Boom& boom) {
-  const double given = boom.parameters().vibration.damping_ratio;
-  int mode = -1;
-  double farthest = gate::kUsual * ModeIdentifier::kDampingDeviation;
-  for (int k = 0; k < boom.vibration().modes().count; ++k) {
-    const double off = std::abs(std::log(boom.vibration().mode(k).zeta / given));
-    if (off > farthest) mode = k, farthest = off;
-  }
-  return mode;
-}
 
 /// By which pressures seem late where what damps the boom is not in its oil [s]: what is more than the boom file has,
 /// or where that is odd all that is found, and as much as the delay itself is not known.

@@ -1,6 +1,7 @@
 """The page as a whole: one file that needs no other and no network."""
 import pathlib
 
+from report.boom_health import boom_health
 from report.boom_loads import boom_loads
 from report.budget import budget
 from report.charts import Charts
@@ -70,6 +71,7 @@ def subject_section(at, subject, segments, charts, most_points):
              ("work", "Work over time", over_time(subject, segments, charts, name, most_points)),
              ("turns", "Typical and worst turn", turn_pictures(subject)),
              ("loads", "Hull, boom joints and sections", boom_loads(subject, charts)),
+             ("health", "Is the boom sound?", boom_health(subject, charts, most_points)),
              ("misuse", "Misuse", misuse(subject)),
              ("cycles", "Load cycles", cycle_figures(channels)),
              ("costs", "Which blows cost what", costs(subject, channels)),

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/pipeline/boom_health.h"
 #include "hammer_loads/ros/stamp.h"
 #include "hammer_loads/ros/version.h"
 #include "hammer_loads/settings/parameter_texts.h"
@@ -80,7 +81,8 @@ void BagTables::begin(HammerBridge& bridge) {
   life_.begin(bridge, run());
   HammerOutputs& outputs = bridge.outputs();
   outputs.hull_loads.attach([this](const HullLoads& message, const ros::Time&) { takeSample(message); });
-  outputs.pulse.attach([this](const Pulse& message, const ros::Time&) { takePulse(message); });
+  outputs.pulse.attach(
+      [this, &bridge](const Pulse& message, const ros::Time&) { takePulse(message, bridge.pipeline()); });
   outputs.blow.attach([this](const Blow& message, const ros::Time&) {
     writer_.blow(run(), {message.turn, stampOf(message.header.stamp), blow_.valuesOf(message)});
   });
@@ -97,10 +99,24 @@ void BagTables::takeSample(const HullLoads& message) {
                message.crank_angle_rad});
 }
 
-void BagTables::takePulse(const Pulse& message) {
+void BagTables::takeHealth(std::uint64_t turn, const BoomFollower& boom) {
+  const std::optional<BoomHealth> health = boomHealth(boom);
+  if (!health) return;
+  for (int i = 0; i < health->count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const BoomHealth::OfCylinder& c = health->cylinder[at];
+    writer_.boomCylinder(run(), {turn, boom.boom().cylinders()[at].parameters().name, c.joint_angle, c.stiffness,
+                                 c.deviation, !health->oil_explains});
+    const BoomHealth::OfMode& m = health->mode[at];
+    writer_.boomMode(run(), {turn, i + 1, m.frequency, m.deviation, m.damping, m.damping_deviation});
+  }
+}
+
+void BagTables::takePulse(const Pulse& message, const Pipeline& pipeline) {
   const StampNs stamp = stampOf(message.header.stamp);
   writer_.turn(run(), {message.turn, stamp, pulse_.valuesOf(message)});
   traces_.turnEnded(message.turn, stamp, message.period_s, message.amplitude_N);
+  if (pipeline.boom()) takeHealth(message.turn, *pipeline.boom());
 }
 
 void BagTables::end(const HammerBridge& bridge, std::uint64_t samples) {

@@ -30,7 +30,8 @@ class BagTables {
 
  private:
   void takeSample(const HullLoads& message);
-  void takePulse(const Pulse& message);
+  void takePulse(const Pulse& message, const Pipeline& pipeline);
+  void takeHealth(std::uint64_t turn, const BoomFollower& boom);
   std::int64_t run() const { return static_cast<std::int64_t>(records_.size()); }
 
   std::string input_sha256_;

@@ -41,6 +41,12 @@ CREATE TABLE cycles(
 CREATE TABLE residues(
   run_id INTEGER, channel INTEGER, place INTEGER, class INTEGER,
   PRIMARY KEY(run_id, channel, place)) WITHOUT ROWID;
+CREATE TABLE boom_cylinders(
+  run_id INTEGER, turn INTEGER, cylinder TEXT, joint_angle_rad REAL, stiffness_ratio REAL,
+  stiffness_ratio_deviation REAL, doubtful INTEGER, PRIMARY KEY(run_id, turn, cylinder)) WITHOUT ROWID;
+CREATE TABLE boom_modes(
+  run_id INTEGER, turn INTEGER, mode INTEGER, frequency_Hz REAL, frequency_deviation_Hz REAL, damping_ratio REAL,
+  damping_ratio_deviation REAL, PRIMARY KEY(run_id, turn, mode)) WITHOUT ROWID;
 CREATE TABLE budget(
   run_id INTEGER, quantity TEXT, value REAL, deviation REAL, source TEXT, share REAL,
   PRIMARY KEY(run_id, quantity, source)) WITHOUT ROWID;

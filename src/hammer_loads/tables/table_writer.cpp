@@ -46,6 +46,8 @@ TableWriter::TableWriter(const std::string& file, std::vector<TableColumn> turn,
   turns_.emplace(database_, "turns", std::move(turn));
   blows_.emplace(database_, "blows", std::move(blow));
   turn_load_.emplace(database_, insertSql("turn_loads", 10).c_str());
+  boom_cylinder_.emplace(database_, insertSql("boom_cylinders", 7).c_str());
+  boom_mode_.emplace(database_, insertSql("boom_modes", 7).c_str());
 }
 
 void TableWriter::turn(std::int64_t run, const TurnRow& row) { turns_->add(run, row); }
@@ -55,6 +57,16 @@ void TableWriter::turnLoad(std::int64_t run, const TurnLoad& load) {
   turn_load_->run(run, load.turn, load.channel, finite(load.minimum), finite(load.maximum), finite(load.mean),
                   finite(load.minimum_deviation), finite(load.maximum_deviation), finite(load.minimum_common_deviation),
                   finite(load.maximum_common_deviation));
+}
+
+void TableWriter::boomCylinder(std::int64_t run, const BoomCylinderRow& row) {
+  boom_cylinder_->run(run, row.turn, row.cylinder, finite(row.joint_angle), finite(row.stiffness),
+                      finite(row.deviation), std::int64_t{row.doubtful});
+}
+
+void TableWriter::boomMode(std::int64_t run, const BoomModeRow& row) {
+  boom_mode_->run(run, row.turn, row.mode, finite(row.frequency), finite(row.frequency_deviation), finite(row.damping),
+                  finite(row.damping_deviation));
 }
 
 void TableWriter::channel(std::int64_t run, std::int64_t number, const ChannelRecord& record) {
@@ -120,6 +132,8 @@ void TableWriter::finish() {
   turns_.reset();
   blows_.reset();
   turn_load_.reset();
+  boom_cylinder_.reset();
+  boom_mode_.reset();
   database_.run("COMMIT");
 }
 

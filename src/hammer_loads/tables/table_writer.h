@@ -21,6 +21,21 @@ struct TurnRow {
   const std::vector<double>& values;
 };
 
+/// Of a boom as its vibration shows it at a turn's end; cylinder: its name; mode: from 1.
+struct BoomCylinderRow {
+  std::uint64_t turn{};
+  std::string cylinder;
+  double joint_angle{};             ///< [rad]
+  double stiffness{}, deviation{};  ///< over that of the boom file, standard [-]
+  bool doubtful{};                  ///< something else than oil damps the boom
+};
+struct BoomModeRow {
+  std::uint64_t turn{};
+  std::int64_t mode{};
+  double frequency{}, frequency_deviation{};  ///< [Hz]
+  double damping{}, damping_deviation{};      ///< [-]
+};
+
 /// Nothing throws: problem() says what went wrong first, and all after it does nothing.
 class TableWriter {
  public:
@@ -33,6 +48,8 @@ class TableWriter {
   void turnLoad(std::int64_t run, const TurnLoad& load);
   /// number: as in the turns' loads.
   void channel(std::int64_t run, std::int64_t number, const ChannelRecord& record);
+  void boomCylinder(std::int64_t run, const BoomCylinderRow& row);
+  void boomMode(std::int64_t run, const BoomModeRow& row);
   void budget(std::int64_t run, const BudgetRow& row);
   void traces(std::int64_t run, const TurnTraces& traces);
   void run(std::int64_t run, const RunRecord& record);
@@ -56,7 +73,7 @@ class TableWriter {
 
   life::Database database_;
   std::optional<TurnTable> turns_, blows_;
-  std::optional<Statement> turn_load_;
+  std::optional<Statement> turn_load_, boom_cylinder_, boom_mode_;
 };
 
 }  // namespace hammer_loads

@@ -1,0 +1,38 @@
+/// How stiff the boom's oil is and how the boom vibrates, as its sensors show it.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "hammer_loads/pipeline/boom_follower.h"
+
+namespace hammer_loads {
+
+/// What changes when a cylinder takes air, pins wear or a link cracks. Every blow is an impulse that is known, so that
+/// a hammer at work tests its boom five times a second.
+struct BoomHealth {
+  /// Index as in Boom::cylinders(). The ratio does not depend on the pose but for what the boom file has wrong of
+  /// masses and places, which is the same from day to day.
+  struct OfCylinder {
+    double joint_angle{};             ///< of its joint [rad]
+    double stiffness{}, deviation{};  ///< of the oil over that of the boom file, its standard deviation [-]
+  };
+  struct OfMode {
+    double frequency{}, deviation{};        ///< standard [Hz]
+    double damping{}, damping_deviation{};  ///< ratio; standard [-]
+  };
+  std::array<OfCylinder, kMaxJoints> cylinder;
+  std::array<OfMode, kMaxJoints> mode;
+  int count{};          ///< of cylinders, and of modes
+  bool oil_explains{};  ///< false: a damping is none of oil, and what is stiff or soft beside it is doubtful
+};
+
+/// The mode whose damping is farthest from the boom file's, where that is more than the identifier expects: no oil
+/// makes it. -1: none.
+int modeOfOddDamping(const Boom& boom) noexcept;
+
+/// Nothing where sensors do not show it: before its frequencies are known, while the hull bounces on rock as no oil
+/// makes it, at a dead centre, with joints that are not known.
+std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept;
+
+}  // namespace hammer_loads
