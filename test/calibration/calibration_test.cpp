@@ -7,7 +7,9 @@
 
 #include "calibration/recorded.h"
 #include "hammer_loads/calibration/report.h"
+#include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/settings/parameter_map.h"
+#include "support/mo100.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -93,6 +95,56 @@ TEST(Calibration, DeviationsAreHonest) {
     all += 4;
   }
   EXPECT_GE(within, all * 9 / 10) << "of " << all;
+}
+
+/// A machine that its drawing has wrong by the deviations of a hammer file, the encoder right and on its centre.
+HammerParameters drawnFrom(const HammerParameters& drawing, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  HammerParameters p = drawing;
+  do {
+    p = drawing;
+    for (std::size_t i = 0; i < kHammerConstants.size(); ++i)
+      kHammerConstants[i].field(p) += p.deviations[i] * std::clamp(normal(random), -1.9, 1.9);
+    p.lengths.rod = p.lengths.pivot_distance + p.lengths.rocker - p.lengths.crank;
+  } while (!Mechanism::make(p).value);
+  return p;
+}
+
+/// What a drawing has wrong looks like a sensor that is wrong: it is in the deviations, and moves no key for certain.
+TEST(Calibration, ADrawingsErrorsAreNotTheSensors) {
+  HammerParameters drawing = test::mo100LinkageParameters(), exact = drawing;
+  drawing.deviations = usualDeviations(drawing);
+  exact.deviations = {};
+  std::mt19937_64 random(5);
+  double worst_of_exact = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    simulation::MachineSettings s = atWork(16.0, 250.0);
+    s.level = Level::kLinkage;
+    s.hammer = drawnFrom(drawing, random);
+    s.seed = 300 + static_cast<std::uint64_t>(i);
+    const std::vector<RecordedSample> samples = recorded(s);
+    const auto by = [&](HammerParameters file) {
+      file.drive_inertia = s.drive.inertia;
+      const Mechanism mechanism = test::mechanismOf(file);
+      CalibrationBasis basis = basisOf(mechanism);
+      basis.level = Level::kLinkage;
+      return calibrate(samples, basis);
+    };
+    const Calibration c = by(drawing), sure = by(exact);
+    ASSERT_EQ(c.problem, "");
+    const auto off = [](const Calibration& found, const char* key, double truth) {
+      return std::abs(errorOf(found, key, truth)) / find(found, key)->deviation;
+    };
+    EXPECT_LT(off(c, "crank_zero_rad", 0.0), 2.5);
+    EXPECT_LT(off(c, "drive_inertia_kg_m2", s.drive.inertia), 2.5);
+    for (const char* key : {"crank_eccentricity_1_rad", "crank_eccentricity_2_rad"}) {
+      EXPECT_LT(off(c, key, 0.0), 3.0) << key;
+      worst_of_exact = std::max(worst_of_exact, off(sure, key, 0.0));
+    }
+    EXPECT_TRUE(find(c, "crank_zero_rad")->determined());
+    EXPECT_FALSE(c.remarks.empty());
+  }
+  EXPECT_GT(worst_of_exact, 5.0);  // a file that is sure of itself takes it for an eccentric encoder
 }
 
 /// With measured speeds too: what a stamp's error does to a speed near the blow is no noise of the angle.

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hammer_loads/calibration/first_guess.h"
+#include "hammer_loads/calibration/hammer_part.h"
 #include "hammer_loads/calibration/rod_check.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
@@ -26,15 +29,6 @@ constexpr double kEccentricity1Limit = 0.4 * kDegree;
 constexpr double kEccentricity2Limit = 0.2 * kDegree;
 constexpr double kInertiaLimit = 0.08;  // relative
 constexpr double kTimingLimit = 0.2;    // relative
-
-constexpr const char* kNames[kGlobals] = {"zero",
-                                          "sine of the eccentricity once a turn",
-                                          "cosine of the eccentricity once a turn",
-                                          "sine of the eccentricity twice a turn",
-                                          "cosine of the eccentricity twice a turn",
-                                          "drive inertia",
-                                          "stiffness of the oil",
-                                          "drag of the drive"};
 
 Free allFree(bool centred) {
   Free free = Free::Constant(true);
@@ -74,7 +68,7 @@ double systematic(const ResidualCurve& curve) {
 }
 
 /// An eccentricity's amount and phase from its two parts.
-void addEccentricity(Calibration& result, const JointFit& fit, int n, double limit) {
+void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatrix& of_blows, int n, double limit) {
   const Eigen::Index k = n == 1 ? kSine1 : kSine2;
   const Eigen::Vector2d parts = fit.globals.segment<2>(k);
   const Eigen::Matrix2d covariance = fit.covariance.block<2, 2>(k, k);
@@ -85,28 +79,38 @@ void addEccentricity(Calibration& result, const JointFit& fit, int n, double lim
                by_phase = std::sqrt(across.dot(covariance * across));
   // Either both keys or none: an amount at a wrong phase is worse than none. So each has the larger deviation.
   const double larger = std::max(by_amount, by_phase), scale = std::max(amount, 1e-9);
+  const double by_blows = std::sqrt(of_blows.diagonal().segment<2>(k).maxCoeff());
+  const bool seen = amount > gate::kUsual * larger;  // else none is as likely, and does no harm
   const std::string key = format("crank_eccentricity_%d", n);
   result.estimates.push_back(
-      {key + "_rad", "rad", amount, larger, limit,
-       format("%s a turn; its sine and cosine are known to %.2g and %.2g rad", n == 1 ? "once" : "twice",
-              std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1))),
-       larger});
-  result.estimates.push_back({key + "_phase_rad", "rad", phase, larger / scale, limit / scale,
-                              amount < 2.0 * larger ? "its amount is hardly more than the deviation" : "its phase",
-                              larger / scale});
+      {key + "_rad", "rad", seen ? amount : 0.0, larger, limit,
+       format("%s a turn; its sine and cosine are known to %.2g and %.2g rad%s", n == 1 ? "once" : "twice",
+              std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
+              seen ? "" : format(", %.2g rad is hardly more than that", amount).c_str()),
+       by_blows});
+  if (seen) {
+    result.estimates.push_back(
+        {key + "_phase_rad", "rad", phase, larger / scale, limit / scale, "its phase", by_blows / scale});
+  } else {
+    result.estimates.push_back({key + "_phase_rad", "rad", 0.0, kPi, kPi, "of none it does not matter", 0.0});
+  }
 }
 
-void addEstimates(Calibration& result, const JointFit& fit, const CalibrationBasis& basis, bool centred) {
+/// of_blows: covariance of the same, the hammer's constants as given; rocker_in_it: the rocker's inertia is a constant
+/// of the fit.
+void addEstimates(Calibration& result, const JointFit& fit, const GlobalMatrix& of_blows, const CalibrationBasis& basis,
+                  bool rocker_in_it, bool centred) {
   const double gain = result.direction / basis.ratio;
   const auto deviation = [&](Eigen::Index k) { return std::sqrt(fit.covariance(k, k)); };
+  const auto by_blows = [&](Eigen::Index k) { return std::sqrt(of_blows(k, k)); };
   result.estimates.push_back({"crank_zero_rad", "rad", CrankAngle::wrapToPi(fit.globals[kZero] / gain),
                               deviation(kZero) / std::abs(gain), kZeroLimit / std::abs(gain), "reading at the blow",
-                              deviation(kZero) / std::abs(gain)});
+                              by_blows(kZero) / std::abs(gain)});
   result.estimates.push_back(
       {"crank_direction", "", static_cast<double>(result.direction), 0.0, 0.5, "the crank turns forward at work"});
   if (!centred) {
-    addEccentricity(result, fit, 1, kEccentricity1Limit);
-    addEccentricity(result, fit, 2, kEccentricity2Limit);
+    addEccentricity(result, fit, of_blows, 1, kEccentricity1Limit);
+    addEccentricity(result, fit, of_blows, 2, kEccentricity2Limit);
   }
   if (result.facts.count > 0.0) {
     result.estimates.push_back({"crank_angle_resolution_rad", "rad", result.facts.count, 0.0, 1.0,
@@ -124,22 +128,21 @@ void addEstimates(Calibration& result, const JointFit& fit, const CalibrationBas
                                                    : "of a stamp against the instant of the measurement",
                               timing_deviation});
   const double inertia = std::exp(fit.globals[kLogInertia]);
-  const double relative = std::hypot(deviation(kLogInertia), basis.rocker_inertia_deviation);
-  result.estimates.push_back(
-      {"drive_inertia_kg_m2", "kg m2", inertia, relative * inertia, kInertiaLimit * inertia,
-       format("%.4g +- %.2g of the rocker's, whose own %.1f %% are in the deviation",
-              inertia / basis.mechanism.parameters().rocker_inertia_about_pivot,
-              deviation(kLogInertia) * inertia / basis.mechanism.parameters().rocker_inertia_about_pivot,
-              100.0 * basis.rocker_inertia_deviation),
-       deviation(kLogInertia) * inertia});
+  const double rocker = basis.mechanism.parameters().rocker_inertia_about_pivot;
+  // Only the ratio to the rocker's inertia shows; where the hammer file says how well that is known, it is in already.
+  const double relative = std::hypot(deviation(kLogInertia), rocker_in_it ? 0.0 : basis.rocker_inertia_deviation);
+  result.estimates.push_back({"drive_inertia_kg_m2", "kg m2", inertia, relative * inertia, kInertiaLimit * inertia,
+                              format("%.4g of the rocker's; by the readings alone, all masses as given, to %.2g",
+                                     inertia / rocker, by_blows(kLogInertia) * inertia / rocker),
+                              by_blows(kLogInertia) * inertia});
 }
 
-void addCorrelations(Calibration& result, const JointFit& fit) {
-  for (Eigen::Index i = 0; i < kGlobals; ++i) {
-    for (Eigen::Index k = i + 1; k < kGlobals; ++k) {
-      const double both = std::sqrt(fit.plain_covariance(i, i) * fit.plain_covariance(k, k));
-      const double value = both > 0.0 ? fit.plain_covariance(i, k) / both : 0.0;
-      if (std::abs(value) > kStrong) result.correlations.push_back({kNames[i], kNames[k], value});
+void addCorrelations(Calibration& result, const HammerPart& hammer) {
+  const Eigen::MatrixXd& P = hammer.covariance;
+  for (Eigen::Index i = 0; i < P.rows(); ++i) {
+    for (Eigen::Index k = i + 1; k < P.rows(); ++k) {
+      const double both = std::sqrt(P(i, i) * P(k, k)), value = both > 0.0 ? P(i, k) / both : 0.0;
+      if (std::abs(value) > kStrong) result.correlations.push_back({hammer.nameOf(i), hammer.nameOf(k), value});
     }
   }
 }
@@ -152,7 +155,7 @@ void addRemarks(Calibration& result, double curve_square) {
   say.push_back(
       "rocker against drive inertia: only their ratio shows; a rocker given 2 % too heavy makes the drive 2 % too "
       "heavy; "
-      "friction in the pins passes for inertia; masses and centres of mass do not show at all");
+      "friction in the pins passes for inertia; masses and centres of mass hardly show");
   say.push_back(
       "a tool that the rocker meets before the dead centre looks like a zero that is off: which of the two "
       "does not show where every blow comes equally early; the zero written is then that of the blow");
@@ -258,14 +261,20 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   result.after = curveOf(fit.fits, model, fit.globals, fit.noise);
   const double curve_square = systematic(result.after);
   fit.covariance *= std::max(1.0, curve_square);
-  removeBias(fit, model, allFree(centred), gain * track.facts.count, piece(progress, 0.65, 0.88));
+  HammerPart hammer = findWithHammer(fit, model, allFree(centred));
+  hammer.widen(fit);
+  removeBias(fit, hammer, model, allFree(centred), gain * track.facts.count, piece(progress, 0.65, 0.88));
   Globals in_force = basis.in_force;
   in_force.tail<kShaping>() = fit.globals.tail<kShaping>();
   result.before = curveOf(fittedAlone(segments, model, in_force, fit.noise, piece(progress, 0.88, 1.0)), model,
                           in_force, fit.noise);
-  addEstimates(result, fit, basis, centred);
-  refuseForRod(rodEvidence(track, basis, fit), result);
-  addCorrelations(result, fit);
+  const RodEvidence rod = rodEvidence(track, basis, fit);
+  const GlobalMatrix by_blows = fit.covariance;
+  fit.globals = hammer.globals, fit.covariance = hammer.covariance.topLeftCorner<kGlobals, kGlobals>();
+  addEstimates(result, fit, by_blows, basis, hammer.has("rocker_inertia_about_pivot_kg_m2"), centred);
+  refuseForRod(rod, result);
+  addCorrelations(result, hammer);
+  for (std::string& remark : remarksOf(hammer, by_blows)) result.remarks.push_back(std::move(remark));
   addRemarks(result, curve_square);
   countNeeds(result);
   return result;

@@ -12,9 +12,7 @@ namespace {
 constexpr int kMostIterations = 40;
 constexpr int kLeastIterations = 8;
 constexpr int kUsualExcess = 2;  // iterations beyond the least: for the progress shown alone
-constexpr int kReplicas = 4;     // of the recording, by which the bias is found
-constexpr int kReplicaIterations = 3;
-constexpr double kBiasDoubt = 0.5;        // of the bias, left over when it is removed
+constexpr int kNearIterations = 3;
 constexpr double kConverged = 0.01;       // of a deviation, change of every parameter
 constexpr int kNeighbours = 3;            // blows on either side with which one may have errors in common
 constexpr double kMostTiming = 0.01;      // [s]
@@ -221,25 +219,8 @@ JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel
   return joint;
 }
 
-void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count, const Progress& progress) {
-  if (joint.fits.empty()) return;
-  std::mt19937_64 random(1);
-  Globals mean = Globals::Zero();
-  for (int i = 0; i < kReplicas; ++i) {
-    std::vector<BlowSegment> segments;
-    for (const SegmentFit& fit : joint.fits)
-      segments.push_back(fit.replica(model, joint.globals, joint.noise, count, random));
-    JointFit replica = joint;
-    for (std::size_t k = 0; k < segments.size(); ++k) replica.fits[k] = joint.fits[k].onto(segments[k]);
-    settle(replica, model, joint.globals, free, kReplicaIterations,
-           piece(progress, static_cast<double>(i) / kReplicas, (i + 1.0) / kReplicas));
-    mean += replica.globals / kReplicas;
-  }
-  const Globals bias = mean - joint.globals;
-  joint.globals -= bias;
-  joint.covariance *= 1.0 + 1.0 / kReplicas;
-  joint.covariance += kBiasDoubt * kBiasDoubt * bias * bias.transpose();
-  for (SegmentFit& fit : joint.fits) fitLocals(fit, model, joint.globals, joint.noise);
+void settleNear(JointFit& joint, const SegmentModel& model, const Free& free, const Progress& progress) {
+  settle(joint, model, joint.globals, free, kNearIterations, progress);
 }
 
 }  // namespace hammer_loads::calibration

@@ -25,16 +25,13 @@ struct JointFit {
 /// Before anything is known of them: deviations of zero [rad], both eccentricities' parts [rad], logarithm of inertia.
 Globals priorDeviations();
 
+/// From `start`, which is near: some steps of the same.
+void settleNear(JointFit& joint, const SegmentModel& model, const Free& free, const Progress& progress);
+
 /// Gauss-Newton over the shared parameters, those of each blow eliminated (Schur); timing and speed noise from the
 /// residuals meanwhile. Parameters with `free` false stay. The covariance is the sandwich over blows with what
 /// neighbours have in common (Newey-West), at least the plain one.
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, const Free& free, const Progress& progress = {});
-
-/// With noise, what each blow has of its own is bent the same way at every blow, and the shared parameters with it: no
-/// number of blows averages that out. So recordings are made up from the fit, with its noise and the counts, and fitted
-/// again; what they are off on the mean is taken off. count: of the encoder, in `seen` [rad]; 0: none.
-void removeBias(JointFit& joint, const SegmentModel& model, const Free& free, double count,
-                const Progress& progress = {});
 
 }  // namespace hammer_loads::calibration

@@ -10,9 +10,6 @@
 
 namespace hammer_loads::calibration {
 
-using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals>;
-using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
-
 constexpr int kLocalIterations = 4;
 
 /// The step, shortened to what the model's curvature bears.

@@ -152,46 +152,64 @@ double SegmentFit::cost(const SegmentModel& model, const Globals& globals, const
   return cost + 0.5 * square(locals_[kTorqueAtBlow] / noise.torque);
 }
 
-NormalEquations SegmentFit::linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
+std::vector<ShotPoint> SegmentFit::motion(const SegmentModel& model, const Globals& globals) const {
+  std::vector<ShotPoint> points;
+  run(model, globals, points);
+  return points;
+}
+
+std::vector<ResidualRow> SegmentFit::rows(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
   std::vector<ShotPoint> base;
   std::vector<MotionSlopes> slopes;
   run(model, globals, base, &slopes);
-  const std::size_t n = base.size();
-
-  NormalEquations e;
-  e.ll_angles.setZero(), e.ll_speeds.setZero(), e.lg.setZero(), e.gg.setZero(), e.l.setZero(), e.g.setZero();
-  const auto add = [&](auto& ll, const Locals& by_local, const Globals& by_global, double residual, double deviation) {
-    const double r = residual / deviation, weight = weightOf(r) / square(deviation);
-    ll.noalias() += weight * by_local * by_local.transpose();
-    e.lg.noalias() += weight * by_local * by_global.transpose();
-    e.gg.noalias() += weight * by_global * by_global.transpose();
-    e.l += weight * residual * by_local;
-    e.g += weight * residual * by_global;
-    e.cost += costOf(r);
-  };
-  for (std::size_t i = 0; i < n; ++i) {
+  std::vector<ResidualRow> rows;
+  rows.reserve(2 * base.size());
+  for (std::size_t i = 0; i < base.size(); ++i) {
     const CrankPoint& point = segment_->points[i];
     const double offset = base[i].offset, speed = base[i].speed;
     const Seen seen = seenAt(globals, offset);
     const double s1 = std::sin(offset), c1 = std::cos(offset), s2 = 2.0 * s1 * c1, c2 = 1.0 - 2.0 * s1 * s1;
-    Globals by_global;
-    by_global << 1.0, s1, c1 - 1.0, s2, c2 - 1.0, seen.slope * slopes[i].row(0).tail<kShaping>().transpose();
     const Weighing deviation = weighing(noise, point.time, base[i]);
-    const Locals by_local = seen.slope * slopes[i].row(0).head<kLocals>().transpose();
-    const double residual = point.seen - seen.value;
-    add(e.ll_angles, by_local, by_global, residual, deviation.angle);
-    e.cost += std::log(deviation.angle / noise.angle);
+    ResidualRow angle{i, false, point.seen - seen.value, deviation.angle, {}, {}, seen.slope, 0.0};
+    angle.by_local = seen.slope * slopes[i].row(0).head<kLocals>().transpose();
+    angle.by_global << 1.0, s1, c1 - 1.0, s2, c2 - 1.0, seen.slope * slopes[i].row(0).tail<kShaping>().transpose();
+    rows.push_back(angle);
     if (!point.speed) continue;
     const double bend =
         -globals[kSine1] * s1 - globals[kCosine1] * c1 - 4.0 * (globals[kSine2] * s2 + globals[kCosine2] * c2);
     const MotionSlope by_motion = seen.slope * slopes[i].row(1) + speed * bend * slopes[i].row(0);
-    Globals speed_by_global;
-    speed_by_global << 0.0, speed * c1, -speed * s1, 2.0 * speed * c2, -2.0 * speed * s2,
+    ResidualRow of_speed{i,
+                         true,
+                         *point.speed - seen.slope * speed - deviation.share * angle.residual,
+                         deviation.speed,
+                         {},
+                         {},
+                         speed * bend - deviation.share * seen.slope,
+                         seen.slope};
+    of_speed.by_local = by_motion.head<kLocals>().transpose() - deviation.share * angle.by_local;
+    of_speed.by_global << 0.0, speed * c1, -speed * s1, 2.0 * speed * c2, -2.0 * speed * s2,
         by_motion.tail<kShaping>().transpose();
-    add(e.ll_speeds, by_motion.head<kLocals>().transpose() - deviation.share * by_local,
-        speed_by_global - deviation.share * by_global, *point.speed - seen.slope * speed - deviation.share * residual,
-        deviation.speed);
-    e.cost += std::log(deviation.speed / noise.speed);
+    of_speed.by_global -= deviation.share * angle.by_global;
+    rows.push_back(of_speed);
+  }
+  return rows;
+}
+
+double weightOf(const ResidualRow& row) { return weightOf(row.residual / row.deviation) / square(row.deviation); }
+
+NormalEquations SegmentFit::linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
+  NormalEquations e;
+  e.ll_angles.setZero(), e.ll_speeds.setZero(), e.lg.setZero(), e.gg.setZero(), e.l.setZero(), e.g.setZero();
+  for (const ResidualRow& row : rows(model, globals, noise)) {
+    const double weight = weightOf(row);
+    LocalMatrix& ll = row.of_speed ? e.ll_speeds : e.ll_angles;
+    ll.noalias() += weight * row.by_local * row.by_local.transpose();
+    e.lg.noalias() += weight * row.by_local * row.by_global.transpose();
+    e.gg.noalias() += weight * row.by_global * row.by_global.transpose();
+    e.l += weight * row.residual * row.by_local;
+    e.g += weight * row.residual * row.by_global;
+    e.cost +=
+        costOf(row.residual / row.deviation) + std::log(row.deviation / (row.of_speed ? noise.speed : noise.angle));
   }
   e.ll = e.ll_angles + e.ll_speeds;
   const double walk = 1.0 / (square(noise.torque_walk) * node_step_);

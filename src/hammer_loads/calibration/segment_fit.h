@@ -34,12 +34,15 @@ struct SegmentModel {
   Level level;
 };
 
+using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
+using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals>;
+
 /// Least squares of one segment at the present parameters, weighted.
 struct NormalEquations {
-  Eigen::Matrix<double, kLocals, kLocals> ll;                    ///< locals, with the prior of the torque
-  Eigen::Matrix<double, kLocals, kLocals> ll_angles, ll_speeds;  ///< what the angles, the speeds say of them
+  LocalMatrix ll;                    ///< locals, with the prior of the torque
+  LocalMatrix ll_angles, ll_speeds;  ///< what the angles, the speeds say of them
   Eigen::Matrix<double, kLocals, kGlobals> lg;
-  Eigen::Matrix<double, kGlobals, kGlobals> gg;
+  GlobalMatrix gg;
   Locals l;  ///< right-hand sides
   Globals g;
   double cost{};  ///< robust, half the sum of squares
@@ -61,6 +64,19 @@ struct ResidualAt {
   Weighing deviation;
 };
 
+/// A residual with its derivatives, negative: of what the model predicts.
+struct ResidualRow {
+  std::size_t point{};  ///< of the segment
+  bool of_speed{};
+  double residual{}, deviation{};
+  Locals by_local;
+  Globals by_global;
+  double by_offset{}, by_crank_speed{};  ///< of the crank's motion at the point
+};
+
+/// Of a row in the sum of squares: Huber's, over the variance.
+double weightOf(const ResidualRow& row);
+
 class SegmentFit {
  public:
   /// A first guess of the locals from the readings around the blow.
@@ -72,6 +88,9 @@ class SegmentFit {
 
   double cost(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
   NormalEquations linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
+  std::vector<ResidualRow> rows(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
+  /// The crank at the segment's points by another hammer, all else the same.
+  std::vector<ShotPoint> motion(const SegmentModel& model, const Globals& globals) const;
   /// The same motion seen once more, with other noise: at instants that are off their stamps.
   BlowSegment replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count,
                       std::mt19937_64& random) const;

@@ -58,6 +58,19 @@ void MachineColumns::add(const Mechanism& other, Level level, Enters enters, dou
   columns_.push_back({other, level, enters, step, name, of_masses});
 }
 
+std::optional<Mechanism> MachineColumns::hammerOff(const Eigen::VectorXd& errors) const {
+  HammerParameters p = mechanism_.parameters();
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    for (std::size_t k = 0; k < kHammerConstants.size(); ++k) {
+      const HammerConstant& constant = kHammerConstants[k];
+      if (constant.key == columns_[i].name)
+        constant.field(p) += constant.away * p.deviations[k] * errors[static_cast<Eigen::Index>(i)];
+    }
+  }
+  p.lengths.rod = p.lengths.pivot_distance + p.lengths.rocker - p.lengths.crank;
+  return Mechanism::make(p).value;
+}
+
 MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravity) const noexcept {
   const LinkMotion links = linkMotion(mechanism_.linkage(), angle);
   const ShaftLoad here = loadOf(mechanism_, level_, links, gravity);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hammer_loads/linkage/hammer_constants.h"
@@ -52,6 +53,9 @@ class MachineColumns {
     for (const Part& part : parts_) effects.col(part.column) += part.size * by.col(part.mass);
     return effects;
   }
+  /// The hammer whose constants are off by so many standard deviations each, in the columns' order; nothing where there
+  /// can be none. What a level leaves out stays as it is.
+  std::optional<Mechanism> hammerOff(const Eigen::VectorXd& errors) const;
   /// load: at the angle, without what the hull's own motion adds.
   OnShaft onShaft(CrankAngle angle, Gravity gravity) const noexcept;
 

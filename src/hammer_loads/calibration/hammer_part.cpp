@@ -1,0 +1,191 @@
+#include "hammer_loads/calibration/hammer_part.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "hammer_loads/linkage/machine_columns.h"
+#include "hammer_loads/util/format.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads::calibration {
+namespace {
+
+constexpr int kReplicas = 4;        // of the recording, by which the bias is found
+constexpr double kBiasDoubt = 0.5;  // of the bias, left over when it is removed
+
+constexpr double kHides = 3.0;  // times the deviation without the hammer's constants: worth a word
+constexpr double kSeen = 0.7;   // of a constant's deviation is left: as above
+
+constexpr const char* kNames[kGlobals] = {"zero",
+                                          "sine of the eccentricity once a turn",
+                                          "cosine of the eccentricity once a turn",
+                                          "sine of the eccentricity twice a turn",
+                                          "cosine of the eccentricity twice a turn",
+                                          "drive inertia",
+                                          "stiffness of the oil",
+                                          "drag of the drive"};
+
+/// A blow's information on shared parameters and constants, its own parameters eliminated.
+struct Information {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd score;
+};
+
+Information informationOf(const SegmentFit& fit, const JointFit& joint, const SegmentModel& model,
+                          const MachineColumns& columns) {
+  const auto count = static_cast<Eigen::Index>(columns.columns().size()), size = kGlobals + count;
+  const std::vector<ShotPoint> here = fit.motion(model, joint.globals);
+  std::vector<std::vector<ShotPoint>> beside;
+  for (const MachineColumn& column : columns.columns())
+    beside.push_back(fit.motion({column.mechanism, column.level}, joint.globals));
+  const NormalEquations own = fit.linearise(model, joint.globals, joint.noise);
+  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(kLocals, size);
+  Information all{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  Eigen::VectorXd by(size);
+  for (const ResidualRow& row : fit.rows(model, joint.globals, joint.noise)) {
+    by.head<kGlobals>() = row.by_global;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto column = static_cast<std::size_t>(k);
+      const ShotPoint &there = beside[column][row.point], &at = here[row.point];
+      by[kGlobals + k] = (row.by_offset * (there.offset - at.offset) + row.by_crank_speed * (there.speed - at.speed)) /
+                         columns.columns()[column].step;
+    }
+    const double weight = weightOf(row);
+    cross.noalias() += weight * row.by_local * by.transpose();
+    all.matrix.selfadjointView<Eigen::Lower>().rankUpdate(by, weight);
+    all.score += weight * row.residual * by;
+  }
+  all.matrix = Eigen::MatrixXd(all.matrix.selfadjointView<Eigen::Lower>());
+  const Eigen::LDLT<LocalMatrix> solver(own.ll);
+  all.matrix -= cross.transpose() * solver.solve(cross);
+  all.score -= cross.transpose() * solver.solve(own.l);
+  return all;
+}
+
+/// Parameters that stay are known, and no others go with them.
+void hold(const Free& free, Eigen::MatrixXd& matrix) {
+  for (Eigen::Index k = 0; k < kGlobals; ++k) {
+    if (free[k]) continue;
+    matrix.row(k).setZero(), matrix.col(k).setZero();
+  }
+}
+
+/// Of an eccentricity 0; of the others where the fit is: their priors are wide.
+Globals centreOf(const Globals& found) {
+  Globals centre = found;
+  centre.segment<4>(kSine1).setZero();
+  return centre;
+}
+
+}  // namespace
+
+bool HammerPart::has(const std::string& constant) const {
+  return std::find(names.begin(), names.end(), constant) != names.end();
+}
+
+std::string HammerPart::nameOf(Eigen::Index row) const {
+  return row < kGlobals ? std::string(kNames[row]) : names[static_cast<std::size_t>(row - kGlobals)];
+}
+
+std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows) {
+  std::vector<std::string> remarks;
+  const auto count = static_cast<Eigen::Index>(hammer.names.size());
+  const Eigen::MatrixXd& P = hammer.covariance;
+  for (const Eigen::Index k : {kZero, kSine1, kCosine1, kLogInertia}) {
+    if (count == 0 || !(P(k, k) > square(kHides) * by_blows(k, k))) continue;
+    Eigen::Index most = 0;
+    P.row(k).tail(count).transpose().cwiseQuotient(P.diagonal().tail(count).cwiseSqrt()).cwiseAbs().maxCoeff(&most);
+    remarks.push_back(
+        format("%s: known to %.2g if the hammer file were exact, to %.2g by the deviations of its constants, most by "
+               "that of %s",
+               kNames[k], std::sqrt(by_blows(k, k)), std::sqrt(P(k, k)), hammer.nameOf(kGlobals + most).c_str()));
+  }
+  for (std::size_t i = 0; i < hammer.names.size(); ++i) {
+    if (hammer.left(i) > kSeen) continue;
+    remarks.push_back(
+        format("%s: by the readings %+.2g +- %.2g of its deviation off the file's value; not written, others of the "
+               "hammer's constants go with it",
+               hammer.names[i].c_str(), hammer.errors[static_cast<Eigen::Index>(i)], hammer.left(i)));
+  }
+  return remarks;
+}
+
+HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free& free) {
+  constexpr int kSteps = 2;
+  HammerPart part{joint.globals, {}, {}, joint.plain_covariance};
+  const auto columns = machineColumns(model.mechanism, model.level);
+  if (!columns) return part;
+  for (const MachineColumn& column : columns->columns()) part.names.push_back(column.name);
+  const auto count = static_cast<Eigen::Index>(part.names.size()), size = kGlobals + count;
+  part.errors = Eigen::VectorXd::Zero(count);
+  const Globals centre = centreOf(joint.globals);
+  Eigen::VectorXd prior(size);
+  prior << priorDeviations().cwiseAbs2().cwiseInverse(), Eigen::VectorXd::Ones(count);
+  std::optional<Mechanism> hammer = model.mechanism;
+  for (int i = 0; i < kSteps && hammer; ++i) {
+    const SegmentModel here{*hammer, model.level};
+    const MachineColumns beside(*hammer, model.level);
+    Information all{prior.asDiagonal(), Eigen::VectorXd(size)};
+    all.score << prior.head<kGlobals>().cwiseProduct(centre - joint.globals), -part.errors;
+    for (SegmentFit& fit : joint.fits) {
+      if (i > 0) fitLocals(fit, here, joint.globals, joint.noise);
+      const Information one = informationOf(fit, joint, here, beside);
+      all.matrix += one.matrix, all.score += one.score;
+    }
+    Eigen::MatrixXd held = all.matrix;
+    hold(free, held);
+    for (Eigen::Index k = 0; k < kGlobals; ++k)
+      if (!free[k]) held(k, k) = 1.0, all.score[k] = 0.0;
+    part.covariance = held.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+    hold(free, part.covariance);
+    const Eigen::VectorXd change = part.covariance * all.score;
+    joint.globals += change.head<kGlobals>();
+    part.errors += change.tail(count);
+    hammer = columns->hammerOff(part.errors);
+  }
+  part.globals = joint.globals;
+  return part;
+}
+
+void HammerPart::widen(const JointFit& fit) {
+  for (Eigen::Index k = 0; k < kGlobals; ++k) {
+    const double excess = fit.covariance(k, k) - fit.plain_covariance(k, k);
+    if (!(excess > 0.0 && covariance(k, k) > 0.0)) continue;
+    const double by = std::sqrt(1.0 + excess / covariance(k, k));
+    covariance.row(k) *= by, covariance.col(k) *= by;
+  }
+}
+
+void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, const Free& free, double count,
+                const Progress& progress) {
+  if (joint.fits.empty()) return;
+  const Eigen::Index size = hammer.covariance.rows();
+  std::mt19937_64 random(1);
+  Globals bias = Globals::Zero();
+  Eigen::VectorXd of_hammer = Eigen::VectorXd::Zero(size);
+  for (int i = 0; i < kReplicas; ++i) {
+    std::vector<BlowSegment> segments;
+    for (const SegmentFit& fit : joint.fits)
+      segments.push_back(fit.replica(model, joint.globals, joint.noise, count, random));
+    JointFit replica = joint;
+    for (std::size_t k = 0; k < segments.size(); ++k) replica.fits[k] = joint.fits[k].onto(segments[k]);
+    settleNear(replica, model, free, piece(progress, static_cast<double>(i) / kReplicas, (i + 1.0) / kReplicas));
+    bias += (replica.globals - joint.globals) / kReplicas;
+    const HammerPart found = findWithHammer(replica, model, free);
+    of_hammer.head<kGlobals>() += (found.globals - joint.globals) / kReplicas;
+    of_hammer.tail(size - kGlobals) += found.errors / kReplicas;
+  }
+  joint.globals -= bias;
+  joint.covariance *= 1.0 + 1.0 / kReplicas;
+  joint.covariance += kBiasDoubt * kBiasDoubt * bias * bias.transpose();
+  hammer.globals -= of_hammer.head<kGlobals>();
+  hammer.errors -= of_hammer.tail(size - kGlobals);
+  hammer.covariance *= 1.0 + 1.0 / kReplicas;
+  hammer.covariance += kBiasDoubt * kBiasDoubt * of_hammer * of_hammer.transpose();
+  for (SegmentFit& fit : joint.fits) fitLocals(fit, model, joint.globals, joint.noise);
+}
+
+}  // namespace hammer_loads::calibration
