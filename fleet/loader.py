@@ -88,7 +88,8 @@ class Loader:
         found = self.store.row("SELECT bag_id FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
         if found is None:
             return
-        for table in COPIED + ["run_figures"] + [t for t in ["run_cylinders"] if self._columns_of(t)] + [t for t in OPTIONAL["turns"] if self.store.columns(t)]:
+        optional = [t for t in ["run_cylinders", *OPTIONAL["turns"]] if self.store.columns(t)]
+        for table in COPIED + ["run_figures"] + optional:
             self.store.execute(f"DELETE FROM {table} WHERE run_id IN (SELECT run_id FROM runs WHERE bag_id = ?)", found[0])
         self.store.execute("DELETE FROM runs WHERE bag_id = ?", found[0])
         self.store.execute("DELETE FROM bags WHERE bag_id = ?", found[0])

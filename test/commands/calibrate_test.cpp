@@ -12,6 +12,7 @@
 
 #include "hammer_loads/commands/progress_bar.h"
 #include "hammer_loads/linkage/crank_angle.h"
+#include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "support/command.h"
@@ -94,6 +95,15 @@ TEST(Calibrate, RefusesWhatItCannotUse) {
   EXPECT_FALSE(fs::exists(output.path()));
 }
 
+/// A hammer file that is exact: what is not known is by too few blows.
+std::string exactHammer() {
+  std::string yaml;
+  for (const HammerConstant& constant : kHammerConstants)
+    if (constant.enters != HammerConstant::Enters::kLearned && constant.enters != HammerConstant::Enters::kFollows)
+      yaml += deviationKey(constant) + ": 0\n";
+  return yaml;
+}
+
 /// A machine at work, recorded on a topic of its own, its encoder 0.4 deg off and with 1024 counts.
 void recordWork(const std::string& path, double seconds, double rate, const std::string& topic) {
   simulation::MachineSettings machine = simulation::workingMo100();
@@ -106,7 +116,8 @@ void recordWork(const std::string& path, double seconds, double rate, const std:
   bag.setChunkThreshold(100000);  // [byte], of some seconds
   RunInfo info;
   info.header.stamp.fromNSec(static_cast<std::uint64_t>(machine.start_stamp));
-  info.parameters_yaml = loadFiles(configDirectory(), {}).value.value().yaml + "input_topic_crank: \"" + topic + "\"\n";
+  info.parameters_yaml =
+      loadFiles(configDirectory(), {}).value.value().yaml + "input_topic_crank: \"" + topic + "\"\n" + exactHammer();
   bag.write("/hammer_loads/run_info", info.header.stamp, info);
   sensor_msgs::JointState message;
   message.name = {"hammer_crank_joint"};

@@ -92,7 +92,7 @@ void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatri
     result.estimates.push_back(
         {key + "_phase_rad", "rad", phase, larger / scale, limit / scale, "its phase", by_blows / scale});
   } else {
-    result.estimates.push_back({key + "_phase_rad", "rad", 0.0, kPi, kPi, "of none it does not matter", 0.0});
+    result.estimates.push_back({key + "_phase_rad", "rad", 0.0, 0.0, kPi, "of none it does not matter", 0.0});
   }
 }
 
@@ -149,9 +149,14 @@ void addCorrelations(Calibration& result, const HammerPart& hammer) {
 
 void addRemarks(Calibration& result, double curve_square) {
   auto& say = result.remarks;
-  say.push_back(
-      "zero against the eccentricity's first cosine: an encoder turned on its shaft and one off its centre look much "
-      "alike, only their sum at the blow is known well; so use these keys together or not at all");
+  const bool eccentric = std::any_of(result.estimates.begin(), result.estimates.end(), [](const Estimate& e) {
+    return e.key == "crank_eccentricity_1_rad" && e.value > 0.0 && e.determined();
+  });
+  if (eccentric) {
+    say.push_back(
+        "zero against the eccentricity's first cosine: an encoder turned on its shaft and one off its centre look much "
+        "alike, only their sum at the blow is known well; so use these keys together or not at all");
+  }
   say.push_back(
       "rocker against drive inertia: only their ratio shows; a rocker given 2 % too heavy makes the drive 2 % too "
       "heavy; "
@@ -274,7 +279,8 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   addEstimates(result, fit, by_blows, basis, hammer.has("rocker_inertia_about_pivot_kg_m2"), centred);
   refuseForRod(rod, result);
   addCorrelations(result, hammer);
-  for (std::string& remark : remarksOf(hammer, by_blows)) result.remarks.push_back(std::move(remark));
+  for (std::string& remark : remarksOf(hammer, by_blows, basis.mechanism.parameters()))
+    result.remarks.push_back(std::move(remark));
   addRemarks(result, curve_square);
   countNeeds(result);
   return result;

@@ -90,7 +90,8 @@ std::string HammerPart::nameOf(Eigen::Index row) const {
   return row < kGlobals ? std::string(kNames[row]) : names[static_cast<std::size_t>(row - kGlobals)];
 }
 
-std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows) {
+std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,
+                                   const HammerParameters& file) {
   std::vector<std::string> remarks;
   const auto count = static_cast<Eigen::Index>(hammer.names.size());
   const Eigen::MatrixXd& P = hammer.covariance;
@@ -105,10 +106,16 @@ std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix&
   }
   for (std::size_t i = 0; i < hammer.names.size(); ++i) {
     if (hammer.left(i) > kSeen) continue;
-    remarks.push_back(
-        format("%s: by the readings %+.2g +- %.2g of its deviation off the file's value; not written, others of the "
-               "hammer's constants go with it",
-               hammer.names[i].c_str(), hammer.errors[static_cast<Eigen::Index>(i)], hammer.left(i)));
+    for (std::size_t k = 0; k < kHammerConstants.size(); ++k) {
+      const HammerConstant& constant = kHammerConstants[k];
+      if (constant.key != hammer.names[i]) continue;
+      const double deviation = file.deviations[k];
+      remarks.push_back(format(
+          "%s: by the readings %+.2g +- %.1g more than the file has, whose deviation is %.2g; not written, others "
+          "of the hammer's constants go with it",
+          constant.key, constant.away * deviation * hammer.errors[static_cast<Eigen::Index>(i)],
+          deviation * hammer.left(i), deviation));
+    }
   }
   return remarks;
 }

@@ -77,13 +77,11 @@ class ConstantErrors {
   const Matrix& moment() const noexcept { return moment_; }
   /// L with L L^T = moment(): its columns are errors that are independent of each other.
   const Matrix& root() const noexcept { return root_; }
-  /// Derivatives by the constants, as columns of independent errors of one standard deviation each.
-  template <typename Derived>
-  static ByConstants<Derived::RowsAtCompileTime, kSize> columns(const Eigen::MatrixBase<Derived>& by,
-                                                                          const Matrix& root) noexcept {
-    ByConstants<Derived::RowsAtCompileTime, kSize> result = by;
-    result.template leftCols<kTable>() = by.template leftCols<kTable>().lazyProduct(root);
-    return result;
+  /// Derivatives by the constants become columns of independent errors of one standard deviation each.
+  template <int numbers>
+  static void toColumns(const Matrix& root, ByConstants<numbers, kSize>& by) noexcept {
+    const ByConstants<numbers, kTable> of_table = by.template leftCols<kTable>().lazyProduct(root);
+    by.template leftCols<kTable>() = of_table;
   }
 
  private:

@@ -202,9 +202,10 @@ CrankUncertainty motionUncertainty(const ShaftModel& model, const ShaftLoad& loa
   CrankUncertainty result;
   result.own << P.topLeftCorner<2, 2>(), with.head<2>().transpose(), with.head<2>(), with.dot(by);
   result.own *= growth;
-  result.by_constant << belief.by_constant.topRows<2>(), by.lazyProduct(belief.by_constant.topRows<4>()),
-      belief.by_constant.row(CrankBelief::kInertia);
-  result.by_constant = ConstantErrors::columns(result.by_constant, root);
+  result.by_constant.topRows<2>() = belief.by_constant.topRows<2>();
+  result.by_constant.row(CrankUncertainty::kAcceleration) = by.lazyProduct(belief.by_constant.topRows<4>());
+  result.by_constant.row(CrankUncertainty::kInertia) = belief.by_constant.row(CrankBelief::kInertia);
+  ConstantErrors::toColumns(root, result.by_constant);
   addAcceleration(model, belief, here, inv, result);
   result.inertia = std::sqrt(growth * P(CrankBelief::kInertia, CrankBelief::kInertia));
   return result;

@@ -107,7 +107,8 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
                  of_inertia = std::sqrt(growth * covariance(kInertia, kInertia));
     ByConstants<2, ConstantErrors::kSize> by;
     by << by_constant.row(kFactor), by_constant.row(kInertia);
-    return {factor, of_factor, state.drive_inertia, of_inertia, struck_early, ConstantErrors::columns(by, root)};
+    ConstantErrors::toColumns(root, by);
+    return {factor, of_factor, state.drive_inertia, of_inertia, struck_early, by};
   }
 };
 

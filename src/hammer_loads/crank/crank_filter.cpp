@@ -214,7 +214,8 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
 
 /// Steps (1) to (10) are those of model.md 6.
 Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
-  const CrankBelief last = now_;
+  CrankBelief& last = earlier_[1 - before_];
+  last = now_;
   lost_time_ = 0.0;
   restart_load_ *= std::max(0.0, 1.0 - dt / kForgetRestarts);
   doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
@@ -275,7 +276,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   }
   sample_ = sample;
   angle_fit_ = innovation.logLikelihood();
-  before_ = last;
+  before_ = 1 - before_;
   before_load_ = load_;
   before_hull_ = now_hull_;
   step_ = dt;

@@ -1,6 +1,7 @@
 /// Kalman filter on the mechanism: from noisy crank samples to angle, speed, acceleration, torque and drive inertia.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -143,9 +144,10 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kJump = 0.5;  ///< [rad]: an innovation that no working machine makes between two samples
   // Guard: FilterTrouble.OfAReadingThatNoWorkingMachineGives of kJump
 
+  const CrankBelief& before() const noexcept { return earlier_[before_]; }
   /// The last two and the step between them.
   BetweenSamples lastStep() const noexcept {
-    return {model_, step_model_, before_, now_, before_hull_, now_hull_, step_, mostSpeed()};
+    return {model_, step_model_, before(), now_, before_hull_, now_hull_, step_, mostSpeed()};
   }
   CrankUncertainty uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load, double torque_part) const noexcept;
   /// At now_ with the latest motion of the hull.
@@ -208,16 +210,17 @@ class CrankFilter final : public CrankTracker {
   RodEvidence rod_evidence_;
   ConstantErrors errors_;
   BlowHistory blows_;
-  CrankBelief now_;        ///< at the last sample, corrected by it
-  ShaftLoad load_;         ///< there, with now_hull_
-  bool hull_moved_{true};  ///< since then
-  CrankBelief before_;     ///< at the last but one sample
-  ShaftLoad before_load_;  ///< there, with before_hull_
-  double step_{};          ///< between these two [s]
-  ContactRival rival_;     ///< the same samples with contact where now_ has none, or the other way round
-  bool mirrored_{};        ///< now_ had no contact and is on the mirrored branch
-  double fit_{};           ///< logarithm of the last sample's likelihood by now_
-  double speed_variance_;  ///< of measured speeds, as identified [rad2/s2]
+  CrankBelief now_;                     ///< at the last sample, corrected by it
+  ShaftLoad load_;                      ///< there, with now_hull_
+  bool hull_moved_{true};               ///< since then
+  std::array<CrankBelief, 2> earlier_;  ///< at the last but one sample; the other is in work
+  std::size_t before_{};                ///< place of the former
+  ShaftLoad before_load_;               ///< there, with before_hull_
+  double step_{};                       ///< between these two [s]
+  ContactRival rival_;                  ///< the same samples with contact where now_ has none, or the other way round
+  bool mirrored_{};                     ///< now_ had no contact and is on the mirrored branch
+  double fit_{};                        ///< logarithm of the last sample's likelihood by now_
+  double speed_variance_;               ///< of measured speeds, as identified [rad2/s2]
   EncoderSlip slip_;
   double interval_{};    ///< of the samples, where they are taken at equal ones [s]
   double lost_time_{};   ///< of the last step, beyond what its stamps say [s]

@@ -30,7 +30,7 @@ bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torq
 
 CrankEstimate CrankFilter::between(double dt) const noexcept {
   if (dt >= step_) return estimate();
-  if (dt == 0.0) return estimateOf(model_, before_load_, before_.state);
+  if (dt == 0.0) return estimateOf(model_, before_load_, before().state);
   return estimateBetween(lastStep(), dt);
 }
 
@@ -41,8 +41,8 @@ std::optional<CrankWays> CrankFilter::waysBetween(double dt) const noexcept {
 /// The way forward from the sample before may strike earlier than the way between both, with a blow not yet known.
 CrankUncertainty CrankFilter::uncertaintyBetween(double dt, double torque_part) const noexcept {
   if (dt >= step_) return uncertainty(torque_part);
-  CrankBelief belief = before_;
-  const bool comes_to_blow = before_.state.position.angle.side == Side::kBeforeBlow && isNearTool(before_.state, step_);
+  CrankBelief belief = before();
+  const bool comes_to_blow = before().state.position.angle.side == Side::kBeforeBlow && isNearTool(before().state, step_);
   const bool is_before = comes_to_blow && between(dt).position.angle.side == Side::kBeforeBlow;
   predict(dt, !is_before, belief);
   return uncertaintyOf(belief, model_(belief.state.position.angle), torque_part);

@@ -216,7 +216,7 @@ CrankUncertainty flexibleUncertainty(const ShaftModel& model, const Belief& b, d
   CrankUncertainty result;
   result.by_constant = jacobian * all.by_constant;
   result.by_constant(2, ConstantErrors::kShare) += slopes.others[kOdds];
-  result.by_constant = ConstantErrors::columns(result.by_constant, root);
+  ConstantErrors::toColumns(root, result.by_constant);
   const ShaftLoad load = model(b.state.position.angle);
   const double inv = 1.0 / (lawOf(*model.coupling(), b.state).crank_inertia + load.inertia);
   addAcceleration(model, b, acceleration(model, load, b.state), inv, result);

@@ -12,8 +12,7 @@ struct MotorSide {
   enum : Eigen::Index { kAngle, kSpeed, kStiffness, kSize };
 
   Eigen::Matrix<double, kFlexibleVariables, kSize> covariance{Eigen::Matrix<double, kFlexibleVariables, kSize>::Zero()};
-  ByConstants<kSize, ConstantErrors::kSize> by_constant{
-      ByConstants<kSize, ConstantErrors::kSize>::Zero()};
+  ByConstants<kSize, ConstantErrors::kSize> by_constant{ByConstants<kSize, ConstantErrors::kSize>::Zero()};
 };
 
 }  // namespace hammer_loads

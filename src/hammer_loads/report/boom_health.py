@@ -6,6 +6,7 @@ from report.markup import Raw, number, paragraph, table
 from report.series import Segments
 
 CHANGED = 3.0  # deviations: once in three hundred comparisons by chance
+MOST = 0.5     # of a run's turns
 
 # Means of a run: stiffness over that of the boom file, its deviation, share of turns whose damping no oil makes.
 OfRun = namedtuple("OfRun", "stamp_ns turns stiffness deviation doubtful")
@@ -36,14 +37,14 @@ def with_deviation(value, deviation):
 def verdict(runs):
     """Of the last run against the first."""
     first, last = runs[0], runs[-1]
-    if last.doubtful or first.doubtful:
+    if max(first.doubtful, last.doubtful) > MOST:
         return "doubtful: something else than oil damps the boom"
     if len(runs) < 2:
         return "one run: nothing to compare"
     spread = math.hypot(first.deviation or 0.0, last.deviation or 0.0)
     if abs(last.stiffness - first.stiffness) <= CHANGED * spread:
         return "as before"
-    return "softer: air, hoses, worn pins or a crack" if last.stiffness < first.stiffness else "stiffer"
+    return "softer" if last.stiffness < first.stiffness else "stiffer"
 
 
 def cylinder_table(found):
@@ -69,9 +70,8 @@ def mode_table(subject):
 
 
 def chart_of(runs, subject):
-    """A point a run."""
+    """A point a run; a line between them: what it shows changes slowly."""
     segments = Segments()
-    segments.of_runs = True
     segments.begin_run()
     for run in runs:
         spread = run.deviation or 0.0
