@@ -116,8 +116,9 @@ void recordWork(const std::string& path, double seconds, double rate, const std:
   bag.setChunkThreshold(100000);  // [byte], of some seconds
   RunInfo info;
   info.header.stamp.fromNSec(static_cast<std::uint64_t>(machine.start_stamp));
+  const TemporaryFile exact(exactHammer(), ".yaml");
   info.parameters_yaml =
-      loadFiles(configDirectory(), {}).value.value().yaml + "input_topic_crank: \"" + topic + "\"\n" + exactHammer();
+      loadFiles(configDirectory(), {exact.path()}).value.value().yaml + "input_topic_crank: \"" + topic + "\"\n";
   bag.write("/hammer_loads/run_info", info.header.stamp, info);
   sensor_msgs::JointState message;
   message.name = {"hammer_crank_joint"};
