@@ -135,6 +135,7 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
   for (int i = 0; i < kSteps && hammer; ++i) {
     const SegmentModel here{*hammer, model.level};
     const MachineColumns beside(*hammer, model.level);
+    if (beside.columns().size() != part.names.size()) break;  // at the edge of what a hammer can be
     Information all{prior.asDiagonal(), Eigen::VectorXd(size)};
     all.score << prior.head<kGlobals>().cwiseProduct(centre - joint.globals), -part.errors;
     for (SegmentFit& fit : joint.fits) {
@@ -142,11 +143,10 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
       const Information one = informationOf(fit, joint, here, beside);
       all.matrix += one.matrix, all.score += one.score;
     }
-    Eigen::MatrixXd held = all.matrix;
-    hold(free, held);
+    hold(free, all.matrix);
     for (Eigen::Index k = 0; k < kGlobals; ++k)
-      if (!free[k]) held(k, k) = 1.0, all.score[k] = 0.0;
-    part.covariance = held.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+      if (!free[k]) all.matrix(k, k) = 1.0, all.score[k] = 0.0;
+    part.covariance = all.matrix.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
     hold(free, part.covariance);
     const Eigen::VectorXd change = part.covariance * all.score;
     joint.globals += change.head<kGlobals>();
