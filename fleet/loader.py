@@ -6,11 +6,18 @@ import programs  # noqa: F401  (sets the path of report)
 from report.database import RECORDING, Database
 from report.problem import Problem
 from report.quantities import QUANTITIES, value_of
+from store import SCHEMA
 
 # Copied as they are, with another run_id.
 COPIED = ["refusals", "warnings", "channels", "cycles", "residues"]
 OPTIONAL = {"turns": ["turns", "blows"]}
 OUTCOME = ("machine", "bag", "status", "reason", "input_sha256", "parameters_sha256")
+
+
+def definition_of(table):
+    """SQL of a table that targets of older versions do not have yet."""
+    text = SCHEMA.read_text(encoding="utf-8")
+    return text[text.index(f"CREATE TABLE {table}("):].split(";")[0]
 
 
 def of_stamp(stamp_ns):
@@ -35,6 +42,8 @@ class Loader:
 
     def __init__(self, store, rows=None):
         self.store, self.tables = store, COPIED + OPTIONAL.get(rows, [])
+        if not store.columns("run_cylinders"):
+            store.execute(definition_of("run_cylinders"))
         self._next_run = (store.row("SELECT max(run_id) FROM runs")[0] or 0) + 1
         self._next_bag = (store.row("SELECT max(bag_id) FROM bags")[0] or 0) + 1
         self._columns = {}
@@ -88,8 +97,7 @@ class Loader:
         found = self.store.row("SELECT bag_id FROM bags WHERE machine = ? AND bag = ?", outcome["machine"], outcome["bag"])
         if found is None:
             return
-        optional = [t for t in ["run_cylinders", *OPTIONAL["turns"]] if self.store.columns(t)]
-        for table in COPIED + ["run_figures"] + optional:
+        for table in COPIED + ["run_figures", "run_cylinders"] + [t for t in OPTIONAL["turns"] if self.store.columns(t)]:
             self.store.execute(f"DELETE FROM {table} WHERE run_id IN (SELECT run_id FROM runs WHERE bag_id = ?)", found[0])
         self.store.execute("DELETE FROM runs WHERE bag_id = ?", found[0])
         self.store.execute("DELETE FROM bags WHERE bag_id = ?", found[0])
@@ -116,8 +124,8 @@ class Loader:
             self._copy(source, table, first - 1)
 
     def _add_cylinders(self, source, own, run_id):
-        """Databases of older versions, and targets merged by them, have none."""
-        if not source.columns("boom_cylinders") or not self._columns_of("run_cylinders"):
+        """Databases of older versions have none."""
+        if not source.columns("boom_cylinders"):
             return
         self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_deviation",
                                             "doubtful"],

@@ -32,7 +32,7 @@ CREATE TABLE run_figures(            -- of all turns of a run; quantity: blow_ra
   run_id INTEGER NOT NULL, quantity TEXT NOT NULL, count BIGINT NOT NULL, least DOUBLE PRECISION,
   mean DOUBLE PRECISION, greatest DOUBLE PRECISION, total DOUBLE PRECISION, PRIMARY KEY(run_id, quantity));
 
-CREATE TABLE run_cylinders(          -- means over the turns of a run; doubtful: part of them whose damping no oil makes
+CREATE TABLE run_cylinders(          -- means over the turns of a run, doubtful: part of them whose damping no oil makes
   run_id INTEGER NOT NULL, cylinder TEXT NOT NULL, turns BIGINT NOT NULL, stiffness_ratio DOUBLE PRECISION,
   stiffness_ratio_deviation DOUBLE PRECISION, doubtful DOUBLE PRECISION, PRIMARY KEY(run_id, cylinder));
 
