@@ -3,6 +3,7 @@ import datetime
 import json
 
 import programs  # noqa: F401  (sets the path of report)
+from report.boom_health import OF_TURNS
 from report.database import RECORDING, Database
 from report.problem import Problem
 from report.quantities import QUANTITIES, value_of
@@ -129,9 +130,7 @@ class Loader:
             return
         self.store.insert("run_cylinders", ["run_id", "cylinder", "turns", "stiffness_ratio", "stiffness_ratio_deviation",
                                             "doubtful"],
-                          [(run_id, *row) for row in source.rows(
-                              "SELECT cylinder, count(*), avg(stiffness_ratio), avg(stiffness_ratio_deviation), "
-                              "avg(doubtful) FROM boom_cylinders WHERE run_id = ? GROUP BY cylinder", own)])
+                          [(run_id, *row) for row in source.rows(OF_TURNS, own)])
 
     def _add_parameters(self, source, run):
         key = (run["parameters_sha256"], run["version"])

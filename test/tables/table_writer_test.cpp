@@ -11,15 +11,21 @@
 namespace hammer_loads {
 namespace {
 
+/// fill: what is written.
+template <typename Fill>
+void writeTables(const std::string& file, const Fill& fill) {
+  TableWriter writer(file, {{"turn", true}}, {{"turn", true}});
+  fill(writer);
+  writer.finish();
+  ASSERT_EQ(writer.problem(), "");
+}
+
 TEST(TableWriter, KeepsTheBoomsHealth) {
   const test::TemporaryFile file("");
-  {
-    TableWriter writer(file.path(), {{"turn", true}}, {{"turn", true}});
+  writeTables(file.path(), [](TableWriter& writer) {
     writer.boomCylinder(1, {7, "arm_cylinder", -0.5, 0.9, 0.01, true});
     writer.boomMode(1, {7, 2, 8.5, 0.1, 0.05, std::numeric_limits<double>::quiet_NaN()});
-    writer.finish();
-    ASSERT_EQ(writer.problem(), "");
-  }
+  });
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement rows(
       database,
@@ -36,8 +42,7 @@ TEST(TableWriter, KeepsTheBoomsHealth) {
 /// What nothing measured is NULL, which is not zero.
 TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
   const test::TemporaryFile file("");
-  {
-    TableWriter writer(file.path(), {{"turn", true}}, {{"turn", true}});
+  writeTables(file.path(), [](TableWriter& writer) {
     RunRecord record;
     record.blank_strokes = 3;
     writer.run(1, record);
@@ -45,9 +50,7 @@ TEST(TableWriter, MisuseThatIsNotKnownIsNull) {
     record.unpressed_blows = 7;
     record.still_time = 12.5;
     writer.run(2, record);
-    writer.finish();
-    ASSERT_EQ(writer.problem(), "");
-  }
+  });
   life::Database database(file.path(), life::Database::Use::kRead, 0);
   life::Database::Statement rows(
       database,

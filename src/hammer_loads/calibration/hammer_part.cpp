@@ -37,21 +37,22 @@ struct Information {
 Information informationOf(const SegmentFit& fit, const JointFit& joint, const SegmentModel& model,
                           const MachineColumns& columns) {
   const auto count = static_cast<Eigen::Index>(columns.columns().size()), size = kGlobals + count;
-  const std::vector<ShotPoint> here = fit.motion(model, joint.globals);
   std::vector<std::vector<ShotPoint>> beside;
   for (const MachineColumn& column : columns.columns())
     beside.push_back(fit.motion({column.mechanism, column.level}, joint.globals));
-  const NormalEquations own = fit.linearise(model, joint.globals, joint.noise);
+  const std::vector<ResidualRow> rows = fit.rows(model, joint.globals, joint.noise);
+  const NormalEquations own = fit.equationsOf(rows, joint.noise);
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(kLocals, size);
   Information all{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
   Eigen::VectorXd by(size);
-  for (const ResidualRow& row : fit.rows(model, joint.globals, joint.noise)) {
+  for (const ResidualRow& row : rows) {
     by.head<kGlobals>() = row.by_global;
     for (Eigen::Index k = 0; k < count; ++k) {
       const auto column = static_cast<std::size_t>(k);
-      const ShotPoint &there = beside[column][row.point], &at = here[row.point];
-      by[kGlobals + k] = (row.by_offset * (there.offset - at.offset) + row.by_crank_speed * (there.speed - at.speed)) /
-                         columns.columns()[column].step;
+      const ShotPoint& there = beside[column][row.point];
+      by[kGlobals + k] =
+          (row.by_offset * (there.offset - row.at.offset) + row.by_crank_speed * (there.speed - row.at.speed)) /
+          columns.columns()[column].step;
     }
     const double weight = weightOf(row);
     cross.noalias() += weight * row.by_local * by.transpose();
@@ -63,14 +64,6 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
   all.matrix -= cross.transpose() * solver.solve(cross);
   all.score -= cross.transpose() * solver.solve(own.l);
   return all;
-}
-
-/// Parameters that stay are known, and no others go with them.
-void hold(const Free& free, Eigen::MatrixXd& matrix) {
-  for (Eigen::Index k = 0; k < kGlobals; ++k) {
-    if (free[k]) continue;
-    matrix.row(k).setZero(), matrix.col(k).setZero();
-  }
 }
 
 /// Of an eccentricity 0; of the others where the fit is: their priors are wide.
@@ -106,16 +99,14 @@ std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix&
   }
   for (std::size_t i = 0; i < hammer.names.size(); ++i) {
     if (hammer.left(i) > kSeen) continue;
-    for (std::size_t k = 0; k < kHammerConstants.size(); ++k) {
-      const HammerConstant& constant = kHammerConstants[k];
-      if (constant.key != hammer.names[i]) continue;
-      const double deviation = file.deviations[k];
-      remarks.push_back(format(
-          "%s: by the readings %+.2g +- %.1g more than the file has, whose deviation is %.2g; not written, others "
-          "of the hammer's constants go with it",
-          constant.key, constant.away * deviation * hammer.errors[static_cast<Eigen::Index>(i)],
-          deviation * hammer.left(i), deviation));
-    }
+    const std::optional<std::size_t> k = indexOfConstant(hammer.names[i]);
+    if (!k) continue;
+    const double deviation = file.deviations[*k];
+    remarks.push_back(format(
+        "%s: by the readings %+.2g +- %.1g more than the file has, whose deviation is %.2g; not written, others "
+        "of the hammer's constants go with it",
+        hammer.names[i].c_str(), kHammerConstants[*k].away * deviation * hammer.errors[static_cast<Eigen::Index>(i)],
+        deviation * hammer.left(i), deviation));
   }
   return remarks;
 }
@@ -143,11 +134,9 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
       const Information one = informationOf(fit, joint, here, beside);
       all.matrix += one.matrix, all.score += one.score;
     }
-    hold(free, all.matrix);
-    for (Eigen::Index k = 0; k < kGlobals; ++k)
-      if (!free[k]) all.matrix(k, k) = 1.0, all.score[k] = 0.0;
+    hold(free, all.matrix, all.score);
     part.covariance = all.matrix.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-    hold(free, part.covariance);
+    clearHeld(free, part.covariance);
     const Eigen::VectorXd change = part.covariance * all.score;
     joint.globals += change.head<kGlobals>();
     part.errors += change.tail(count);

@@ -114,16 +114,6 @@ double costOf(const JointFit& joint, const SegmentModel& model, const Globals& s
   return cost;
 }
 
-/// Parameters that stay are left out of the system.
-void hold(const Free& free, GlobalMatrix& matrix, Globals& score) {
-  for (Eigen::Index k = 0; k < kGlobals; ++k) {
-    if (free[k]) continue;
-    matrix.row(k).setZero(), matrix.col(k).setZero();
-    matrix(k, k) = 1.0;
-    score[k] = 0.0;
-  }
-}
-
 /// One step with backtracking; the largest change in deviations.
 double improve(JointFit& joint, const SegmentModel& model, const Globals& start, System& s, const Free& free) {
   GlobalMatrix matrix = s.matrix;
@@ -164,8 +154,8 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Fr
     const double grow = std::sqrt(std::max(1.0, inverse(k, k) / std::max(covariance(k, k), 1e-300)));
     covariance.row(k) *= grow;
     covariance.col(k) *= grow;
-    if (!free[k]) covariance.row(k).setZero(), covariance.col(k).setZero();
   }
+  clearHeld(free, covariance);
   return covariance;
 }
 

@@ -11,6 +11,21 @@ namespace hammer_loads::calibration {
 
 using Free = Eigen::Matrix<bool, kGlobals, 1>;  ///< which parameters are to be found
 
+/// Of parameters that stay nothing is in doubt; a matrix's first rows are the shared parameters'.
+template <typename Matrix>
+void clearHeld(const Free& free, Matrix& covariance) {
+  for (Eigen::Index k = 0; k < kGlobals; ++k)
+    if (!free[k]) covariance.row(k).setZero(), covariance.col(k).setZero();
+}
+
+/// As above: they are left out of a system.
+template <typename Matrix, typename Vector>
+void hold(const Free& free, Matrix& matrix, Vector& score) {
+  clearHeld(free, matrix);
+  for (Eigen::Index k = 0; k < kGlobals; ++k)
+    if (!free[k]) matrix(k, k) = 1.0, score[k] = 0.0;
+}
+
 struct JointFit {
   Globals globals;
   GlobalMatrix covariance;        ///< of globals, by how much the blows differ from each other

@@ -170,7 +170,7 @@ std::vector<ResidualRow> SegmentFit::rows(const SegmentModel& model, const Globa
     const Seen seen = seenAt(globals, offset);
     const double s1 = std::sin(offset), c1 = std::cos(offset), s2 = 2.0 * s1 * c1, c2 = 1.0 - 2.0 * s1 * s1;
     const Weighing deviation = weighing(noise, point.time, base[i]);
-    ResidualRow angle{i, false, point.seen - seen.value, deviation.angle, {}, {}, seen.slope, 0.0};
+    ResidualRow angle{i, base[i], false, point.seen - seen.value, deviation.angle, {}, {}, seen.slope, 0.0};
     angle.by_local = seen.slope * slopes[i].row(0).head<kLocals>().transpose();
     angle.by_global << 1.0, s1, c1 - 1.0, s2, c2 - 1.0, seen.slope * slopes[i].row(0).tail<kShaping>().transpose();
     rows.push_back(angle);
@@ -179,6 +179,7 @@ std::vector<ResidualRow> SegmentFit::rows(const SegmentModel& model, const Globa
         -globals[kSine1] * s1 - globals[kCosine1] * c1 - 4.0 * (globals[kSine2] * s2 + globals[kCosine2] * c2);
     const MotionSlope by_motion = seen.slope * slopes[i].row(1) + speed * bend * slopes[i].row(0);
     ResidualRow of_speed{i,
+                         base[i],
                          true,
                          *point.speed - seen.slope * speed - deviation.share * angle.residual,
                          deviation.speed,
@@ -197,10 +198,10 @@ std::vector<ResidualRow> SegmentFit::rows(const SegmentModel& model, const Globa
 
 double weightOf(const ResidualRow& row) { return weightOf(row.residual / row.deviation) / square(row.deviation); }
 
-NormalEquations SegmentFit::linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
+NormalEquations SegmentFit::equationsOf(const std::vector<ResidualRow>& rows, const Noise& noise) const {
   NormalEquations e;
   e.ll_angles.setZero(), e.ll_speeds.setZero(), e.lg.setZero(), e.gg.setZero(), e.l.setZero(), e.g.setZero();
-  for (const ResidualRow& row : rows(model, globals, noise)) {
+  for (const ResidualRow& row : rows) {
     const double weight = weightOf(row);
     LocalMatrix& ll = row.of_speed ? e.ll_speeds : e.ll_angles;
     ll.noalias() += weight * row.by_local * row.by_local.transpose();

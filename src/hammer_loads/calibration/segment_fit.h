@@ -67,11 +67,12 @@ struct ResidualAt {
 /// A residual with its derivatives, negative: of what the model predicts.
 struct ResidualRow {
   std::size_t point{};  ///< of the segment
+  ShotPoint at;         ///< the crank there
   bool of_speed{};
   double residual{}, deviation{};
   Locals by_local;
   Globals by_global;
-  double by_offset{}, by_crank_speed{};  ///< of the crank's motion at the point
+  double by_offset{}, by_crank_speed{};  ///< of the crank's motion there
 };
 
 /// Of a row in the sum of squares: Huber's, over the variance.
@@ -87,7 +88,11 @@ class SegmentFit {
   std::size_t size() const noexcept { return segment_->points.size(); }
 
   double cost(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
-  NormalEquations linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
+  NormalEquations linearise(const SegmentModel& model, const Globals& globals, const Noise& noise) const {
+    return equationsOf(rows(model, globals, noise), noise);
+  }
+  /// rows: of this segment.
+  NormalEquations equationsOf(const std::vector<ResidualRow>& rows, const Noise& noise) const;
   std::vector<ResidualRow> rows(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
   /// The crank at the segment's points by another hammer, all else the same.
   std::vector<ShotPoint> motion(const SegmentModel& model, const Globals& globals) const;

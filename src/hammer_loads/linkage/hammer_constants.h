@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -90,6 +91,13 @@ inline constexpr std::array<HammerConstant, kHammerConstantCount> kHammerConstan
     {"drive_reaction_ratio", "", [](HammerParameters& p) -> double& { return p.drive_reaction_ratio; }, usual::exact,
      1.0, HammerConstant::Enters::kLoads},
 }};
+
+/// Place of a key in kHammerConstants, if it is there.
+inline std::optional<std::size_t> indexOfConstant(const std::string& key) {
+  for (std::size_t i = 0; i < kHammerConstants.size(); ++i)
+    if (kHammerConstants[i].key == key) return i;
+  return std::nullopt;
+}
 
 /// Key of the constant's standard deviation: `_deviation` before the unit.
 inline std::string deviationKey(const HammerConstant& constant) {

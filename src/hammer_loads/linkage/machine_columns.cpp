@@ -5,11 +5,16 @@ namespace {
 
 using Enters = HammerConstant::Enters;
 
-/// The hammer with a constant so far off; nothing where there can be none.
-std::optional<Mechanism> shifted(HammerParameters p, const HammerConstant& constant, double by) {
-  constant.field(p) += by;
+/// With the rod that closes the linkage; nothing where there can be no such hammer.
+std::optional<Mechanism> closed(HammerParameters p) {
   p.lengths.rod = p.lengths.pivot_distance + p.lengths.rocker - p.lengths.crank;
   return Mechanism::make(p).value;
+}
+
+/// The hammer with a constant so far off.
+std::optional<Mechanism> shifted(HammerParameters p, const HammerConstant& constant, double by) {
+  constant.field(p) += by;
+  return closed(p);
 }
 
 ShaftLoad loadOf(const Mechanism& mechanism, Level level, const LinkMotion& links, Gravity gravity) noexcept {
@@ -61,14 +66,11 @@ void MachineColumns::add(const Mechanism& other, Level level, Enters enters, dou
 std::optional<Mechanism> MachineColumns::hammerOff(const Eigen::VectorXd& errors) const {
   HammerParameters p = mechanism_.parameters();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    for (std::size_t k = 0; k < kHammerConstants.size(); ++k) {
-      const HammerConstant& constant = kHammerConstants[k];
-      if (constant.key == columns_[i].name)
-        constant.field(p) += constant.away * p.deviations[k] * errors[static_cast<Eigen::Index>(i)];
-    }
+    if (const auto k = indexOfConstant(columns_[i].name))
+      kHammerConstants[*k].field(p) +=
+          kHammerConstants[*k].away * p.deviations[*k] * errors[static_cast<Eigen::Index>(i)];
   }
-  p.lengths.rod = p.lengths.pivot_distance + p.lengths.rocker - p.lengths.crank;
-  return Mechanism::make(p).value;
+  return closed(p);
 }
 
 MachineColumns::OnShaft MachineColumns::onShaft(CrankAngle angle, Gravity gravity) const noexcept {

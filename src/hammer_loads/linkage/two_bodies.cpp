@@ -95,11 +95,11 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   middle.beside += 0.5 * dt * s.beside_speed;
   const Local a = local(drive, middle, links(middle.angle));
   const double damping = rod.damping(), half = 0.5 * rod.play;
-  const auto isFree = [&](double beside, double beside_speed, double speed) {
-    const double stretch = -a.secant_lever * beside, rate = a.by_crank * speed - a.lever * beside_speed;
+  const auto isFree = [&](const TwoBodyState& at) {
+    const double stretch = -a.secant_lever * at.beside, rate = a.by_crank * at.speed - a.lever * at.beside_speed;
     return half > 0.0 && (std::abs(stretch) < half || pushes(rod, damping, stretch, rate) == 0.0);
   };
-  const bool free = isFree(middle.beside, s.beside_speed, s.speed);
+  const bool free = isFree(middle);
   // tension = -stiff x - damped x' - apart, at the middle's levers
   const double stiff = free ? 0.0 : rod.stiffness * a.secant_lever;
   const double damped = free ? 0.0 : damping * a.lever;
@@ -107,16 +107,14 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   const double apart = free ? 0.0 : to_side - damping * a.by_crank * s.speed;
   const double per = a.lever * a.per_own, back = a.coupling * a.per_reflected;
   const double pull = (a.on_rocker - back * a.on_crank) * a.per_own - per * apart;
-  const double x = s.beside, y = s.beside_speed;
   oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.beside, s.beside_speed);
-  const double gained = s.beside_speed - y;
-  const double tension = -stiff * 0.5 * (x + s.beside) - damped * (s.beside - x) / dt - apart;
+  const double moved = s.beside - from.beside, gained = s.beside_speed - from.beside_speed;
+  const double tension = -stiff * 0.5 * (from.beside + s.beside) - damped * moved / dt - apart;
   const double rate_of_crank = (a.on_crank - tension * a.by_crank) * a.per_reflected;
-  s.angle.offset += dt * (s.speed + 0.5 * dt * rate_of_crank) - back * (s.beside - x - dt * y);
+  s.angle.offset += dt * (s.speed + 0.5 * dt * rate_of_crank) - back * (moved - dt * from.beside_speed);
   s.speed += dt * rate_of_crank - back * gained;
   // Pins that part or meet within the step: it is made of two.
-  if (half > 0.0 && dt > kContact &&
-      (isFree(x, y, from.speed) != free || isFree(s.beside, s.beside_speed, s.speed) != free)) {
+  if (half > 0.0 && dt > kContact && (isFree(from) != free || isFree(s) != free)) {
     s = from;
     move(rod, drive, 0.5 * dt, s);
     move(rod, drive, 0.5 * dt, s);

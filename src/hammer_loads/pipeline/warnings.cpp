@@ -166,6 +166,9 @@ std::string contradictionOf(const Pipeline& pipeline, bool strike) {
              CrankTrust::kSlowestKnown, pipeline.settings().coupling ? "coupling_motor_share" : "shaft: flexible");
 }
 
+/// For readings that contradict the model before the blow.
+bool mostIsWithheld(const SampleCounts& counts) { return counts.refusedFor(Refusal::kInconsistent) > counts.accepted; }
+
 /// It was withheld, and is no longer.
 std::string agreesAgain(const CrankFilter& filter, std::uint64_t withheld) {
   return format(
@@ -179,7 +182,7 @@ void warnOfMismatch(const Pipeline& pipeline, const CrankFilter& filter, bool gi
   const std::uint64_t withheld = pipeline.counts().refusedFor(Refusal::kInconsistent);
   const bool strike = filter.strikeConsistency() > CrankTrust::kInconsistent;
   const bool now = filter.consistency() > CrankTrust::kInconsistent || strike || filter.isUnexplained() ||
-                   pipeline.crankTrust().isInconsistent() || withheld > pipeline.counts().accepted;
+                   pipeline.crankTrust().isInconsistent() || mostIsWithheld(pipeline.counts());
   const bool far_off = withheld > 0 && pipeline.crankTrust().zeroFarOff();  // no rod makes that
   if (far_off || (now && !gives))
     return warnings.push_back({"inconsistent", contradictionOf(pipeline, strike || withheld > 0), true});
@@ -200,7 +203,7 @@ void warnOfSensor(const Pipeline& pipeline, std::vector<Warning>& warnings) {
   if (filter == nullptr || pipeline.crankTrust().turnsBackward() || isOtherUnit(pipeline, pipeline.counts())) return;
   if (pipeline.counts().blows < kLearned && withheld == 0) return;
   // A rod alone hardly makes most of a recording contradict the model before the blow.
-  const bool gives = filter->rodEvidence().gives() && withheld <= pipeline.counts().accepted;
+  const bool gives = filter->rodEvidence().gives() && !mostIsWithheld(pipeline.counts());
   if (filter->isLost())
     warnings.push_back({"lost",
                         std::string("crank: the estimate restarts again and again; readings and ") +

@@ -2,7 +2,7 @@
 from collections import namedtuple
 import math
 
-from report.markup import Raw, number, paragraph, table
+from report.markup import Raw, measured, number, paragraph, table
 from report.series import Segments
 
 CHANGED = 3.0  # deviations: once in three hundred comparisons by chance
@@ -30,10 +30,6 @@ def cylinders_of(subject):
     return found
 
 
-def with_deviation(value, deviation):
-    return number(value, 3) if deviation is None else f"{number(value, 3)} \u00b1 {number(deviation, 1)}"
-
-
 def verdict(runs):
     """Of the last run against the first."""
     first, last = runs[0], runs[-1]
@@ -52,7 +48,7 @@ def cylinder_table(found):
     for name, runs in sorted(found.items()):
         first, last = runs[0], runs[-1]
         change = 100.0 * (last.stiffness / first.stiffness - 1.0) if len(runs) > 1 and first.stiffness else None
-        rows.append([name, with_deviation(first.stiffness, first.deviation), with_deviation(last.stiffness, last.deviation),
+        rows.append([name, measured(first.stiffness, first.deviation), measured(last.stiffness, last.deviation),
                      "\u2013" if change is None else f"{change:+.1f} %", len(runs), verdict(runs)])
     return table("Stiffness of the oil over that of the boom file, mean of a run",
                  ["Cylinder", "First run", "Last run", "Change", "Runs", "Verdict"], rows, kind="words figures-first")
@@ -62,7 +58,7 @@ def mode_table(subject):
     """Of the last run: frequencies depend on the pose."""
     if "boom_modes" not in subject.database.tables() or not subject.runs:
         return ""
-    rows = [[f"{mode}", f"{number(least, 3)} to {number(most, 3)}", number(mean, 3), with_deviation(damping, deviation),
+    rows = [[f"{mode}", f"{number(least, 3)} to {number(most, 3)}", number(mean, 3), measured(damping, deviation),
              turns] for mode, turns, least, mean, most, damping, deviation in
             subject.database.rows(MODES, subject.runs[-1]["run_id"])]
     return table("Modes of the last run, over its poses", ["Mode", "Frequency [Hz]", "Mean [Hz]", "Damping ratio", "Turns"],
