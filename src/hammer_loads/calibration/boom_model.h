@@ -21,7 +21,7 @@ struct TipWeight {
 struct BoomBasis {
   std::string urdf;
   BoomParameters parameters;
-  Eigen::Vector3d g_B{0.0, 0.0, -9.80665};  ///< gravity in the root's axes [m/s2]
+  Eigen::Vector3d g_B{0.0, 0.0, -kStandardGravity};  ///< gravity in the root's axes [m/s2]
   double mass_deviation{0.15};              ///< standard, of each link's mass, relative: a sum of drawn parts [-]
   double com_deviation{0.10};               ///< of each link's centre of mass in x and z each [m]
   double inertia_deviation{0.30};           ///< of each link's inertia, relative [-]

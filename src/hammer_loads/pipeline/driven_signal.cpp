@@ -26,6 +26,9 @@ constexpr double kMemoryOfReadings = 1000.0;  // readings
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
 constexpr double kComplianceWalk = 0.02;         // of the first guess's deviation in a second: a pose that changes
 // Guard: FollowerNumbers.ASignalsComplianceWandersAsThePoseChanges of kComplianceWalk
+// Of a compliance by a description, whose masses are good to 3 % and centres to 2 cm.
+constexpr double kTold = 0.05;
+// Guard: HullMotionFilter.KnowsTheHullBeforeItsFirstBlowByItsDescription of kTold
 constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
 constexpr double kLeastNoise = 1e-3;    // of the first guess: a logarithm is taken of it
 constexpr double kUnknownSignal = 1e3;  // of the noise: smooth part at the start
@@ -72,6 +75,21 @@ DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settin
     c.P.diagonal().tail<9>() = guess;
   }
   best_ = kCandidates / 2;
+}
+
+void DrivenSignal::expect(const Eigen::Vector3d& compliance, const Eigen::Vector3d& most) noexcept {
+  const Eigen::Vector3d change = compliance - expected_;
+  const bool first = expected_.isZero(0.0);
+  const Eigen::Vector3d variance = (kTold * (first ? most : change)).cwiseAbs2();
+  for (Candidate& c : candidates_) {
+    if (first) {
+      c.P.middleRows<3>(kCompliance).setZero(), c.P.middleCols<3>(kCompliance).setZero();
+      c.x.segment<3>(kCompliance).setZero();
+    }
+    c.P.diagonal().segment<3>(kCompliance) += variance / c.variance;
+    c.x.segment<3>(kCompliance) += change;
+  }
+  expected_ = compliance;
 }
 
 double DrivenSignal::Candidate::score() const noexcept { return std::log(variance) + log_spread; }
@@ -125,8 +143,10 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
                           Candidate& c) noexcept {
   const bool itself = settings_.reads == Reads::kItself;
   const State PH = itself ? signalsOf(c.P, load) : State(c.P.col(kIntegral));
-  const double p = doubt.probability, jump = c.x.segment<3>(kCompliance).dot(doubt.added);
-  const double S = 1.0 + readOf(PH, load) + p * (1.0 - p) * square(jump) / c.variance;
+  const Eigen::Vector3d compliance = c.x.segment<3>(kCompliance);
+  const double p = doubt.probability, jump = compliance.dot(doubt.added);
+  const double doubtful = p * (1.0 - p) * square(jump) + compliance.cwiseProduct(doubt.off).squaredNorm();
+  const double S = 1.0 + readOf(PH, load) + doubtful / c.variance;
   const double off = reading - readOf(c.x, load) - p * jump;
   const State gain = PH / std::sqrt(S);  // products of its elements keep the covariance symmetric to the bit
   c.x += gain * (off / std::sqrt(S));

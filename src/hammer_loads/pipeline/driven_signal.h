@@ -41,6 +41,8 @@ class DrivenSignal {
   struct Doubt {
     double probability{};
     Eigen::Vector3d added = Eigen::Vector3d::Zero();
+    /// Standard deviation beside that of the load, or of its impulse since the last reading.
+    Eigen::Vector3d off = Eigen::Vector3d::Zero();
   };
   struct Value {
     double signal{}, integral{};  ///< the integral only where it is read
@@ -54,6 +56,10 @@ class DrivenSignal {
 
   explicit DrivenSignal(const Settings& settings) noexcept;
 
+  /// What a description says of the compliances, and what each can be at most: it is believed to a part of these. The
+  /// first such word replaces the first guess; from one to the next, as the pose changes, what was learned moves by
+  /// their difference.
+  void expect(const Eigen::Vector3d& compliance, const Eigen::Vector3d& most) noexcept;
   /// Readings are not continuous with those before; what the hull is stays known.
   void forgetMotion() noexcept { begun_ = false; }
   /// The load has grown: readings up to now count for that part only in how the signal walks and is read.
@@ -120,8 +126,9 @@ class DrivenSignal {
   Settings settings_;
   std::array<Candidate, kCandidates> candidates_;
   std::size_t best_{};
-  Eigen::Matrix<double, 9, 1> walk_;  ///< of compliances and stiffnesses, variance in a second
-  double interval_{};                 ///< mean, of the readings [s]
+  Eigen::Vector3d expected_ = Eigen::Vector3d::Zero();  ///< compliances, by the last expect()
+  Eigen::Matrix<double, 9, 1> walk_;                    ///< of compliances and stiffnesses, variance in a second
+  double interval_{};                                   ///< mean, of the readings [s]
   double counted_{};
   double steady_{}, steady_time_{};  ///< mean of the signal that is read; over [s]
   bool begun_{};

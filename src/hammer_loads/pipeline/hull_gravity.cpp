@@ -45,9 +45,10 @@ bool HullGravity::takePosition(const std::vector<std::string>& names, const std:
   return taken;
 }
 
+bool HullGravity::allHeard() const noexcept { return std::find(heard_.begin(), heard_.end(), false) == heard_.end(); }
+
 void HullGravity::find() noexcept {
-  const bool all_heard = std::find(heard_.begin(), heard_.end(), false) == heard_.end();
-  const bool by_chain = chain_ && (all_heard || (pitch_is_of_chain_ && pitch_.known()));
+  const bool by_chain = chain_ && (allHeard() || (pitch_is_of_chain_ && pitch_.known()));
   const Eigen::Vector3d g = by_chain ? gravityInTip(*chain_, position_, g_B_) : g_B_;
   const double pitch = by_chain ? beyond_ : pitch_.pitch();
   const double s = std::sin(pitch), c = std::cos(pitch);

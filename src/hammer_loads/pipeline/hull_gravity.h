@@ -22,12 +22,15 @@ class HullGravity {
   /// Boom joint angles, any subset in any order. Whether any was of use.
   bool joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
 
+  /// Of the chain's joints, once all of them have been heard; null: not yet, or no chain.
+  const JointVector* position() const noexcept { return chain_ && allHeard() ? &position_ : nullptr; }
   const Gravity& gravity() const noexcept { return gravity_; }  ///< hull axes [m/s2]
   const HullPitch& pitch() const noexcept { return pitch_; }
 
  private:
   bool takePosition(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept;
   void find() noexcept;
+  bool allHeard() const noexcept;
 
   HullPitch pitch_;
   Eigen::Vector3d g_B_;  ///< in the root's axes [m/s2]

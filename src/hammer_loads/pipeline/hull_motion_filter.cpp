@@ -56,12 +56,22 @@ void HullMotionFilter::add(StampNs stamp, const ImuReading& reading) noexcept {
   waiting_[waits_++] = {stamp, reading};
 }
 
+void HullMotionFilter::expect(const HullMobility::Mobility& mobility) noexcept {
+  mobility_ = mobility;
+  int row = 0;
+  for (DrivenSignal* signal : {&x_, &z_, &turning_}) {
+    signal->expect(mobility.value.row(row).transpose(), mobility.most.row(row).transpose());
+    ++row;
+  }
+}
+
 void HullMotionFilter::forgetMotion() noexcept {
   x_.forgetMotion(), z_.forgetMotion(), turning_.forgetMotion();
   readings_ = 0;
 }
 
-void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
+void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside,
+                              const HullWrench& off) noexcept {
   if (step.count == 0) {
     path_.forget();
     forgetMotion();
@@ -71,7 +81,7 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
   beside_ = beside;
   std::size_t taken = 0;
   while (taken < waits_ && waiting_[taken].stamp <= sample) {
-    if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken]);
+    if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken], vectorOf(off));
     ++taken;
   }
   std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
@@ -108,7 +118,13 @@ void HullMotionFilter::forEachStep(StampNs to, const Signals& signals, const Eac
   }
 }
 
-void HullMotionFilter::take(const Reading& next) noexcept {
+void HullMotionFilter::beginAnew() noexcept {
+  for (DrivenSignal* signal : {&x_, &z_, &turning_}) *signal = DrivenSignal(signal->settings());
+  if (mobility_) expect(*mobility_);
+  forgetMotion();
+}
+
+void HullMotionFilter::take(const Reading& next, const Eigen::Vector3d& off) noexcept {
   const double step = seconds(next.stamp - last_.stamp);
   if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();
   const WrenchPath::Instant now = path_.at(next.stamp);
@@ -123,15 +139,12 @@ void HullMotionFilter::take(const Reading& next) noexcept {
   const bool counts = works(now.load);
   const ImuReading& r = next.reading;
   const WrenchPath::OtherSide other = path_.otherSide(next.stamp);
-  const DrivenSignal::Doubt by_load{other.probability, other.load}, by_blow{other.probability, other.blow};
+  const DrivenSignal::Doubt by_load{other.probability, other.load, off},
+      by_blow{other.probability, other.blow, step * off};
   x_.read(r.specific_force.x(), step, now.load, by_load, counts);
   z_.read(r.specific_force.z(), step, now.load, by_load, counts);
   turning_.read(r.rate.y(), step, now.load, by_blow, counts);
-  for (DrivenSignal* signal : {&x_, &z_, &turning_}) {
-    if (signal->isFinite()) continue;
-    *signal = DrivenSignal(signal->settings());
-    forgetMotion();
-  }
+  if (!(x_.isFinite() && z_.isFinite() && turning_.isFinite())) beginAnew();
   last_ = next;
   at_last_ = now;
   readings_ = std::min(readings_ + 1, 2);

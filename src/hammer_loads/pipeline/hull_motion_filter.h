@@ -9,6 +9,7 @@
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/driven_signal.h"
 #include "hammer_loads/pipeline/hull_imu.h"
+#include "hammer_loads/pipeline/hull_mobility.h"
 #include "hammer_loads/pipeline/wrench_path.h"
 
 namespace hammer_loads {
@@ -24,17 +25,20 @@ struct KnownHullMotion {
 
 /// Three signals at the unit, each driven by the load of links and drive: force along x, force along z, turning about y
 /// by its rate. Readings wait for the crank sample after them, which gives the load at their stamps; nothing is taken
-/// from the future. The effective inertia of the hull at D - on its boom and oil, on rock - is learned and needs no
-/// boom file.
+/// from the future. The effective inertia of the hull at D - on its boom and oil, on rock - is learned: it needs no
+/// boom file, and begins with what there is in one.
 class HullMotionFilter {
  public:
   HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer);
 
+  /// What a robot description says of how the hull yields.
+  void expect(const HullMobility::Mobility& mobility) noexcept;
   /// A reading that was taken, axes of hammer_hull.
   void add(StampNs stamp, const ImuReading& reading) noexcept;
   /// A crank sample and the load of the step that it ends; beside: what acts on the hull beside that at the sample. A
-  /// step without pieces: what is known of motion is forgotten.
-  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
+  /// step without pieces: what is known of motion is forgotten. off: standard deviation of the load, where it is not
+  /// known whether the tool was met.
+  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside, const HullWrench& off = {}) noexcept;
   /// Known from the second reading with a known load on, until the last one is max_age old.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
   std::size_t waiting() const noexcept { return waits_; }  ///< readings that no crank sample has followed yet
@@ -50,12 +54,14 @@ class HullMotionFilter {
 
   template <typename Signals, typename Each>
   void forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept;
-  void take(const Reading& reading) noexcept;
+  void take(const Reading& reading, const Eigen::Vector3d& off) noexcept;
   void forgetMotion() noexcept;
+  void beginAnew() noexcept;
   bool works(const Eigen::Vector3d& load) noexcept;
 
   HullImuSettings settings_;
   DrivenSignal x_, z_, turning_;
+  std::optional<HullMobility::Mobility> mobility_;  ///< as told last
   WrenchPath path_;
   std::array<Reading, kWaiting> waiting_;
   std::size_t waits_{};

@@ -17,6 +17,7 @@ HullMotion vibrationOf(const BoomState& boom) noexcept {
 
 HullState::HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom)
     : source_(settings.hull_motion), weight_(settings, boom), imu_(settings.imu), filter_(settings.imu, hammer) {
+  if (boom && followsLoad()) mobility_.emplace(*boom, settings.imu.position);
   weigh();
 }
 
@@ -28,6 +29,9 @@ void HullState::weigh() noexcept {
 bool HullState::joints(const std::vector<std::string>& names, const std::vector<double>& positions) noexcept {
   const bool of_pitch = weight_.joints(names, positions);
   weigh();
+  const JointVector* position = mobility_ ? weight_.position() : nullptr;
+  if (position != nullptr)
+    if (const std::optional<HullMobility::Mobility> mobility = mobility_->movedTo(*position)) filter_.expect(*mobility);
   return of_pitch;
 }
 
@@ -98,9 +102,10 @@ void HullState::findByBoom() noexcept {
   if (source_ == HullMotionSource::kImu && !vibration_) now_.covariance = usualMotion();
 }
 
-void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
+void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside,
+                       const HullWrench& off) noexcept {
   if (!followsLoad()) return;
-  filter_.follow(sample, step, beside);
+  filter_.follow(sample, step, beside, off);
   find(sample);
 }
 

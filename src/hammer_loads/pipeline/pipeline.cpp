@@ -253,7 +253,9 @@ void Pipeline::followHull() noexcept {
   if (!hull_.followsLoad()) return;
   const CrankMotion crank = motionOf(result_.crank);
   const HullWrench displaced = displaced_links_.wrench(crank_.step().links().links, crank.speed, hull_.motion().motion);
-  hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced);
+  const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
+  const HullWrench off = contactDoubt(crank_.step().links().links, drive);
+  hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced, off);
   crank_.hullMoved(hull_.motion().motion);
   result_.crank = crank_.estimate();
 }
