@@ -7,6 +7,7 @@
 
 #include "hammer_loads/pipeline/warnings.h"
 #include "hammer_loads/util/format.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads::accuracy {
 namespace {
@@ -88,6 +89,7 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
     const double weight = boom.loads.weight[j + 1], total = boom.loads.total[j + 1];
     torque[j].add(total - weight, -truth.hold[j] - weight);
     life_torque[j].add(total, -truth.hold[j]);
+    torque_said[j] += square(boom.deviations.torque[j + 1]);
     within += std::abs(total + truth.hold[j]) <= 2.0 * boom.deviations.torque[j + 1];
   }
   for (std::size_t s = 0; s < 3; ++s) {

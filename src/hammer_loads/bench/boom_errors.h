@@ -20,6 +20,7 @@ struct BoomErrors {
   std::size_t samples{}, refused{}, within{}, blows{};
   std::size_t wrench_within[3]{};         ///< of force x, force z, moment within two deviations
   double worst_force{}, largest_force{};  ///< as a vector [N]
+  double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
   std::size_t sections_within{};          ///< bending moments within two deviations
   std::size_t lost_as_shown{};            ///< the flag of a press force that is lost is right
   bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_imu_stamps{}, warned_of_damping{};
@@ -45,7 +46,13 @@ struct BoomErrors {
   double sectionsCovered() const { return part(sections_within) / 3.0; }
   double covered() const { return part(within) / 3.0; }
   double energy() const { return energy_sum / static_cast<double>(std::max<std::size_t>(1, blows)); }  ///< mean
-  std::string text() const;                                                                            ///< one line
+  /// How wide deviations are over the errors, as root mean squares: of the torque that is worst in that.
+  double widest() const {
+    double widest = 0.0;
+    for (int j = 0; j < 3; ++j) widest = std::max(widest, std::sqrt(torque_said[j] / torque[j].square));
+    return widest;
+  }
+  std::string text() const;  ///< one line
 
   void addBlows(const simulation::Session& session, const SampleResult& result);
   void addWrench(const simulation::OnBoomTruth& truth, const SampleResult& result);

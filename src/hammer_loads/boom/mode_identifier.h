@@ -102,6 +102,8 @@ class ModeIdentifier {
   bool forgets() const noexcept { return !explains_; }
   /// Give modes of the oil as it is found, known or not.
   bool seeks() const noexcept { return seeks_; }
+  /// How late pressures are is found, against an IMU: alone they show delay and oil together.
+  bool knowsLag() const noexcept { return isDelayFollowed(Clock::kPressures) && imuSpeaks(); }
   /// Mean square of the errors of predicted oil torques over their variance, of some 1 s [-]: right pressures at 500 Hz
   /// have 0.3 to 0.7, one of 20 machines 1.2 for a moment; those that lag by 5 ms 1.2 and more. 0 where nothing is
   /// learned.
@@ -164,10 +166,11 @@ class ModeIdentifier {
   double* column(int state) noexcept { return &covariance_(0, state); }
 
   ModeState stateOf(int mode) const noexcept { return {state_[at(mode, kX)], state_[at(mode, kV)]}; }
-  double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
+  double besideOil(int mode) const noexcept;
   bool isDelayFollowed(Clock clock) const noexcept {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
   }
+  double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
   double accelerationNow(int mode) const noexcept;
   using States = std::array<ModeState, kMaxJoints>;
   States statesNow() const noexcept;

@@ -80,15 +80,17 @@ void ModeIdentifier::useOil() noexcept {
   for (int i : {kDelays, kDelays + 1}) state_[i] = std::clamp(state_[i], -kMostEarly, kMostLate);
 }
 
+/// Of a mode's acceleration, mean square over a swing.
+double ModeIdentifier::besideOil(int k) const noexcept {
+  const Mode mode = modeAt(k);
+  const ModeState now = stateOf(k);
+  return 0.5 * square(2.0 * std::max(0.0, mode.zeta - damping_ratio_) * mode.omega) *
+         (square(now.v) + square(mode.omega * now.x));
+}
+
 double ModeIdentifier::dampingBesideOil(std::size_t cylinder) const noexcept {
   double squares = 0.0;
-  for (int k = 0; k < count_; ++k) {
-    const Mode mode = modeAt(k);
-    const ModeState now = stateOf(k);
-    const double by_rate =
-        modes_.inertia(modes_.joint[cylinder], k) * 2.0 * std::max(0.0, mode.zeta - damping_ratio_) * mode.omega;
-    squares += 0.5 * square(by_rate) * (square(now.v) + square(mode.omega * now.x));
-  }
+  for (int k = 0; k < count_; ++k) squares += square(modes_.inertia(modes_.joint[cylinder], k)) * besideOil(k);
   return std::sqrt(squares);
 }
 
@@ -142,11 +144,11 @@ JointMatrix ModeIdentifier::accelerationCovariance() const noexcept {
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 + kParts * kMaxJoints, 1> with;  // covariance of all with a mode's
     with.noalias() = covariance_.block(kContact, kContact, states, states) * rows.col(k);
     for (int l = 0; l <= k; ++l) covariance(k, l) = covariance(l, k) = rows.col(l).dot(with);
-    // What the mode's shape lacks.
+    // What the mode's shape lacks; and what damps beside the oil is nothing that is linear, nor of one mode.
     const Mode m = modeAt(k);
     const ModeState s = stateOf(k);
-    covariance(k, k) +=
-        square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) + square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
+    covariance(k, k) += besideOil(k) + square(2.0 * kLeftFrequency * m.omega * m.omega * s.x) +
+                        square(kLeftDamping * 2.0 * m.zeta * m.omega * s.v);
   }
   return covariance;
 }

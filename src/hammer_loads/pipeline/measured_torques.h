@@ -23,7 +23,8 @@ class MeasuredTorques {
   struct Torque {
     double value{};       ///< of the load on the cylinder's joint [N m]
     double deviation{};   ///< standard: how far the last readings were from what was said before them; more where the
-                          ///< readings do not fit the vibration (kSurprised) or the next one is overdue [N m]
+                          ///< readings do not fit the vibration (kSurprised): by their difference, or where it is
+                          ///< not known how late they are as if they lagged; or where the next is overdue [N m]
     double constant{};    ///< standard deviation by constants, beside it: friction of the seals, offsets [N m]
     double lasting{};     ///< the part of that which stays while the operator drives the joint one way [N m]
     CylinderPosition at;  ///< as the joint's sensor shows it
@@ -60,6 +61,7 @@ class MeasuredTorques {
     double slope{};               ///< of the line through the last two [N m/s]
     RunningMean<> mean{kSwingTime, 0.0, kSwingTime},
         swing{mean};  ///< of the torque over some 1 s, and mean square about it [N m, N2 m2]
+    RunningMean<> rest_mean{mean}, rest_swing{mean};  ///< the same of reading less model
     RunningMean<> oil_square{kMostJudged},
         line_square{kMostJudged};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
