@@ -153,7 +153,7 @@ Tracking CrankFilter::begin(WeighedSample sample) noexcept {
     sample.angle = CrankAngle::wrapToPi(sample.angle + slip_.last());
     slip_.takeBack();
   }
-  restart_load_ += 1.0;
+  restart_load_ += 1.0, speeds_wait_ = speeds_wait_ || (has_speed_ && sample.isUnsureOfTime(now_.state.speed));
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
   anchor(sample);
   if (now_.state.speed > kLearnSpeed) rival_.beginAnew(now_);
@@ -253,7 +253,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   witness_.reset();
   if (sample.speed) witness_.emplace().measured = *sample.speed;
   if (has_speed_) {
-    if (!speed_trust_.isTrusted()) sample.speed.reset();
+    if (!takesSpeeds()) sample.speed.reset();
     fit_ = innovation.logLikelihood();
     timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
     sample.timing_variance = timing_.variance();

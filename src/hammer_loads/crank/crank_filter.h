@@ -177,6 +177,7 @@ class CrankFilter final : public CrankTracker {
   void considerSensor() noexcept;
   bool findLag() noexcept;
   double takeOffLag(const CrankBelief& last, double dt, bool struck, double read, WeighedSample& sample) const noexcept;
+  bool takesSpeeds() noexcept;
   double speedJump(bool struck) const noexcept;
   void judgeSpeed(double dt, bool struck) noexcept;
   void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;
@@ -234,6 +235,7 @@ class CrankFilter final : public CrankTracker {
   double surprises_{};     ///< such innovations of late
   double restart_load_{};  ///< beginnings since long, forgotten within some 2 s
   double doubt_load_{};    ///< times that the inertia was doubted, forgotten within some 30 s
+  bool speeds_wait_{};     ///< to be judged, and are not taken up
   bool has_speed_{};
 };
 

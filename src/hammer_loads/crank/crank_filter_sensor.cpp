@@ -86,6 +86,14 @@ double CrankFilter::takeOffLag(const CrankBelief& last, double dt, bool struck, 
   return behind;
 }
 
+/// Speeds that lag or are out of scale are not taken up. Before that is known, a filter that has to begin anew where
+/// stamps jitter goes by its angles alone until it is: pulled by such speeds it would do so again and again, and never
+/// come to judge them.
+bool CrankFilter::takesSpeeds() noexcept {
+  speeds_wait_ = speeds_wait_ && !speed_trust_.knows();
+  return speed_trust_.isTrusted() && !speeds_wait_;
+}
+
 /// Of the speed by the blow that was struck within the step [rad/s]; a motor of its own is not reached so soon.
 double CrankFilter::speedJump(bool struck) const noexcept {
   return struck && !now_.motor ? now_.state.speed * (1.0 - 1.0 / now_.factor) : 0.0;

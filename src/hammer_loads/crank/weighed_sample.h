@@ -35,6 +35,10 @@ struct WeighedSample {
   double angleVariance(double speed_there) const noexcept {
     return angle_variance + speed_there * speed_there * timing_variance;
   }
+  /// It is less sure when it was taken than where the crank was.
+  bool isUnsureOfTime(double speed_there) const noexcept {
+    return speed_there * speed_there * timing_variance > angle_variance;
+  }
   Innovation ofAngle(const CrankBelief& belief) const noexcept;
   /// Only where a speed was measured.
   Innovation ofSpeed(const CrankBelief& belief, const ShaftModel& model) const noexcept;
