@@ -143,10 +143,8 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
                           Candidate& c) noexcept {
   const bool itself = settings_.reads == Reads::kItself;
   const State PH = itself ? signalsOf(c.P, load) : State(c.P.col(kIntegral));
-  const Eigen::Vector3d compliance = c.x.segment<3>(kCompliance);
-  const double p = doubt.probability, jump = compliance.dot(doubt.added);
-  const double doubtful = p * (1.0 - p) * square(jump) + compliance.cwiseProduct(doubt.off).squaredNorm();
-  const double S = 1.0 + readOf(PH, load) + doubtful / c.variance;
+  const double p = doubt.probability, jump = c.x.segment<3>(kCompliance).dot(doubt.added);
+  const double S = 1.0 + readOf(PH, load) + p * (1.0 - p) * square(jump) / c.variance;
   const double off = reading - readOf(c.x, load) - p * jump;
   const State gain = PH / std::sqrt(S);  // products of its elements keep the covariance symmetric to the bit
   c.x += gain * (off / std::sqrt(S));

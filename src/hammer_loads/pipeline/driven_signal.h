@@ -41,8 +41,6 @@ class DrivenSignal {
   struct Doubt {
     double probability{};
     Eigen::Vector3d added = Eigen::Vector3d::Zero();
-    /// Standard deviation beside that of the load, or of its impulse since the last reading.
-    Eigen::Vector3d off = Eigen::Vector3d::Zero();
   };
   struct Value {
     double signal{}, integral{};  ///< the integral only where it is read

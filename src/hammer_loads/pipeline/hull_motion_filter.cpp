@@ -70,8 +70,7 @@ void HullMotionFilter::forgetMotion() noexcept {
   readings_ = 0;
 }
 
-void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside,
-                              const HullWrench& off) noexcept {
+void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
   if (step.count == 0) {
     path_.forget();
     forgetMotion();
@@ -81,7 +80,7 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
   beside_ = beside;
   std::size_t taken = 0;
   while (taken < waits_ && waiting_[taken].stamp <= sample) {
-    if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken], vectorOf(off));
+    if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken]);
     ++taken;
   }
   std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
@@ -124,7 +123,7 @@ void HullMotionFilter::beginAnew() noexcept {
   forgetMotion();
 }
 
-void HullMotionFilter::take(const Reading& next, const Eigen::Vector3d& off) noexcept {
+void HullMotionFilter::take(const Reading& next) noexcept {
   const double step = seconds(next.stamp - last_.stamp);
   if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();
   const WrenchPath::Instant now = path_.at(next.stamp);
@@ -139,8 +138,7 @@ void HullMotionFilter::take(const Reading& next, const Eigen::Vector3d& off) noe
   const bool counts = works(now.load);
   const ImuReading& r = next.reading;
   const WrenchPath::OtherSide other = path_.otherSide(next.stamp);
-  const DrivenSignal::Doubt by_load{other.probability, other.load, off},
-      by_blow{other.probability, other.blow, step * off};
+  const DrivenSignal::Doubt by_load{other.probability, other.load}, by_blow{other.probability, other.blow};
   x_.read(r.specific_force.x(), step, now.load, by_load, counts);
   z_.read(r.specific_force.z(), step, now.load, by_load, counts);
   turning_.read(r.rate.y(), step, now.load, by_blow, counts);

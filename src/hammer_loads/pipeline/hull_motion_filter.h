@@ -36,9 +36,8 @@ class HullMotionFilter {
   /// A reading that was taken, axes of hammer_hull.
   void add(StampNs stamp, const ImuReading& reading) noexcept;
   /// A crank sample and the load of the step that it ends; beside: what acts on the hull beside that at the sample. A
-  /// step without pieces: what is known of motion is forgotten. off: standard deviation of the load, where it is not
-  /// known whether the tool was met.
-  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside, const HullWrench& off = {}) noexcept;
+  /// step without pieces: what is known of motion is forgotten.
+  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
   /// Known from the second reading with a known load on, until the last one is max_age old.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
   std::size_t waiting() const noexcept { return waits_; }  ///< readings that no crank sample has followed yet
@@ -54,7 +53,7 @@ class HullMotionFilter {
 
   template <typename Signals, typename Each>
   void forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept;
-  void take(const Reading& reading, const Eigen::Vector3d& off) noexcept;
+  void take(const Reading& reading) noexcept;
   void forgetMotion() noexcept;
   void beginAnew() noexcept;
   bool works(const Eigen::Vector3d& load) noexcept;

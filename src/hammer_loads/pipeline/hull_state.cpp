@@ -102,10 +102,9 @@ void HullState::findByBoom() noexcept {
   if (source_ == HullMotionSource::kImu && !vibration_) now_.covariance = usualMotion();
 }
 
-void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside,
-                       const HullWrench& off) noexcept {
+void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
   if (!followsLoad()) return;
-  filter_.follow(sample, step, beside, off);
+  filter_.follow(sample, step, beside);
   find(sample);
 }
 

@@ -45,8 +45,8 @@ class HullState {
   const HullMotion& predict(StampNs stamp) noexcept;
   /// A blow was struck within the step to a sample. Call before follow().
   void struck(StampNs blow) noexcept { imu_.struck(blow); }
-  /// After a sample was taken: its motion again, with what the step's load shows, as HullMotionFilter::follow().
-  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside, const HullWrench& off = {}) noexcept;
+  /// After a sample was taken: its motion again, with what the step's load shows. beside: DisplacedLinks at the sample.
+  void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
   bool followsLoad() const noexcept { return source_ == HullMotionSource::kImu; }  ///< follow() has an effect
   /// Of D at the last blow by the IMU, where that is known.
   std::optional<TipVelocity> speedAtBlow() const noexcept {

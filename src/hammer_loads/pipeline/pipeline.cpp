@@ -253,9 +253,7 @@ void Pipeline::followHull() noexcept {
   if (!hull_.followsLoad()) return;
   const CrankMotion crank = motionOf(result_.crank);
   const HullWrench displaced = displaced_links_.wrench(crank_.step().links().links, crank.speed, hull_.motion().motion);
-  const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
-  const HullWrench off = contactDoubt(crank_.step().links().links, drive);
-  hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced, off);
+  hull_.follow(result_.stamp, wrenchHistory(model_, crank_.step()), displaced);
   crank_.hullMoved(hull_.motion().motion);
   result_.crank = crank_.estimate();
 }
