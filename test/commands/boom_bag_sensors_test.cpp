@@ -28,16 +28,27 @@ TEST_F(BoomBag, ReadsTheHullsImu) {
   EXPECT_TRUE(written == live(imu, "/machine/imu"));
 
   // At rest it says what pitch says, but from the first sample on: compared once the pitch joints have been heard too.
+  // This hull is held at work as well, where the description has one that yields: readings show that, deviations cover
+  // it.
+  const ros::Time in_motion =
+      timeOf(machineOfBag(false).start_stamp) + ros::Duration(machineOfBag(false).drive.start_time);
   ASSERT_EQ(process("fixed.bag", links + format("hull_pitch_rad: %.17g\n", pitch)).exit_code, 0);
   const auto measured = test::wrenchesIn(path("out.bag"), "/hammer_loads/hull_wrench");
   const auto fixed = test::wrenchesIn(path("fixed.bag"), "/hammer_loads/hull_wrench");
   ASSERT_EQ(measured.size(), fixed.size());
-  for (const auto& [stamp, wrench] : measured) {
-    ASSERT_NEAR(wrench.force.x, fixed.at(stamp).force.x, 1e-9 * 8e3) << stamp;
-    ASSERT_NEAR(wrench.force.z, fixed.at(stamp).force.z, 1e-9 * 8e3) << stamp;
-  }
   const auto loads = test::messagesIn<HullLoads>(path("out.bag"), "/hammer_loads/hull_loads");
-  for (const HullLoads& m : loads) ASSERT_TRUE(m.flags & HullLoads::FLAG_HULL_MOTION) << m.header.stamp;
+  std::size_t within = 0;
+  double at_rest = 0.0;  // worst [N]
+  for (const HullLoads& m : loads) {
+    ASSERT_TRUE(m.flags & HullLoads::FLAG_HULL_MOTION) << m.header.stamp;
+    const auto& right = fixed.at(m.header.stamp.toNSec()).force;
+    const double x = m.force_x_N - right.x, z = m.force_z_N - right.z;
+    if (m.header.stamp < in_motion) at_rest = std::max(at_rest, std::hypot(x, z));
+    within += std::abs(x) <= 2.0 * m.force_x_deviation_N && std::abs(z) <= 2.0 * m.force_z_deviation_N;
+  }
+  std::printf("%zu of %zu within, at rest %g N\n", within, loads.size(), at_rest);
+  EXPECT_LT(at_rest, 10.0);
+  EXPECT_GT(static_cast<double>(within), 0.88 * static_cast<double>(loads.size()));
 }
 
 TEST_F(BoomBag, ReadsTheCylindersPressures) {
