@@ -27,7 +27,21 @@ TEST_F(BoomBag, ReadsTheHullsImu) {
   EXPECT_EQ(written.size(), 15U);
   EXPECT_TRUE(written == live(imu, "/machine/imu"));
 
-  // At rest it says what pitch says, but from the first sample on: compared once the pitch joints have been heard too.
+  // Without a description it says what pitch says.
+  const test::TemporaryFile by_imu("hull_motion: imu\n"), by_pitch(format("hull_pitch_rad: %.17g\n", pitch));
+  const auto alone = [&](const char* out, const std::string& given) {
+    const std::string arguments = path("in.bag") + " " + path(out) + " --imu-topic /machine/imu --params " + given;
+    EXPECT_EQ(test::runCommand(HAMMER_LOADS_PROCESS_BAG, arguments).exit_code, 0);
+    return test::wrenchesIn(path(out), "/hammer_loads/hull_wrench");
+  };
+  const auto read = alone("imu.bag", by_imu.path()), level = alone("pitch.bag", by_pitch.path());
+  ASSERT_EQ(read.size(), level.size());
+  for (const auto& [stamp, wrench] : read) {
+    ASSERT_NEAR(wrench.force.x, level.at(stamp).force.x, 1e-9 * 8e3) << stamp;
+    ASSERT_NEAR(wrench.force.z, level.at(stamp).force.z, 1e-9 * 8e3) << stamp;
+  }
+
+  // At rest it does so with one, but from the first sample on.
   // This hull is held at work as well, where the description has one that yields: readings show that, deviations cover
   // it.
   const ros::Time in_motion =

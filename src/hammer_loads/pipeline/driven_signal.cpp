@@ -27,8 +27,8 @@ constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that
 constexpr double kComplianceWalk = 0.02;         // of the first guess's deviation in a second: a pose that changes
 // Guard: FollowerNumbers.ASignalsComplianceWandersAsThePoseChanges of kComplianceWalk
 // Of a compliance by a description, whose masses are good to 3 % and centres to 2 cm.
-constexpr double kTold = 0.05;
-// Guard: HullMotionFilter.KnowsTheHullBeforeItsFirstBlowByItsDescription of kTold
+constexpr double kDescribed = 0.05;
+// Guard: HullMotionFilter.KnowsTheHullBeforeItsFirstBlowByItsDescription of kDescribed
 constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
 constexpr double kLeastNoise = 1e-3;    // of the first guess: a logarithm is taken of it
 constexpr double kUnknownSignal = 1e3;  // of the noise: smooth part at the start
@@ -80,7 +80,7 @@ DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settin
 void DrivenSignal::expect(const Eigen::Vector3d& compliance, const Eigen::Vector3d& most) noexcept {
   const Eigen::Vector3d change = compliance - expected_;
   const bool first = expected_.isZero(0.0);
-  const Eigen::Vector3d variance = (kTold * (first ? most : change)).cwiseAbs2();
+  const Eigen::Vector3d variance = (kDescribed * (first ? most : change)).cwiseAbs2();
   for (Candidate& c : candidates_) {
     if (first) {
       c.P.middleRows<3>(kCompliance).setZero(), c.P.middleCols<3>(kCompliance).setZero();

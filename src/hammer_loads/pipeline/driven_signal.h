@@ -55,7 +55,7 @@ class DrivenSignal {
   explicit DrivenSignal(const Settings& settings) noexcept;
 
   /// What a description says of the compliances, and what each can be at most: it is believed to a part of these. The
-  /// first such word replaces the first guess; from one to the next, as the pose changes, what was learned moves by
+  /// first description replaces the first guess; from one to the next, as the pose changes, what was learned moves by
   /// their difference.
   void expect(const Eigen::Vector3d& compliance, const Eigen::Vector3d& most) noexcept;
   /// Readings are not continuous with those before; what the hull is stays known.

@@ -60,7 +60,7 @@ class HullMotionFilter {
 
   HullImuSettings settings_;
   DrivenSignal x_, z_, turning_;
-  std::optional<HullMobility::Mobility> mobility_;  ///< as told last
+  std::optional<HullMobility::Mobility> mobility_;  ///< as described last
   WrenchPath path_;
   std::array<Reading, kWaiting> waiting_;
   std::size_t waits_{};

@@ -59,15 +59,10 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
     followRest(track, torque - model);
     track.slope = change / step;
     track.interval = step;
-    track.mean.add(torque, step);
-    track.swing.add(square(torque - track.mean.mean()), step);
-    track.rest_mean.add(torque - model, step);
-    track.rest_swing.add(square(torque - model - track.rest_mean.mean()), step);
+    track.swing.add(torque, step);
+    track.unexplained.add(torque - model, step);
   }
-  if (track.readings == 0) {
-    track.mean = RunningMean<>(kSwingTime, torque, kSwingTime);
-    track.rest_mean = RunningMean<>(kSwingTime, torque - model, kSwingTime);
-  }
+  if (track.readings == 0) track.swing.begin(torque), track.unexplained.begin(torque - model);
   if (track.readings == 0 || !(step > 0.0)) track.rest = track.last = track.before = torque - model, track.gain = 1.0;
   track.stamp = stamp, track.torque = torque, track.model = model;
 }
@@ -86,7 +81,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   // Where it is found how late stamps are, what does not fit is no lag.
   const bool lag_known = identifier && identifier->knowsLag();
   const double lag = !lag_known && surprise > kSurprised ? square(kLag) * surprise : 0.0;
-  const double unfit = lag_known && surprise > kSurprised ? 1.0 : 0.0;
+  const double no_lag = lag_known && surprise > kSurprised ? 1.0 : 0.0;
   const bool gap = seconds(sample - sample_) > kGap;
   StampNs oil_at{};
   JointVector oil_then;  // at that stamp; of most cylinders it is the same
@@ -120,9 +115,10 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
     const double lost = forgottenPart(overdue(seconds(sample - stamp), track.interval));
     // A change has the noise of two readings, what is smoothed that of one or less.
     const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
-    const double off = std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square).mean() +
-                                 (lag + 2.0 * lost) * track.swing.mean() + unfit * track.rest_swing.mean() +
-                                 (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
+    const double off =
+        std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square).mean() +
+                  (lag + 2.0 * lost) * track.swing.square.mean() + no_lag * track.unexplained.square.mean() +
+                  (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
     const CylinderParameters& p = cylinder.parameters();
     const Rubbing seals = rubbing(sealsOf(cylinder, at.arm, value, motion[j]), boom.vibration().velocity()[j]);
     const double offset = square(at.arm * cylinder.boreArea() * p.pressure_offset_deviation);

@@ -45,6 +45,15 @@ class MeasuredTorques {
   static constexpr double kMostJudged = 200.0;  ///< readings
   // Guard: MeasuredBoom.TwoHundredReadingsSayHowFarOneIsOff of kMostJudged
   static constexpr double kSwingTime = Vibration::kSwingTime;
+  /// Mean over some 1 s, and mean square about it [N m, N2 m2].
+  struct Swing {
+    RunningMean<> mean{kSwingTime, 0.0, kSwingTime}, square{mean};
+    void begin(double torque) noexcept { mean = RunningMean<>(kSwingTime, torque, kSwingTime); }
+    void add(double torque, double step) noexcept {
+      mean.add(torque, step);
+      square.add((torque - mean.mean()) * (torque - mean.mean()), step);
+    }
+  };
   struct Track {
     std::uint64_t readings{};         ///< taken
     double position{kNaN};            ///< of the joint, as its sensor shows it
@@ -59,9 +68,7 @@ class MeasuredTorques {
     RunningMean<> one_square{kMostJudged},
         two_square{kMostJudged};  ///< mean squares of its change over one reading and over two [N2 m2]
     double slope{};               ///< of the line through the last two [N m/s]
-    RunningMean<> mean{kSwingTime, 0.0, kSwingTime},
-        swing{mean};  ///< of the torque over some 1 s, and mean square about it [N m, N2 m2]
-    RunningMean<> rest_mean{mean}, rest_swing{mean};  ///< the same of reading less model
+    Swing swing, unexplained;     ///< of the torque; of reading less model
     RunningMean<> oil_square{kMostJudged},
         line_square{kMostJudged};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
