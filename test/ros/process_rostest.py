@@ -17,8 +17,10 @@ import roslaunch.config
 import roslib.packages
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Header
 
 DEADLINE = 20.0  # [s] for what takes a second at most
 DATA = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'data')
@@ -121,6 +123,37 @@ class ProcessTest(unittest.TestCase):
         failing.communicate('now')
         self.assertNotEqual(failing.returncode, 0)
         self.assertTrue(eventually(lambda: not os.path.exists(node)))
+
+    def reported_after_the_crank(self, name):
+        """A node that has heard the crank stand and has reported since; who publishes its joints; its reports since."""
+        reports = []
+
+        def take(message):
+            reports.extend(s.message for s in message.status if s.name == name + ': inputs')
+        node = NodeProcess(name, {'log_enabled': False, 'diagnostic_period': 2.0})
+        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
+        crank = rospy.Publisher('/%s/crank' % name, JointState, queue_size=10)
+        joints = rospy.Publisher('/%s/joints' % name, JointState, queue_size=10)
+        self.assertTrue(eventually(lambda: crank.get_num_connections() and joints.get_num_connections() and
+                                   subscriber.get_num_connections()))
+        for i in range(2):
+            stamp = rospy.Time(1.0 + 1e-3 * i)
+            crank.publish(JointState(header=Header(stamp=stamp), name=['hammer_crank_joint'], position=[3.0]))
+        self.assertTrue(eventually(lambda: any('no angle of' in report for report in reports)))
+        del reports[:]
+        return node, joints, reports
+
+    def test_joints_that_never_come_are_on_the_console(self):
+        node, _, reports = self.reported_after_the_crank('no_joints')
+        self.assertTrue(eventually(lambda: len(reports) > 1))
+        self.assertIn('no angle of', node.end()[2])
+
+    def test_joints_that_begin_later_than_the_crank_are_not(self):
+        node, joints, reports = self.reported_after_the_crank('late_joints')
+        names = ['boom_joint', 'arm_joint', 'hammer_joint']
+        joints.publish(JointState(header=Header(stamp=rospy.Time(1.0)), name=names, position=[0.0, 0.0, 0.0]))
+        self.assertTrue(eventually(lambda: len(reports) > 1))
+        self.assertNotIn('no angle of', node.end()[2])
 
     def publish_session(self, name, seconds):
         """Replays the start of the 1 kHz session and waits for the last wrench. Samples and wrenches: next to a blow one or

@@ -51,7 +51,7 @@ void warnOfCrank(const Pipeline& pipeline, const SampleCounts& counts, std::vect
     warnings.push_back({"crank joint",
                         "crank joint " + pipeline.settings().crank_joint + ": in none of " + count(samples) +
                             " messages, must be the joint's name (crank_joint)",
-                        true});
+                        true, true});
   if (pipeline.crank().angleIsFrozen())
     warnings.push_back({"frozen", "crank: the angle stands still while the speed goes on", true});
   const std::uint64_t backward = counts.refusedFor(Refusal::kBackward);
@@ -245,10 +245,11 @@ void warnOfHull(const Pipeline& pipeline, const SampleCounts& counts, std::vecto
   const std::vector<std::string> unheard = hull.pitch().unheard();
   if (!unheard.empty())
     warnings.push_back(
-        {"pitch joints", "no angle of " + joined(unheard) + " (pitch_joints): weight by hull_pitch_rad", true});
+        {"pitch joints", "no angle of " + joined(unheard) + " (pitch_joints): weight by hull_pitch_rad", true, true});
   const bool imu = pipeline.settings().hull_motion == HullMotionSource::kImu;
   if (imu && hull.imuCounts().accepted == 0)
-    warnings.push_back({"imu", "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead", true});
+    warnings.push_back(
+        {"imu", "hull_motion: imu, but no reading of hull_imu came; weight by pitch instead", true, true});
   const ImuTrust& trust = hull.imuTrust();
   const auto& weight = hull.gravity();
   if (trust.isFrozen()) {

@@ -13,6 +13,7 @@ struct Warning {
   const char* key;   ///< the same for the same cause
   std::string text;  ///< one line: what, how much, what to do
   bool now{};        ///< still so; else it was so since the start
+  bool awaited{};    ///< of an input that has not come yet: it may begin later than the crank
 };
 
 /// A warning of this key says that the crank's readings are not those of such a machine.

@@ -39,14 +39,16 @@ NodeDiagnostics::NodeDiagnostics(ros::NodeHandle node, ros::NodeHandle private_n
       node.createWallTimer(ros::WallDuration(updater_.getPeriod()), [this](const ros::WallTimerEvent&) { report(); });
 }
 
-/// Each warning on the console when it is new; a log that stops by itself as above.
+/// Each warning on the console when it is new, of an input that is awaited where it has not come by the next report
+/// either; a log that stops by itself as above.
 void NodeDiagnostics::report() {
-  std::set<std::string> present;
+  std::set<std::string> awaited;
   for (const Warning& warning : warnings()) {
-    present.insert(warning.key);
-    if (said_.count(warning.key) == 0) ROS_WARN("%s", warning.text.c_str());
+    if (warning.awaited) awaited.insert(warning.key);
+    if (warning.awaited && awaited_.count(warning.key) == 0) continue;
+    if (said_.insert(warning.key).second) ROS_WARN("%s", warning.text.c_str());
   }
-  said_.insert(present.begin(), present.end());
+  awaited_ = std::move(awaited);
   const LogHealth health = log_.health();
   const bool stopped = health.state == LogState::kDiskFull || health.state == LogState::kFailed;
   if (stopped && health.state != log_state_) ROS_ERROR("log stopped: %s", health.reason.c_str());

@@ -48,7 +48,8 @@ class NodeDiagnostics {
   Clock::time_point last_report_{Clock::now()};
   SampleCounts last_counts_;
   ImuCounts last_imu_counts_;
-  std::set<std::string> said_;  ///< keys of warnings on the console already
+  std::set<std::string> said_;     ///< keys of warnings on the console already
+  std::set<std::string> awaited_;  ///< of inputs that had not come at the last report
   LogState log_state_{LogState::kOff};
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
