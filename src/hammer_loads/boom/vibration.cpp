@@ -178,10 +178,21 @@ void Vibration::useIdentified() noexcept {
   for (int k = 0; k < modes_.count; ++k) modes_.omega[k] = modes_.given_omega[k] * identifier_->frequencyRatio(k);
 }
 
+/// What damps beside the oil is of no one mode: what of its force, 2 zeta of the stiffness's, is in phase with that is
+/// not known.
+double Vibration::oilDoubt(int cylinder) const noexcept {
+  double doubt = 0.0;
+  for (int k = 0; k < modes_.count; ++k)
+    doubt += modes_.oil_share(cylinder, k) * std::max(0.0, mode(k).zeta - settings_.damping_ratio);
+  return doubt;
+}
+
 Vibration::OilFound Vibration::oilFound(const LogOil& by) const noexcept {
   double variance = 0.0;
-  for (int i = 0; i < modes_.count; ++i)
+  for (int i = 0; i < modes_.count; ++i) {
     for (int j = 0; j < modes_.count; ++j) variance += by[i] * by[j] * identifier_->oilCovariance(i, j);
+    variance += square(by[i] * oilDoubt(i));
+  }
   return {by.dot(log_oil_ + identifier_->oil()), std::sqrt(std::max(variance, 0.0))};
 }
 

@@ -77,7 +77,8 @@ class Vibration {
   };
   /// Nothing while frequencies are not found, and without other cylinders.
   std::optional<OilAgainstOthers> oilAgainstOthers(std::size_t cylinder) const noexcept;
-  /// Of a cylinder's oil over that of the boom file: logarithm of stiffness as found, its standard deviation.
+  /// Of a cylinder's oil over that of the boom file: logarithm of stiffness as found, its standard deviation, which has
+  /// what a boom that is damped beside its oil leaves open.
   struct OilFound {
     double stiffer{}, deviation{};
   };
@@ -123,6 +124,7 @@ class Vibration {
   JointVector modalAcceleration() const noexcept;
   void restIfNotFinite() noexcept;
   void useIdentified() noexcept;
+  double oilDoubt(int cylinder) const noexcept;        ///< of its logarithm of stiffness, standard
   OilFound oilFound(const LogOil& by) const noexcept;  ///< of that sum over the cylinders
   LogOil oilToTake() const noexcept;
   void useMotion() noexcept;
