@@ -66,6 +66,29 @@ TEST(TwoBodies, AccelerationsAndWrenchAreThoseOfFreeLinks) {
   }
 }
 
+/// Far from the rigid place, where a blow on lively rock throws the rocker, the rod pulls at the crank as well.
+TEST(TwoBodies, AStepFollowsTheAccelerations) {
+  const Mechanism mechanism = test::mechanismOf(heavy());
+  const TwoBodies bodies(mechanism);
+  const TwoBodyDrive drive{kJc, kTorque, kWeight};
+  constexpr double kStep = 1e-6;  // [s]
+  for (const double play : {0.0, 1e-4})
+    for (const double beside : {-0.05, -0.01, 0.02, 0.05}) {
+      const RodSpring rod{1e9, 0.3, play};
+      const TwoBodyState from{CrankAngle::fromOffset(0.15), 20.0, beside, -8.0};
+      TwoBodyState s = from;
+      bodies.move(rod, drive, kStep, s);
+      const LinkMotion before = bodies.links(from.angle), after = bodies.links(s.angle);
+      const auto rocker = [](const LinkMotion& l, const TwoBodyState& of) {
+        return l.rocker.u * of.speed + of.beside_speed;
+      };
+      const TwoBodyAccelerations a = bodies.accelerations(rod, drive, from, before);
+      const double scale = 1e-3 * (std::abs(a.crank) + std::abs(a.rocker));
+      EXPECT_NEAR((s.speed - from.speed) / kStep, a.crank, scale) << beside;
+      EXPECT_NEAR((rocker(after, s) - rocker(before, from)) / kStep, a.rocker, scale) << beside;
+    }
+}
+
 /// No drive, no weight, no damping; energies by the simulated machine's links.
 TEST(TwoBodies, ARingKeepsItsEnergy) {
   const Mechanism mechanism = test::mechanismOf(heavy());

@@ -105,7 +105,8 @@ void TwoBodies::move(const RodSpring& rod, const TwoBodyDrive& drive, double dt,
   const double damped = free ? 0.0 : damping * a.lever;
   const double to_side = half > 0.0 ? rod.stiffness * std::copysign(half, -a.secant_lever * middle.beside) : 0.0;
   const double apart = free ? 0.0 : to_side - damping * a.by_crank * s.speed;
-  const double per = a.lever * a.per_own, back = a.coupling * a.per_reflected;
+  const double back = a.coupling * a.per_reflected;
+  const double per = (a.lever + back * a.by_crank) * a.per_own;  // of the tension, which pulls at the crank as well
   const double pull = (a.on_rocker - back * a.on_crank) * a.per_own - per * apart;
   oscillate(std::max(0.0, per * stiff), 0.5 * per * damped, pull, dt, s.beside, s.beside_speed);
   const double moved = s.beside - from.beside, gained = s.beside_speed - from.beside_speed;
