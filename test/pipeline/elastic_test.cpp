@@ -48,6 +48,19 @@ TEST(ElasticSession, TheRingAfterTheBlowIsPublished) {
   }
 }
 
+/// Rock that throws the rocker back with two thirds of its speed: the rod takes it up 0.05 rad beside its rigid place,
+/// and turns the crank by more than any torque does within a sample. Such samples are published as any others.
+TEST(ElasticSession, LivelyRockThrowsTheRockerFar) {
+  simulation::MachineSettings machine = machineWithRod({8e8, 0.5, 0.0}, 705);
+  machine.strike.contact_stiffness = 6e7, machine.strike.rock_strength = 3e5;
+  const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic);
+  EXPECT_GT(e.after.scale[1], 8000.0);
+  EXPECT_LT(e.after.rms[1], 0.10);
+  EXPECT_GT(e.after.covered[1], 0.85);
+  EXPECT_LT(std::abs(e.life), 0.05);
+  EXPECT_GT(e.after.count, 0.95 * rodErrors(machineWithRod({8e8, 0.5, 0.0}, 705), Level::kElastic).after.count);
+}
+
 /// 1024 counts and an encoder whose place is not known: deviations must hold, and they are those of a rigid rod.
 TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
   simulation::MachineSettings machine = machineWithRod({8e8, 0.3, 0.0}, 731);

@@ -171,7 +171,7 @@ TEST(RodRing, LevelElasticCountsItAndItsImpulse) {
       EXPECT_LT(damage, 1.4);
       EXPECT_LT(std::abs(found.range_error[k]), 2.0 * found.range_said[k]);
     }
-    EXPECT_LT(std::abs(found.impulse_bias), 0.07);  // what the hull feels while the contact lasts is not in it
+    EXPECT_LT(std::abs(found.impulse_bias), 0.02);  // what the hull feels while the contact lasts is not in it
     EXPECT_GT(found.impulse_covered, 0.88);
   }
 }

@@ -85,6 +85,7 @@ class CrankFilter final : public CrankTracker {
   void setInterval(double interval) noexcept override { interval_ = interval; }
   double lostTime() const noexcept override { return lost_time_; }
   int slips() const noexcept override { return slip_.count(); }
+  void considerRod(double angle, double speed) noexcept override;
   void considerLatency(double deviation) noexcept override { stamps_off_ = deviation; }
 
   const CrankFilter* filter() const noexcept override { return this; }

@@ -4,12 +4,23 @@
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/crank/flexible_belief.h"
+#include "hammer_loads/estimation/gates.h"
 
 namespace hammer_loads {
 
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);
   hull_moved_ = true;
+}
+
+/// Where the ring would throw the filter off, which knows of no rod; smaller ones it smooths. A reading that it then
+/// follows is as good a sign of a rod as one that contradicts it.
+void CrankFilter::considerRod(double angle, double speed) noexcept {
+  double& of_speed = now_.covariance(CrankBelief::kSpeed, CrankBelief::kSpeed);
+  if (!exceeds(speed, of_speed, gate::kImpossible)) return;
+  rod_evidence_.add(now_.state.position.angle, square(speed) / of_speed);
+  of_speed += square(speed);
+  now_.covariance(CrankBelief::kAngle, CrankBelief::kAngle) += square(angle);
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
@@ -42,7 +53,8 @@ std::optional<CrankWays> CrankFilter::waysBetween(double dt) const noexcept {
 CrankUncertainty CrankFilter::uncertaintyBetween(double dt, double torque_part) const noexcept {
   if (dt >= step_) return uncertainty(torque_part);
   CrankBelief belief = before();
-  const bool comes_to_blow = before().state.position.angle.side == Side::kBeforeBlow && isNearTool(before().state, step_);
+  const bool comes_to_blow =
+      before().state.position.angle.side == Side::kBeforeBlow && isNearTool(before().state, step_);
   const bool is_before = comes_to_blow && between(dt).position.angle.side == Side::kBeforeBlow;
   predict(dt, !is_before, belief);
   return uncertaintyOf(belief, model_(belief.state.position.angle), torque_part);

@@ -133,6 +133,8 @@ class CrankTracker {
   virtual int slips() const noexcept { return 0; }
   /// Standard deviation of what all stamps are off alike [s]: no reading shows it.
   virtual void considerLatency(double /*deviation*/) noexcept {}
+  /// A rod that gives has the crank beside the estimate by that [rad], [rad/s]: as much of it is not known.
+  virtual void considerRod(double /*angle*/, double /*speed*/) noexcept {}
   /// Weight and motion of the hull at the coming sample; only who predicts the crank's motion needs them.
   virtual void setHullMotion(const HullMotion& /*hull*/) noexcept {}
 };

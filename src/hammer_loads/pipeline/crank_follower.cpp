@@ -111,6 +111,10 @@ void CrankFollower::followLostTime() noexcept {
   verdict_.step += lost;
 }
 
+void CrankFollower::considerRod(const CrankAngle& angle, double speed) noexcept {
+  tracker_->considerRod(CrankAngle::wrapToPi(angle.offset - estimate_.position.angle.offset), speed - estimate_.speed);
+}
+
 void CrankFollower::hullMoved(const HullMotion& hull) noexcept {
   tracker_->setHullMotion(hull);
   estimate_ = tracker_->estimate();

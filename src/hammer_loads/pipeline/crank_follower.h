@@ -47,6 +47,8 @@ class CrankFollower {
   bool isSettled(const HullMotion& hull, double peak_force) noexcept;
 
   const CrankEstimate& estimate() const noexcept { return estimate_; }
+  /// A rod that gives has the crank there.
+  void considerRod(const CrankAngle& angle, double speed) noexcept;
   /// The hull's motion at the sample taken, known better since: the acceleration is that within this motion.
   void hullMoved(const HullMotion& hull) noexcept;
   const CrankStep& step() const noexcept { return step_; }

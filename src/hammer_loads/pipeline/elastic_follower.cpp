@@ -151,13 +151,18 @@ double ElasticFollower::speedBeside() const noexcept {
   return std::hypot(filter().motion().state.beside_speed, filter().deviation(RodFilter::kBesideSpeed));
 }
 
+double ElasticFollower::strikingSpeed() const noexcept {
+  const double inertia = filter().drive(filter().motion()).inertia;
+  return filter().rockerBefore() / blowInertia(model_->mechanism(), model_->level(), inertia).u_before;
+}
+
 std::optional<CrankBlow> ElasticFollower::blow() const noexcept {
   if (!runs() || !filter().hasStruck()) return std::nullopt;
   const RodMotion& m = filter().motion();
   CrankBlow blow;
   blow.drive_inertia = filter().drive(m).inertia;
   const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
-  blow.speed = filter().rockerBefore() / inertia.u_before;
+  blow.speed = strikingSpeed();
   blow.speed_deviation = filter().deviation(RodFilter::kSpeed);
   blow.factor = inertia.factor(m.restitution);
   blow.factor_deviation =

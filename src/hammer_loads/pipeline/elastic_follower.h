@@ -33,6 +33,8 @@ class ElasticFollower {
   Beside beside(const DriveReaction& drive) const noexcept;
   /// Of the rocker's speed beside a rigid rod's and its standard deviation the root of the squares [rad/s].
   double speedBeside() const noexcept;
+  /// While it runs: of a crank whose rigid rod moves the rocker as it is before the blow [rad/s].
+  double strikingSpeed() const noexcept;
   /// Of the blow that was struck while it runs: the rocker's speed at the tool and its restitution, as a crank would
   /// feel them whose rod takes the rocker up at once.
   std::optional<CrankBlow> blow() const noexcept;

@@ -133,6 +133,8 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
     rod_.follow(crank_.step(), crank_.tracker());
     rod_.take(crank_.tracker().filter());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
+    if (elastic_.runs())
+      crank_.considerRod(elastic_.filter().motion().state.angle, elastic_.filter().motion().state.speed);
     if (counts) turn_.follow(hull_.motion().motion, result_);
   } else {
     restart(taken == CrankFollower::Taken::kRevised);

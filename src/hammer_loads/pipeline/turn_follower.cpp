@@ -84,7 +84,8 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   end.stamp = step_->stampAt(passage.time);
   end.turn = ++turns_;
   const double time = seconds(step_->start() - epoch_) + passage.time;
-  const CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
+  CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
+  if (elastic_->runs()) before.speed = elastic_->strikingSpeed();
   const CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
   const double rate = before.acceleration / before.speed;
   end.pulse = turn_.end(instant(time, before));
