@@ -64,6 +64,20 @@ TEST_F(FilterTrouble, AFilterThatBeginsAnewFiveTimesIsLostForAWhile) {
   EXPECT_LT(time, 0.5);
 }
 
+/// What no torque does within a sample a rod that gives may do. What the filter allows for anyway changes nothing.
+TEST_F(FilterTrouble, AKickThatARodExplainsIsFollowed) {
+  constexpr double kStep = 1e-3, kKicked = 0.015;  // [s], [rad]
+  CrankFilter rigid = turning(kStep);
+  EXPECT_EQ(turnOn(rigid, kStep, kKicked), Tracking::kOutlier);
+  CrankFilter f = turning(kStep);
+  const double known = std::sqrt(f.covariance()(1, 1));
+  f.considerRod(0.0, 4.0 * known);
+  EXPECT_EQ(std::sqrt(f.covariance()(1, 1)), known);
+  f.considerRod(0.0, kKicked / kStep);
+  EXPECT_EQ(turnOn(f, kStep, kKicked), Tracking::kContinued);
+  EXPECT_NEAR(f.state().position.angle.offset, angle_ + kKicked, 0.2 * kKicked);
+}
+
 /// A lost one follows readings with little trust, until ten in a row say that the crank is elsewhere.
 TEST_F(FilterTrouble, ALostFilterGoesWhereTenReadingsAre) {
   constexpr double kStep = 2e-5;

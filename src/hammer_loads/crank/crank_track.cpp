@@ -38,6 +38,11 @@ Tracking CrankTrack::update(double dt, const CrankSample& sample) {
   return tracked.tracking;
 }
 
+void CrankTrack::considerRod(double angle, double speed) noexcept {
+  filter_.considerRod(angle, speed);
+  if (!samples_.empty()) samples_.back().belief = filter_.belief();
+}
+
 /// sample: what the filter's step began with, and how it ended.
 void CrankTrack::add(TrackedSample sample) {
   if (sample.tracking == Tracking::kRevised) revise();

@@ -43,6 +43,8 @@ class CrankTrack {
   void setHullMotion(const HullMotion& hull) noexcept;
   void start(const CrankSample& sample);
   Tracking update(double dt, const CrankSample& sample);
+  /// As CrankTracker::considerRod(), of the last sample.
+  void considerRod(double angle, double speed) noexcept;
   /// No more samples come in.
   void close();
 

@@ -24,7 +24,7 @@ class RecordedCrank final : public CrankTracker {
   void setInterval(double interval) noexcept override { track_->filter().setInterval(interval); }
   double lostTime() const noexcept override { return filter_.lostTime(); }
   int slips() const noexcept override { return filter_.slips(); }
-  void considerRod(double angle, double speed) noexcept override { track_->filter().considerRod(angle, speed); }
+  void considerRod(double angle, double speed) noexcept override { track_->considerRod(angle, speed); }
   void considerLatency(double deviation) noexcept override { track_->filter().considerLatency(deviation); }
 
   CrankEstimate estimate() const noexcept override { return filter_.estimate(); }
