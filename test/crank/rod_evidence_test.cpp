@@ -39,6 +39,12 @@ TEST(RodEvidence, ReadingsWithoutExcessLeaveARingLittleRoom) {
   EXPECT_EQ(after(0.95, 1.0, 50).share(kCoarse), 1.0);  // nothing would show
 }
 
+TEST(RodEvidence, ARigidMechanismIsLostWhereItIsContradictedAQuarterTurnLater) {
+  EXPECT_TRUE(after(38.0, 8.0, 50).isLost());
+  EXPECT_FALSE(after(47.0, 1.9, 50).isLost());  // worn pins
+  EXPECT_FALSE(after(38.0, 8.0, 1).isLost());   // 30 samples
+}
+
 TEST(RodEvidence, ForgetsARodThatWasReplaced) {
   RodEvidence rod = after(16.0, 1.0, 50);
   for (int i = 0; i < 200; ++i)

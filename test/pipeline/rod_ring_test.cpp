@@ -31,13 +31,15 @@ double equivalentOf(const life::ExactCycles& cycles, double slope) {
   return life::equivalentLoad(life::rangesAndMeans(cycles), slope, 1.0, {}).value;
 }
 
-RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanism& mechanism, double rate = 1000.0) {
+RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanism& mechanism, double rate = 1000.0,
+                 const simulation::StrikeSettings& struck = {}) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = mechanism.parameters();
   machine.level = Level::kLinkage;
   machine.duration = 12.0;
   machine.drive.stop_time = 20.0;
   machine.rod = rod;
+  machine.strike = struck;
   machine.seed = 4711;
   machine.crank.rate = rate;
   const simulation::Session session = simulation::recordSession(machine);
@@ -157,6 +159,27 @@ TEST(RodRing, IsTheSameByRareReadings) {
   const double often = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual).said,
                rarely = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual, 200.0).said;
   EXPECT_NEAR(rarely, often, 0.35 * often);
+}
+
+/// Rock that throws the rocker back with half its speed: a rigid mechanism reads a quarter off the crank. It says that
+/// it does not know; level elastic does.
+TEST(RodRing, OfLivelyRockARigidLevelKnowsNoRestitution) {
+  simulation::StrikeSettings lively;
+  lively.contact_stiffness = 1.2e8, lively.rock_strength = 3e5;
+  for (const simulation::RodSettings& rod : {simulation::RodSettings{1e9, 0.6, 0.0}, {5e8, 1.0, 0.0}}) {
+    SCOPED_TRACE(rod.stiffness);
+    const RingFound rigid = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism, 1000.0, lively);
+    EXPECT_GT(std::abs(rigid.restitution_bias), 0.1);
+    EXPECT_GT(rigid.restitution_covered, 0.9);
+    EXPECT_GT(rigid.energy_covered, 0.9);
+    EXPECT_NEAR(rigid.restitution_said, 0.29, 0.05);  // anything from 0 to 1
+    EXPECT_GT(rigid.said, rigid.error);
+    const RingFound elastic = ringOf(rod, Level::kElastic, drawingOfRing().mechanism, 1000.0, lively);
+    EXPECT_LT(std::abs(elastic.restitution_bias), 0.02);
+    EXPECT_GT(elastic.restitution_covered, 0.88);
+    EXPECT_GT(elastic.energy_covered, 0.88);
+    EXPECT_LT(elastic.restitution_said, 0.05);
+  }
 }
 
 /// Issue: counted damage 0.7 to 1.4 of the true; the rocker is picked up within the turn, whose impulse that is.

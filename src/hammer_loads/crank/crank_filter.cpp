@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hammer_loads/crank/flexible_belief.h"
 #include "hammer_loads/util/square.h"
@@ -160,8 +161,9 @@ Tracking CrankFilter::begin(WeighedSample sample) noexcept {
   return Tracking::kRestarted;
 }
 
-/// The sample is as if it had not come, but that the next one may confirm it.
+/// The sample is as if it had not come, but that the next one may confirm it and that a rod may have made it.
 Tracking CrankFilter::ignore(const CrankBelief& last, const Innovation& innovation) noexcept {
+  rod_evidence_.add(now_.state.position.angle, innovation.ratio());
   now_ = last;
   outlier_ = innovation.value;
   return Tracking::kOutlier;
@@ -291,9 +293,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   doubtInertia(dt);
   takeLoad();
   judgeSpeed(dt, struck);
-  const bool continued = has_speed_;
-  has_speed_ = true;
-  if (!continued) return Tracking::kRestarted;
+  if (!std::exchange(has_speed_, true)) return Tracking::kRestarted;
   return revised ? Tracking::kRevised : Tracking::kContinued;
 }
 

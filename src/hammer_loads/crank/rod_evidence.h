@@ -41,6 +41,9 @@ class RodEvidence {
     const double doubt = gate::kUsual * std::sqrt(2.0 / picked_up_.count());
     return std::clamp((pickedUp() - 1.0 + doubt) / kLeastExcess, 0.0, 1.0);
   }
+  /// So much is struck that a rigid mechanism has lost the crank a quarter of a turn later still: rock that throws the
+  /// rocker back (8 to 20 then). What it takes for the blow is none.
+  bool isLost() const noexcept { return later_.count() > kEnough && later() > mismatch::kUnexplained; }
   bool gives() const noexcept {
     return picked_up_.count() > kEnough && pickedUp() > mismatch::kSeen && pickedUp() - 1.0 > kShare * (later() - 1.0);
   }

@@ -16,6 +16,8 @@ constexpr double kLongest = 1e-3;           // [s] in which the lever counts as 
 constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a measured restitution: 0.03 to 0.08,
                                             // with worn pins to 0.14
 // Guard: RodRing.RestitutionIsCovered of kRestitutionDoubt
+constexpr double kAnyRestitution = 0.29;  // standard deviation of one that may be anything from 0 to 1
+// Guard: RodRing.OfLivelyRockARigidLevelKnowsNoRestitution of kAnyRestitution
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
 // Numerical: kLongest, kBallistic
 
@@ -74,7 +76,7 @@ void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) 
   const double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0);
   const double rocker = -restitution * at.u_before * passage.speed_before;  // as it leaves the tool
   const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
-  const double doubt = std::hypot(measured, kRestitutionDoubt) * at.u_before * passage.speed_before;
+  const double doubt = std::hypot(measured, doubt_) * at.u_before * passage.speed_before;
   const double missing = rocker - at.u_after * blow.mean * passage.speed_before;
   rings_ = true;
   struck_ = std::hypot(missing, doubt);
@@ -112,10 +114,15 @@ void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcep
 }
 
 void RodRing::take(const CrankFilter* filter) noexcept {
-  share_ = filter == nullptr ? 1.0 : std::sqrt(filter->rodEvidence().share(filter->readingDeviation()));
+  share_ = 1.0, doubt_ = kRestitutionDoubt;
+  if (filter != nullptr) {
+    const RodEvidence& evidence = filter->rodEvidence();
+    share_ = std::sqrt(evidence.share(filter->readingDeviation()));
+    if (evidence.isLost()) doubt_ = kAnyRestitution;
+  }
 }
 
-double RodRing::restitutionDoubt() const noexcept { return gives_ ? share_ * kRestitutionDoubt : 0.0; }
+double RodRing::restitutionDoubt() const noexcept { return gives_ ? share_ * doubt_ : 0.0; }
 
 double RodRing::speed() const noexcept {
   double sum = 0.0;

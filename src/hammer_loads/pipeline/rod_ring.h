@@ -56,6 +56,7 @@ class RodRing {
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
   double acceleration_{}, struck_{}, share_{1.0};
+  double doubt_{};  ///< of a restitution, where readings leave a whole share
 };
 
 /// What the rocker's angular acceleration [rad/s2] is on the hull; of a speed [rad/s] the momentum [N s, N m s].
