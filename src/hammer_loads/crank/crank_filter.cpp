@@ -276,8 +276,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     }
     if (!without_contact) learnFrom(innovation, ratio);  // (10)
   }
-  sample_ = sample;
-  angle_fit_ = innovation.logLikelihood();
+  sample_ = sample, angle_fit_ = withoutRod(dt, innovation).logLikelihood(), rod_ = {};
   before_ = 1 - before_;
   before_load_ = load_;
   before_hull_ = now_hull_;

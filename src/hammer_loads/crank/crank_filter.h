@@ -161,6 +161,7 @@ class CrankFilter final : public CrankTracker {
   bool meetsOtherBlow(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool isContradiction(double dt, const Innovation& innovation) const noexcept;
+  Innovation withoutRod(double dt, Innovation innovation) const noexcept;
   std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                      const WeighedSample& sample) noexcept;
   double timeLost(const Innovation& innovation) const noexcept;
@@ -204,6 +205,9 @@ class CrankFilter final : public CrankTracker {
   Encoder encoder_;
   WeighedSample sample_;
   double angle_fit_{};
+  struct {
+    double angle{}, speed{};  ///< [rad], [rad/s]
+  } rod_;                     ///< considerRod() since the last sample
   TimingNoise timing_;
   SupplyRoughness roughness_;
   LearnedSupply supply_;

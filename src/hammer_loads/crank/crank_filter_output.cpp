@@ -21,6 +21,13 @@ void CrankFilter::considerRod(double angle, double speed) noexcept {
   rod_evidence_.add(now_.state.position.angle, square(speed) / of_speed);
   of_speed += square(speed);
   now_.covariance(CrankBelief::kAngle, CrankBelief::kAngle) += square(angle);
+  rod_ = {angle, speed};
+}
+
+/// An innovation as if no rod had been considered: what a rigid mechanism expects of the reading.
+Innovation CrankFilter::withoutRod(double dt, Innovation innovation) const noexcept {
+  innovation.total = std::max(innovation.variance, innovation.total - square(rod_.angle) - square(dt * rod_.speed));
+  return innovation;
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {

@@ -28,15 +28,14 @@ struct TwoBodyAccelerations {
 };
 
 /// With independent angles phi and psi, a rod whose masses move in proportion between its pins and theta = psi - phi,
-/// kinetic energy is 1/2 (M11 w^2 + 2 M12(theta) w v + M22 v^2), M11 and M22 constant (as BlowInertia). In phi and x
-/// the spring acts on x alone but for terms of second order:
+/// kinetic energy is 1/2 (M11 w^2 + 2 M12(theta) w v + M22 v^2), M11 and M22 constant (as BlowInertia). In phi and x:
 ///
-///     J w' + B x'' = F1,  B w' + M22 x'' = F2 + T h,  J = M11 + 2 u M12 + u^2 M22,  B = M12 + u M22
+///     J w' + B x'' = F1 - T g,  B w' + M22 x'' = F2 + T h,  J = M11 + 2 u M12 + u^2 M22,  B = M12 + u M22
 ///
-/// h = l3 sin(psi - beta) the rod's lever, T = -k h x - c (h x)' its tension. A step solves the oscillator
-/// (M22 - B^2/J) x'' with the lever at its middle in closed form: exact however stiff or dead the rod is; the stiffer
-/// it is, the nearer to the rigid mechanism. Neglects: bending of the links, motion of the hull but its effective
-/// gravity.
+/// h = l3 sin(psi - beta) the rod's lever, g = d(stretch)/d(phi), in proportion to x: a third of h where lively rock
+/// has thrown the rocker far; T = -k h x - c (h x)' its tension. A step solves the oscillator (M22 - B^2/J) x'' with
+/// the lever at its middle in closed form: exact however stiff or dead the rod is; the stiffer it is, the nearer to the
+/// rigid mechanism. Neglects: bending of the links, motion of the hull but its effective gravity.
 class TwoBodies {
  public:
   /// Refers to the mechanism, which must outlive it.
