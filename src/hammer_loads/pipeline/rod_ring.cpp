@@ -68,6 +68,7 @@ RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   const RodPrior prior = priorOf(p.rod, p.rod_deviation);
   gives_ = prior.gives;
   rods_ = rodsOf(prior);
+  take(nullptr);
 }
 
 void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {

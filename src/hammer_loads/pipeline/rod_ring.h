@@ -55,7 +55,7 @@ class RodRing {
   };
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
-  double acceleration_{}, struck_{}, share_{1.0};
+  double acceleration_{}, struck_{}, share_{};
   double doubt_{};  ///< of a restitution, where readings leave a whole share
 };
 
