@@ -10,7 +10,7 @@ namespace hammer_loads::accuracy {
 namespace {
 
 constexpr double kPaperSpeed = 31.416;  // [rad/s], P0
-const Gravity kGravity{kStandardGravity * std::sin(0.3), -kStandardGravity* std::cos(0.3)};
+const Gravity kGravity{kStandardGravity * std::sin(0.3), kStandardGravity * -std::cos(0.3)};
 
 /// Offsets 1e-first to 1e-last; side: +1 after, -1 before the blow.
 std::vector<double> besideTheBlow(double side, int first, int last, std::initializer_list<double> digits) {

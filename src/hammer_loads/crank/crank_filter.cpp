@@ -104,13 +104,6 @@ void CrankFilter::anchor(const WeighedSample& sample) noexcept {
   if (model_.coupling()) beginMotor(*model_.coupling(), settings_.initial_torque_deviation, now_);
 }
 
-/// Of now_, with the latest motion of the hull.
-void CrankFilter::takeLoad() noexcept {
-  load_ = model_(now_.state.position.angle);
-  now_hull_ = model_.hullMotion();
-  hull_moved_ = false;
-}
-
 /// (1)
 int CrankFilter::predict(double dt, bool contact, CrankBelief& belief) const noexcept {
   return belief.predict(step_model_, walks(), blows_.prior(), contact, mostSpeed(), dt);
@@ -154,7 +147,8 @@ Tracking CrankFilter::begin(WeighedSample sample) noexcept {
     sample.angle = CrankAngle::wrapToPi(sample.angle + slip_.last());
     slip_.takeBack();
   }
-  restart_load_ += 1.0, speeds_wait_ = speeds_wait_ || (has_speed_ && sample.isUnsureOfTime(now_.state.speed));
+  restart_load_ += 1.0;
+  speeds_wait_ = speeds_wait_ || (has_speed_ && sample.isUnsureOfTime(now_.state.speed));
   if (!has_speed_ && !sample.speed) now_.state.speed = now_.state.torque = 0.0;
   anchor(sample);
   if (now_.state.speed > kLearnSpeed) rival_.beginAnew(now_);
@@ -276,7 +270,9 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     }
     if (!without_contact) learnFrom(innovation, ratio);  // (10)
   }
-  sample_ = sample, angle_fit_ = withoutRod(dt, innovation).logLikelihood(), rod_ = {};
+  sample_ = sample;
+  angle_fit_ = withoutRod(dt, innovation).logLikelihood();
+  rod_ = {};
   before_ = 1 - before_;
   before_load_ = load_;
   before_hull_ = now_hull_;

@@ -1,4 +1,5 @@
-// What the filter gives: its estimate at a sample and between the last two, with deviations.
+// What the filter is given beside readings, the hull and a rod; and what it gives: its estimate at a sample and between
+// the last two, with deviations.
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +12,13 @@ namespace hammer_loads {
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);
   hull_moved_ = true;
+}
+
+/// Of now_, with the latest motion of the hull.
+void CrankFilter::takeLoad() noexcept {
+  load_ = model_(now_.state.position.angle);
+  now_hull_ = model_.hullMotion();
+  hull_moved_ = false;
 }
 
 /// Where the ring would throw the filter off, which knows of no rod; smaller ones it smooths. A reading that it then
