@@ -24,6 +24,7 @@ struct RingFound {
   double impulse_bias{};                ///< of a turn's impulse along z, relative
   double impulse_covered{};
   double restitution_bias{}, restitution_covered{}, energy_covered{}, restitution_said{};
+  double energy_bias{}, energy_said{};       ///< relative
   double range_error[2]{}, range_said[2]{};  ///< of the equivalent range at slopes 3 and 5, relative
 };
 
@@ -70,6 +71,8 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
         found.restitution_bias += off;
         found.restitution_said += end.blow.restitution_deviation;
         found.restitution_covered += std::abs(off) <= 2.0 * end.blow.restitution_deviation;
+        found.energy_bias += end.blow.energy / b.strike.energy - 1.0;
+        found.energy_said += end.blow.energy_deviation / b.strike.energy;
         found.energy_covered += std::abs(end.blow.energy - b.strike.energy) <= 2.0 * end.blow.energy_deviation;
         const double error = end.pulse->turn_impulse_z - b.turn_impulse_z;
         ++turns;
@@ -91,7 +94,7 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
   found.error = std::sqrt(found.error / n), found.said = std::sqrt(found.said / n);
   found.elsewhere = std::sqrt(found.elsewhere / others);
   for (double* mean : {&found.impulse_bias, &found.impulse_covered, &found.restitution_bias, &found.restitution_said,
-                       &found.restitution_covered, &found.energy_covered})
+                       &found.restitution_covered, &found.energy_covered, &found.energy_bias, &found.energy_said})
     *mean /= turns;
   life::ExactCycles right;
   std::vector<double> times;
@@ -141,6 +144,26 @@ TEST(RodRing, RestitutionIsCovered) {
     EXPECT_GT(elastic.energy_covered, 0.88);
   }
   EXPECT_LT(ringOf({}, Level::kLinkage, drawingOfRing().mechanism).restitution_said, 0.025);
+}
+
+/// The pins let go of the rocker before it strikes: slower than a rigid linkage has it, by a crank that runs ahead.
+/// What that makes of a rigid level's figures is in their deviations; tight pins leave them as they were.
+TEST(RodRing, WornPinsThatLetGoOfTheRockerAreInTheBlow) {
+  const auto check = [](const simulation::RodSettings& rod, double rate) {
+    SCOPED_TRACE(rod.play);
+    const RingFound found = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism, rate);
+    EXPECT_GT(found.energy_bias, 0.1);
+    EXPECT_GT(found.energy_covered, 0.88);
+    EXPECT_GT(found.restitution_bias, 0.05);
+    EXPECT_GT(found.restitution_covered, 0.88);
+    EXPECT_GT(found.impulse_bias, 0.2);
+    EXPECT_GT(found.impulse_covered, 0.88);
+  };
+  check({1e9, 0.3, 2e-4}, 1000.0);
+  check({1e9, 3.0, 2e-4}, 1000.0);
+  check({1e9, 3.0, 5e-4}, 1000.0);
+  check({1e9, 1.0, 3e-4}, 500.0);
+  EXPECT_LT(ringOf({}, Level::kLinkage, drawingOfRing().mechanism).energy_said, 0.05);  // 0.045 by the drawing
 }
 
 TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {

@@ -22,8 +22,12 @@ class RodEvidence {
  public:
   /// Of an innovation at a place of the crank.
   void add(const CrankAngle& at, double squared_over_variance) noexcept {
-    if (at.side == Side::kBeforeBlow || !std::isfinite(squared_over_variance)) return;
+    if (!std::isfinite(squared_over_variance)) return;
     const double bounded = std::min(squared_over_variance, kMostSurprise);
+    if (at.side == Side::kBeforeBlow) {
+      if (at.offset > -kPickedUp) run_up_.add(bounded);
+      return;
+    }
     if (at.offset < kPickedUp) picked_up_.add(bounded);
     if (at.offset > kRungOut) later_.add(bounded);
   }
@@ -31,16 +35,15 @@ class RodEvidence {
   /// taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
   // Guard: RodEvidence.ReadingsWithoutExcessLeaveARingLittleRoom of kCoarsest
-  /// Mean while the rod picks the rocker up, and when it has rung out [-].
+  /// Mean just before the blow, where a rod in worn pins lets go of the rocker and the crank runs ahead (4 and more;
+  /// rods that give in tight pins 1.5 to 2), while the rod picks the rocker up, and when it has rung out [-].
+  double runUp() const noexcept { return run_up_.mean(); }
   double pickedUp() const noexcept { return picked_up_.mean(); }
   double later() const noexcept { return later_.mean(); }
-  /// Of the square of a ring that is expected the part that readings leave possible; readings: standard deviation of
-  /// one [rad].
-  double share(double reading) const noexcept {
-    if (!(reading < kCoarsest) || !(picked_up_.count() > kEnough)) return 1.0;
-    const double doubt = gate::kUsual * std::sqrt(2.0 / picked_up_.count());
-    return std::clamp((pickedUp() - 1.0 + doubt) / kLeastExcess, 0.0, 1.0);
-  }
+  /// Of the square of a ring that is expected, and of the speed that a rocker which is let go lacks, the part that
+  /// readings leave possible; reading: standard deviation of one [rad].
+  double share(double reading) const noexcept { return shareOf(picked_up_, reading); }
+  double letGoShare(double reading) const noexcept { return shareOf(run_up_, reading); }
   /// So much is struck that a rigid mechanism has lost the crank a quarter of a turn later still: rock that throws the
   /// rocker back (8 to 20 then). What it takes for the blow is none.
   bool isLost() const noexcept { return later_.count() > kEnough && later() > mismatch::kUnexplained; }
@@ -49,13 +52,18 @@ class RodEvidence {
   }
 
  private:
+  static double shareOf(const RunningMean<>& place, double reading) noexcept {
+    if (!(reading < kCoarsest) || !(place.count() > kEnough)) return 1.0;
+    const double doubt = gate::kUsual * std::sqrt(2.0 / place.count());
+    return std::clamp((place.mean() - 1.0 + doubt) / kLeastExcess, 0.0, 1.0);
+  }
   static constexpr double kLeastExcess = 3.0;  ///< above 1, of any rod whose ring readings show
   // Guard: RodEvidence.ReadingsWithoutExcessLeaveARingLittleRoom of kLeastExcess
-  static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;  ///< behind the blow
+  static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;  ///< beside the blow
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
   static constexpr double kShare = 5.0;
   // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kPickedUp, kRungOut, kEnough, kShare
-  RunningMean<> picked_up_{400.0}, later_{1200.0};  ///< some 20 turns at 1 kHz
+  RunningMean<> run_up_{400.0}, picked_up_{400.0}, later_{1200.0};  ///< some 20 turns at 1 kHz
 };
 
 }  // namespace hammer_loads

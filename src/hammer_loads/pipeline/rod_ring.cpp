@@ -103,27 +103,45 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   }
 }
 
+void RodRing::drive(const CrankEstimate& crank) noexcept {
+  const CrankAngle at = crank.position.angle;
+  if (at.side != Side::kBeforeBlow || !(at.offset < 0.0) || !(crank.speed > 0.0)) return;
+  const HammerParameters& p = model_->mechanism().parameters();
+  const LinkMotion links = linkMotion(model_->mechanism().linkage(), at);
+  const double free = 0.5 * rods_.back().play / (p.lengths.rocker * std::abs(links.sin_mu));  // grows as 1/offset
+  driven_ = std::max(driven_, -crank.speed * (links.rocker.u - free / at.offset));
+}
+
+void RodRing::letGo(const CrankStep::Passage& passage) noexcept {
+  const double u_before = motion(model_->mechanism().linkage(), {0.0, Side::kBeforeBlow}).u;
+  lacking_ = driven_ > 0.0 ? std::max(0.0, passage.speed_before + driven_ / u_before) : 0.0;
+  driven_ = 0.0;
+}
+
 void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcept {
   if (!gives_) return;
   double from = 0.0;
   for (const CrankStep::Passage& passage : step) {
     if (!passage.strikes) continue;
+    letGo(passage);
     strike(passage, tracker.blowFactor());
     from = passage.time;
   }
   move(step, from, step.length());
+  drive(tracker.estimate());
 }
 
 void RodRing::take(const CrankFilter* filter) noexcept {
-  share_ = 1.0, doubt_ = kRestitutionDoubt;
+  share_ = let_go_ = 1.0, doubt_ = kRestitutionDoubt;
   if (filter != nullptr) {
     const RodEvidence& evidence = filter->rodEvidence();
     share_ = std::sqrt(evidence.share(filter->readingDeviation()));
+    let_go_ = std::sqrt(evidence.letGoShare(filter->readingDeviation()));
     if (evidence.isLost()) doubt_ = kAnyRestitution;
   }
 }
 
-double RodRing::restitutionDoubt() const noexcept { return gives_ ? share_ * doubt_ : 0.0; }
+double RodRing::restitutionDoubt() const noexcept { return gives_ ? std::max(share_, let_go_) * doubt_ : 0.0; }
 
 double RodRing::speed() const noexcept {
   double sum = 0.0;

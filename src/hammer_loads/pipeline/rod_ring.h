@@ -39,6 +39,10 @@ class RodRing {
   double acceleration() const noexcept { return rings_ ? share_ * acceleration_ : 0.0; }
   /// How far a restitution may be off that was read off a crank as if the rod were rigid, standard [-].
   double restitutionDoubt() const noexcept;
+  /// How far the crank's speed at the last blow may be above that which drives a rigid mechanism's rocker as fast as
+  /// this one struck, standard [rad/s]. A rocker at the side of its play is slower than the linkage has it, by the more
+  /// the nearer the dead centre; nothing brakes it within the play: it strikes with the most it was driven at.
+  double lackingSpeed() const noexcept { return let_go_ * lacking_; }
   /// Of the rocker's speed what the last blow left for the rod to take up [rad/s].
   double struck() const noexcept { return gives_ ? share_ * struck_ : 0.0; }
   /// Likewise of its speed [rad/s].
@@ -47,6 +51,8 @@ class RodRing {
  private:
   void strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
   void move(const CrankStep& step, double from, double to) noexcept;
+  void drive(const CrankEstimate& crank) noexcept;
+  void letGo(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;
   bool gives_, rings_{};
@@ -55,8 +61,10 @@ class RodRing {
   };
   Rods rods_;
   std::array<State, std::tuple_size_v<Rods>> states_;
-  double acceleration_{}, struck_{}, share_{};
-  double doubt_{};  ///< of a restitution, where readings leave a whole share
+  double acceleration_{}, struck_{}, share_{}, let_go_{};
+  double driven_{};   ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
+  double lacking_{};  ///< at the last blow, of the crank's speed [rad/s]
+  double doubt_{};    ///< of a restitution, where readings leave a whole share
 };
 
 /// What the rocker's angular acceleration [rad/s2] is on the hull; of a speed [rad/s] the momentum [N s, N m s].

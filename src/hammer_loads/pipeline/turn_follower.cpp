@@ -6,6 +6,7 @@
 
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/pipeline/crank_trust.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 void TurnFollower::restart() noexcept {
@@ -86,7 +87,8 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const double time = seconds(step_->start() - epoch_) + passage.time;
   CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
   if (elastic_->runs()) before.speed = elastic_->strikingSpeed();
-  const CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
+  CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
+  if (!elastic_->runs()) doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed) += square(rod_->lackingSpeed());
   const double rate = before.acceleration / before.speed;
   end.pulse = turn_.end(instant(time, before));
   if (peak_.withheld > std::max(peak_.published, peak_.of_step)) end.pulse.reset();
@@ -143,7 +145,8 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!elastic) {
     const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
     crank.factor_deviation =
-        std::hypot(crank.factor_deviation, rod_->restitutionDoubt() / inertia.restitutionPerFactor());
+        std::hypot(crank.factor_deviation, rod_->restitutionDoubt() / inertia.restitutionPerFactor(),
+                   crank.factor * rod_->lackingSpeed() / crank.speed);
   }
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
   const double doubt =
