@@ -162,12 +162,17 @@ TEST(MachineParameters, FlawsAreRead) {
 }
 
 TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith) {
-  EXPECT_FALSE(loadSimulator(configDirectory(), {}).value->machine.on_boom.on);
+  const OnBoomSettings shipped = loadSimulator(configDirectory(), {}).value->machine.on_boom;
+  EXPECT_FALSE(shipped.on);
+  EXPECT_TRUE(shipped.isPlain());
+  EXPECT_EQ(shipped.seals.friction, 0.02) << "of all its flaws the one that every machine has";
   EXPECT_EQ(loadSimulator(configDirectory(), {}).value->machine.on_boom.rock.stiffness, 0.0) << "it hangs free";
   const Checked<SimulatorSettings> loaded = loadSimulator(
       configDirectory(),
       given("{rod: rigid, hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
-            " arm_cylinder_oil_factor: 0.4,"
+            " arm_cylinder_oil_factor: 0.4, oil_air_share: 0.01, piston_leak_m3_Pa_s: 2.0e-11, cylinder_pin_play_m: "
+            "0.0002,"
+            " pressure_hose_lag_s: 0.004, pressure_count_Pa: 39000, bus_delay_s: 0.002, joint_count_rad: 0.002,"
             " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, joint_noise_rad: 0.0001, "
             "restitution_drawn: true,"
             " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, press_force_N: 700}"));
@@ -177,6 +182,13 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   EXPECT_EQ(machine.on_boom.oil_stiffness, 0.7);
   EXPECT_EQ(machine.on_boom.cylinder_oil, (std::array<double, 3>{1.0, 0.4, 1.0}));
   EXPECT_EQ(machine.on_boom.damping, 0.03);
+  EXPECT_EQ(machine.on_boom.air, 0.01);
+  EXPECT_EQ(machine.on_boom.leak, 2e-11);
+  EXPECT_EQ(machine.on_boom.pin_play, 2e-4);
+  EXPECT_EQ(machine.on_boom.pressures.hose_lag, 4e-3);
+  EXPECT_EQ(machine.on_boom.pressures.count, 39e3);
+  EXPECT_EQ(machine.on_boom.bus_delay, 2e-3);
+  EXPECT_EQ(machine.joint_count, 2e-3);
   EXPECT_EQ(machine.on_boom.imu.rate, 500.0);
   EXPECT_EQ(machine.on_boom.imu.x, 0.1);
   EXPECT_EQ(machine.on_boom.pressures.rate, 0.0);

@@ -70,6 +70,9 @@ struct BoomState {
   bool press_force_lost{};          ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;              ///< along hull z; infinite without modes
   Boom::TipVibration tip;           ///< zero for a rigid boom
+  /// Of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as far as sensors leave it in
+  /// doubt; zero where they identify nothing.
+  Eigen::Matrix3d tip_covariance{Eigen::Matrix3d::Zero()};
   /// By vibration (a rigid boom has none), mean of before and after the step's last blow; none: no blow.
   std::optional<TipVelocity> at_blow;
   BoomChoice choice;
@@ -157,6 +160,7 @@ class BoomFollower {
   void findContact(double step) noexcept;
   void addConstantsOfBoom(bool common_known) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
+  Eigen::Matrix3d tipCovariance() const noexcept;
   void addConstants(const BoomSample& sample) noexcept;
   LoadErrors measuredErrors(const Wrench& lasting, bool rigid) const noexcept;
   LoadErrors followedErrors(const WrenchSpread& spread, bool rigid) const noexcept;

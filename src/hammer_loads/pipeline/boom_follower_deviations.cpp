@@ -8,9 +8,7 @@
 namespace hammer_loads {
 namespace {
 
-void addVariance(double other, double& deviation) noexcept {
-  deviation = std::sqrt(square(deviation) + square(other));
-}
+void addVariance(double other, double& deviation) noexcept { deviation = std::sqrt(square(deviation) + square(other)); }
 
 void addVariance(const Wrench& other, Wrench& deviation) noexcept {
   for (int i = 0; i < 3; ++i) {
@@ -25,6 +23,16 @@ void addVariances(const List& others, std::size_t count, List& deviations) noexc
 }
 
 }  // namespace
+
+Eigen::Matrix3d BoomFollower::tipCovariance() const noexcept {
+  const BoomModes& modes = boom_.vibration().modes();
+  const std::optional<ModeIdentifier>& identifier = boom_.vibration().identifier();
+  if (!identifier || modes.count == 0) return Eigen::Matrix3d::Zero();
+  const auto& jacobian = boom_.tipJacobian();
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints> by_mode(3, modes.count);
+  for (int row = 0; row < 3; ++row) by_mode.row(row).noalias() = jacobian.row(2 * row) * modes.shape;
+  return by_mode * identifier->accelerationCovariance() * by_mode.transpose();
+}
 
 /// The part of the hull's acceleration that hammer and oil as given do not explain is a force on its mass.
 void BoomFollower::weighUnexplained(const ImuReading& reading, double step) noexcept {

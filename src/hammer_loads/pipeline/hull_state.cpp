@@ -13,6 +13,18 @@ HullMotion vibrationOf(const BoomState& boom) noexcept {
   return {{-a[0], -a[2]}, boom.tip.velocity[4], a[4]};
 }
 
+/// Likewise how far it may be off; of its rate, which turns next to nothing, none is told.
+HullMotionCovariance doubtOf(const BoomState& boom) noexcept {
+  HullMotionCovariance doubt = HullMotionCovariance::Zero();
+  if (!boom.choice.compliant) return doubt;
+  const Eigen::Matrix3d& tip = boom.tip_covariance;
+  doubt.topLeftCorner<2, 2>() = tip.topLeftCorner<2, 2>();
+  doubt(3, 3) = tip(2, 2);
+  doubt.topRightCorner<2, 1>() = -tip.topRightCorner<2, 1>();
+  doubt.bottomLeftCorner<1, 2>() = -tip.bottomLeftCorner<1, 2>();
+  return doubt;
+}
+
 }  // namespace
 
 HullState::HullState(const HammerParameters& hammer, const PipelineSettings& settings, const std::optional<Boom>& boom)
@@ -98,7 +110,7 @@ void HullState::findByBoom() noexcept {
   const HullMotion v = vibration_.value_or(HullMotion{});
   now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration},
           vibration_.has_value(),
-          HullMotionCovariance::Zero()};
+          vibration_ ? vibration_doubt_ : HullMotionCovariance::Zero()};
   if (source_ == HullMotionSource::kImu && !vibration_) now_.covariance = usualMotion();
 }
 
@@ -119,7 +131,10 @@ void HullState::vibrates(const BoomState* boom) noexcept {
   vibration_.reset();
   const bool followed = boom != nullptr && !boom->fault;
   const bool proven = followed && boom->choice.compliant && boom->identified;
-  if (source_ == HullMotionSource::kModel ? followed : proven) vibration_ = vibrationOf(*boom);
+  if (source_ == HullMotionSource::kModel ? followed : proven) {
+    vibration_ = vibrationOf(*boom);
+    vibration_doubt_ = doubtOf(*boom);
+  }
   if (source_ == HullMotionSource::kModel) known_ = vibration_.has_value();
   if (!by_imu_) findByBoom();
 }

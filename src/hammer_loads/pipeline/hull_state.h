@@ -30,7 +30,7 @@ class HullState {
   struct Motion {
     HullMotion motion;  ///< at the sample
     bool moves{};       ///< the hull's own motion is in it
-    /// How far an IMU's motion may be off. Zero where another source gives it.
+    /// How far an IMU's motion may be off, or that of a boom whose oil sensors identify. Zero where another gives it.
     HullMotionCovariance covariance = HullMotionCovariance::Zero();
   };
 
@@ -83,7 +83,8 @@ class HullState {
   std::optional<HullMobility> mobility_;  ///< of the boom; none: followsLoad() is not wanted, or no boom
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
-  std::optional<HullMotion> vibration_;  ///< of the boom's tip at the last sample, without weight; none: not known
+  std::optional<HullMotion> vibration_;   ///< of the boom's tip at the last sample, without weight; none: not known
+  HullMotionCovariance vibration_doubt_;  ///< of it
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
   bool known_{true}, by_imu_{};

@@ -86,7 +86,7 @@ void HammerOnBoom::followOperator() {
 Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
   const State held = heldAt(time);
   const Eigen::Matrix3d M = massMatrix(heldBodies(held)).topLeftCorner<3, 3>();
-  return modesOf(stiffness(held), M).eigenvalues().cwiseSqrt() / kTwoPi;
+  return modesOf(holdAt(time).stiffness, M).eigenvalues().cwiseSqrt() / kTwoPi;
 }
 
 /// Where the operator holds the joints, crank a quarter of a turn from the blow.
@@ -104,7 +104,8 @@ HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
 
 HammerOnBoom::Hold HammerOnBoom::holdAt(double time) const {
   const State held = heldAt(time);
-  return {held, weight(heldBodies(held)).head<3>(), stiffness(held)};
+  const Eigen::Vector3d down = weight(heldBodies(held)).head<3>();
+  return {held, down, stiffness(held, down)};
 }
 
 /// Of the link that ends in a joint.
@@ -170,43 +171,6 @@ HammerOnBoom::Coordinates HammerOnBoom::weight(const Bodies& all) const {
   Coordinates Q = Coordinates::Zero();
   for (const Body& b : all.body) Q -= b.mass * machine_.gravity * b.z;
   return Q;
-}
-
-/// Of the oil about the joints [N m/rad].
-Eigen::Vector3d HammerOnBoom::stiffness(const State& held) const {
-  Eigen::Vector3d K;
-  for (int k = 0; k < 3; ++k) {
-    const OilCylinder& c = boom_.cylinders[static_cast<std::size_t>(k)];
-    const double angle = held.x[k], arm = c.arm(angle);
-    const double oil = boom_.bulk_modulus * machine_.on_boom.cylinder_oil[static_cast<std::size_t>(k)];
-    K[k] = oil * arm * arm * (c.bore_area * c.boreShare(angle) + c.rod_area * c.rodShare(angle));
-  }
-  return K;
-}
-
-/// BY the oil ON the joints [N m].
-Eigen::Vector3d HammerOnBoom::oil(const State& s, const Hold& hold) const {
-  const Coordinates off = s.x - hold.state.x, rate = s.v - hold.state.v;
-  return -hold.weight - hold.stiffness.cwiseProduct(off.head<3>()) - damping_ * rate.head<3>();
-}
-
-/// BY the cylinders' seals ON the joints, with the oil's torque [N m].
-Eigen::Vector3d HammerOnBoom::seals(const State& s, const Eigen::Vector3d& oil) const {
-  const SealSettings& seal = machine_.on_boom.seals;
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
-  if (seal.friction == 0.0) return torque;
-  for (int k = 0; k < 3; ++k) {
-    const double arm = boom_.cylinders[static_cast<std::size_t>(k)].arm(s.x[k]), speed = arm * s.v[k];
-    const double slow = speed / seal.stribeck_speed;
-    const double force = seal.friction * std::abs(oil[k] / arm) * (1.0 + seal.breakaway * std::exp(-slow * slow));
-    torque[k] = -arm * force * std::tanh(speed / seal.smooth_speed);
-  }
-  return torque;
-}
-
-Eigen::Vector3d HammerOnBoom::holding(const State& s, const Hold& hold) const {
-  const Eigen::Vector3d by_oil = oil(s, hold);
-  return by_oil + seals(s, by_oil);
 }
 
 /// All that is not inertia: weight, cylinders, motor.

@@ -36,8 +36,9 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
 /// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, their
 /// accelerations for the loads by differences in time. Runge-Kutta of order 4.
 /// The operator's valves move the point at which the oil holds each joint along settings.boom; the oil about it is a
-/// linear spring, as stiff as at that place. settings.on_boom.seals rub against the rods: pressures are those of the
-/// oil, what holds the joints is oil and seals.
+/// linear spring, as stiff as at that place; with air in it, a leak past the pistons or loose pins it is two chambers a
+/// cylinder, whose pressures follow from the rod's way and what has leaked. settings.on_boom.seals rub against the
+/// rods: pressures are those of the oil, what holds the joints is oil and seals.
 ///
 /// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
 /// impulse within the linkage, or with a restitution that is drawn. settings.on_boom.rock holds the hull up where it is
@@ -71,7 +72,8 @@ class HammerOnBoom {
     bool resting{};     ///< the crank turned back onto the tool: held at the dead centre, as by a brake
     Coordinates x, v;   ///< angles of the joints, crank's offset from its nearest dead centre, rocker
     double pressure{};  ///< at the motor [Pa]
-    ToolState tool;     ///< of an elastic machine, as what follows
+    Eigen::Vector3d leaked{Eigen::Vector3d::Zero()};           ///< of each cylinder, from bore to rod side [m3]
+    ToolState tool;                                            ///< of an elastic machine, as what follows
     double tool_impulse{}, tool_energy{}, retainer_impulse{};  ///< since the start [N s], [J], [N s]
   };
   /// A moving body: its place, and what each coordinate does to place and angle.
@@ -116,7 +118,17 @@ class HammerOnBoom {
   Bodies heldBodies(const State& held) const { return bodies(held, boom_.links, held_rocker_); }
   Inertia massMatrix(const Bodies& all) const;
   Coordinates weight(const Bodies& all) const;
-  Eigen::Vector3d stiffness(const State& held) const;
+  Eigen::Vector3d stiffness(const State& held, const Eigen::Vector3d& weight) const;
+  double oilOf(std::size_t cylinder) const;  ///< bulk modulus [Pa]
+  /// Gauge pressures of a cylinder [Pa].
+  struct Chambers {
+    double bore{}, rod{};
+  };
+  Chambers heldChambers(std::size_t k, const State& held, double weight) const;
+  Chambers chambersAt(std::size_t k, double way, double leaked, const Hold& hold) const;
+  Chambers chambers(std::size_t k, const State& s, const Hold& hold) const;
+  double push(std::size_t k, const Chambers& at) const;  ///< of the rod, out [N]
+  Eigen::Vector3d leak(const State& s, const Hold& hold) const;
   void followOperator();
   Eigen::Vector3d oil(const State& s, const Hold& hold) const;
   Eigen::Vector3d seals(const State& s, const Eigen::Vector3d& oil) const;

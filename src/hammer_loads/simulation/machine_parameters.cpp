@@ -140,6 +140,9 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   s.oil_stiffness = reader.number("oil_stiffness_factor", "", kPositive);
   for (std::size_t k = 0; k < s.cylinder_oil.size(); ++k)
     s.cylinder_oil[k] = reader.number(std::string(kBoomCylinders[k]) + "_oil_factor", "", kPositive);
+  s.air = reader.number("oil_air_share", "", NumberRule::within(0.0, 0.1));
+  s.leak = reader.number("piston_leak_m3_Pa_s", "m3/(Pa s)", NumberRule::within(0.0, 1e-9));
+  s.pin_play = reader.number("cylinder_pin_play_m", "m", NumberRule::within(0.0, 0.01));
   s.damping = reader.number("boom_damping_ratio", "", NumberRule::within(0.0, 0.99));
   s.step = reader.number("boom_step_s", "s", kPositive);
   s.seals.friction = reader.number("machine_seal_friction", "", NumberRule::within(0.0, 0.2));
@@ -155,6 +158,9 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   s.pressures.rate = reader.number("pressure_rate_Hz", "Hz", kNotNegative);
   s.pressures.noise = reader.number("pressure_noise_Pa", "Pa", kNotNegative);
   s.pressures.preload = reader.number("cylinder_preload_Pa", "Pa", kNotNegative);
+  s.pressures.hose_lag = reader.number("pressure_hose_lag_s", "s", NumberRule::within(0.0, 1.0));
+  s.pressures.count = reader.number("pressure_count_Pa", "Pa", kNotNegative);
+  s.bus_delay = reader.number("bus_delay_s", "s", NumberRule::within(0.0, 1.0));
   return s;
 }
 
@@ -215,6 +221,7 @@ MachineSettings readMachine(ParameterReader& reader) {
   machine.boom = {readJoint(reader, "swing"), readJoint(reader, "boom"), readJoint(reader, "arm"),
                   readJoint(reader, "hammer")};
   machine.joint_rate = reader.number("joint_rate_Hz", "Hz", kPositive);
+  machine.joint_count = reader.number("joint_count_rad", "rad", kNotNegative);
   machine.joint_noise = reader.number("joint_noise_rad", "rad", kNotNegative);
   machine.joint_speed_noise = reader.number("joint_speed_noise_rad_s", "rad/s", kNotNegative);
   machine.on_boom = readOnBoom(reader);

@@ -137,9 +137,11 @@ struct HullImuSensor {
 
 /// Gauge pressure in both chambers of each cylinder.
 struct PressureSensors {
-  double rate{};     ///< [Hz]; 0: none
-  double noise{};    ///< standard deviation [Pa]
-  double preload{};  ///< in the unloaded chamber at rest [Pa]
+  double rate{};      ///< [Hz]; 0: none
+  double noise{};     ///< standard deviation [Pa]
+  double preload{};   ///< in the unloaded chamber at rest [Pa]
+  double hose_lag{};  ///< of the low-pass of first order that is the sensor's hose [s]; 0: none
+  double count{};     ///< of the sensor's number [Pa]; 0: any
 };
 
 /// The ground under the tool. It holds the hull up at its foot and lets go of it: a spring with a loss, along the tool.
@@ -164,12 +166,18 @@ struct OnBoomSettings {
   bool on{};                                          ///< else the hull has no motion but its pitch, and no sensors
   double oil_stiffness{1.0};                          ///< over that of a bulk modulus of 1e9 Pa [-], > 0
   std::array<double, 3> cylinder_oil{1.0, 1.0, 1.0};  ///< each cylinder's over that [-], > 0
-  double damping{0.05};                               ///< ratio of every mode [-], in [0, 1)
-  double step{4e-4};                                  ///< longest integration step [s], > 0
+  double air{};                                       ///< in the oil, its share of the volume at ambient pressure [-]
+  double leak{};         ///< past each piston [m3/(Pa s)]; the operator makes up for the steady part
+  double pin_play{};     ///< of each cylinder's pins together, along its rod [m]
+  double damping{0.05};  ///< ratio of every mode [-], in [0, 1)
+  double step{4e-4};     ///< longest integration step [s], > 0
   SealSettings seals;
   RockSettings rock;
   HullImuSensor imu;
   PressureSensors pressures;
+  double bus_delay{};  ///< messages but the crank's wait for their bus, and are stamped, up to that late [s]
+
+  bool isPlain() const noexcept { return air == 0.0 && leak == 0.0 && pin_play == 0.0; }
 };
 
 /// Order of the boom's joints in this folder; hull pitch = boom + arm + hammer (contract).
@@ -189,6 +197,7 @@ struct MachineSettings {
   std::array<JointMotion, 4> boom;
   OnBoomSettings on_boom;
   double joint_rate{};         ///< of the boom joints' samples [Hz], > 0
+  double joint_count{};        ///< of the number that their sensors give [rad]; 0: any
   double joint_noise{};        ///< standard deviation of their angles [rad]
   double joint_speed_noise{};  ///< and of their speeds [rad/s]
   double gravity{};            ///< [m/s2]

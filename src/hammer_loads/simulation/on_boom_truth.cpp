@@ -85,23 +85,6 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Mom
   return load;
 }
 
-/// One chamber carries what is steady, both what is not.
-void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
-  const State& held = hold.state;
-  const Eigen::Vector3d torque = oil(now_, hold);
-  const double preload = machine_.on_boom.pressures.preload;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int j = static_cast<int>(k);
-    const OilCylinder& c = boom_.cylinders[k];
-    const double steady = -hold.weight[j] / c.arm(held.x[j]), change = torque[j] / c.arm(now_.x[j]) - steady;
-    const double bore_share = c.boreShare(held.x[j]), rod_share = c.rodShare(held.x[j]);
-    const double way = change / (c.bore_area * bore_share + c.rod_area * rod_share);
-    const double bore_push = std::max(steady, 0.0) + preload * (steady > 0.0 ? c.rod_area : c.bore_area);
-    s.bore_pressure[k] = bore_push / c.bore_area + bore_share * way;
-    s.rod_pressure[k] = (bore_push - steady) / c.rod_area - rod_share * way;
-  }
-}
-
 OnBoomSensors HammerOnBoom::sensors(const Hold& hold, const Coordinates& a) const {
   OnBoomSensors s;
   s.angles = now_.x.head<3>(), s.rates = now_.v.head<3>();

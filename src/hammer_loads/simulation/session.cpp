@@ -15,12 +15,18 @@ constexpr double kImuLag = 0.0004, kPressureLag = 0.0007;  // theirs, so that no
 constexpr std::uint64_t kMessageSeed = 0xbf58476d1ce4e5b9, kJointSeed = 0x94d049bb133111eb;
 constexpr std::uint64_t kLossSeed = 0x2545f4914f6cdd1d;
 constexpr double kSensorStep = 1e-4;  // [s] in which a low-pass takes its input for a straight line
+constexpr std::uint64_t kBusSeed = 0x8cb92ba72f3d8dd7;
 constexpr std::uint64_t kImuSeed = 0xd6e8feb86659fd93, kPressureSeed = 0xa0761d6478bd642f;
 
 std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machineOf(const MachineSettings& settings) {
   if (settings.on_boom.on) return HammerOnBoom(settings);
   if (settings.rod.stiffness > 0.0) return ElasticMachine(settings);
   return WorkingMachine(settings);
+}
+
+std::array<LowPass, 6> hosesOf(const OnBoomSettings& s) {
+  const LowPass hose(s.on && s.pressures.rate > 0.0 ? s.pressures.hose_lag : 0.0);
+  return {hose, hose, hose, hose, hose, hose};
 }
 
 bool isPlain(const CrankSensorSettings& sensor) noexcept {
@@ -68,8 +74,10 @@ SessionStream::SessionStream(const MachineSettings& settings)
       joint_noise_(settings.seed ^ kJointSeed),
       imu_noise_(settings.seed ^ kImuSeed),
       pressure_noise_(settings.seed ^ kPressureSeed),
+      bus_draws_(settings.seed ^ kBusSeed),
       angle_(settings.crank.angle_lag),
       speed_(settings.crank.speed_lag),
+      hoses_(hosesOf(settings.on_boom)),
       joints_{kJointLag, settings.joint_rate, 0},
       imu_{kImuLag, settings.on_boom.on ? settings.on_boom.imu.rate : 0.0, 0},
       pressures_{kPressureLag, settings.on_boom.on ? settings.on_boom.pressures.rate : 0.0, 0} {
@@ -93,12 +101,18 @@ CrankTruth SessionStream::truth() const {
 }
 
 void SessionStream::moveTo(double time) {
-  while ((angle_.isOn() || speed_.isOn()) && sensor_time_ < time) {
+  while ((angle_.isOn() || speed_.isOn() || hoses_[0].isOn()) && sensor_time_ < time) {
     sensor_time_ = std::min(time, sensor_time_ + kSensorStep);
     std::visit([&](auto& machine) { machine.advanceTo(sensor_time_); }, machine_);
     const Encoded now = encodedAt(settings_.crank, truth());
     angle_.follow(sensor_time_, now.angle);
     speed_.follow(sensor_time_, now.speed);
+    if (!hoses_[0].isOn()) continue;
+    const OnBoomSensors felt = std::get<HammerOnBoom>(machine_).sensors();
+    for (std::size_t k = 0; k < 3; ++k) {
+      hoses_[k].follow(sensor_time_, felt.bore_pressure[k]);
+      hoses_[k + 3].follow(sensor_time_, felt.rod_pressure[k]);
+    }
   }
   std::visit([&](auto& machine) { machine.advanceTo(time); }, machine_);
 }
@@ -202,48 +216,6 @@ CrankReading SessionStream::read(const CrankTruth& truth, double stamp_error, do
 
 double SessionStream::measuredSpeed(double shown, double error) const noexcept {
   return settings_.crank.speed_scale * (speed_.isOn() ? speed_.output() : shown) + error;
-}
-
-OnBoomSensors SessionStream::onBoomAt(double time) {
-  moveTo(time);
-  return std::get<HammerOnBoom>(machine_).sensors();
-}
-
-/// The sensors of a boom on its oil see it vibrate.
-JointReading SessionStream::readJoints(double time) {
-  JointReading reading;
-  reading.stamp = stampAt(time);
-  for (std::size_t i = 0; i < settings_.boom.size(); ++i) {
-    const JointMotion& joint = settings_.boom[i];
-    reading.position[i] = positionOf(joint, time), reading.velocity[i] = velocityOf(joint, time);
-  }
-  if (std::holds_alternative<HammerOnBoom>(machine_)) {
-    const OnBoomSensors truth = onBoomAt(time);
-    for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i + 1);
-      reading.position[k] = truth.angles[i], reading.velocity[k] = truth.rates[i];
-    }
-  }
-  for (double& angle : reading.position) angle += settings_.joint_noise * joint_noise_();
-  for (double& speed : reading.velocity) speed += settings_.joint_speed_noise * joint_noise_();
-  return reading;
-}
-
-HullImuReading SessionStream::readImu(double time) {
-  const OnBoomSensors truth = onBoomAt(time);
-  const HullImuSensor& imu = settings_.on_boom.imu;
-  HullImuReading reading{stampAt(time), {truth.imu_x, 0.0, truth.imu_z}, {0.0, truth.imu_rate, 0.0}};
-  for (double& force : reading.specific_force) force += imu.acceleration_noise * imu_noise_();
-  for (double& rate : reading.rate) rate += imu.rate_noise * imu_noise_();
-  return reading;
-}
-
-PressureReading SessionStream::readPressures(double time) {
-  const OnBoomSensors truth = onBoomAt(time);
-  PressureReading reading{stampAt(time), truth.bore_pressure, truth.rod_pressure};
-  for (auto* chambers : {&reading.bore, &reading.rod})
-    for (double& pressure : *chambers) pressure += settings_.on_boom.pressures.noise * pressure_noise_();
-  return reading;
 }
 
 std::int64_t SessionStream::stampAt(double time) const noexcept {

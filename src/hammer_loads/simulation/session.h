@@ -91,14 +91,17 @@ class SessionStream {
   HullImuReading readImu(double time);
   PressureReading readPressures(double time);
   std::int64_t stampAt(double time) const noexcept;
+  std::int64_t busStamp(double time, std::int64_t& last) noexcept;  ///< of a message that waited for its bus
 
   MachineSettings settings_;
   std::variant<WorkingMachine, ElasticMachine, HammerOnBoom> machine_;
   NormalNoise noise_;
   NormalNoise message_draws_, loss_draws_, joint_noise_, imu_noise_, pressure_noise_;
-  LowPass angle_, speed_;  ///< of the encoder
-  double sensor_time_{};   ///< up to which they have followed [s]
-  std::int64_t last_stamp_{};
+  NormalNoise bus_draws_;
+  LowPass angle_, speed_;         ///< of the encoder
+  std::array<LowPass, 6> hoses_;  ///< of bore and rod sides
+  double sensor_time_{};          ///< up to which they have followed [s]
+  std::int64_t last_stamp_{}, last_joints_{}, last_imu_{}, last_pressures_{};
   std::vector<Taken> burst_;
   std::int64_t samples_{};
   Ticks joints_, imu_, pressures_;

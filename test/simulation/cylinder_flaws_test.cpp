@@ -1,0 +1,202 @@
+// What a cylinder and its sensors have that an ideal one has not: air, a leak, loose pins; hoses, counts, a bus.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hammer_loads/simulation/chamber_oil.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::simulation {
+namespace {
+
+constexpr double kBulk = 1e9, kAir = 0.01;
+
+MachineSettings shakenBoom() {
+  MachineSettings m = workingMo100();
+  m.hammer.drive_reaction_ratio = 1.0;
+  m.duration = 4.0;
+  m.drive.start_time = 0.7;
+  m.drive.stop_time = 9.0;
+  m.on_boom.on = true;
+  m.on_boom.imu = {500.0, 0.1, 0.2, 0.3, 0.0, 0.0};
+  m.on_boom.pressures = {100.0, 0.0, 5e6, 0.0, 0.0};
+  return m;
+}
+
+/// A hammer that never starts, on a boom that the operator lets swing.
+MachineSettings swungBoom() {
+  MachineSettings m = shakenBoom();
+  m.drive.start_time = 90.0, m.drive.stop_time = 100.0;
+  for (JointMotion& joint : m.boom) joint = {joint.mean, 0.02, 1.0, 0.0};
+  return m;
+}
+
+/// Volume over that at ambient pressure, by the laws of liquid and gas: a sum of two volumes.
+double volumeBySum(double absolute) {
+  const double liquid = (1.0 - kAir) * (1.0 - (absolute - 1.013e5) / kBulk);
+  const double gas = kAir * std::exp(std::log(1.013e5 / absolute) / 1.4);
+  return liquid + gas;
+}
+
+TEST(ChamberOil, IsLiquidAndGas) {
+  const ChamberOil oil(kBulk, kAir);
+  for (const double pressure : {2e5, 1e6, 6e6, 2e7}) {
+    const double h = 1e-4 * pressure, p = pressure + 1.013e5;
+    const double bulk = -volumeBySum(p) * 2.0 * h / (volumeBySum(p + h) - volumeBySum(p - h));
+    EXPECT_NEAR(oil.bulkModulus(pressure), bulk, 1e-6 * bulk) << pressure;
+    for (const double part : {-2e-3, 1e-3, 1e-2}) {
+      const double to = oil.compressed(pressure, part);
+      if (to < -1.0e5) continue;  // boils
+      EXPECT_NEAR(volumeBySum(to + 1.013e5), (1.0 - part) * volumeBySum(p), 1e-9) << pressure << ' ' << part;
+    }
+  }
+  EXPECT_LT(oil.bulkModulus(5e5), 0.35 * kBulk);
+  EXPECT_GT(oil.bulkModulus(2e7), 0.95 * kBulk);
+  EXPECT_NEAR(oil.compressed(1e5, -0.5), -1.013e5 + 1e3, 1.0) << "a vacuum";
+  EXPECT_NEAR(ChamberOil(kBulk, 0.0).compressed(6e6, 1e-3), 6e6 + 1e6, 6e3);
+}
+
+/// Two chambers a cylinder that have no flaw worth mentioning move as linear springs do, but for how places change.
+TEST(CylinderFlaws, ChambersWithoutFlawsAreTheSpringsTheyStandFor) {
+  MachineSettings m = shakenBoom();
+  m.on_boom.pressures.preload = 2e7;  // else the oil boils where a rod is pulled out
+  m.on_boom.oil_stiffness = 50.0;     // so that it hardly moves
+  m.on_boom.step = 1e-4;
+  HammerOnBoom springs(m);
+  m.on_boom.leak = 1e-30;
+  HammerOnBoom chambers(m);
+  double largest = 0.0, off = 0.0;
+  for (int i = 1; i <= 2500; ++i) {
+    springs.advanceTo(1e-3 * i), chambers.advanceTo(1e-3 * i);
+    const OnBoomTruth a = springs.truth(), b = chambers.truth();
+    largest = std::max(largest, a.displacement.cwiseAbs().maxCoeff());
+    off = std::max(off, (a.displacement - b.displacement).cwiseAbs().maxCoeff());
+  }
+  EXPECT_GT(largest, 2e-5);
+  EXPECT_LT(off, 0.05 * largest);
+  EXPECT_GT(off, 0.0);
+}
+
+TEST(CylinderFlaws, AirMakesEachModeSofterByThePressureThatIsThere) {
+  MachineSettings m = shakenBoom();
+  const Eigen::Vector3d without = HammerOnBoom(m).frequencies(0.0);
+  m.on_boom.air = kAir;
+  const Eigen::Vector3d usual = HammerOnBoom(m).frequencies(0.0);
+  m.on_boom.pressures.preload = 5e5;
+  const Eigen::Vector3d hardly_preloaded = HammerOnBoom(m).frequencies(0.0);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT(usual[k], 0.999 * without[k]) << k;
+    EXPECT_GT(usual[k], 0.95 * without[k]) << k;
+    EXPECT_LT(hardly_preloaded[k], usual[k]) << k;
+  }
+}
+
+/// What passes a piston is energy that is lost: a boom comes to rest sooner.
+TEST(CylinderFlaws, ALeakTakesEnergyOutOfASwing) {
+  std::array<double, 2> left{};
+  for (const double leak : {0.0, 2e-11}) {
+    MachineSettings m = shakenBoom();
+    m.drive.stop_time = 1.5;
+    m.on_boom.damping = 0.01;
+    m.on_boom.leak = leak;
+    HammerOnBoom machine(m);
+    double& most = left[leak > 0.0];
+    for (int i = 2600; i <= 3000; ++i) {
+      machine.advanceTo(1e-3 * i);
+      most = std::max(most, machine.truth().rates.cwiseAbs().maxCoeff());
+    }
+  }
+  EXPECT_LT(left[1], 0.8 * left[0]);
+}
+
+/// A force that turns around finds the pins loose: none while the rod goes through their play.
+TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirPlay) {
+  const OilBoom boom = oilBoomEo2621();
+  std::array<int, 2> idle{};
+  std::array<bool, 3> both_ways{};
+  for (const double play : {0.0, 3e-4}) {
+    MachineSettings m = shakenBoom();
+    m.on_boom.pin_play = play;
+    m.on_boom.damping = 0.0;  // else the modes' dampers carry something
+    HammerOnBoom machine(m);
+    std::array<double, 3> least{}, most{};
+    for (int i = 1000; i <= 3000; ++i) {
+      machine.advanceTo(1e-3 * i);
+      const OnBoomTruth t = machine.truth();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double force = t.hold[static_cast<int>(k)] / boom.cylinders[k].arm(t.angles[static_cast<int>(k)]);
+        idle[play > 0.0] += std::abs(force) < 30.0;
+        least[k] = std::min(least[k], force), most[k] = std::max(most[k], force);
+        both_ways[k] = least[k] < -500.0 && most[k] > 500.0;
+      }
+    }
+  }
+  ASSERT_TRUE(std::any_of(both_ways.begin(), both_ways.end(), [](bool b) { return b; })) << "no force turned around";
+  EXPECT_LT(idle[0], 30);
+  EXPECT_GT(idle[1], 5 * idle[0] + 50);
+}
+
+TEST(CylinderFlaws, AHoseShowsThePressureLate) {
+  MachineSettings m = swungBoom();
+  m.on_boom.pressures.rate = 1000.0;
+  const Session at_once = recordSession(m);
+  m.on_boom.pressures.hose_lag = 5e-3;
+  const Session late = recordSession(m);
+  ASSERT_EQ(at_once.pressures.size(), late.pressures.size());
+  double worst = 0.0, largest = 0.0, shown = at_once.pressures[0].bore[0];
+  for (std::size_t i = 1; i < late.pressures.size(); ++i) {  // its own low-pass, a step of the readings at a time
+    const double was = at_once.pressures[i - 1].bore[0], is = at_once.pressures[i].bore[0];
+    shown += (0.5 * (was + is) - shown) * (1.0 - std::exp(-1e-3 / 5e-3));
+    if (i < 100) continue;
+    worst = std::max(worst, std::abs(late.pressures[i].bore[0] - shown));
+    largest = std::max(largest, std::abs(is - late.pressures[i].bore[0]));
+  }
+  EXPECT_GT(largest, 2e4);
+  EXPECT_LT(worst, 0.02 * largest);
+}
+
+TEST(CylinderFlaws, SensorsOfFewBitsGiveWholeCounts) {
+  MachineSettings m = swungBoom();
+  m.joint_count = 2e-3;
+  m.on_boom.pressures.count = 39e3;
+  const Session session = recordSession(m);
+  std::set<long long> numbers;
+  for (const JointReading& r : session.joints) {
+    const double counts = r.position[1] / 2e-3;
+    ASSERT_NEAR(counts, std::round(counts), 1e-6);
+    numbers.insert(std::llround(counts));
+  }
+  EXPECT_GT(numbers.size(), 10U);
+  for (const PressureReading& r : session.pressures) ASSERT_NEAR(std::remainder(r.rod[2], 39e3), 0.0, 1e-3);
+}
+
+/// In their order, each up to the delay late, and as often by little as by much.
+TEST(CylinderFlaws, ABusHoldsUpStamps) {
+  MachineSettings m = swungBoom();
+  const Session at_once = recordSession(m);
+  m.on_boom.bus_delay = 3e-3;
+  const Session waited = recordSession(m);
+  const auto check = [](const auto& now, const auto& then) {
+    ASSERT_EQ(now.size(), then.size());
+    double sum = 0.0, most = 0.0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const double late = 1e-9 * static_cast<double>(then[i].stamp - now[i].stamp);
+      ASSERT_GE(late, 0.0);
+      ASSERT_LE(late, 3e-3 + 1e-7);
+      ASSERT_TRUE(i == 0 || then[i].stamp > then[i - 1].stamp);
+      sum += late, most = std::max(most, late);
+    }
+    EXPECT_GT(most, 2.7e-3);
+    EXPECT_GT(sum / static_cast<double>(now.size()), 1.3e-3);
+    EXPECT_LT(sum / static_cast<double>(now.size()), 2.2e-3);
+  };
+  check(at_once.joints, waited.joints);
+  check(at_once.imu, waited.imu);
+  check(at_once.pressures, waited.pressures);
+  EXPECT_EQ(at_once.crank.back().stamp, waited.crank.back().stamp);
+}
+
+}  // namespace
+}  // namespace hammer_loads::simulation
