@@ -138,6 +138,81 @@ TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirPlay) {
   EXPECT_GT(idle[1], 5 * idle[0] + 50);
 }
 
+/// Until 2.5 s, and the largest difference of their joints [rad].
+double bentAgainstRigid(double frequency, double& largest) {
+  MachineSettings m = shakenBoom();
+  HammerOnBoom rigid(m);
+  m.on_boom.bending_frequency = frequency;
+  m.on_boom.step = 1e-4;
+  HammerOnBoom bends(m);
+  double off = 0.0;
+  largest = 0.0;
+  for (int i = 1; i <= 2500; ++i) {
+    rigid.advanceTo(1e-3 * i), bends.advanceTo(1e-3 * i);
+    const Eigen::Vector3d a = rigid.truth().displacement, b = bends.truth().displacement;
+    largest = std::max(largest, a.cwiseAbs().maxCoeff()), off = std::max(off, (a - b).cwiseAbs().maxCoeff());
+  }
+  return off;
+}
+
+/// What is left of it falls with the square of the frequency.
+TEST(SimulatedBending, StiffOnesAreRigidOnes) {
+  double largest = 0.0;
+  const double off_100 = bentAgainstRigid(100.0, largest), off_200 = bentAgainstRigid(200.0, largest);
+  EXPECT_GT(largest, 2e-3);
+  EXPECT_LT(off_100, 0.1 * largest);
+  EXPECT_NEAR(off_200, off_100 / 4.0, 0.1 * off_100);
+}
+
+/// Sums of squares from 5 to 15 s and from 15 to 25 s, a beat of two modes each, of a swing that no oil and no link
+/// damps: joints' rates, and what the hull turns beside them.
+struct Swing {
+  std::array<double, 2> joints{}, bent{};
+};
+
+Swing swingOf(double frequency) {
+  MachineSettings m = shakenBoom();
+  m.drive.stop_time = 1.5;
+  m.on_boom.damping = m.on_boom.bending_damping = 0.0;
+  m.on_boom.bending_frequency = frequency;
+  HammerOnBoom machine(m);
+  Swing swing;
+  for (int i = 5000; i < 25000; ++i) {
+    machine.advanceTo(1e-3 * i);
+    const OnBoomTruth t = machine.truth();
+    const auto k = static_cast<std::size_t>(i >= 15000);
+    swing.joints[k] += t.rates.squaredNorm();
+    swing.bent[k] += std::pow(t.imu_rate - t.rates.sum(), 2);
+  }
+  return swing;
+}
+
+/// A crank that hangs free takes what it takes; links that bend take nothing beside, and turn the hull.
+TEST(SimulatedBending, TakesNoEnergyAndTurnsTheHull) {
+  const Swing rigid = swingOf(0.0), bends = swingOf(15.0);
+  EXPECT_GT(rigid.joints[0] / 10000.0, 1e-4);
+  EXPECT_NEAR(bends.joints[1] / bends.joints[0], rigid.joints[1] / rigid.joints[0], 0.1);
+  EXPECT_LT(rigid.bent[0], 1e-20 * rigid.joints[0]);
+  EXPECT_GT(bends.bent[0], 1e-3 * bends.joints[0]);
+}
+
+/// What holds a joint is what moves all beyond it: Newton for all bodies against the equations of the coordinates.
+TEST(SimulatedBending, HoldsWhatIsBeyond) {
+  for (const double frequency : {0.0, 15.0}) {
+    MachineSettings m = shakenBoom();
+    m.on_boom.bending_frequency = frequency;
+    OilBoom boom = oilBoomEo2621();
+    boom.cuts[0] = {0, {0.0, 0.0}, boom.links[0]};  // at the joint, whose pin bears no moment
+    HammerOnBoom machine(m, boom);
+    for (int i = 1; i <= 2500; ++i) {
+      machine.advanceTo(1e-3 * i);
+      if (i % 7 != 0) continue;
+      const OnBoomTruth t = machine.truth();
+      ASSERT_NEAR(t.cut[0].torque_y, 0.0, 1e-3 * std::abs(t.hold[0]) + 10.0) << i;
+    }
+  }
+}
+
 TEST(CylinderFlaws, AHoseShowsThePressureLate) {
   MachineSettings m = swungBoom();
   m.on_boom.pressures.rate = 1000.0;

@@ -165,6 +165,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   const OnBoomSettings shipped = loadSimulator(configDirectory(), {}).value->machine.on_boom;
   EXPECT_FALSE(shipped.on);
   EXPECT_TRUE(shipped.isPlain());
+  EXPECT_EQ(shipped.bending_frequency, 0.0);
   EXPECT_EQ(shipped.seals.friction, 0.02) << "of all its flaws the one that every machine has";
   EXPECT_EQ(loadSimulator(configDirectory(), {}).value->machine.on_boom.rock.stiffness, 0.0) << "it hangs free";
   const Checked<SimulatorSettings> loaded = loadSimulator(
@@ -172,7 +173,8 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
       given("{rod: rigid, hull_on_boom: true, oil_stiffness_factor: 0.7, boom_damping_ratio: 0.03, imu_rate_Hz: 500,"
             " arm_cylinder_oil_factor: 0.4, oil_air_share: 0.01, piston_leak_m3_Pa_s: 2.0e-11, cylinder_pin_play_m: "
             "0.0002,"
-            " pressure_hose_lag_s: 0.004, pressure_count_Pa: 39000, bus_delay_s: 0.002, joint_count_rad: 0.002,"
+            " pressure_hose_lag_s: 0.004, pressure_count_Pa: 39000, bus_delay_s: 0.002, joint_count_rad: 0.002, "
+            "link_bending_frequency_Hz: 16,"
             " imu_x_m: 0.1, pressure_rate_Hz: 0, machine_seal_friction: 0.02, joint_noise_rad: 0.0001, "
             "restitution_drawn: true,"
             " rock_stiffness_N_m: 2.0e7, rock_damping_s_m: 1.5, press_force_N: 700}"));
@@ -189,6 +191,7 @@ TEST(MachineParameters, AHullOnItsBoomIsSwitchedOnAndRefusesWhatItDoesNotGoWith)
   EXPECT_EQ(machine.on_boom.pressures.count, 39e3);
   EXPECT_EQ(machine.on_boom.bus_delay, 2e-3);
   EXPECT_EQ(machine.joint_count, 2e-3);
+  EXPECT_EQ(machine.on_boom.bending_frequency, 16.0);
   EXPECT_EQ(machine.on_boom.imu.rate, 500.0);
   EXPECT_EQ(machine.on_boom.imu.x, 0.1);
   EXPECT_EQ(machine.on_boom.pressures.rate, 0.0);

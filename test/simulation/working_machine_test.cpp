@@ -11,7 +11,6 @@
 namespace hammer_loads::simulation {
 namespace {
 
-
 /// Shorter than the standard session: 6 s, stop at 5 s.
 MachineSettings shortRun() {
   MachineSettings s = workingMo100();

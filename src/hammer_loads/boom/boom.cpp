@@ -140,6 +140,7 @@ Boom::Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Sect
   variance_.setZero(rows);
   deviation_.setZero(rows);
   weight_deviation_ = zero;
+  bending_ = JointMatrix::Zero(joints, 0);
   response_at_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
   move({zero, zero, zero}, Eigen::Vector3d::Zero());
 }

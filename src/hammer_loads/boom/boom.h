@@ -130,6 +130,9 @@ class Boom {
   /// Standard deviations of the weight's torques on the joints by the masses and centres of the links and the zeros of
   /// the joints' sensors [N m]: the same in all samples at a pose. As of the last deviations(), zero before.
   const JointVector& weightDeviation() const noexcept { return weight_deviation_; }
+  /// Standard deviations of the joints' torques by links that bend as the boom vibrates [N m]: what is beyond a link's
+  /// middle moves as its joints say, its own mass less. Nothing without vibration. As of the last deviations().
+  JointVector bendingDeviation() const noexcept;
   /// Of a cylinder: what is wrong with it under these loads, sum of CylinderFlag. Steady is weight and motion.
   std::uint16_t flags(std::size_t cylinder, const BoomLoads& loads) const noexcept;
   /// For half-sine pulses of that peak and length [s], at the pose of the modes. Not for each sample: some 0.1 ms.
@@ -169,6 +172,8 @@ class Boom {
   JointMotion vibratingMotion() const noexcept;
   void findResponse() noexcept;
   JointVector findWeightDeviation() const noexcept;
+  JointMatrix findBending() const noexcept;
+  double ownInertia(int link, int joint, int other) const noexcept;
   void storeResponse(Eigen::Index column, const JointVector& torque, const SteelLoads& load) noexcept;
   void arrangeResponse() noexcept;
   void takeDeviations(BoomDeviations& result) const noexcept;
@@ -179,6 +184,7 @@ class Boom {
   Eigen::VectorXi rows_in_plane_;      ///< which rows these are, the first in_plane_ of them
   Eigen::Index in_plane_{};
   JointVector weight_deviation_;  ///< at response_at_
+  JointMatrix bending_;           ///< at response_at_: torque of a joint per N m/s2 at the middle of a link [s2]
   JointVector response_at_;       ///< steady_position_ where it belongs; NaN: nowhere yet
   Eigen::VectorXd variance_;      ///< one entry a row of response_in_plane_
   Eigen::VectorXd deviation_;     ///< one entry a row

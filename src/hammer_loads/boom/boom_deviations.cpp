@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -9,6 +10,9 @@ namespace {
 
 constexpr double kRounded = 1e-12;  // of a column: what rounding makes of zero
 // Numerical: kRounded
+/// First bending of a link with what it carries, the joints held [rad/s]: 10 to 30 Hz.
+constexpr double kBending = 18.0 * kTwoPi;
+// Guard: BendingLinks.AreInTheDeviationsOfAnImuAlone of kBending
 constexpr double kOfRefreshAngle = 4;  // moves of joints that make 0.5 % of a deviation
 // Numerical: kOfRefreshAngle
 
@@ -58,6 +62,7 @@ void Boom::findResponse() noexcept {
     return;
   response_at_ = steady_position_;
   weight_deviation_ = findWeightDeviation();
+  bending_ = findBending();
   const Eigen::Index joints = chain_.joints();
   const JointVector zero = JointVector::Zero(joints);
   const Eigen::Vector3d weightless = Eigen::Vector3d::Zero(), none = weightless;
@@ -120,6 +125,43 @@ void Boom::deviations(const Eigen::Matrix3d& tip, BoomDeviations& result) noexce
   for (Eigen::Index i = 0; i < in_plane_; ++i)
     deviation_[rows_in_plane_[i]] = response_in_plane_.row(i).segment<3>(first).lazyProduct(tip).norm();
   takeDeviations(result);
+}
+
+/// Of one link in the mass matrix [kg m2].
+double Boom::ownInertia(int link, int joint, int other) const noexcept {
+  const auto j = static_cast<std::size_t>(joint), k = static_cast<std::size_t>(other);
+  if (pose_.prismatic[j] || pose_.prismatic[k]) return 0.0;
+  const PlacedBody& body = bodies_[static_cast<std::size_t>(link)];
+  const Eigen::Vector3d com = pose_.link(link).translation() + body.com, &a = pose_.axis_B[j], &b = pose_.axis_B[k];
+  return a.dot(body.inertia * b) + body.mass * a.cross(com - pose_.p_BJ_B[j]).dot(b.cross(com - pose_.p_BJ_B[k]));
+}
+
+/// A link that gives in its middle by 1/(kBending^2 J) per moment there, J the inertia of what turns: all beyond turns
+/// as both its joints do by half of that, and its own mass does not as the one before it would.
+JointMatrix Boom::findBending() const noexcept {
+  const BoomModes& modes = vibration_.modes();
+  JointMatrix by_moment = JointMatrix::Zero(chain_.joints(), std::max(0, modes.count - 1));
+  for (int i = 0; i + 1 < modes.count; ++i) {
+    const int one = modes.joint[static_cast<std::size_t>(i)], next = modes.joint[static_cast<std::size_t>(i + 1)];
+    const double turns = 0.25 * (modes.mass(one, one) + 2.0 * modes.mass(one, next) + modes.mass(next, next));
+    for (int j = 0; j <= one; ++j)
+      for (int link = chain_.linkBeyond(one); link < chain_.linkBeyond(next); ++link)
+        by_moment(j, i) += 0.5 * ownInertia(link, j, one) / (square(kBending) * turns);
+  }
+  return by_moment;
+}
+
+JointVector Boom::bendingDeviation() const noexcept {
+  const BoomModes& modes = vibration_.modes();
+  JointVector variance = JointVector::Zero(chain_.joints());
+  const JointVector acceleration = vibration_.acceleration();
+  for (int i = 0; i < bending_.cols() && i + 1 < modes.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double moment = 0.5 * (modes.stiffness[i] * acceleration[modes.joint[k]] +
+                                 modes.stiffness[i + 1] * acceleration[modes.joint[k + 1]]);
+    variance += (bending_.col(i) * moment).cwiseAbs2();
+  }
+  return variance.cwiseSqrt();
 }
 
 /// Errors of links are independent of each other. A weighed link's first moment stands for all that it carries: it

@@ -158,6 +158,7 @@ class BoomFollower {
   void useMeasured() noexcept;
   void followContact(StampNs stamp) noexcept;
   void findContact(double step) noexcept;
+  void addBending() noexcept;
   void addConstantsOfBoom(bool common_known) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
   Eigen::Matrix3d tipCovariance() const noexcept;

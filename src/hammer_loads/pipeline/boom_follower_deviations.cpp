@@ -97,7 +97,21 @@ void BoomFollower::addConstants(const BoomSample& sample) noexcept {
     addVariances(state_.common.joint, static_cast<std::size_t>(boom_.chain().joints()), all.joint);
   }
   if (known) of(sample.constants);
+  if (source() == Known::kFollowed && state_.choice.compliant) addBending();
   addConstantsOfBoom(known);
+}
+
+void BoomFollower::addBending() noexcept {
+  const JointVector bending = boom_.bendingDeviation();
+  BoomDeviations& all = state_.deviations;
+  for (Eigen::Index i = 0; i < bending.size(); ++i) addVariance(bending[i], all.torque[i]);
+  for (std::size_t i = 0; i < boom_.cylinders().size(); ++i)
+    addVariance(bending[boom_.cylinders()[i].joint()] / std::abs(boom_.cylinderPosition(i).arm), all.cylinder[i]);
+  for (std::size_t i = 0; i < boom_.sections().size(); ++i) {  // at most that of the joint before it
+    int joint = 0;
+    while (joint + 1 < bending.size() && boom_.chain().linkBeyond(joint + 1) <= boom_.sections()[i].link()) ++joint;
+    addVariance(bending[joint], all.section[i].torque.y());
+  }
 }
 
 /// Of torques that are not measured: masses, centres and zeros. Of measured ones: seals that rub one way, offsets; they

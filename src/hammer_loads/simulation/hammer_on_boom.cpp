@@ -38,12 +38,22 @@ HammerOnBoom::HammerOnBoom(const MachineSettings& machine, const OilBoom& boom)
   now_ = heldAt(0.0);
   held_rocker_ = rockerAt(now_);
   now_.v[3] = now_.v[4] = 0.0;
+  stiffenLinks();
   now_.before_blow = machine.start_angle > kPi;
   now_.x[3] = now_.before_blow ? machine.start_angle - 2.0 * kPi : machine.start_angle;
   now_.x[4] = rockerOf(machine.start_angle);
   step_ = machine_.on_boom.step;
   followOperator();
   standOnRock();
+}
+
+/// As stiff as gives each bend alone its frequency where the boom is held at first.
+void HammerOnBoom::stiffenLinks() {
+  if (!bends()) return;
+  const double omega = kTwoPi * machine_.on_boom.bending_frequency;
+  const Eigen::Vector2d inertia = massMatrix(heldBodies(now_)).diagonal().tail<2>();
+  link_stiffness_ = omega * omega * inertia;
+  link_damping_ = 2.0 * machine_.on_boom.bending_damping * omega * inertia;
 }
 
 /// What the hull keeps of its mass is that of the description less rotor and rocker, whose mass the description smears
@@ -93,6 +103,7 @@ Eigen::Vector3d HammerOnBoom::frequencies(double time) const {
 HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
   State s;
   s.time = time;
+  s.x.tail<2>().setZero(), s.v.tail<2>().setZero();
   for (int k = 0; k < 3; ++k) {
     const JointMotion& joint = machine_.boom[static_cast<std::size_t>(k + 1)];
     s.x[k] = positionOf(joint, time), s.v[k] = velocityOf(joint, time);
@@ -104,21 +115,30 @@ HammerOnBoom::State HammerOnBoom::heldAt(double time) const {
 
 HammerOnBoom::Hold HammerOnBoom::holdAt(double time) const {
   const State held = heldAt(time);
-  const Eigen::Vector3d down = weight(heldBodies(held)).head<3>();
-  return {held, down, stiffness(held, down)};
+  const Coordinates all = weight(heldBodies(held));
+  const Eigen::Vector3d down = all.head<3>();
+  return {held, down, stiffness(held, down), all.tail<2>()};
 }
 
-/// Of the link that ends in a joint.
 double HammerOnBoom::angleBefore(const State& s, std::size_t joint) {
   double angle = 0.0;
   for (std::size_t k = 0; k < joint; ++k) angle += s.x[static_cast<int>(k)];
+  for (std::size_t k = 0; k + 1 < joint; ++k) angle += s.x[5 + static_cast<int>(k)];
   return angle;
 }
 
 PlanePoint HammerOnBoom::jointPlace(const State& s, std::size_t joint) const {
   PlanePoint place = 0.0;
-  for (std::size_t k = 0; k < joint; ++k) place += turnedBy(angleBefore(s, k + 1)) * boom_.links[k].to_next;
+  for (std::size_t k = 0; k < joint; ++k) {
+    const PlanePoint middle = middleOf(k);
+    place += turnedBy(angleBefore(s, k + 1)) * middle + turnedBy(bentAngle(s, k)) * (boom_.links[k].to_next - middle);
+  }
   return place;
+}
+
+PlanePoint HammerOnBoom::turnPlace(const State& s, std::size_t turn) const {
+  if (turn < 3) return jointPlace(s, turn);
+  return jointPlace(s, turn - 3) + turnedBy(angleBefore(s, turn - 2)) * middleOf(turn - 3);
 }
 
 HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, const Rocker& rocker) const {
@@ -126,9 +146,11 @@ HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, co
   all.joint[0] = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const OilBoomLink& link = links[k];
-    all.angle[k] = (k == 0 ? 0.0 : all.angle[k - 1]) + s.x[static_cast<int>(k)];
+    all.angle[k] = (k == 0 ? 0.0 : bentAngle(s, k - 1)) + s.x[static_cast<int>(k)];
     const PlanePoint turned = all.hull_turned = turnedBy(all.angle[k]);
-    all.joint[k + 1] = all.joint[k] + turned * link.to_next;
+    const PlanePoint middle = all.joint[k] + turned * middleOf(k);
+    if (k < 2) all.middle[k] = middle;
+    all.joint[k + 1] = middle + turnedBy(bentAngle(s, k)) * (link.to_next - middleOf(k));
     Body& body = all.body[k];
     body.mass = link.mass, body.inertia = link.inertia;
     body.place = all.joint[k] + turned * link.com;
@@ -148,22 +170,27 @@ HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, co
   return all;
 }
 
-/// Effect of the first joints on a body.
-void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) {
-  for (std::size_t j = 0; j < joints; ++j) {
-    const PlanePoint arm = body.place - all.joint[j];
-    const int i = static_cast<int>(j);
+/// Effect of the first joints on a body, and of the bends between them.
+void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) const {
+  const auto turn = [&](int i, PlanePoint about) {
+    const PlanePoint arm = body.place - about;
     body.x[i] = arm.imag(), body.z[i] = -arm.real(), body.turn[i] = 1.0;
+  };
+  for (std::size_t j = 0; j < joints; ++j) {
+    turn(static_cast<int>(j), all.joint[j]);
+    if (bends() && j + 1 < joints) turn(5 + static_cast<int>(j), all.middle[j]);
   }
 }
 
 HammerOnBoom::Inertia HammerOnBoom::massMatrix(const Bodies& all) const {
   Coordinates rotor;
-  rotor << ratio_, ratio_, ratio_, 1.0, 0.0;
+  const double bent = bends() ? ratio_ : 0.0;
+  rotor << ratio_, ratio_, ratio_, 1.0, 0.0, bent, bent;
   Inertia M = rotor_ * rotor * rotor.transpose();
   for (const Body& b : all.body)
     M += b.mass * (b.x * b.x.transpose() + b.z * b.z.transpose()) + b.inertia * b.turn * b.turn.transpose();
   if (!elastic_) M(4, 4) = 1.0;
+  if (!bends()) M(5, 5) = M(6, 6) = 1.0;
   return M;
 }
 
@@ -179,8 +206,10 @@ HammerOnBoom::Coordinates HammerOnBoom::force(const State& s, const Bodies& all,
   Q.head<3>() += holding(s, hold);
   if (machine_.on_boom.rock.stiffness > 0.0) {
     const Foot at = foot(s, hold.state);
-    Q.head<3>() += rockForce(at) * at.lift;
+    Q += rockForce(at) * at.lift;
   }
+  if (bends())
+    Q.tail<2>() -= hold.bent + link_stiffness_.cwiseProduct(s.x.tail<2>()) + link_damping_.cwiseProduct(s.v.tail<2>());
   Q[3] += netTorque(machine_.drive, s.pressure, s.v[3]);
   if (elastic_) Q += elasticForce(s);
   return Q;
@@ -196,7 +225,9 @@ HammerOnBoom::Coordinates HammerOnBoom::inertiaOfSpeeds(const State& s, const Bo
     rate += s.v[static_cast<int>(k)];
     const PlanePoint a = of_joint - rate * rate * (link.place - all.joint[k]);
     Q += link.mass * (a.real() * link.x + a.imag() * link.z);
-    of_joint -= rate * rate * (all.joint[k + 1] - all.joint[k]);
+    const int bend = 5 + static_cast<int>(k);
+    if (k < 2) of_joint -= rate * rate * (all.middle[k] - all.joint[k]), rate += s.v[bend];
+    of_joint -= rate * rate * (all.joint[k + 1] - (k < 2 ? all.middle[k] : all.joint[k]));
   }
   const Body& r = all.body[3];
   const int k = rockerIndex();
@@ -211,11 +242,15 @@ HammerOnBoom::Coordinates HammerOnBoom::inertiaOfSpeeds(const State& s, const Bo
 HammerOnBoom::Coordinates HammerOnBoom::acceleration(const State& s, const Hold& hold) const {
   const Rocker rocker = rockerAt(s);
   const Bodies all = bodies(s, boom_.links, rocker);
-  const Inertia M = massMatrix(all);
-  const Coordinates Q = force(s, all, hold) - inertiaOfSpeeds(s, all, rocker);
-  if (!s.resting) return M.ldlt().solve(Q);
+  Inertia M = massMatrix(all);
+  Coordinates Q = force(s, all, hold) - inertiaOfSpeeds(s, all, rocker);
+  if (s.resting) {
+    M.row(3).setZero(), M.col(3).setZero();
+    M(3, 3) = 1.0, Q[3] = 0.0;
+  }
+  if (bends()) return M.ldlt().solve(Q);
   Coordinates a = Coordinates::Zero();
-  a.head<3>() = M.topLeftCorner<3, 3>().ldlt().solve(Q.head<3>());
+  a.head<5>() = M.topLeftCorner<5, 5>().ldlt().solve(Q.head<5>());
   return a;
 }
 

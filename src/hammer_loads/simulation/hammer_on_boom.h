@@ -37,7 +37,8 @@ struct OnBoomTruth : CrankTruth, OnBoomSensors {
 /// accelerations for the loads by differences in time. Runge-Kutta of order 4.
 /// The operator's valves move the point at which the oil holds each joint along settings.boom; the oil about it is a
 /// linear spring, as stiff as at that place; with air in it, a leak past the pistons or loose pins it is two chambers a
-/// cylinder, whose pressures follow from the rod's way and what has leaked. settings.on_boom.seals rub against the
+/// cylinder, whose pressures follow from the rod's way and what has leaked. Links that bend do so in their middle: what
+/// is beyond turns on a spring; their own mass stays where it is. settings.on_boom.seals rub against the
 /// rods: pressures are those of the oil, what holds the joints is oil and seals.
 ///
 /// A blow gives the hull and all links their share; the rocker leaves the tool as its linkage lets it, without an
@@ -63,9 +64,10 @@ class HammerOnBoom {
   const MachineSettings& settings() const noexcept { return machine_; }
 
  private:
-  /// Joints, crank, rocker: where the rod is rigid the last one stays zero, and the crank moves the rocker.
-  using Coordinates = Eigen::Matrix<double, 5, 1>;
-  using Inertia = Eigen::Matrix<double, 5, 5>;
+  /// Joints, crank, rocker, bends of boom and arm. Where the rod is rigid the fifth one stays zero, and the crank moves
+  /// the rocker; rigid links leave the last two zero.
+  using Coordinates = Eigen::Matrix<double, 7, 1>;
+  using Inertia = Eigen::Matrix<double, 7, 7>;
   struct State {
     double time{};
     bool before_blow{};
@@ -85,8 +87,9 @@ class HammerOnBoom {
   /// Links, then the rocker, which the crank moves within the hull.
   struct Bodies {
     std::array<Body, 4> body;
-    std::array<PlanePoint, 4> joint;  ///< of the links, then the rocker's pivot D
-    std::array<double, 3> angle;      ///< of the links
+    std::array<PlanePoint, 4> joint;   ///< of the links, then the rocker's pivot D
+    std::array<PlanePoint, 2> middle;  ///< of boom and arm, where they bend
+    std::array<double, 3> angle;       ///< of the links
     PlanePoint hull_turned;
   };
 
@@ -95,6 +98,7 @@ class HammerOnBoom {
     State state;
     Eigen::Vector3d weight;     ///< of everything, on the joints [N m]
     Eigen::Vector3d stiffness;  ///< of the oil about the joints [N m/rad]
+    Eigen::Vector2d bent;       ///< weight of what bends boom and arm [N m]: their rest is straight under it
   };
   /// A rod that gives, and what the rocker then strikes.
   struct Elastic {
@@ -113,7 +117,7 @@ class HammerOnBoom {
   Rocker rockerAt(const State& s) const;
   double rockerOf(double crank_angle) const { return elastic_ ? elastic_->links.rockerAngle(crank_angle) : 0.0; }
   Bodies bodies(const State& s, const Links& links, const Rocker& rocker) const;
-  static void turnAbout(const Bodies& all, Body& body, std::size_t joints);
+  void turnAbout(const Bodies& all, Body& body, std::size_t joints) const;
   Bodies bodies(const State& s) const { return bodies(s, boom_.links, rockerAt(s)); }
   Bodies heldBodies(const State& held) const { return bodies(held, boom_.links, held_rocker_); }
   Inertia massMatrix(const Bodies& all) const;
@@ -137,7 +141,7 @@ class HammerOnBoom {
   /// The hull's foot along the tool, from where it stands as the operator holds it.
   struct Foot {
     double height{}, speed{};  ///< [m], [m/s]
-    Eigen::Vector3d lift;      ///< by the joints' angles [m]
+    Coordinates lift;          ///< by the coordinates [m]
   };
   Foot foot(const State& s, const State& held) const;
   void standOnRock();
@@ -163,7 +167,19 @@ class HammerOnBoom {
   void passDeadCentre();
   void blow();
 
+  bool bends() const { return machine_.on_boom.bending_frequency > 0.0; }
+  void stiffenLinks();
+  /// What turns all that is beyond it: joints, then the middles of boom and arm.
+  std::size_t turns() const { return bends() ? 5 : 3; }
+  static int turnIndex(std::size_t turn) { return static_cast<int>(turn < 3 ? turn : turn + 2); }
+  PlanePoint turnPlace(const State& s, std::size_t turn) const;
+  static double hullTurning(const Coordinates& c) { return c.head<3>().sum() + c.tail<2>().sum(); }
+  /// Of the link that ends in a joint, before its middle; of what is beyond that.
   static double angleBefore(const State& s, std::size_t joint);
+  static double bentAngle(const State& s, std::size_t link) {
+    return angleBefore(s, link + 1) + (link < 2 ? s.x[5 + static_cast<int>(link)] : 0.0);
+  }
+  PlanePoint middleOf(std::size_t link) const { return link < 2 ? 0.5 * boom_.links[link].to_next : 0.0; }
   static double hullAngle(const State& s) { return angleBefore(s, 3); }
   PlanePoint jointPlace(const State& s, std::size_t joint) const;
   PlanePoint imuPlace(const State& s) const;
@@ -189,6 +205,7 @@ class HammerOnBoom {
   Hold hold_;                 ///< at the beginning of the step in hand
   Hold hold_later_;           ///< settings.on_boom.step after it; of an elastic machine, which steps between the two
   Eigen::Matrix3d damping_;
+  Eigen::Vector2d link_stiffness_{Eigen::Vector2d::Zero()}, link_damping_{Eigen::Vector2d::Zero()};
   double rock_height_{};  ///< over the foot of a hull that is held without rock [m]
   double step_{};         ///< longest [s]
   State now_;

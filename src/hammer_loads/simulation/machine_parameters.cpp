@@ -143,6 +143,7 @@ OnBoomSettings readOnBoom(ParameterReader& reader) {
   s.air = reader.number("oil_air_share", "", NumberRule::within(0.0, 0.1));
   s.leak = reader.number("piston_leak_m3_Pa_s", "m3/(Pa s)", NumberRule::within(0.0, 1e-9));
   s.pin_play = reader.number("cylinder_pin_play_m", "m", NumberRule::within(0.0, 0.01));
+  s.bending_frequency = reader.number("link_bending_frequency_Hz", "Hz", kNotNegative);
   s.damping = reader.number("boom_damping_ratio", "", NumberRule::within(0.0, 0.99));
   s.step = reader.number("boom_step_s", "s", kPositive);
   s.seals.friction = reader.number("machine_seal_friction", "", NumberRule::within(0.0, 0.2));

@@ -167,10 +167,12 @@ struct OnBoomSettings {
   double oil_stiffness{1.0};                          ///< over that of a bulk modulus of 1e9 Pa [-], > 0
   std::array<double, 3> cylinder_oil{1.0, 1.0, 1.0};  ///< each cylinder's over that [-], > 0
   double air{};                                       ///< in the oil, its share of the volume at ambient pressure [-]
-  double leak{};         ///< past each piston [m3/(Pa s)]; the operator makes up for the steady part
-  double pin_play{};     ///< of each cylinder's pins together, along its rod [m]
-  double damping{0.05};  ///< ratio of every mode [-], in [0, 1)
-  double step{4e-4};     ///< longest integration step [s], > 0
+  double leak{};                 ///< past each piston [m3/(Pa s)]; the operator makes up for the steady part
+  double pin_play{};             ///< of each cylinder's pins together, along its rod [m]
+  double bending_frequency{};    ///< of boom and arm, each alone with what it carries, cylinders stiff [Hz]; 0: rigid
+  double bending_damping{0.02};  ///< its ratio [-]
+  double damping{0.05};          ///< ratio of every mode [-], in [0, 1)
+  double step{4e-4};             ///< longest integration step [s], > 0
   SealSettings seals;
   RockSettings rock;
   HullImuSensor imu;

@@ -44,7 +44,7 @@ PlanePoint HammerOnBoom::strikingPlace(const State& s) const {
 HammerOnBoom::Coordinates HammerOnBoom::toolLift(const State& s) const {
   const PlanePoint place = strikingPlace(s), down = std::conj(turnedBy(hullAngle(s)));
   Coordinates lift = Coordinates::Zero();
-  for (std::size_t k = 0; k < 3; ++k) lift[static_cast<int>(k)] = (-kI * (place - jointPlace(s, k)) * down).imag();
+  for (std::size_t k = 0; k < turns(); ++k) lift[turnIndex(k)] = (-kI * (place - turnPlace(s, k)) * down).imag();
   lift[4] = -elastic_->links.depthSlope(s.x[4]);
   return lift;
 }
@@ -78,6 +78,7 @@ HammerOnBoom::Hold HammerOnBoom::holdBetween(double time) const {
   hold.state.v += part * (hold_later_.state.v - hold_.state.v);
   hold.weight += part * (hold_later_.weight - hold_.weight);
   hold.stiffness += part * (hold_later_.stiffness - hold_.stiffness);
+  hold.bent += part * (hold_later_.bent - hold_.bent);
   return hold;
 }
 

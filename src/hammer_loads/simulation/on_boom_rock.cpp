@@ -23,10 +23,11 @@ HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
   const PlanePoint place = footPlace(s), held_place = footPlace(held);
   Foot foot;
   foot.height = along(place - held_place);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int j = static_cast<int>(k);
-    foot.lift[j] = along(-kI * (place - jointPlace(s, k)));
-    foot.speed += foot.lift[j] * s.v[j] - along(-kI * (held_place - jointPlace(held, k))) * held.v[j];
+  foot.lift.setZero();
+  for (std::size_t k = 0; k < turns(); ++k) {
+    const int j = turnIndex(k);
+    foot.lift[j] = along(-kI * (place - turnPlace(s, k)));
+    foot.speed += foot.lift[j] * s.v[j] - along(-kI * (held_place - turnPlace(held, k))) * held.v[j];
   }
   return foot;
 }
@@ -35,7 +36,7 @@ HammerOnBoom::Foot HammerOnBoom::foot(const State& s, const State& held) const {
 double HammerOnBoom::rockHeight(const Hold& hold) const {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return 0.0;
-  const Eigen::Vector3d lift = foot(hold.state, hold.state).lift;
+  const Eigen::Vector3d lift = foot(hold.state, hold.state).lift.head<3>();
   return rock.press_force * (1.0 / rock.stiffness + lift.cwiseAbs2().cwiseQuotient(hold.stiffness).sum());
 }
 
@@ -43,7 +44,7 @@ double HammerOnBoom::rockHeight(const Hold& hold) const {
 void HammerOnBoom::standOnRock() {
   const RockSettings& rock = machine_.on_boom.rock;
   if (rock.stiffness == 0.0) return;
-  const Eigen::Vector3d lift = foot(hold_.state, hold_.state).lift;
+  const Eigen::Vector3d lift = foot(hold_.state, hold_.state).lift.head<3>();
   now_.x.head<3>() += rock.press_force * lift.cwiseQuotient(hold_.stiffness);
   const Eigen::Matrix3d M = massMatrix(heldBodies(hold_.state)).topLeftCorner<3, 3>();
   const double mass = 1.0 / lift.dot(M.ldlt().solve(lift));

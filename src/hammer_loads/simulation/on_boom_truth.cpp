@@ -46,7 +46,7 @@ Load HammerOnBoom::loadOf(const Coordinates& a, const Moments& m, const Links& l
     force += f;
     torque += moment(now.body[k].place - about, f) - now.body[k].inertia * spin;
   }
-  torque -= rotor_ * ratio_ * (a[3] + ratio_ * a.head<3>().sum());
+  torque -= rotor_ * ratio_ * (a[3] + ratio_ * hullTurning(a));
   const PlanePoint turned = force * std::conj(turnedBy(axes));
   return {turned.real(), turned.imag(), torque};
 }
@@ -74,7 +74,7 @@ Load HammerOnBoom::cutLoad(const OnBoomTruth& t, const Coordinates& a, const Mom
         k > cut.link + 1 ||
         (k == cut.link + 1 && c.base.real() + boom_.links[cut.link].to_next.real() > cut.place.real());
     if (!rod_beyond || base_beyond) continue;
-    const double before = angleBefore(now_, k), angle = now_.x[static_cast<int>(k)];
+    const double before = k == 0 ? 0.0 : bentAngle(now_, k - 1), angle = now_.x[static_cast<int>(k)];
     const PlanePoint joint = jointPlace(now_, k), rod = joint + turnedBy(before + angle) * c.rod;
     const PlanePoint along_rod = rod - joint - turnedBy(before) * c.base;
     const PlanePoint push = t.hold[static_cast<int>(k)] / c.arm(angle) * along_rod / std::abs(along_rod);
@@ -92,7 +92,7 @@ OnBoomSensors HammerOnBoom::sensors(const Hold& hold, const Coordinates& a) cons
   const PlanePoint acceleration = (later - 2.0 * imuPlace(now_) + sooner) / (kInstant * kInstant);
   const double axes = hullAngle(now_) + machine_.on_boom.imu.pitch;
   const PlanePoint felt = (acceleration + kI * machine_.gravity) * std::conj(turnedBy(axes));
-  s.imu_x = felt.real(), s.imu_z = felt.imag(), s.imu_rate = s.rates.sum();
+  s.imu_x = felt.real(), s.imu_z = felt.imag(), s.imu_rate = hullTurning(now_.v);
   readCylinders(hold, s);
   return s;
 }
@@ -117,7 +117,7 @@ OnBoomTruth HammerOnBoom::truth() const {
   t.hull_pitch = hullAngle(now_);
   const Moments moments = momentsAbout(a);
   t.load = loadOf(a, moments, boom_.links, 3, jointPlace(now_, 3), t.hull_pitch);
-  t.drive_reaction_y = -rotor_ * ratio_ * (a[3] + ratio_ * a.head<3>().sum());
+  t.drive_reaction_y = -rotor_ * ratio_ * (a[3] + ratio_ * hullTurning(a));
   t.load.torque_y -= t.drive_reaction_y;
   if (elastic_) {
     const StruckTool::Answer answer = struck(now_);
