@@ -99,7 +99,9 @@ TEST(SoftCylinder, HasTheDoubtOfWhatDampsBesideTheOil) {
         ASSERT_TRUE(found.oil[k]) << seed;
         const double off = found.oil[k]->stiffer - std::log(machine.on_boom.oil_stiffness * oil[k]);
         std::printf("  seals %g: %.3f off, deviation %.3f\n", friction, off, found.oil[k]->deviation);
-        if (friction == 0.0) EXPECT_LT(found.oil[k]->deviation, 0.04) << seed;
+        if (friction == 0.0) {
+          EXPECT_LT(found.oil[k]->deviation, 0.04) << seed;
+        }
         if (friction > 0.0) within += std::abs(off) < 2.0 * found.oil[k]->deviation, ++all;
       }
     }

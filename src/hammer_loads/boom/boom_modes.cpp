@@ -108,15 +108,8 @@ JointVector modalOf(const BoomModes& modes, const JointVector& joints) noexcept 
 }
 
 ReducedHull reducedAtTip(const BoomModes& modes, const JointVector& tip_velocity) noexcept {
-  double mobility = 0.0, compliance = 0.0;
-  for (int k = 0; k < modes.count; ++k) {
-    double modal = 0.0;
-    for (int i = 0; i < modes.count; ++i) {
-      modal += tip_velocity[modes.joint[static_cast<std::size_t>(i)]] * modes.shape(i, k);
-    }
-    mobility += modal * modal;
-    compliance += modal * modal / (modes.omega[k] * modes.omega[k]);
-  }
+  const JointVector modal = modalForce(modes, tip_velocity);
+  const double mobility = modal.squaredNorm(), compliance = modal.cwiseQuotient(modes.omega).squaredNorm();
   return {mobility > 0.0 ? 1.0 / mobility : kInfinity, compliance > 0.0 ? 1.0 / compliance : kInfinity};
 }
 

@@ -240,7 +240,6 @@ void BoomFollower::fillVibration() noexcept {
   state_.reduced = boom_.reducedHull(Eigen::Vector3d::UnitZ());
   if (state_.choice.compliant) {
     state_.tip = boom_.tipVibration();
-    state_.tip_covariance = tipCovariance();
   } else {
     state_.tip = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
   }

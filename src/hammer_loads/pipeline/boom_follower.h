@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -70,9 +71,6 @@ struct BoomState {
   bool press_force_lost{};          ///< the rock does not press on the hull, by measured pressures
   ReducedHull reduced;              ///< along hull z; infinite without modes
   Boom::TipVibration tip;           ///< zero for a rigid boom
-  /// Of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as far as sensors leave it in
-  /// doubt; zero where they identify nothing.
-  Eigen::Matrix3d tip_covariance{Eigen::Matrix3d::Zero()};
   /// By vibration (a rigid boom has none), mean of before and after the step's last blow; none: no blow.
   std::optional<TipVelocity> at_blow;
   BoomChoice choice;
@@ -101,8 +99,13 @@ class BoomFollower {
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Through a crank sample that gives no loads: the boom swings on, without pieces as if free.
   void swing(StampNs stamp, const WrenchHistory& step) noexcept;
+  /// Of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as far as sensors leave it in
+  /// doubt; zero where they identify nothing, and of a boom taken as rigid.
+  Eigen::Matrix3d tipCovariance() const noexcept;
   /// How the operator moves the tip at the last blow, vibration left out.
   TipVelocity drivenTip() const noexcept;
+  /// Along z, that would explain what the IMU reads beside hammer and oil, root mean square of a second [N].
+  double unexplainedForce() const noexcept { return std::sqrt(unexplained_); }
   /// Once per turn, with what is known of the crank.
   void expectCrankLead(const CrankLead& lead) noexcept { boom_.vibration().expectCrankLead(lead); }
   /// Once per turn, with what is known of it: its pulse and the mean force that presses the hammer down [N]. Some
@@ -161,7 +164,6 @@ class BoomFollower {
   void addBending() noexcept;
   void addConstantsOfBoom(bool common_known) noexcept;
   void findDeviations(const WrenchSpread& spread, bool rigid) noexcept;
-  Eigen::Matrix3d tipCovariance() const noexcept;
   void addConstants(const BoomSample& sample) noexcept;
   LoadErrors measuredErrors(const Wrench& lasting, bool rigid) const noexcept;
   LoadErrors followedErrors(const WrenchSpread& spread, bool rigid) const noexcept;

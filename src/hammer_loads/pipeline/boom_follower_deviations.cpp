@@ -27,11 +27,12 @@ void addVariances(const List& others, std::size_t count, List& deviations) noexc
 Eigen::Matrix3d BoomFollower::tipCovariance() const noexcept {
   const BoomModes& modes = boom_.vibration().modes();
   const std::optional<ModeIdentifier>& identifier = boom_.vibration().identifier();
-  if (!identifier || modes.count == 0) return Eigen::Matrix3d::Zero();
-  const auto& jacobian = boom_.tipJacobian();
+  if (!identifier || modes.count == 0 || !state_.choice.compliant) return Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints> by_mode(3, modes.count);
-  for (int row = 0; row < 3; ++row) by_mode.row(row).noalias() = jacobian.row(2 * row) * modes.shape;
-  return by_mode * identifier->accelerationCovariance() * by_mode.transpose();
+  for (int row = 0; row < 3; ++row)
+    by_mode.row(row) = modalForce(modes, boom_.tipJacobian().row(2 * row).transpose()).transpose();
+  const double consistency = std::max(1.0, identifier->oilSurprise());
+  return consistency * (by_mode * identifier->accelerationCovariance() * by_mode.transpose());
 }
 
 /// The part of the hull's acceleration that hammer and oil as given do not explain is a force on its mass.

@@ -167,9 +167,11 @@ void warnOfBoom(const BoomFollower& follower, const BoomState* boom, bool imu_lo
   if (boom != nullptr && boom->contact_unknown)
     warnings.push_back(
         {"rock",
-         "hull_imu shows that the rock bears on the hull, or its stamps are off by more than 5 ms: without "
-         "cylinder_pressures the rock's force is in no joint torque and in no section, and the boom's "
-         "modes are those of the boom file",
+         format("hull_imu shows a force on the hull that hammer and oil do not explain, %.2g N root mean square, as "
+                "of rock that bears on it; loose pins and stamps that are off by more than 5 ms look alike. "
+                "Without cylinder_pressures it is in no joint torque and in no section, their deviations are "
+                "widened by it, and the boom's modes are those of the boom file",
+                follower.unexplainedForce()),
          true});
   const bool fault = boom != nullptr && boom->fault,
              runs_away = fault && boom->fault->kind == JointFault::Kind::kRunAway;

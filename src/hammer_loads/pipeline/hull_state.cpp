@@ -14,10 +14,8 @@ HullMotion vibrationOf(const BoomState& boom) noexcept {
 }
 
 /// Likewise how far it may be off; of its rate, which turns next to nothing, none is told.
-HullMotionCovariance doubtOf(const BoomState& boom) noexcept {
+HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
   HullMotionCovariance doubt = HullMotionCovariance::Zero();
-  if (!boom.choice.compliant) return doubt;
-  const Eigen::Matrix3d& tip = boom.tip_covariance;
   doubt.topLeftCorner<2, 2>() = tip.topLeftCorner<2, 2>();
   doubt(3, 3) = tip(2, 2);
   doubt.topRightCorner<2, 1>() = -tip.topRightCorner<2, 1>();
@@ -110,8 +108,8 @@ void HullState::findByBoom() noexcept {
   const HullMotion v = vibration_.value_or(HullMotion{});
   now_ = {{{weight.x + v.gravity.x, weight.z + v.gravity.z}, v.rate, v.acceleration},
           vibration_.has_value(),
-          vibration_ ? vibration_doubt_ : HullMotionCovariance::Zero()};
-  if (source_ == HullMotionSource::kImu && !vibration_) now_.covariance = usualMotion();
+          vibration_doubt_.value_or(HullMotionCovariance::Zero())};
+  if (source_ == HullMotionSource::kImu && !vibration_doubt_) now_.covariance = usualMotion();
 }
 
 void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept {
@@ -126,14 +124,15 @@ std::optional<ImuReading> HullState::newImuReading(StampNs stamp) noexcept {
   return imu_.reading(stamp);
 }
 
-void HullState::vibrates(const BoomState* boom) noexcept {
+void HullState::vibrates(const BoomFollower* boom) noexcept {
   if (source_ == HullMotionSource::kFixed) return;
-  vibration_.reset();
-  const bool followed = boom != nullptr && !boom->fault;
-  const bool proven = followed && boom->choice.compliant && boom->identified;
+  rest();
+  const BoomState* state = boom != nullptr ? &boom->state() : nullptr;
+  const bool followed = state != nullptr && !state->fault;
+  const bool proven = followed && state->choice.compliant && state->identified;
   if (source_ == HullMotionSource::kModel ? followed : proven) {
-    vibration_ = vibrationOf(*boom);
-    vibration_doubt_ = doubtOf(*boom);
+    vibration_ = vibrationOf(*state);
+    if (!by_imu_) vibration_doubt_ = doubtOf(boom->tipCovariance());
   }
   if (source_ == HullMotionSource::kModel) known_ = vibration_.has_value();
   if (!by_imu_) findByBoom();

@@ -55,9 +55,9 @@ class HullState {
   /// The IMU's reading at the sample in the hull's axes, if a reading has come since the last call.
   std::optional<ImuReading> newImuReading(StampNs stamp) noexcept;
   /// After it: the vibration of the boom at the sample; null: not known.
-  void vibrates(const BoomState* boom) noexcept;
+  void vibrates(const BoomFollower* boom) noexcept;
   /// Coming samples are not continuous with those before: the boom is at rest.
-  void rest() noexcept { vibration_.reset(); }
+  void rest() noexcept { vibration_.reset(), vibration_doubt_.reset(); }
 
   const Motion& motion() const noexcept { return now_; }
   /// False where IMU or boom should give the hull's motion and do not, or the IMU cannot be trusted: weight by joint
@@ -83,8 +83,8 @@ class HullState {
   std::optional<HullMobility> mobility_;  ///< of the boom; none: followsLoad() is not wanted, or no boom
   ImuTrust imu_trust_;
   ImuCounts imu_counts_;
-  std::optional<HullMotion> vibration_;   ///< of the boom's tip at the last sample, without weight; none: not known
-  HullMotionCovariance vibration_doubt_;  ///< of it
+  std::optional<HullMotion> vibration_;  ///< of the boom's tip at the last sample, without weight; none: not known
+  std::optional<HullMotionCovariance> vibration_doubt_;  ///< of it; none: it was not asked for while an IMU spoke
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
   bool known_{true}, by_imu_{};

@@ -108,7 +108,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   const HullWrench rod = weigh(links, drive);
   followBoom(links, drive);
   hullMovedAtBlow();
-  hull_.vibrates(result_.boom);
+  hull_.vibrates(result_.boom != nullptr ? &*boom_ : nullptr);
   fill(links, drive, rod);
   sampler_.sample(links, result_);
   turn_.published(result_);
@@ -227,7 +227,7 @@ bool Pipeline::isPlausible(const HullWrench& wrench) const noexcept {
 void Pipeline::swingOn(const WrenchHistory& step) noexcept {
   if (boom_follows_) {
     boom_->swing(result_.stamp, step);
-    hull_.vibrates(&boom_->state());
+    hull_.vibrates(&*boom_);
   } else {
     hull_.rest();
   }
