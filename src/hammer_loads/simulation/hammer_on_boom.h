@@ -18,8 +18,8 @@ namespace hammer_loads::simulation {
 
 /// Readings of the boom's sensors, without their errors.
 struct OnBoomSensors {
-  Eigen::Vector3d angles;                                 ///< of the joints [rad]
-  Eigen::Vector3d rates;                                  ///< [rad/s]
+  Eigen::Vector3d angles{Eigen::Vector3d::Zero()};        ///< of the joints [rad]
+  Eigen::Vector3d rates{Eigen::Vector3d::Zero()};         ///< [rad/s]
   double imu_x{}, imu_z{};                                ///< specific force at the unit, in its axes [m/s2]
   double imu_rate{};                                      ///< about +y [rad/s]
   std::array<double, 3> bore_pressure{}, rod_pressure{};  ///< gauge [Pa]
@@ -27,10 +27,10 @@ struct OnBoomSensors {
 
 /// The truth at one instant.
 struct OnBoomTruth : CrankTruth, OnBoomSensors {
-  Eigen::Vector3d displacement;  ///< of the joints from where the operator holds them [rad]
-  Eigen::Vector3d hold;          ///< BY the cylinders ON the joints [N m]
-  Load rock;                     ///< BY the rock ON the hull's foot, blows aside, about D, axes of the hull
-  std::array<Load, 3> cut;       ///< BY the steel beyond each cut ON that before it, about it, axes of the link
+  Eigen::Vector3d displacement{Eigen::Vector3d::Zero()};  ///< of the joints from where the operator holds them [rad]
+  Eigen::Vector3d hold{Eigen::Vector3d::Zero()};          ///< BY the cylinders ON the joints [N m]
+  Load rock;                ///< BY the rock ON the hull's foot, blows aside, about D, axes of the hull
+  std::array<Load, 3> cut;  ///< BY the steel beyond each cut ON that before it, about it, axes of the link
 };
 
 /// Coordinates: angles of boom, arm and hull, and the crank's. Kinetic energy by the places of all bodies, their
