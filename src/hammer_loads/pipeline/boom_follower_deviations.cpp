@@ -102,6 +102,7 @@ void BoomFollower::addConstants(const BoomSample& sample) noexcept {
   addConstantsOfBoom(known);
 }
 
+/// Where an IMU alone shows the motion: pressures would show the torques themselves.
 void BoomFollower::addBending() noexcept {
   const JointVector bending = boom_.bendingDeviation();
   BoomDeviations& all = state_.deviations;

@@ -29,8 +29,8 @@ class RodRing {
   /// A rod that is said to be rigid does not ring.
   explicit RodRing(const HullModel& model) noexcept;
 
-  /// Nothing rings.
-  void rest() noexcept { rings_ = false; }
+  /// Nothing rings, and no stroke has begun.
+  void rest() noexcept { rings_ = false, driven_ = 0.0; }
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankTracker& tracker) noexcept;
   /// The filter that has followed the readings, if any: they may show that no rod rings.

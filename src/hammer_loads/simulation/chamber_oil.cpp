@@ -10,6 +10,7 @@ constexpr double kAmbient = 1.013e5;      // [Pa]
 constexpr double kExponent = 1.0 / 1.4;   // of isentropic air
 constexpr double kLeastPressure = 1.0e3;  // absolute [Pa]: oil boils
 constexpr int kIterations = 8;            // of Newton: from 0.02 to 40 MPa in six
+
 }  // namespace
 
 double ChamberOil::volume(double absolute) const noexcept {
