@@ -40,7 +40,7 @@ TEST(RodEvidence, ReadingsWithoutExcessLeaveARingLittleRoom) {
 }
 
 /// What contradicts a rigid mechanism before the blow and after it are two questions.
-TEST(RodEvidence, TellsARockerThatIsLetGoByTheRunUp) {
+TEST(RodEvidence, KnowsARockerThatIsLetGoByTheRunUp) {
   RodEvidence worn;
   EXPECT_EQ(worn.letGoShare(kFine), 1.0);  // too few
   for (int turn = 0; turn < 50; ++turn)

@@ -23,7 +23,7 @@ TEST(HullByBoom, WhatItsVibrationLeavesInDoubtIsInTheWrench) {
 }
 
 /// A rock that lands and lets go again between two readings of the pressures is the most of it: 6 to 15 % of Fz, of
-/// which 14 to 22 % was covered before its doubt was told.
+/// which 14 to 22 % was covered before its doubt was published.
 TEST(HullByBoom, OnRockItIsOffByMoreAndSaysSo) {
   double covered = 0.0;
   const std::array<simulation::RockSettings, 3> rocks{{{1.5e7, 3.0, 4e3}, {3e7, 3.0, 5e3}, {5e7, 3.0, 3.5e3}}};

@@ -7,27 +7,18 @@
 
 #include "hammer_loads/simulation/chamber_oil.h"
 #include "hammer_loads/simulation/session.h"
+#include "simulation/boom_run.h"
 
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kBulk = 1e9, kAir = 0.01;
+using test::onBoom;
 
-MachineSettings shakenBoom() {
-  MachineSettings m = workingMo100();
-  m.hammer.drive_reaction_ratio = 1.0;
-  m.duration = 4.0;
-  m.drive.start_time = 0.7;
-  m.drive.stop_time = 9.0;
-  m.on_boom.on = true;
-  m.on_boom.imu = {500.0, 0.1, 0.2, 0.3, 0.0, 0.0};
-  m.on_boom.pressures = {100.0, 0.0, 5e6, 0.0, 0.0};
-  return m;
-}
+constexpr double kBulk = 1e9, kAir = 0.01;
 
 /// A hammer that never starts, on a boom that the operator lets swing.
 MachineSettings swungBoom() {
-  MachineSettings m = shakenBoom();
+  MachineSettings m = onBoom();
   m.drive.start_time = 90.0, m.drive.stop_time = 100.0;
   for (JointMotion& joint : m.boom) joint = {joint.mean, 0.02, 1.0, 0.0};
   return m;
@@ -60,7 +51,7 @@ TEST(ChamberOil, IsLiquidAndGas) {
 
 /// Two chambers a cylinder that have no flaw worth mentioning move as linear springs do, but for how places change.
 TEST(CylinderFlaws, ChambersWithoutFlawsAreTheSpringsTheyStandFor) {
-  MachineSettings m = shakenBoom();
+  MachineSettings m = onBoom();
   m.on_boom.pressures.preload = 2e7;  // else the oil boils where a rod is pulled out
   m.on_boom.oil_stiffness = 50.0;     // so that it hardly moves
   m.on_boom.step = 1e-4;
@@ -80,7 +71,7 @@ TEST(CylinderFlaws, ChambersWithoutFlawsAreTheSpringsTheyStandFor) {
 }
 
 TEST(CylinderFlaws, AirMakesEachModeSofterByThePressureThatIsThere) {
-  MachineSettings m = shakenBoom();
+  MachineSettings m = onBoom();
   const Eigen::Vector3d without = HammerOnBoom(m).frequencies(0.0);
   m.on_boom.air = kAir;
   const Eigen::Vector3d usual = HammerOnBoom(m).frequencies(0.0);
@@ -97,7 +88,7 @@ TEST(CylinderFlaws, AirMakesEachModeSofterByThePressureThatIsThere) {
 TEST(CylinderFlaws, ALeakTakesEnergyOutOfASwing) {
   std::array<double, 2> left{};
   for (const double leak : {0.0, 2e-11}) {
-    MachineSettings m = shakenBoom();
+    MachineSettings m = onBoom();
     m.drive.stop_time = 1.5;
     m.on_boom.damping = 0.01;
     m.on_boom.leak = leak;
@@ -117,7 +108,7 @@ TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirPlay) {
   std::array<int, 2> idle{};
   std::array<bool, 3> both_ways{};
   for (const double play : {0.0, 3e-4}) {
-    MachineSettings m = shakenBoom();
+    MachineSettings m = onBoom();
     m.on_boom.pin_play = play;
     m.on_boom.damping = 0.0;  // else the modes' dampers carry something
     HammerOnBoom machine(m);
@@ -140,7 +131,7 @@ TEST(CylinderFlaws, LoosePinsCarryNothingWithinTheirPlay) {
 
 /// Until 2.5 s, and the largest difference of their joints [rad].
 double bentAgainstRigid(double frequency, double& largest) {
-  MachineSettings m = shakenBoom();
+  MachineSettings m = onBoom();
   HammerOnBoom rigid(m);
   m.on_boom.bending_frequency = frequency;
   m.on_boom.step = 1e-4;
@@ -171,7 +162,7 @@ struct Swing {
 };
 
 Swing swingOf(double frequency) {
-  MachineSettings m = shakenBoom();
+  MachineSettings m = onBoom();
   m.drive.stop_time = 1.5;
   m.on_boom.damping = m.on_boom.bending_damping = 0.0;
   m.on_boom.bending_frequency = frequency;
@@ -199,7 +190,7 @@ TEST(SimulatedBending, TakesNoEnergyAndTurnsTheHull) {
 /// What holds a joint is what moves all beyond it: Newton for all bodies against the equations of the coordinates.
 TEST(SimulatedBending, HoldsWhatIsBeyond) {
   for (const double frequency : {0.0, 15.0}) {
-    MachineSettings m = shakenBoom();
+    MachineSettings m = onBoom();
     m.on_boom.bending_frequency = frequency;
     OilBoom boom = oilBoomEo2621();
     boom.cuts[0] = {0, {0.0, 0.0}, boom.links[0]};  // at the joint, whose pin bears no moment

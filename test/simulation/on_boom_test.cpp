@@ -4,23 +4,14 @@
 #include <cmath>
 
 #include "hammer_loads/simulation/session.h"
+#include "simulation/boom_run.h"
 
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kGravity = 9.80665;
+using test::onBoom;
 
-MachineSettings onBoom() {
-  MachineSettings m = workingMo100();
-  m.hammer.drive_reaction_ratio = 1.0;
-  m.duration = 4.0;
-  m.drive.start_time = 0.7;
-  m.drive.stop_time = 9.0;
-  m.on_boom.on = true;
-  m.on_boom.imu = {500.0, 0.1, 0.2, 0.3, 0.0, 0.0};
-  m.on_boom.pressures = {100.0, 0.0, 5e6};
-  return m;
-}
+constexpr double kGravity = 9.80665;
 
 void holdStill(MachineSettings& m) {
   for (JointMotion& joint : m.boom) joint.amplitude = 0.0;

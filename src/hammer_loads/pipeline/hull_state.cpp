@@ -13,7 +13,7 @@ HullMotion vibrationOf(const BoomState& boom) noexcept {
   return {{-a[0], -a[2]}, boom.tip.velocity[4], a[4]};
 }
 
-/// Likewise how far it may be off; of its rate, which turns next to nothing, none is told.
+/// Likewise how far it may be off; of its rate, which turns next to nothing, none is given.
 HullMotionCovariance doubtOf(const Eigen::Matrix3d& tip) noexcept {
   HullMotionCovariance doubt = HullMotionCovariance::Zero();
   doubt.topLeftCorner<2, 2>() = tip.topLeftCorner<2, 2>();

@@ -103,12 +103,12 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   }
 }
 
-void RodRing::drive(const CrankEstimate& crank) noexcept {
+void RodRing::drive(const CrankStep& step, const CrankEstimate& crank) noexcept {
   const CrankAngle at = crank.position.angle;
   if (at.side != Side::kBeforeBlow || !(at.offset < 0.0) || !(crank.speed > 0.0)) return;
-  const HammerParameters& p = model_->mechanism().parameters();
-  const LinkMotion links = linkMotion(model_->mechanism().linkage(), at);
-  const double free = 0.5 * rods_.back().play / (p.lengths.rocker * std::abs(links.sin_mu));  // grows as 1/offset
+  const LinkMotion links = step.linksAt(at);
+  const double lever = model_->mechanism().parameters().lengths.rocker * std::abs(links.sin_mu);
+  const double free = 0.5 * rods_.back().play / lever;  // grows as 1/offset
   driven_ = std::max(driven_, -crank.speed * (links.rocker.u - free / at.offset));
 }
 
@@ -128,7 +128,7 @@ void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcep
     from = passage.time;
   }
   move(step, from, step.length());
-  drive(tracker.estimate());
+  drive(step, tracker.estimate());
 }
 
 void RodRing::take(const CrankFilter* filter) noexcept {

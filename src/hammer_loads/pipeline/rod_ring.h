@@ -51,7 +51,7 @@ class RodRing {
  private:
   void strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
   void move(const CrankStep& step, double from, double to) noexcept;
-  void drive(const CrankEstimate& crank) noexcept;
+  void drive(const CrankStep& step, const CrankEstimate& crank) noexcept;
   void letGo(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;

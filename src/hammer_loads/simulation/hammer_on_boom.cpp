@@ -182,15 +182,21 @@ void HammerOnBoom::turnAbout(const Bodies& all, Body& body, std::size_t joints) 
   }
 }
 
-HammerOnBoom::Inertia HammerOnBoom::massMatrix(const Bodies& all) const {
+/// Of the rotor; links that do not bend have a one, so that the matrix has an inverse.
+HammerOnBoom::Inertia HammerOnBoom::rotorInertia() const {
   Coordinates rotor;
   const double bent = bends() ? ratio_ : 0.0;
   rotor << ratio_, ratio_, ratio_, 1.0, 0.0, bent, bent;
   Inertia M = rotor_ * rotor * rotor.transpose();
+  if (!bends()) M(5, 5) = M(6, 6) = 1.0;
+  return M;
+}
+
+HammerOnBoom::Inertia HammerOnBoom::massMatrix(const Bodies& all) const {
+  Inertia M = rotorInertia();
   for (const Body& b : all.body)
     M += b.mass * (b.x * b.x.transpose() + b.z * b.z.transpose()) + b.inertia * b.turn * b.turn.transpose();
   if (!elastic_) M(4, 4) = 1.0;
-  if (!bends()) M(5, 5) = M(6, 6) = 1.0;
   return M;
 }
 

@@ -120,6 +120,7 @@ class HammerOnBoom {
   void turnAbout(const Bodies& all, Body& body, std::size_t joints) const;
   Bodies bodies(const State& s) const { return bodies(s, boom_.links, rockerAt(s)); }
   Bodies heldBodies(const State& held) const { return bodies(held, boom_.links, held_rocker_); }
+  Inertia rotorInertia() const;
   Inertia massMatrix(const Bodies& all) const;
   Coordinates weight(const Bodies& all) const;
   Eigen::Vector3d stiffness(const State& held, const Eigen::Vector3d& weight) const;

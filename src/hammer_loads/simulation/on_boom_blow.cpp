@@ -11,11 +11,7 @@ void HammerOnBoom::blow() {
   const double u_before = links_.rockerAngle({0.0, true, false}).first;
   const double u_after = links_.rockerAngle({0.0, false, false}).first;
   const std::array<Body, 4> all = bodies(now_).body;
-  Coordinates rotor;
-  const double bent = bends() ? ratio_ : 0.0;
-  rotor << ratio_, ratio_, ratio_, 1.0, 0.0, bent, bent;
-  Inertia M = rotor_ * rotor * rotor.transpose();
-  if (!bends()) M(5, 5) = M(6, 6) = 1.0;
+  Inertia M = rotorInertia();
   for (std::size_t k = 0; k < 4; ++k) {
     const Body& b = all[k];
     Coordinates x = b.x, z = b.z, turn = b.turn;

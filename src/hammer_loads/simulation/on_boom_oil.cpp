@@ -119,9 +119,9 @@ void HammerOnBoom::readCylinders(const Hold& hold, OnBoomSensors& s) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const int j = static_cast<int>(k);
     const OilCylinder& c = boom_.cylinders[k];
-    const bool plain = machine_.on_boom.isPlain();
-    const Chambers at = plain ? heldChambers(k, hold.state, hold.weight[j]) : chambers(k, now_, hold);
-    const double rest = torque[j] / c.arm(now_.x[j]) - (plain ? -hold.weight[j] / c.arm(hold.state.x[j]) : push(k, at));
+    const Chambers at =
+        machine_.on_boom.isPlain() ? heldChambers(k, hold.state, hold.weight[j]) : chambers(k, now_, hold);
+    const double rest = torque[j] / c.arm(now_.x[j]) - push(k, at);
     const double bore_share = c.boreShare(hold.state.x[j]), rod_share = c.rodShare(hold.state.x[j]);
     const double way = rest / (c.bore_area * bore_share + c.rod_area * rod_share);
     s.bore_pressure[k] = at.bore + bore_share * way;

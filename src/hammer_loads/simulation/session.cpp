@@ -104,9 +104,11 @@ void SessionStream::moveTo(double time) {
   while ((angle_.isOn() || speed_.isOn() || hoses_[0].isOn()) && sensor_time_ < time) {
     sensor_time_ = std::min(time, sensor_time_ + kSensorStep);
     std::visit([&](auto& machine) { machine.advanceTo(sensor_time_); }, machine_);
-    const Encoded now = encodedAt(settings_.crank, truth());
-    angle_.follow(sensor_time_, now.angle);
-    speed_.follow(sensor_time_, now.speed);
+    if (angle_.isOn() || speed_.isOn()) {
+      const Encoded now = encodedAt(settings_.crank, truth());
+      angle_.follow(sensor_time_, now.angle);
+      speed_.follow(sensor_time_, now.speed);
+    }
     if (!hoses_[0].isOn()) continue;
     const OnBoomSensors felt = std::get<HammerOnBoom>(machine_).sensors();
     for (std::size_t k = 0; k < 3; ++k) {
