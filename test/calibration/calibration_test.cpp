@@ -147,6 +147,60 @@ TEST(Calibration, ADrawingsErrorsAreNotTheSensors) {
   EXPECT_GT(worst_of_exact, 5.0);  // a file that is sure of itself takes it for an eccentric encoder
 }
 
+/// A file as the calibration writes it, over the drawing.
+HammerParameters writtenOver(HammerParameters drawing, const Calibration& c) {
+  for (std::size_t i = 0; i < kHammerConstants.size(); ++i) {
+    const Estimate *value = find(c, kHammerConstants[i].key), *deviation = find(c, deviationKey(kHammerConstants[i]));
+    if (value) kHammerConstants[i].field(drawing) = value->value;
+    if (deviation) drawing.deviations[i] = deviation->value;
+  }
+  return drawing;
+}
+
+/// The blow's timing shows the crank's length over the distance of the pivots. Where that is measured, the file gets
+/// the length; where it is not, neither is moved.
+TEST(Calibration, ALengthThatShowsIsWritten) {
+  HammerParameters drawing = test::mo100LinkageParameters();
+  drawing.deviations = usualDeviations(drawing);
+  const std::size_t crank = *indexOfConstant("crank_length_m"), distance = *indexOfConstant("pivot_distance_m"),
+                    inertia = *indexOfConstant("rocker_inertia_about_pivot_kg_m2");
+  std::mt19937_64 random(6);
+  double squares = 0.0;
+  constexpr int kMachines = 4;
+  for (int i = 0; i < kMachines; ++i) {
+    SCOPED_TRACE(i);
+    HammerParameters measured = drawing;
+    measured.deviations[distance] = 3e-5;
+    measured.deviations[inertia] = 0.005 * drawing.rocker_inertia_about_pivot;
+    simulation::MachineSettings s = atWork(16.0, 250.0);
+    s.level = Level::kLinkage;
+    s.hammer = drawnFrom(measured, random);
+    s.seed = 320 + static_cast<std::uint64_t>(i);
+    const std::vector<RecordedSample> samples = recorded(s);
+    const auto by = [&](HammerParameters file) {
+      file.drive_inertia = s.drive.inertia;
+      const Mechanism mechanism = test::mechanismOf(file);
+      CalibrationBasis basis = basisOf(mechanism);
+      basis.level = Level::kLinkage;
+      return calibrate(samples, basis);
+    };
+    const Calibration c = by(measured), guessed = by(drawing);
+    ASSERT_NE(find(c, "crank_length_m"), nullptr);
+    const HammerParameters file = writtenOver(measured, c);
+    EXPECT_LT(file.deviations[crank], 0.7 * drawing.deviations[crank]);
+    const double off = (file.lengths.crank - s.hammer.lengths.crank) / file.deviations[crank];
+    EXPECT_LT(std::abs(off), 2.5);
+    squares += off * off / kMachines;
+    EXPECT_NE(file.lengths.rod, drawing.lengths.rod);
+    EXPECT_TRUE(Mechanism::make(file).value.has_value());
+
+    EXPECT_EQ(find(guessed, "crank_length_m"), nullptr);
+    EXPECT_EQ(find(guessed, "rod_length_m"), nullptr);
+    EXPECT_NE(textOf(guessed).find("not written, pivot_distance_m explains"), std::string::npos) << textOf(guessed);
+  }
+  EXPECT_NEAR(std::sqrt(squares), 1.0, 0.5);
+}
+
 /// With measured speeds too: what a stamp's error does to a speed near the blow is no noise of the angle.
 TEST(Calibration, JitterIsMeasured) {
   for (const bool speeds : {true, false}) {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hammer_loads/calibration/first_guess.h"
-#include "hammer_loads/calibration/hammer_part.h"
+#include "hammer_loads/calibration/hammer_keys.h"
 #include "hammer_loads/calibration/rod_check.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/crank_angle.h"
@@ -277,6 +277,8 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   const GlobalMatrix by_blows = fit.covariance;
   fit.globals = hammer.globals, fit.covariance = hammer.covariance.topLeftCorner<kGlobals, kGlobals>();
   addEstimates(result, fit, by_blows, basis, hammer.has("rocker_inertia_about_pivot_kg_m2"), centred);
+  for (const Estimate& one : estimatesOf(hammer, basis.mechanism.parameters()))
+    if (!rod.gives()) result.estimates.push_back(one);
   refuseForRod(rod, result);
   addCorrelations(result, hammer);
   for (std::string& remark : remarksOf(hammer, by_blows, basis.mechanism.parameters()))

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "hammer_loads/linkage/machine_columns.h"
-#include "hammer_loads/util/format.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads::calibration {
@@ -15,9 +14,6 @@ namespace {
 
 constexpr int kReplicas = 4;        // of the recording, by which the bias is found
 constexpr double kBiasDoubt = 0.5;  // of the bias, left over when it is removed
-
-constexpr double kHides = 3.0;  // times the deviation without the hammer's constants: worth a word
-constexpr double kSeen = 0.7;   // of a constant's deviation is left: as above
 
 constexpr const char* kNames[kGlobals] = {"zero",
                                           "sine of the eccentricity once a turn",
@@ -83,52 +79,26 @@ std::string HammerPart::nameOf(Eigen::Index row) const {
   return row < kGlobals ? std::string(kNames[row]) : names[static_cast<std::size_t>(row - kGlobals)];
 }
 
-std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,
-                                   const HammerParameters& file) {
-  std::vector<std::string> remarks;
-  const auto count = static_cast<Eigen::Index>(hammer.names.size());
-  const Eigen::MatrixXd& P = hammer.covariance;
-  for (const Eigen::Index k : {kZero, kSine1, kCosine1, kLogInertia}) {
-    if (count == 0 || !(P(k, k) > square(kHides) * by_blows(k, k))) continue;
-    Eigen::Index most = 0;
-    P.row(k).tail(count).transpose().cwiseQuotient(P.diagonal().tail(count).cwiseSqrt()).cwiseAbs().maxCoeff(&most);
-    remarks.push_back(
-        format("%s: known to %.2g if the hammer file were exact, to %.2g by the deviations of its constants, most by "
-               "that of %s",
-               kNames[k], std::sqrt(by_blows(k, k)), std::sqrt(P(k, k)), hammer.nameOf(kGlobals + most).c_str()));
-  }
-  for (std::size_t i = 0; i < hammer.names.size(); ++i) {
-    if (hammer.left(i) > kSeen) continue;
-    const std::optional<std::size_t> k = indexOfConstant(hammer.names[i]);
-    if (!k) continue;
-    const double deviation = file.deviations[*k];
-    remarks.push_back(format(
-        "%s: by the readings %+.2g +- %.1g more than the file has, whose deviation is %.2g; not written, others "
-        "of the hammer's constants go with it",
-        hammer.names[i].c_str(), kHammerConstants[*k].away * deviation * hammer.errors[static_cast<Eigen::Index>(i)],
-        deviation * hammer.left(i), deviation));
-  }
-  return remarks;
-}
-
 HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free& free) {
   constexpr int kSteps = 2;
-  HammerPart part{joint.globals, {}, {}, joint.plain_covariance};
+  HammerPart part;
+  part.globals = joint.globals, part.covariance = joint.plain_covariance;
+  part.prior = priorDeviations().cwiseAbs2().cwiseInverse();
   const auto columns = machineColumns(model.mechanism, model.level);
   if (!columns) return part;
   for (const MachineColumn& column : columns->columns()) part.names.push_back(column.name);
   const auto count = static_cast<Eigen::Index>(part.names.size()), size = kGlobals + count;
   part.errors = Eigen::VectorXd::Zero(count);
   const Globals centre = centreOf(joint.globals);
-  Eigen::VectorXd prior(size);
-  prior << priorDeviations().cwiseAbs2().cwiseInverse(), Eigen::VectorXd::Ones(count);
+  part.prior.conservativeResize(size);
+  part.prior.tail(count).setOnes();
   std::optional<Mechanism> hammer = model.mechanism;
   for (int i = 0; i < kSteps && hammer; ++i) {
     const SegmentModel here{*hammer, model.level};
     const MachineColumns beside(*hammer, model.level);
     if (beside.columns().size() != part.names.size()) break;  // at the edge of what a hammer can be
-    Information all{prior.asDiagonal(), Eigen::VectorXd(size)};
-    all.score << prior.head<kGlobals>().cwiseProduct(centre - joint.globals), -part.errors;
+    Information all{part.prior.asDiagonal(), Eigen::VectorXd(size)};
+    all.score << part.prior.head<kGlobals>().cwiseProduct(centre - joint.globals), -part.errors;
     for (SegmentFit& fit : joint.fits) {
       if (i > 0) fitLocals(fit, here, joint.globals, joint.noise);
       const Information one = informationOf(fit, joint, here, beside);
@@ -179,7 +149,9 @@ void removeBias(JointFit& joint, HammerPart& hammer, const SegmentModel& model, 
   joint.covariance += kBiasDoubt * kBiasDoubt * bias * bias.transpose();
   hammer.globals -= of_hammer.head<kGlobals>();
   hammer.errors -= of_hammer.tail(size - kGlobals);
-  hammer.covariance *= 1.0 + 1.0 / kReplicas;
+  // What the replicas' mean is off by noise; what is known before any reading has none.
+  const Eigen::MatrixXd P = hammer.covariance;
+  hammer.covariance += (P - P * hammer.prior.asDiagonal() * P) / kReplicas;
   hammer.covariance += kBiasDoubt * kBiasDoubt * of_hammer * of_hammer.transpose();
   for (SegmentFit& fit : joint.fits) fitLocals(fit, model, joint.globals, joint.noise);
 }

@@ -16,6 +16,7 @@ struct HammerPart {
   Eigen::VectorXd errors;  ///< of the constants, true less file's [their standard deviations], as MachineColumns has
                            ///< their signs
   Eigen::MatrixXd covariance;  ///< of shared parameters, then constants [rad, ..., as above], by the noise alone
+  Eigen::VectorXd prior;       ///< inverse variances of the same before any reading
 
   bool has(const std::string& constant) const;
   /// Of a row of the covariance.
@@ -28,11 +29,6 @@ struct HammerPart {
   /// What blows differ by beyond the noise is in the shared parameters of a fit; here as well.
   void widen(const JointFit& fit);
 };
-
-/// What a user should know of it: shared parameters that the constants hide, constants that the blows show.
-/// by_blows: covariance of the shared parameters with the constants as given.
-std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,
-                                   const HammerParameters& file);
 
 /// From a fit with the file's constants. free: as in the fit; the others stay. A hammer that is exact has no constants
 /// to find. Two steps of least squares, the motion of the constants' hammers by differences; some 20 runs of a blow

@@ -1,0 +1,21 @@
+/// What a calibration says of the hammer's constants: keys to write, notes on what others hide.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/calibration/hammer_part.h"
+
+namespace hammer_loads::calibration {
+
+/// Constants that are better known than by their file, each with the key of its deviation, and the rod that closes the
+/// linkage with them.
+std::vector<Estimate> estimatesOf(const HammerPart& hammer, const HammerParameters& file);
+
+/// What a user should know of it: shared parameters that the constants hide, constants that show with others only.
+/// by_blows: covariance of the shared parameters with the constants as given.
+std::vector<std::string> remarksOf(const HammerPart& hammer, const GlobalMatrix& by_blows,
+                                   const HammerParameters& file);
+
+}  // namespace hammer_loads::calibration
