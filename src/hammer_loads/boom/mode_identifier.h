@@ -11,6 +11,7 @@
 #include "hammer_loads/boom/mode_history.h"
 #include "hammer_loads/boom/seals.h"
 #include "hammer_loads/boom/vibration_reading.h"
+#include "hammer_loads/estimation/timing_noise.h"
 
 namespace hammer_loads {
 
@@ -38,7 +39,8 @@ struct CrankLead {
 /// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
 /// From 0.2 s on after the frequencies are known it is followed, and frequencies and damping count as less known again.
 /// Above the modes' frequencies accelerations are those of the hammer's force whatever the oil, so that one is not
-/// taken for the other. A reading is judged by what the modes did when it was taken.
+/// taken for the other. A reading is judged by what the modes did when it was taken. What stamps jitter about their
+/// delay, as behind a bus, is learned from what it leaves.
 ///
 /// The hammer's force and the rock's act alike: on rock only the difference of two clocks' delays shows, and of
 /// pressures alone none.
@@ -257,8 +259,9 @@ class ModeIdentifier {
   LogOil stiffness_ratio_ = LogOil::Ones(), used_oil_ = LogOil::Zero();  ///< likewise; logarithms of it
   std::array<double, kMaxJoints> used_frequency_{}, used_damping_{};     ///< logarithms of these
   int channels_{};                                                       ///< in use
-  std::array<int, kMaxChannels> slot_{};    ///< state of each channel's offset; -1: not in use
-  std::array<double, kMaxChannels> age_{};  ///< since the channel's last reading [s]
+  std::array<int, kMaxChannels> slot_{};          ///< state of each channel's offset; -1: not in use
+  std::array<double, kMaxChannels> age_{};        ///< since the channel's last reading [s]
+  std::array<TimingNoise, kMaxChannels> jitter_;  ///< of the channel's stamps
 };
 
 }  // namespace hammer_loads

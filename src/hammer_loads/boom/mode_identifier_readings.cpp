@@ -171,10 +171,10 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
       correct(readings[r], row[r], difference[r] - inUse(row[r]).dot(inUse(state_) - inUse(before)), kept);
 }
 
-/// Variance of what is predicted by an IMU's delay that is not followed yet: noise, so that the oil is not made what
-/// would have such stamps.
+/// Variance of what is predicted by a delay that is not followed yet: noise, so that the oil is not made what would
+/// have such stamps. Without an IMU pressures hardly show their delay, and it may never be followed.
 double ModeIdentifier::byDelay(Clock clock, const State& row) const noexcept {
-  if (!learns_ || clock != Clock::kImu || isDelayFollowed(clock)) return 0.0;
+  if (!learns_ || clock == Clock::kCrank || !imuSpeaks() || isDelayFollowed(clock)) return 0.0;
   return square(kDelayDeviation * row[delayAt(clock)]);
 }
 
@@ -182,7 +182,11 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
                              const Kept& kept) noexcept {
   State gain_S;
   gain_S.segment(begin(), states()).noalias() = block() * inUse(row);
-  const double S = weigh(reading, inUse(row).dot(inUse(gain_S)) + byDelay(reading.clock, row), difference);
+  TimingNoise& jitter = jitter_[static_cast<std::size_t>(reading.channel)];
+  const double rate = reading.clock != Clock::kCrank ? row[delayAt(reading.clock)] : 0.0;
+  const double by_stamp = byDelay(reading.clock, row) + square(rate) * jitter.variance();
+  const double S = weigh(reading, inUse(row).dot(inUse(gain_S)) + by_stamp, difference);
+  if (isDelayFollowed(reading.clock) && S > 0.0) jitter.learn(difference, S, rate);
   if (!(S > 0.0)) return;
   state_.segment(begin(), states()) += difference / S * inUse(gain_S);
   subtractSquare(block(), inUse(gain_S), S);

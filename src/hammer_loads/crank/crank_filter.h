@@ -18,7 +18,7 @@
 #include "hammer_loads/crank/speed_trust.h"
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
-#include "hammer_loads/crank/timing_noise.h"
+#include "hammer_loads/estimation/timing_noise.h"
 #include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/crank/weighed_sample.h"
 

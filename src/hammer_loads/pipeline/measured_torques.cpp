@@ -31,6 +31,13 @@ Rubbing rubbing(const Seals& seals, double vibrating) noexcept {
           std::sqrt(one_way) * seals.deviation};
 }
 
+/// Error of a line through two readings, an interval apart, where readings are late by `delay` over that of one that
+/// are not, squared: it goes on for that much longer, and a swing is bent.
+double longerLine(double delay, double interval) noexcept {
+  const double late = interval > 0.0 ? std::max(delay, 0.0) / interval : 0.0;
+  return square((1.0 + late) * (1.0 + 0.5 * late));
+}
+
 }  // namespace
 
 /// As a random walk that readings with noise show (Kalman filter): a change over two readings has the walk twice and
@@ -110,13 +117,16 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       track.goes_on = true;
     }
     const double age = std::min(seconds(sample - stamp) + delay, kLongestLine);
-    const bool by_oil = track.oil_square.mean() <= track.line_square.mean();
-    const double value = by_oil ? track.rest + model.now[j] : track.torque + age * track.slope;
+    const double line_square = longerLine(delay, track.interval) * track.line_square.mean();
+    const bool by_oil = track.oil_square.mean() <= line_square;
+    // What does not fit has a swing of its own then: a hose's, not the load's.
+    const double rest = no_lag > 0.0 ? track.unexplained.mean.mean() : track.rest;
+    const double value = by_oil ? rest + model.now[j] : track.torque + age * track.slope;
     const double lost = forgottenPart(overdue(seconds(sample - stamp), track.interval));
     // A change has the noise of two readings, what is smoothed that of one or less.
     const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
     const double off =
-        std::sqrt(of_change * (by_oil ? track.oil_square : track.line_square).mean() +
+        std::sqrt(of_change * std::min(track.oil_square.mean(), line_square) +
                   (lag + 2.0 * lost) * track.swing.square.mean() + no_lag * track.unexplained.square.mean() +
                   (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
     const CylinderParameters& p = cylinder.parameters();

@@ -16,7 +16,7 @@ namespace hammer_loads {
 class TimingNoise {
  public:
   /// first_guess: standard deviation [s], >= 0.
-  explicit TimingNoise(double first_guess) noexcept : variance_(first_guess * first_guess) {}
+  explicit TimingNoise(double first_guess = 0.0) noexcept : variance_(first_guess * first_guess) {}
 
   /// innovation [rad] of variance `total`, the jitter's part included; speed w [rad/s].
   void learn(double innovation, double total, double speed) noexcept {

@@ -1,0 +1,50 @@
+// Pressures through hoses, in coarse counts, 100 times a second, and stamps that wait for a bus, the hull's IMU too.
+#include "pipeline/on_boom_session.h"
+
+namespace hammer_loads {
+namespace {
+
+struct OverBus {
+  double hose, bus;  // [s]
+  test::Pose pose;
+  double oil, press_force;  // 0: the hull hangs free
+};
+
+accuracy::BoomErrors over(const OverBus& line, double rate, double count) {
+  simulation::MachineSettings machine = test::machineOnBoom(line.oil, 100.0, line.pose);
+  machine.seed = 73;
+  if (line.press_force > 0.0) machine.on_boom.rock = {3e7, 3.0, line.press_force};
+  machine.on_boom.pressures.hose_lag = line.hose;
+  machine.on_boom.pressures.rate = rate;
+  machine.on_boom.pressures.count = count;
+  machine.on_boom.bus_delay = line.bus;
+  return test::errorsOf("over a bus", simulation::recordSession(machine),
+                        "boom_stiffness: identified\nlevel: rocker\nhull_motion: imu\n", {true, true});
+}
+
+/// A hose lags the more the faster a mode is, which no delay does; a line through two readings that go on for as long
+/// again as they are apart says least.
+TEST(SensorsOverBus, LeaveTheTorquesOfABoomThatIsIdentified) {
+  for (const OverBus& line :
+       {OverBus{6.2e-3, 1.75e-3, {-0.68, 1.55, -0.60}, 1.1, 0.0}, OverBus{5e-3, 1e-3, {-0.30, 0.90, -0.75}, 0.8, 0.0},
+        OverBus{4e-3, 0.7e-3, {-0.45, 1.00, -0.50}, 1.2, 4500.0},
+        OverBus{6.5e-3, 1.2e-3, {-0.60, 1.40, -0.70}, 0.9, 3500.0}}) {
+    SCOPED_TRACE(line.hose);
+    const accuracy::BoomErrors e = over(line, 100.0, 39e3);
+    EXPECT_LT(e.worstTorque(), 0.12);
+    EXPECT_GT(e.covered(), 0.85);
+    EXPECT_TRUE(e.warned_of_pressure_stamps);
+    EXPECT_FALSE(e.warned_of_rock);
+  }
+}
+
+/// Stamps that jitter are no delay.
+TEST(SensorsOverBus, JitterOfStampsIsLearned) {
+  const accuracy::BoomErrors e = over({0.0, 1.5e-3, {-0.45, 1.00, -0.50}, 1.2, 0.0}, 500.0, 0.0);
+  EXPECT_LT(e.worstTorque(), 0.03);
+  EXPECT_GT(e.covered(), 0.9);
+  EXPECT_FALSE(e.warned_of_pressure_stamps);
+}
+
+}  // namespace
+}  // namespace hammer_loads
