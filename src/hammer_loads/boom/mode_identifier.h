@@ -128,8 +128,8 @@ class ModeIdentifier {
   /// mean square over a swing [N m].
   double dampingBesideOil(std::size_t cylinder) const noexcept;
   ModeState motion(int mode) const noexcept;  ///< as estimated
-  /// This time [s] after the present, or before it: some ms back exactly, with what readings have shown since.
-  ModeState motionAt(int mode, double ahead) const noexcept;
+  /// Modal torque of the oil as pressures show it whose stamp is this time [s] after the present, or before it.
+  double oilTorqueRead(int mode, double ahead) const noexcept;
   JointVector displacement() const noexcept;  ///< of the joints as estimated [rad]
   JointVector velocity() const noexcept;      ///< [rad/s]
   bool followsContact() const noexcept { return follows_contact_; }
@@ -173,6 +173,13 @@ class ModeIdentifier {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
   }
   double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
+  /// What a delay makes of a mode in a clock's readings: how long it is held up [s], by the crank's time, and the part
+  /// of its swing that is left. Pressures that are late beside an IMU are so behind a hose, a lag of first order: it
+  /// holds up a swing by less than its time, and takes some of it.
+  struct Lag {
+    double held{}, left{1.0};
+  };
+  Lag lagOf(Clock clock, int mode) const noexcept;
   double accelerationNow(int mode) const noexcept;
   using States = std::array<ModeState, kMaxJoints>;
   States statesNow() const noexcept;

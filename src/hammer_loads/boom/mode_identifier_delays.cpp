@@ -97,6 +97,13 @@ double ModeIdentifier::findCrankLead() const noexcept {
   return lesserOf(common, expected_lead_.mean + (std::abs(rest) <= doubt ? rest : square(doubt) / rest));
 }
 
+ModeIdentifier::Lag ModeIdentifier::lagOf(Clock clock, int mode) const noexcept {
+  const double late = delayByCrank(clock);
+  if (clock != Clock::kPressures || !imuSpeaks() || !(late > 0.0)) return {late, 1.0};
+  const double omega = modeAt(mode).omega, turned = omega * late;
+  return {std::atan(turned) / omega, 1.0 / std::sqrt(1.0 + square(turned))};
+}
+
 double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
   if (clock == Clock::kCrank) return 0.0;
   const int d = delayAt(clock);

@@ -58,8 +58,13 @@ ModeHistory::Moment ModeIdentifier::momentAt(int mode, double ahead) const noexc
   return {{now.x + ahead * now.v, now.v + ahead * accelerationNow(mode)}, force_[mode] + ahead * rate, rate};
 }
 
-ModeState ModeIdentifier::motionAt(int mode, double ahead) const noexcept {
-  return momentAt(mode, ahead - crankLead()).state;
+double ModeIdentifier::oilTorqueRead(int mode, double ahead) const noexcept {
+  const Lag lag = lagOf(Clock::kPressures, mode);
+  const Mode m = modeAt(mode);
+  const ModeHistory::Moment then = momentAt(mode, ahead - lag.held);
+  const double force = then.force + rockOn(mode) * state_[kContact];
+  const double torque = m.omega * m.omega * then.state.x + 2.0 * m.zeta * m.omega * then.state.v;
+  return force + lag.left * (torque - force);
 }
 
 /// Of a mode, for readings of one instant. by_oil: what a unit of each logarithm of stiffness takes from its
@@ -68,7 +73,8 @@ struct ModeIdentifier::Seen {
   ModeHistory::Moment then;
   std::array<double, kMaxJoints> by_oil;
   double acceleration, stiff, damped, rock;
-  double cosine, sine;  ///< of what was then: how displacement and velocity of now show in it
+  double cosine, sine;           ///< of what was then: how displacement and velocity of now show in it
+  double left{1.0}, fades_by{};  ///< of a swing behind a hose, and the part of that which a second more of it takes
 };
 
 ModeIdentifier::Seen ModeIdentifier::see(int mode, double ahead) const noexcept {
@@ -103,11 +109,15 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
     }
     const Seen& seen = modes[static_cast<std::size_t>(k)];
     const ModeState& then = seen.then.state;
+    const double lost = by_oil * (1.0 - seen.left);  // of what swings about the forces; they themselves are not lost
+    by_oil *= seen.left;
     const double held = by_oil - by_a, damped = seen.damped * then.v, stiff = seen.stiff * then.x;
     const double of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
-    predicted += by_x * then.x + by_v * then.v + by_a * seen.acceleration + by_oil * (stiff + damped);
-    late += of_x * then.v + of_v * seen.acceleration + by_a * seen.then.force_rate;
-    row[kContact] += by_a * seen.rock;
+    const double torque = stiff + damped, force = torque + seen.acceleration;
+    predicted += by_x * then.x + by_v * then.v + by_a * seen.acceleration + by_oil * torque + lost * force;
+    late += square(seen.left) * (of_x * then.v + of_v * seen.acceleration) + by_a * seen.then.force_rate +
+            seen.fades_by * by_oil * (torque - force);
+    row[kContact] += (by_a + lost) * seen.rock;
     row[at(k, kX)] = seen.cosine * of_x - seen.stiff * seen.sine * of_v;
     row[at(k, kV)] = seen.cosine * of_v + seen.sine * of_x;
     for (int i = 0; i < count_; ++i) row[at(i, kOil)] += held * seen.by_oil[static_cast<std::size_t>(i)];
@@ -148,7 +158,10 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
   States then;
   for (int k = 0; k < count_; ++k) {
     const auto mode = static_cast<std::size_t>(k);
-    seen[mode] = see(k, readings->ahead - delayByCrank(readings->clock));
+    const Lag lag = lagOf(readings->clock, k);
+    seen[mode] = see(k, readings->ahead - lag.held);
+    seen[mode].left = lag.left;
+    if (lag.left < 1.0) seen[mode].fades_by = delayByCrank(readings->clock) * seen[mode].stiff * square(lag.left);
     then[mode] = seen[mode].then.state;
   }
   const LogOil torque = oilTorques(then);

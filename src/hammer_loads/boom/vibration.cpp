@@ -258,17 +258,14 @@ Vibration::OilTorque Vibration::oilTorque() const noexcept {
   return {modes_.inertia.lazyProduct(now), modes_.inertia.lazyProduct(rate)};
 }
 
-JointVector Vibration::oilTorqueAt(double ahead) const noexcept {
-  if (!identifier_ || !identifier_->followsContact()) {
+JointVector Vibration::oilTorqueRead(double ahead) const noexcept {
+  const bool late = identifier_ && identifier_->delay(Clock::kPressures) != 0.0;
+  if (!late && !(identifier_ && identifier_->followsContact())) {
     const OilTorque torque = oilTorque();
     return torque.now + ahead * torque.rate;
   }
   JointVector modal(modes_.count);
-  for (int k = 0; k < modes_.count; ++k) {
-    const Mode m = mode(k);
-    const ModeState s = identifier_->motionAt(k, ahead);
-    modal[k] = m.omega * m.omega * s.x + 2.0 * m.zeta * m.omega * s.v;
-  }
+  for (int k = 0; k < modes_.count; ++k) modal[k] = identifier_->oilTorqueRead(k, ahead);
   return modes_.inertia.lazyProduct(modal);
 }
 

@@ -111,8 +111,8 @@ class Vibration {
     JointVector now, rate;
   };
   OilTorque oilTorque() const noexcept;
-  /// This long [s] after the present, or before it [N m].
-  JointVector oilTorqueAt(double ahead) const noexcept;
+  /// As pressures show it whose stamp is this long [s] after the present, or before it [N m].
+  JointVector oilTorqueRead(double ahead) const noexcept;
   /// Kinetic energy and that of the oil's compression [J]; at a steady pose it only falls without load.
   double energy() const noexcept;
   const BoomModes& modes() const noexcept { return modes_; }

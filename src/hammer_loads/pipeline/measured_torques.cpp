@@ -80,7 +80,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   const StampNs sample = instant.stamp;
   Vibration::OilTorque model = boom.vibration().oilTorque();
   model.now += steady;
-  if (model_.now.size() != model.now.size()) model_ = model, sample_ = sample;
+  if (model_.now.size() != model.now.size()) model_ = model, read_ = model.now, sample_ = sample;
   const auto& identifier = boom.vibration().identifier();
   const double surprise = identifier ? identifier->oilSurprise() : 0.0;
   const double delay = identifier ? identifier->delay(Clock::kPressures) : 0.0;
@@ -106,9 +106,9 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       continue;
     }
     if (pressures.count(i) != track.readings) {
-      const double before = model_.now[j] + (seconds(stamp - sample_) - delay) * model_.rate[j];
+      const double before = read_[j] + seconds(stamp - sample_) * model_.rate[j];
       if (oil_then.size() == 0 || stamp != oil_at)
-        oil_then = boom.vibration().oilTorqueAt(seconds(stamp - sample) - delay), oil_at = stamp;
+        oil_then = boom.vibration().oilTorqueRead(seconds(stamp - sample)), oil_at = stamp;
       const double now = oil_then[j] + steady[j];
       const double torque = -forceOf(cylinder, *read) * at.arm;
       if (gap || !track.goes_on) track.stamp = stamp, track.slope = 0.0;
@@ -137,6 +137,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
         std::sqrt(square(seals.deviation) + offset + (identifier ? square(identifier->dampingBesideOil(i)) : 0.0)),
         std::sqrt(square(seals.lasting) + offset), at};
   }
+  read_ = delay != 0.0 ? JointVector(boom.vibration().oilTorqueRead(0.0) + steady) : model.now;
   model_ = model, sample_ = sample;
 }
 

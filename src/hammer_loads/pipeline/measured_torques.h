@@ -78,6 +78,7 @@ class MeasuredTorques {
   std::array<Track, kMaxJoints> tracks_;
   std::array<std::optional<Torque>, kMaxJoints> torque_;
   Vibration::OilTorque model_;  ///< with weight and motion, at the last sample
+  JointVector read_;            ///< of that what pressures would show then [N m]
   StampNs sample_{};
 };
 
