@@ -157,8 +157,8 @@ HammerParameters writtenOver(HammerParameters drawing, const Calibration& c) {
   return drawing;
 }
 
-/// The blow's timing shows the crank's length over the distance of the pivots. Where that is measured, the file gets
-/// the length; where it is not, neither is moved.
+/// Readings show the crank's length with the distance of the pivots and the rocker's inertia. Where those are measured,
+/// the file gets the length; where they are not, none is moved.
 TEST(Calibration, ALengthThatShowsIsWritten) {
   HammerParameters drawing = test::mo100LinkageParameters();
   drawing.deviations = usualDeviations(drawing);

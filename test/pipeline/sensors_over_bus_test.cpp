@@ -22,8 +22,8 @@ accuracy::BoomErrors over(const OverBus& line, double rate, double count) {
                         "boom_stiffness: identified\nlevel: rocker\nhull_motion: imu\n", {true, true});
 }
 
-/// A hose lags the more the faster a mode is, which no delay does; a line through two readings that go on for as long
-/// again as they are apart says least.
+/// A hose takes the more of a swing the faster it is, which no delay does; and a line through two late readings goes on
+/// for longer than they are apart.
 TEST(SensorsOverBus, LeaveTheTorquesOfABoomThatIsIdentified) {
   for (const OverBus& line :
        {OverBus{6.2e-3, 1.75e-3, {-0.68, 1.55, -0.60}, 1.1, 0.0}, OverBus{5e-3, 1e-3, {-0.30, 0.90, -0.75}, 0.8, 0.0},
