@@ -100,6 +100,7 @@ double ModeIdentifier::findCrankLead() const noexcept {
 ModeIdentifier::Lag ModeIdentifier::lagOf(Clock clock, int mode) const noexcept {
   const double late = delayByCrank(clock);
   if (clock != Clock::kPressures || !imuSpeaks() || !(late > 0.0)) return {late, 1.0};
+  if (covariance_(delayAt(clock), delayAt(clock)) > square(kDelayKnown)) return {late, 1.0};  // a hose is bent by it
   const double omega = modeAt(mode).omega, turned = omega * late;
   return {std::atan(turned) / omega, 1.0 / std::sqrt(1.0 + square(turned))};
 }
