@@ -110,6 +110,21 @@ HammerParameters drawnFrom(const HammerParameters& drawing, std::mt19937_64& ran
   return p;
 }
 
+/// A machine's recording, calibrated by a hammer file of level linkage whose drive is right.
+struct ByFile {
+  explicit ByFile(const simulation::MachineSettings& machine)
+      : drive_inertia(machine.drive.inertia), samples(recorded(machine)) {}
+  Calibration operator()(HammerParameters file) const {
+    file.drive_inertia = drive_inertia;
+    const Mechanism mechanism = test::mechanismOf(file);
+    CalibrationBasis basis = basisOf(mechanism);
+    basis.level = Level::kLinkage;
+    return calibrate(samples, basis);
+  }
+  double drive_inertia;
+  std::vector<RecordedSample> samples;
+};
+
 /// What a drawing has wrong looks like a sensor that is wrong: it is in the deviations, and moves no key for certain.
 TEST(Calibration, ADrawingsErrorsAreNotTheSensors) {
   HammerParameters drawing = test::mo100LinkageParameters(), exact = drawing;
@@ -122,14 +137,7 @@ TEST(Calibration, ADrawingsErrorsAreNotTheSensors) {
     s.level = Level::kLinkage;
     s.hammer = drawnFrom(drawing, random);
     s.seed = 300 + static_cast<std::uint64_t>(i);
-    const std::vector<RecordedSample> samples = recorded(s);
-    const auto by = [&](HammerParameters file) {
-      file.drive_inertia = s.drive.inertia;
-      const Mechanism mechanism = test::mechanismOf(file);
-      CalibrationBasis basis = basisOf(mechanism);
-      basis.level = Level::kLinkage;
-      return calibrate(samples, basis);
-    };
+    const ByFile by{s};
     const Calibration c = by(drawing), sure = by(exact);
     ASSERT_EQ(c.problem, "");
     const auto off = [](const Calibration& found, const char* key, double truth) {
@@ -176,14 +184,7 @@ TEST(Calibration, ALengthThatShowsIsWritten) {
     s.level = Level::kLinkage;
     s.hammer = drawnFrom(measured, random);
     s.seed = 320 + static_cast<std::uint64_t>(i);
-    const std::vector<RecordedSample> samples = recorded(s);
-    const auto by = [&](HammerParameters file) {
-      file.drive_inertia = s.drive.inertia;
-      const Mechanism mechanism = test::mechanismOf(file);
-      CalibrationBasis basis = basisOf(mechanism);
-      basis.level = Level::kLinkage;
-      return calibrate(samples, basis);
-    };
+    const ByFile by{s};
     const Calibration c = by(measured), guessed = by(drawing);
     ASSERT_NE(find(c, "crank_length_m"), nullptr);
     const HammerParameters file = writtenOver(measured, c);

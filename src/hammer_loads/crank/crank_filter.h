@@ -18,9 +18,9 @@
 #include "hammer_loads/crank/speed_trust.h"
 #include "hammer_loads/crank/supply_law.h"
 #include "hammer_loads/crank/supply_roughness.h"
-#include "hammer_loads/estimation/timing_noise.h"
 #include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/crank/weighed_sample.h"
+#include "hammer_loads/estimation/timing_noise.h"
 
 namespace hammer_loads {
 
