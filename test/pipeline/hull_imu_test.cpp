@@ -57,6 +57,27 @@ TEST(HullImu, BelievesTimeRunningBackFromTheSecondReadingOn) {
   EXPECT_TRUE(imu.at(1002 * kMs));
 }
 
+/// 1 ns and 50 us apart: a difference of 0.01 rad/s is noise there, not 1e7 and 200 rad/s2.
+TEST(HullImu, NoTwoReadingsThatWaitedForABusMakeAnAcceleration) {
+  const auto turning = [](double rate) {
+    ImuReading reading = kUpright;
+    reading.rate.y() = rate;
+    return reading;
+  };
+  for (const StampNs apart : {StampNs{1}, StampNs{50'000}}) {
+    HullImu imu(atD());
+    imu.update(0, turning(0.0));
+    imu.update(apart, turning(0.01));
+    EXPECT_FALSE(imu.at(kMs)) << "one reading and its neighbour";
+    imu.update(kMs, turning(0.02));
+    imu.update(kMs + apart, turning(0.03));
+    ASSERT_TRUE(imu.at(kMs + apart));
+    EXPECT_NEAR(imu.at(kMs + apart)->acceleration, 20.0, 1.1);
+    imu.update(kMs + kMs / 5, turning(0.05));
+    EXPECT_NEAR(imu.at(kMs + kMs / 5)->acceleration, apart == 1 ? 100.0 : 133.0, 1.0) << "two at 5 kHz do";
+  }
+}
+
 TEST(HullImu, SaysWhenItIsStale) {
   HullImu imu(atD());
   for (StampNs t : {0 * kMs, 1 * kMs}) imu.update(t, kUpright);

@@ -10,9 +10,9 @@ struct OverBus {
   double oil, press_force;  // 0: the hull hangs free
 };
 
-accuracy::BoomErrors over(const OverBus& line, double rate, double count) {
+accuracy::BoomErrors over(const OverBus& line, double rate, double count, unsigned seed = 73) {
   simulation::MachineSettings machine = test::machineOnBoom(line.oil, 100.0, line.pose);
-  machine.seed = 73;
+  machine.seed = seed;
   if (line.press_force > 0.0) machine.on_boom.rock = {3e7, 3.0, line.press_force};
   machine.on_boom.pressures.hose_lag = line.hose;
   machine.on_boom.pressures.rate = rate;
@@ -44,6 +44,15 @@ TEST(SensorsOverBus, JitterOfStampsIsLearned) {
   EXPECT_LT(e.worstTorque(), 0.03);
   EXPECT_GT(e.covered(), 0.9);
   EXPECT_FALSE(e.warned_of_pressure_stamps);
+}
+
+/// Two of an IMU's readings that waited for one bus may be stamped as one right after the other: no hull turned between
+/// them, and none is put into the crank's load.
+TEST(SensorsOverBus, ReadingsThatCameTogetherTurnNoHull) {
+  const accuracy::BoomErrors e = over({0.0, 1.751e-3, {-0.324, 1.021, -0.904}, 1.08, 0.0}, 500.0, 0.0, 901);
+  EXPECT_LT(e.force_z.rms(), 0.01);
+  EXPECT_LT(e.worstTorque(), 0.05);
+  EXPECT_GT(e.covered(), 0.9);
 }
 
 }  // namespace

@@ -56,6 +56,11 @@ void HullMotionFilter::add(StampNs stamp, const ImuReading& reading) noexcept {
   waiting_[waits_++] = {stamp, reading};
 }
 
+std::ptrdiff_t HullMotionFilter::waiting(StampNs stamp) const noexcept {
+  return std::count_if(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waits_),
+                       [stamp](const Reading& reading) { return reading.stamp <= stamp; });
+}
+
 void HullMotionFilter::expect(const HullMobility::Mobility& mobility) noexcept {
   mobility_ = mobility;
   int row = 0;

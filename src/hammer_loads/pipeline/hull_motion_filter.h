@@ -40,7 +40,8 @@ class HullMotionFilter {
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
   /// Known from the second reading with a known load on, until the last one is max_age old.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
-  std::size_t waiting() const noexcept { return waits_; }  ///< readings that no crank sample has followed yet
+  /// Readings up to a stamp that no crank sample has followed yet. Stamps that wait for a bus may be later.
+  std::ptrdiff_t waiting(StampNs stamp) const noexcept;
   /// Of the last reading used [ns].
   StampNs last() const noexcept { return last_.stamp; }
 

@@ -67,9 +67,9 @@ const HullMotion& HullState::predict(StampNs stamp) noexcept {
 /// By the filter, unless a slow crank has left it behind: then by the newest readings alone.
 std::optional<KnownHullMotion> HullState::measured(StampNs stamp) const noexcept {
   if (imu_trust_.isLost()) return std::nullopt;
-  constexpr std::size_t kLeftBehind = 3;  // readings
+  constexpr std::ptrdiff_t kLeftBehind = 3;  // readings
   // Guard: HullBehindASlowCrank.MovesAsTheLastReadingSays of kLeftBehind
-  if (filter_.waiting() < kLeftBehind)
+  if (filter_.waiting(stamp) < kLeftBehind)
     if (const std::optional<KnownHullMotion> known = filter_.at(stamp)) return known;
   const std::optional<HullMotion> read = imu_.at(stamp);
   if (!read) return std::nullopt;
