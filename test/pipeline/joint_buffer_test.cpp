@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "boom/booms.h"
@@ -48,6 +49,19 @@ TEST_F(Joints, AreHeldBeyondTheNewestStateAndLinearBetweenStates) {
   EXPECT_TRUE(between.position.isApprox(test::joints({0.1, -0.375, 1.225, -0.825}), 1e-15));
   EXPECT_TRUE(between.velocity.isApprox(test::joints({0.0, 0.2, 0.25, 0.25}), 1e-15));
   EXPECT_TRUE(between.acceleration.isApprox(test::joints({0.0, 20.0, 10.0, -10.0}), 1e-12));
+}
+
+/// By two that republish one joint state, or out of one buffer: a count of 1 mrad in 10 us is no 100 rad/s.
+TEST_F(Joints, ThatCameTogetherMoveAsBefore) {
+  for (int i = 0; i < 5; ++i) {
+    const double angle = 0.01 * i;
+    buffer_.update(20 * i * kMs, kFour, {0.0, angle, 1.0, -0.8}, {});
+    buffer_.update(20 * i * kMs + kMs / 100, kFour, {0.0, angle + 1e-3, 1.0, -0.8}, {});
+  }
+  const JointMotion motion = at(80 * kMs + kMs / 100);
+  EXPECT_NEAR(motion.position[1], 0.041, 1e-12);
+  EXPECT_NEAR(motion.velocity[1], 0.45, 0.01) << "over the 20 ms before";
+  EXPECT_LT(std::abs(motion.acceleration[1]), 5.0);
 }
 
 TEST_F(Joints, MayComeInPartsInAnyOrderAmongOthers) {

@@ -70,6 +70,18 @@ TEST_F(MeasuredBoom, TwoHundredReadingsSayHowFarOneIsOff) {
   expectRoundly(torque().deviation, 1e4 / std::sqrt(200.0));
 }
 
+/// Of an even line, on whose second reading noise of 100 N m came by 1 ns later: no line goes through these two.
+TEST_F(MeasuredBoom, ReadingsThatCameTogetherAreNoLine) {
+  for (int i = 0; i < 100; ++i) read(10.0 * i);
+  read(1100.0, 1e-9);
+  sample(0.001);
+  EXPECT_NEAR(torque().value, 1000.0, 2.0);
+  EXPECT_LT(torque().deviation, 10.0);
+  for (int i = 100; i < 150; ++i) read(10.0 * i);
+  EXPECT_NEAR(torque().value, 1490.0, 2.0);
+  EXPECT_LT(torque().deviation, 10.0);
+}
+
 TEST_F(MeasuredBoom, OverATenthOfASecondNothingWasForetold) {
   for (const double gap : {0.08, 0.125}) {
     measured_ = {};

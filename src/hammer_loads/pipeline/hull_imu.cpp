@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/pipeline/together.h"
+
 namespace hammer_loads {
 namespace {
 
 constexpr double kLargestForce = 2000.0;  // [m/s2]: 200 g, some twenty times a hull's under the MO-100's full pulse
 constexpr double kLargestRate = 100.0;    // [rad/s]
 // Limit: SensorBounds.OfImuReadings of kLargestForce, kLargestRate
-constexpr double kClosest = 1e-4;  // [s]: no unit is read more often; what comes closer waited for a bus
-// Guard: HullImu.NoTwoReadingsThatWaitedForABusMakeAnAcceleration of kClosest
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::optional<ImuRefusal> HullImu::update(StampNs stamp, const ImuReading& readi
     if (!force || !rate) return ImuRefusal::kJump;
   }
   const bool first = readings_ == 0;
-  if (first || seconds(stamp - now_.stamp) > kClosest) before_ = now_, readings_ = std::min(readings_ + 1, 2);
+  if (first || !cameTogether(now_.stamp, stamp)) before_ = now_, readings_ = std::min(readings_ + 1, 2);
   now_ = next;
   if (first) speed_.forget();
   speed_.add(stamp, now_.force.z(), now_.rate.y() * settings_.position.x() - now_.rate.x() * settings_.position.y(),

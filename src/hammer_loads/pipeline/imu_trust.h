@@ -7,6 +7,7 @@
 
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/pipeline/together.h"
 #include "hammer_loads/pipeline/trust_times.h"
 #include "hammer_loads/util/square.h"
 
@@ -29,8 +30,7 @@ class ImuTrust {
     mean_.add(force, lasts);
     const Eigen::Vector3d off = force - mean();
     power_.add(Eigen::Vector3d(square(off.x()), square(off.z()), square(rate.y())), lasts);
-    turning_.add(square((rate.y() - last_rate_) / step), lasts);
-    last_rate_ = rate.y();
+    if (step >= kSameInstant) turning_.add(square((rate.y() - last_rate_) / step), lasts), last_rate_ = rate.y();
     rate_square_.add(rate.squaredNorm(), lasts);
     off_for_ = is_off_ ? std::min(off_for_ + lasts, kOffFor) : 0.0;
   }

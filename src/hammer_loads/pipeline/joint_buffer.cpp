@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/pipeline/together.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
 
@@ -91,6 +92,7 @@ void JointBuffer::add(Track& track, StampNs stamp, double position, std::optiona
   if (track.count > 0) {
     const State& last = track.back(0);
     const double step = seconds(stamp - last.stamp);
+    if (cameTogether(last.stamp, stamp)) return replace(track, next, velocity.has_value());
     if (!velocity) {
       next.velocity = track.difference(last.position, position) / step;
       next.velocity_age = 0.5 * step;
@@ -101,6 +103,14 @@ void JointBuffer::add(Track& track, StampNs stamp, double position, std::optiona
   }
   track.states[track.count % kKept] = next;
   ++track.count;
+}
+
+/// The last one, by one that came with it: over so short a time no velocity and no acceleration is found.
+void JointBuffer::replace(Track& track, State next, bool has_velocity) noexcept {
+  State& last = track.states[(track.count - 1) % kKept];
+  if (!has_velocity) next.velocity = last.velocity, next.velocity_age = last.velocity_age;
+  next.acceleration = last.acceleration;
+  last = next;
 }
 
 JointBuffer::Bracket JointBuffer::around(const Track& track, StampNs stamp) noexcept {

@@ -90,6 +90,7 @@ class JointBuffer {
   bool isInOrder(Track& track, StampNs stamp) noexcept;
   bool jumps(Track& track, StampNs stamp, double position) noexcept;
   void add(Track& track, StampNs stamp, double position, std::optional<double> velocity) noexcept;
+  static void replace(Track& track, State next, bool has_velocity) noexcept;
   static Bracket around(const Track& track, StampNs stamp) noexcept;
   std::optional<JointFault> fault(int joint, const Bracket& bracket) const noexcept;
 

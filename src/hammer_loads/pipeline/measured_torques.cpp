@@ -5,6 +5,7 @@
 
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/pipeline/overdue.h"
+#include "hammer_loads/pipeline/together.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -59,6 +60,7 @@ void MeasuredTorques::followRest(Track& track, double rest) noexcept {
 /// model: at the reading, after it was taken and as it was said before.
 void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept {
   const double step = seconds(stamp - track.stamp);
+  if (track.readings > 0 && step > 0.0 && cameTogether(track.stamp, stamp)) return;
   if (track.readings > 0 && step > 0.0) {
     const double change = torque - track.torque;
     track.oil_square.add(square(change - (model_before - track.model)));
