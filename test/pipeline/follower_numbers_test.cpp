@@ -143,7 +143,7 @@ TEST(FollowerNumbers, ASignalsComplianceWandersAsThePoseChanges) {
   const double before = square(quiet.signal.complianceDeviation()[1]);
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
   for (int i = 0; i < 100; ++i) quiet.signal.advance({1.0, none, none, none, none});
-  expectRoughly(std::sqrt((square(quiet.signal.complianceDeviation()[1]) - before) / 100.0), 0.02 * 5e-3);
+  expectRoughly(std::sqrt((square(quiet.signal.complianceDeviation()[1]) - before) / 100.0), 0.01 * 5e-3);
 }
 
 /// Its impulse is known when the crank has turned on.

@@ -24,7 +24,7 @@ constexpr double kBlowPart = 0.3;  // of a blow's impulse, which is known when t
 constexpr double kMemoryOfReadings = 1000.0;  // readings
 // Guard: FollowerNumbers.ASignalsNoiseIsThatOfAThousandReadings of kMemoryOfReadings
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
-constexpr double kComplianceWalk = 0.02;         // of the first guess's deviation in a second: a pose that changes
+constexpr double kComplianceWalk = 0.01;         // of the first guess's deviation in a second: a pose that changes
 // Guard: FollowerNumbers.ASignalsComplianceWandersAsThePoseChanges of kComplianceWalk
 // Of a compliance by a description, whose masses are good to 3 % and centres to 2 cm.
 constexpr double kDescribed = 0.05;
@@ -63,16 +63,14 @@ HAMMER_LOADS_INLINE double signalIn(const DrivenSignal::State& x, const Eigen::V
 }  // namespace
 
 DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settings) {
-  Eigen::Matrix<double, 9, 1> guess;
-  guess << settings.compliance, settings.stiffness, settings.damping;
-  guess = (guess / settings.noise).cwiseAbs2();
-  walk_ = square(kComplianceWalk) * guess;
+  prior_ << settings.compliance, settings.stiffness, settings.damping;
+  prior_ = prior_.cwiseAbs2().eval();
   for (std::size_t i = 0; i < kCandidates; ++i) {
     Candidate& c = candidates_[i];
     c.walk = settings.reads == Reads::kItself ? kWalks[i] : kWalksOfIntegral[i];
     c.x.setZero(), c.P.setZero();
     c.variance = square(settings.noise);
-    c.P.diagonal().tail<9>() = guess;
+    c.P.diagonal().tail<9>() = prior_ / c.variance;
   }
   best_ = kCandidates / 2;
 }
@@ -89,6 +87,7 @@ void DrivenSignal::expect(const Eigen::Vector3d& compliance, const Eigen::Vector
     c.P.diagonal().segment<3>(kCompliance) += variance / c.variance;
     c.x.segment<3>(kCompliance) += change;
   }
+  prior_.head<3>() = (first ? variance : prior_.head<3>() + variance).eval();
   expected_ = compliance;
 }
 
@@ -136,7 +135,7 @@ void DrivenSignal::carry(const Step& step, double slope_step, double walk, doubl
   const auto both = [&](int i, int j, double value) { P(i, j) += value, P(j, i) += value; };
   both(kIntegral, kSmooth, q * hh * h / 8.0), both(kIntegral, kSlope, q * hh / 6.0), both(kSmooth, kSlope, q * h / 2.0);
   P(kIntegral, kIntegral) += struck / unit;
-  P.diagonal().tail<9>() += h * walk_;
+  P.diagonal().tail<9>() += h * square(kComplianceWalk) / unit * prior_;
 }
 
 void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Doubt& doubt, bool counts,
@@ -154,6 +153,16 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
   const double size = std::min(square(off) / S, kFarOff * c.variance);
   c.variance = std::max(c.variance + share * (size - c.variance), square(kLeastNoise * settings_.noise));
   c.log_spread += share * (std::log(S) - c.log_spread);
+  keepPrior(c);
+}
+
+/// More noise makes a hull's compliance no less known than before any reading.
+void DrivenSignal::keepPrior(Candidate& c) const noexcept {
+  const Eigen::Array3d part =
+      (prior_.head<3>().array() / (c.variance * c.P.diagonal().segment<3>(kCompliance).array())).min(1.0).sqrt();
+  if ((part == 1.0).all()) return;
+  c.P.middleRows<3>(kCompliance).array().colwise() *= part;
+  c.P.middleCols<3>(kCompliance).array().rowwise() *= part.transpose();
 }
 
 void DrivenSignal::advance(const Step& step) noexcept {

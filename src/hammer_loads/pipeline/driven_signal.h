@@ -110,6 +110,7 @@ class DrivenSignal {
     double score() const noexcept;
   };
   static constexpr std::size_t kCandidates = 4;
+  using Prior = Eigen::Matrix<double, 9, 1>;
 
   void begin(double reading, const Eigen::Vector3d& load) noexcept;
   void carry(const Step& step, double slope_step, double walk, double unit, State& x, Covariance& P) const noexcept;
@@ -117,6 +118,7 @@ class DrivenSignal {
               const Eigen::Vector3d& lasting) const noexcept;
   void update(double reading, const Eigen::Vector3d& load, const Doubt& doubt, bool counts,
               Candidate& candidate) noexcept;
+  void keepPrior(Candidate& candidate) const noexcept;
   double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: what a reading is of that
   double walkOf(const Candidate& candidate) const noexcept;
   const Candidate& best() const noexcept { return candidates_[best_]; }
@@ -125,8 +127,8 @@ class DrivenSignal {
   std::array<Candidate, kCandidates> candidates_;
   std::size_t best_{};
   Eigen::Vector3d expected_ = Eigen::Vector3d::Zero();  ///< compliances, by the last expect()
-  Eigen::Matrix<double, 9, 1> walk_;                    ///< of compliances and stiffnesses, variance in a second
-  double interval_{};                                   ///< mean, of the readings [s]
+  Prior prior_;        ///< variances of compliances, stiffnesses and dampings before any reading
+  double interval_{};  ///< mean, of the readings [s]
   double counted_{};
   double steady_{}, steady_time_{};  ///< mean of the signal that is read; over [s]
   bool begun_{};
