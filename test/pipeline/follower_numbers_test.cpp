@@ -113,19 +113,35 @@ TEST_F(VibratingBoom, NoOperatorSwingsItFasterThanARadianASecond) {
 class QuietSignal {
  public:
   DrivenSignal signal{{DrivenSignal::Reads::kItself, 0.1, {5e-3, 5e-3, 5e-2}, {4e3, 4e3, 2e3}, {10.0, 10.0, 5.0}}};
-  void run(int readings, double noise, double compliance = 0.0) {
+  void run(int readings, double noise, double compliance = 0.0, bool works = true) {
     for (int i = 0; i < readings; ++i) {
       signal.advance({kFollowStep, kFollowStep * load_, none_, none_, none_});
       load_ = Eigen::Vector3d(0.0, 1000.0 * normal_(random_), 0.0);
-      signal.read(noise * normal_(random_) + compliance * load_[1], kFollowStep, load_, {}, true);
+      signal.read(noise * normal_(random_) + compliance * load_[1], kFollowStep, load_, {}, works);
     }
   }
+  double deviation() const { return std::sqrt(DrivenSignal::Future(signal).at(none_).signal_variance); }
 
  private:
   std::mt19937_64 random_{3};
   std::normal_distribution<> normal_;
   Eigen::Vector3d none_ = Eigen::Vector3d::Zero(), load_ = none_;
 };
+
+/// A hull that shakes faster than it is read: what its readings miss at work is its own but for their noise at rest,
+/// or, where no rest was seen, for three times that of a usual unit.
+TEST(FollowerNumbers, WhatReadingsMissAtWorkIsMotionBeyondTheirNoise) {
+  const auto after = [](double at_rest, double at_work) {
+    QuietSignal quiet;
+    if (at_rest > 0.0) quiet.run(8000, at_rest, 0.0, false);
+    quiet.run(8000, at_work);
+    return quiet.deviation();
+  };
+  for (const double noise : {0.8 * 0.3, 0.3}) EXPECT_LT(after(0.0, noise), 0.5 * noise) << "smoothed";
+  expectRoughly(after(0.0, 1.5 * 0.3), std::sqrt(square(1.5) - 1.0) * 0.3);
+  expectRoughly(after(0.15, 0.3), std::sqrt(square(0.3) - square(0.15)));
+  EXPECT_LT(after(0.3, 0.3), 0.6 * 0.3);
+}
 
 TEST(FollowerNumbers, ASignalsNoiseIsThatOfAThousandReadings) {
   QuietSignal quiet;

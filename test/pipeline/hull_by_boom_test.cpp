@@ -1,4 +1,5 @@
-// The hull's motion from the vibration of its boom, without an IMU: how far the wrench is said to be off by it.
+// The hull's motion where no IMU follows it, by the vibration of its boom or by readings that come too rarely: how far
+// the wrench is said to be off by it.
 #include "pipeline/on_boom_session.h"
 
 namespace hammer_loads {
@@ -36,6 +37,23 @@ TEST(HullByBoom, OnRockItIsOffByMoreAndSaysSo) {
     covered += e.leastWrenchCovered() / rocks.size();
   }
   EXPECT_GT(covered, 0.8);
+}
+
+/// Rock shakes a hull at 25 to 60 Hz, which 100 readings a second do not follow; what the hull's mass is they do not
+/// show either, and no force of several times the peak is made of it.
+TEST(HullByBoom, AnImuThatIsReadTooRarelyOnRockSaysSo) {
+  for (const double oil : {0.85, 1.0, 1.2}) {
+    for (const double rate : {100.0, 200.0}) {
+      simulation::MachineSettings machine = test::machineOnBoom(oil, 100.0, {-0.35, 1.2, -0.9});
+      machine.on_boom.rock = {1.5e7 + 2e7 * oil, 3.0, 4e3};
+      machine.on_boom.imu.rate = rate;
+      const Settings settings = test::withExactHammer(test::settingsWith("level: rocker\nhull_motion: imu\n"));
+      const BoomErrors e = accuracy::boomErrors(simulation::recordSession(machine), settings.mechanism,
+                                                settings.pipeline, *settings.boom, {true, false}, 4.0, 8.0);
+      EXPECT_LT(e.worstForce(), 0.5) << rate;
+      EXPECT_GT(e.leastWrenchCovered(), 0.85) << rate;
+    }
+  }
 }
 
 }  // namespace

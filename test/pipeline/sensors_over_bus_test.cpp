@@ -33,6 +33,7 @@ TEST(SensorsOverBus, LeaveTheTorquesOfABoomThatIsIdentified) {
     const accuracy::BoomErrors e = over(line, 100.0, 39e3);
     EXPECT_LT(e.worstTorque(), 0.12);
     EXPECT_GT(e.covered(), 0.85);
+    EXPECT_GT(e.leastWrenchCovered(), 0.85) << "by an IMU over the bus";
     EXPECT_TRUE(e.warned_of_pressure_stamps);
     EXPECT_FALSE(e.warned_of_rock);
   }

@@ -23,6 +23,8 @@ constexpr double kBlowPart = 0.3;  // of a blow's impulse, which is known when t
 // Guard: FollowerNumbers.ABlowsImpulseIsDoubtedByAThird of kBlowPart
 constexpr double kMemoryOfReadings = 1000.0;  // readings
 // Guard: FollowerNumbers.ASignalsNoiseIsThatOfAThousandReadings of kMemoryOfReadings
+constexpr double kNoisiest = 3.0;  // times the first guess: a unit whose noise at rest was not seen
+// Guard: FollowerNumbers.WhatReadingsMissAtWorkIsMotionBeyondTheirNoise of kNoisiest
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
 constexpr double kComplianceWalk = 0.01;         // of the first guess's deviation in a second: a pose that changes
 // Guard: FollowerNumbers.ASignalsComplianceWandersAsThePoseChanges of kComplianceWalk
@@ -69,7 +71,7 @@ DrivenSignal::DrivenSignal(const Settings& settings) noexcept : settings_(settin
     Candidate& c = candidates_[i];
     c.walk = settings.reads == Reads::kItself ? kWalks[i] : kWalksOfIntegral[i];
     c.x.setZero(), c.P.setZero();
-    c.variance = square(settings.noise);
+    c.variance = square(settings.noise), c.quiet = square(kNoisiest * settings.noise);
     c.P.diagonal().tail<9>() = prior_ / c.variance;
   }
   best_ = kCandidates / 2;
@@ -148,10 +150,14 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
   const State gain = PH / std::sqrt(S);  // products of its elements keep the covariance symmetric to the bit
   c.x += gain * (off / std::sqrt(S));
   c.P -= gain.lazyProduct(gain.transpose());
-  if (!counts) return;
+  const double size = square(off) / S;
+  if (!counts) {
+    c.quiet += (std::min(size, kFarOff * c.quiet) - c.quiet) / kMemoryOfReadings;
+    return;
+  }
   const double share = 1.0 / std::min(counted_ + 10.0, kMemoryOfReadings);
-  const double size = std::min(square(off) / S, kFarOff * c.variance);
-  c.variance = std::max(c.variance + share * (size - c.variance), square(kLeastNoise * settings_.noise));
+  c.variance = std::max(c.variance + share * (std::min(size, kFarOff * c.variance) - c.variance),
+                        square(kLeastNoise * settings_.noise));
   c.log_spread += share * (std::log(S) - c.log_spread);
   keepPrior(c);
 }
@@ -192,9 +198,11 @@ void DrivenSignal::Future::advance(const Step& step) noexcept {
 
 DrivenSignal::Value DrivenSignal::Future::at(const Eigen::Vector3d& load) const noexcept {
   const State PH = signalsOf(P_, load);
-  const double unit = signal_.best().variance;
-  return {signalIn(x_, load), x_[kIntegral], unit * signalIn(PH, load), unit * PH[kIntegral],
-          unit * P_(kIntegral, kIntegral)};
+  const double unit = signal_.best().variance, moved = signal_.unfollowed(), interval = signal_.interval_;
+  const bool itself = signal_.settings_.reads == Reads::kItself;
+  const double of_signal = itself ? moved : interval > 0.0 ? moved / square(interval) : 0.0;
+  return {signalIn(x_, load), x_[kIntegral], unit * signalIn(PH, load) + of_signal, unit * PH[kIntegral],
+          unit * P_(kIntegral, kIntegral) + (itself ? 0.0 : moved)};
 }
 
 DrivenSignal::Swing DrivenSignal::swing(const State& x, double h, const Eigen::Vector3d& impulse,

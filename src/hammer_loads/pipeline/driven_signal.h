@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
+
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -107,6 +110,7 @@ class DrivenSignal {
     State x;
     Covariance P;
     double variance{}, log_spread{};  ///< of a reading; mean logarithm of what it was foretold with
+    double quiet{};                   ///< variance of a reading at rest
     double score() const noexcept;
   };
   static constexpr std::size_t kCandidates = 4;
@@ -122,6 +126,10 @@ class DrivenSignal {
   double readOf(const State& x, const Eigen::Vector3d& load) const noexcept;  ///< H x: what a reading is of that
   double walkOf(const Candidate& candidate) const noexcept;
   const Candidate& best() const noexcept { return candidates_[best_]; }
+  /// Variance of what readings show at work beside their noise at rest: motion that is too fast for them.
+  double unfollowed() const noexcept {
+    return std::max(0.0, best().variance - std::max(best().quiet, square(settings_.noise)));
+  }
 
   Settings settings_;
   std::array<Candidate, kCandidates> candidates_;
