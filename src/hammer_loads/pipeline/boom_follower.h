@@ -99,8 +99,8 @@ class BoomFollower {
   const BoomState& sample(const BoomSample& sample, const WrenchHistory& step) noexcept;
   /// Through a crank sample that gives no loads: the boom swings on, without pieces as if free.
   void swing(StampNs stamp, const WrenchHistory& step) noexcept;
-  /// Of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as far as sensors leave it in
-  /// doubt; zero where they identify nothing, and of a boom taken as rigid.
+  /// Of the tip's acceleration by vibration along x and z [m/s2] and about y [rad/s2], as far as sensors or, where they
+  /// identify nothing, the boom file leave it in doubt; zero of a boom taken as rigid.
   Eigen::Matrix3d tipCovariance() const noexcept;
   /// How the operator moves the tip at the last blow, vibration left out.
   TipVelocity drivenTip() const noexcept;
@@ -154,6 +154,7 @@ class BoomFollower {
   void findLoads(const BoomSample& sample, double step) noexcept;
   void forgetWrongReadings(bool imu_lost) noexcept;
   void observe(const BoomSample& sample, double step) noexcept;
+  Eigen::Matrix3d tipCovarianceAsGiven() const noexcept;
   void weighUnexplained(const ImuReading& reading, double step) noexcept;
   WrenchSpread spreadWithRock(const WrenchSpread& of_crank) const noexcept;
   bool pressuresCount() const noexcept { return pressures_.accepted() > 0 && !trust_.isLost(); }

@@ -27,12 +27,30 @@ void addVariances(const List& others, std::size_t count, List& deviations) noexc
 Eigen::Matrix3d BoomFollower::tipCovariance() const noexcept {
   const BoomModes& modes = boom_.vibration().modes();
   const std::optional<ModeIdentifier>& identifier = boom_.vibration().identifier();
-  if (!identifier || modes.count == 0 || !state_.choice.compliant) return Eigen::Matrix3d::Zero();
+  if (modes.count == 0 || !state_.choice.compliant) return Eigen::Matrix3d::Zero();
+  if (!spread_.waits()) return tipCovarianceAsGiven();
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints> by_mode(3, modes.count);
   for (int row = 0; row < 3; ++row)
     by_mode.row(row) = modalForce(modes, boom_.tipJacobian().row(2 * row).transpose()).transpose();
   const double consistency = std::max(1.0, identifier->oilSurprise());
   return consistency * (by_mode * identifier->accelerationCovariance() * by_mode.transpose());
+}
+
+/// By the same hammer on oil that is stiffer or softer, more damped, and by its load's errors.
+Eigen::Matrix3d BoomFollower::tipCovarianceAsGiven() const noexcept {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  const JointVector vibration = boom_.vibration().acceleration();
+  const auto ofTip = [&](const JointVector& joints) {
+    const Vector6 tip = boom_.tipJacobian() * joints;
+    return Eigen::Vector3d(tip[0], tip[2], tip[4]);
+  };
+  const auto ofRun = [&](int run) { return ofTip(spread_.accelerationDifference(run, vibration)); };
+  const auto add = [&](const Eigen::Vector3d& error) { covariance += error * error.transpose(); };
+  const Eigen::Vector3d stiffer = ofRun(VibrationSpread::kStiffer), softer = ofRun(VibrationSpread::kSofter);
+  add(stiffer.head<2>().squaredNorm() > softer.head<2>().squaredNorm() ? stiffer : softer);
+  for (int run = VibrationSpread::kDamped; run < spread_.runs(); ++run) add(ofRun(run));
+  for (int k = 0; spread_.swings() && k < spread_.modes(); ++k) add(ofTip(spread_.accelerationOfSwing(k)));
+  return covariance;
 }
 
 /// The part of the hull's acceleration that hammer and oil as given do not explain is a force on its mass.

@@ -102,6 +102,10 @@ class DrivenSignal {
   double noise() const noexcept;  ///< of a reading, as learned
   Eigen::Vector3d compliance() const noexcept { return best().x.segment<3>(3); }
   Eigen::Vector3d complianceDeviation() const noexcept;
+  /// Of the signal, by what loads of these mean squares do at once, as far as the hull's mass is known.
+  double yielding(const Eigen::Vector3d& load_square) const noexcept {
+    return load_square.dot(compliance().cwiseAbs2() + complianceDeviation().cwiseAbs2());
+  }
 
  private:
   /// The covariance is in units of the noise's variance.

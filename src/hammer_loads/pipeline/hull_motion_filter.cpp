@@ -11,6 +11,8 @@ namespace {
 
 // First guesses of a reading's noise, a usual MEMS unit's; learned.
 constexpr double kForceNoise = 0.1, kRateNoise = 0.003;  // [m/s2], [rad/s]
+constexpr double kSwings = 2.0;  // times what a load does to it at once: a hull on oil, whose modes blows excite
+// Guard: HullByBoom.AnImuThatNeverSpeaksLeavesTheHullsMotionInDoubt of kSwings
 // Standard deviation of what such a unit adds to all readings alike, which no filter shows.
 constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
 // Guard: FollowerNumbers.AnImusOffsetsAreInTheHullsMotion of kForceOffset, kRateOffset
@@ -83,6 +85,7 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
     path_.add(sample, step, path_.known() ? beside_ : beside, beside);
   }
   beside_ = beside;
+  if (step.length() > 0.0) load_square_.add(path_.at(sample).load.cwiseAbs2(), step.length());
   std::size_t taken = 0;
   while (taken < waits_ && waiting_[taken].stamp <= sample) {
     if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken]);
@@ -91,6 +94,11 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
   std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
             waiting_.begin() + static_cast<std::ptrdiff_t>(waits_), waiting_.begin());
   waits_ -= taken;
+}
+
+HullMotionCovariance HullMotionFilter::unread() const noexcept {
+  const Eigen::Vector3d square = hammer_loads::square(kSwings) * load_square_.mean();
+  return Eigen::Vector4d(x_.yielding(square), z_.yielding(square), 0.0, turning_.yielding(square)).asDiagonal();
 }
 
 /// At rest readings show noise alone.

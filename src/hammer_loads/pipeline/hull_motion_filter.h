@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <optional>
 
+#include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/driven_signal.h"
 #include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/hull_mobility.h"
+#include "hammer_loads/pipeline/trust_times.h"
 #include "hammer_loads/pipeline/wrench_path.h"
 
 namespace hammer_loads {
@@ -42,6 +44,9 @@ class HullMotionFilter {
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
   /// Readings up to a stamp that no crank sample has followed yet. Stamps that wait for a bus may be later.
   std::ptrdiff_t waiting(StampNs stamp) const noexcept;
+  /// Of a hull whose motion is not read, about its weight: twice what the load of the last 2 s does to it at once, as
+  /// far as its mass is known. What it turns at is next to nothing.
+  HullMotionCovariance unread() const noexcept;
   /// Of the last reading used [ns].
   StampNs last() const noexcept { return last_.stamp; }
 
@@ -68,6 +73,7 @@ class HullMotionFilter {
   Reading last_;
   WrenchPath::Instant at_last_;
   HullWrench beside_;
+  RunningMean<Eigen::Vector3d> load_square_{trust::kMemory, Eigen::Vector3d::Zero()};  ///< of the samples
   int readings_{};
   double greatest_load_{};
 };

@@ -98,8 +98,9 @@ void HullState::forgetReading(double part) noexcept {
   now_.covariance = square(part) * now_.covariance + square(1.0 - part) * usualMotion();
 }
 
-/// By which weight alone is off as a rule: what the hull has moved by.
+/// By which weight alone is off as a rule: what the hull has moved by, or would under its load where no IMU ever spoke.
 HullMotionCovariance HullState::usualMotion() const noexcept {
+  if (!imu_trust_.isKnown()) return filter_.unread();
   return imu_trust_.power(weight_.gravity()).asDiagonal();
 }
 

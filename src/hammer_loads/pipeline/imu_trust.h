@@ -36,7 +36,7 @@ class ImuTrust {
   }
   /// weight: by the joint angles, in the plane of the hull.
   void judge(const Gravity& weight) noexcept {
-    if (mean_.count() < trust::kLeastTime) return;
+    if (!isKnown()) return;
     const double off_square = square(mean().x() + weight.x) + square(mean().z() + weight.z);
     const double limit = (is_lost_ ? kBack : 1.0) * kMostPart;
     is_off_ = off_square > square(limit) * (square(weight.x) + square(weight.z)) || turnsTooFast();
@@ -49,6 +49,7 @@ class ImuTrust {
     return {power.x() + square(mean().x() + weight.x), power.y() + square(mean().z() + weight.z), power.z(),
             turning_.mean()};
   }
+  bool isKnown() const noexcept { return mean_.count() >= trust::kLeastTime; }  ///< readings have come for long enough
   bool isLost() const noexcept { return is_lost_; }
   bool turnsTooFast() const noexcept { return rate_square_.mean() > square(kMostRate); }
   bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
