@@ -95,7 +95,7 @@ TEST(StampSequence, BurstsOfACrankThatRestedGetTheirInstantsBack) {
   double worst = 0.0;
   for (int i = 0; i < 10000; ++i) {
     const bool rests = i % 5000 < 2000, same = i % 10 != 0;
-    const Repeats repeats = rests && same && i > 0 ? Repeats::kPerhapsAtRest : Repeats::kNo;
+    const Repeats repeats = rests && same && i > 0 ? Repeats::kAtRest : Repeats::kNo;
     const StampSequence::Place place = sequence.place(kStart + (i / 10 * 10 + 9) * kMs, repeats);
     const bool is_known = i % 5000 >= 2300;
     if (!is_known) continue;
@@ -130,7 +130,7 @@ TEST(StampSequence, MessagesThatComeTwiceAreNoBursts) {
     const StampSequence::Place place = sequence.place(kStart + i * kMs, Repeats::kNo);
     ASSERT_FALSE(place.refitted);
     if (i % 3 == 0) {
-      ASSERT_EQ(sequence.place(kStart + i * kMs, Repeats::kPerhapsAtRest).kind, Kind::kDuplicate);
+      ASSERT_EQ(sequence.place(kStart + i * kMs, Repeats::kWithinCount).kind, Kind::kDuplicate);
     }
   }
   EXPECT_FALSE(sequence.isSteady());
@@ -188,7 +188,7 @@ TEST(StampSequence, KnowsDuplicatesLateOnesAndTimeThatRanBack) {
   EXPECT_EQ(sequence.place(kStart, Repeats::kNo).kind, Kind::kRestart);
   for (int i = 1; i < 200; ++i) EXPECT_EQ(sequence.place(kStart + i * kMs, Repeats::kNo).kind, Kind::kPlaced);
   const std::int64_t last = kStart + 199 * kMs;
-  EXPECT_EQ(sequence.place(last, Repeats::kPerhapsAtRest).kind, Kind::kDuplicate);
+  EXPECT_EQ(sequence.place(last, Repeats::kWithinCount).kind, Kind::kDuplicate);
   const StampSequence::Place late = sequence.place(last - 3 * kMs, Repeats::kNo);
   EXPECT_EQ(late.kind, Kind::kPlaced);
   EXPECT_TRUE(late.refitted);

@@ -295,5 +295,36 @@ TEST(CrankTrust, TwoHalfTurnsInARowContradictOneEndsIt) {
   EXPECT_EQ(consistency.mean(), 0.5) << "no sample, no half turn";
 }
 
+/// Messages of bursts or of whole milliseconds, some of them twice, without speeds: a reading that a crank that turns
+/// cannot give again is no new one, and one at rest teaches no line of stamps.
+TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
+  for (const bool bursts : {true, false}) {
+    simulation::MachineSettings machine = simulation::workingMo100();
+    machine.duration = 8.0;
+    machine.drive.stop_time = 20.0;
+    machine.crank.drop_outs.clear();
+    machine.crank.speed = false;
+    machine.crank.duplicate_share = 0.03;
+    if (bursts)
+      machine.crank.burst = 3;
+    else
+      machine.crank.stamp_step = 1e-3;
+    const simulation::Session session = simulation::recordSession(machine);
+    test::Player player(test::settingsWith("{}"), false, session);
+    std::size_t i = 0, taken = 0, samples = 0;
+    double worst = 0.0;
+    player.playTo(8.0, [&](double time, const SampleResult& result) {
+      const double instant = session.taken[i++];
+      if (time < 3.0) return;
+      ++samples;
+      if (result.refusal) return;
+      ++taken;
+      worst = std::max(worst, std::abs(seconds(result.stamp - machine.start_stamp) - instant));
+    });
+    EXPECT_LT(worst, 1.1e-3) << bursts << " [s]";
+    EXPECT_GT(static_cast<double>(taken), 0.95 * static_cast<double>(samples)) << bursts;
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hammer_loads {
 namespace {
@@ -31,9 +32,10 @@ StampSequence::Place StampSequence::begin(std::int64_t header) noexcept {
 
 StampSequence::Place StampSequence::place(std::int64_t header, Repeats repeats) noexcept {
   if (!header_) return begin(header);
-  const bool may_be_burst = repeats == Repeats::kPerhapsAtRest;
+  const bool may_be_burst = repeats == Repeats::kWithinCount || (repeats == Repeats::kAtRest && !doubled_);
   if (header == *header_ && repeats != Repeats::kNo && !(may_be_burst && irregularity_ > kMany)) {
-    uncounted_ = uncounted_ || may_be_burst;
+    uncounted_ = uncounted_ || repeats != Repeats::kAtWork;
+    if (repeats == Repeats::kAtWork && !std::exchange(doubled_, true)) fit_.begin(header);  // it may have counted some
     return {Kind::kDuplicate, header, false};
   }
   const std::int64_t back = newest_ - header;

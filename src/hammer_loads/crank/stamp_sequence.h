@@ -43,8 +43,9 @@ class StampSequence {
   /// Whether all values of a message are those of the message before.
   enum class Repeats {
     kNo,
-    kPerhapsAtRest,  ///< they are, as of a crank that rests
-    kAtWork,         ///< they are, a measured speed among them
+    kAtRest,       ///< they are, as of a crank that rests
+    kWithinCount,  ///< they are, as of a crank that turns by less than a count meanwhile
+    kAtWork,  ///< they are, and no crank that turns so gives them twice: a measured speed, or an angle that moves on
   };
   /// header: stamp of the message that arrives [ns].
   Place place(std::int64_t header, Repeats repeats) noexcept;
@@ -76,6 +77,7 @@ class StampSequence {
   std::int64_t placed_{};                ///< instant of the last message [ns]
   double irregularity_{};                ///< irregular stamps of late
   std::uint64_t irregular_{};
+  bool doubled_{};    ///< messages do come twice
   bool uncounted_{};  ///< messages passed for duplicates since the beginning of the fit
   bool steady_{};
   SteadyClockFit fit_;

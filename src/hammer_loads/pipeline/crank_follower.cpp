@@ -50,8 +50,18 @@ std::optional<Refusal> CrankFollower::otherUnit() const noexcept {
 StampSequence::Repeats CrankFollower::repeatsOf(const CrankSample& measured) const noexcept {
   using Repeats = StampSequence::Repeats;
   if (measured.angle != last_raw_.angle || measured.speed != last_raw_.speed) return Repeats::kNo;
-  return measured.speed.value_or(0.0) != 0.0 ? Repeats::kAtWork : Repeats::kPerhapsAtRest;
+  return measured.speed.value_or(0.0) != 0.0 || passesCounts() ? Repeats::kAtWork
+         : turns()                                             ? Repeats::kWithinCount
+                                                               : Repeats::kAtRest;
 }
+
+/// From one sample to the next the crank passes more than a count of its encoder: none gives the same angle again.
+bool CrankFollower::passesCounts() const noexcept {
+  if (!turns() || !sequence_.fit().isKnown()) return false;
+  return std::abs(estimate_.speed) * 1e-9 * sequence_.fit().interval() > tracker_->angleResolution();
+}
+
+bool CrankFollower::turns() const noexcept { return tracker_->hasSpeed() && std::abs(estimate_.speed) > kSlowCrank; }
 
 /// Its instant, by its place in the sequence of arrival.
 std::optional<Refusal> CrankFollower::place(StampNs header, const CrankSample& measured) noexcept {

@@ -61,6 +61,8 @@ class CrankFollower {
 
  private:
   StampSequence::Repeats repeatsOf(const CrankSample& measured) const noexcept;
+  bool passesCounts() const noexcept;
+  bool turns() const noexcept;
   std::optional<Refusal> place(StampNs header, const CrankSample& measured) noexcept;
   void checkUnit(StampNs stamp, const CrankSample& measured) noexcept;
   std::optional<Refusal> otherUnit() const noexcept;
