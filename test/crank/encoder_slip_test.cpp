@@ -3,32 +3,34 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace hammer_loads {
 namespace {
 
 using Step = EncoderSlip::Step;
-constexpr double kVariance = 2.5e-7, kByTorque = 1e-3;  // [rad2], [rad]
+constexpr double kVariance = 2.5e-7, kByTorque = 1e-3, kWay = 0.02;  // [rad2], [rad]
 
 EncoderSlip quiet() {
   EncoderSlip slip;
   for (int i = 0; i < 10; ++i) slip.endTurn();
-  slip.follow(1e-4, kVariance, kByTorque, 1.0, true);
+  slip.follow(1e-4, kVariance, kByTorque, kWay, 0.0, true);
   return slip;
 }
 
 TEST(EncoderSlip, IsWhatStaysAfterAJump) {
   EncoderSlip slip = quiet();
-  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
-  EXPECT_EQ(slip.follow(0.036, kVariance, kByTorque, 2.0, true), Step::kSlipped);
+  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
+  EXPECT_EQ(slip.follow(0.036, kVariance, kByTorque, kWay, kWay, true), Step::kSlipped);
   EXPECT_NEAR(slip.last(), 0.0355, 1e-12);
   EXPECT_EQ(slip.count(), 1);
-  EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, 1.0, true), Step::kNone);
+  EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);
 }
 
 TEST(EncoderSlip, ADamagedReadingIsNone) {
   EncoderSlip slip = quiet();
-  EXPECT_EQ(slip.follow(0.1, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
-  EXPECT_EQ(slip.follow(2e-4, kVariance, kByTorque, 2.0, true), Step::kNone);
+  EXPECT_EQ(slip.follow(0.1, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
+  EXPECT_EQ(slip.follow(2e-4, kVariance, kByTorque, kWay, kWay, true), Step::kNone);
   EXPECT_EQ(slip.count(), 0);
 }
 
@@ -37,47 +39,57 @@ TEST(EncoderSlip, ACrankThatWasPushedIsNone) {
   for (const double part : {0.2, 0.6, 1.0}) {
     EncoderSlip slip = quiet();
     const double push = 20.0, dt = 1e-3;
-    slip.follow(push * part * dt, kVariance, kByTorque, 1.0, true);
-    EXPECT_NE(slip.follow(push * (part + 1.0) * dt, kVariance, kByTorque, 2.0, true), Step::kSlipped) << part;
+    slip.follow(push * part * dt, kVariance, kByTorque, kWay, 0.0, true);
+    EXPECT_NE(slip.follow(push * (part + 1.0) * dt, kVariance, kByTorque, kWay, kWay, true), Step::kSlipped) << part;
   }
 }
 
 TEST(EncoderSlip, NorIsAModelThatFallsBehindByAndBy) {
   EncoderSlip slip = quiet();
-  for (int i = 1; i < 40; ++i) EXPECT_EQ(slip.follow(-5e-4 * i, kVariance, kByTorque, 1.0, true), Step::kNone);
+  for (int i = 1; i < 40; ++i) EXPECT_EQ(slip.follow(-5e-4 * i, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);
 }
 
 TEST(EncoderSlip, NorAClockThatWasSetNorASurpriseOfEachTurn) {
+  for (const double set : {-1.0, -0.6, -0.4, 0.4, 0.6, 1.0}) {  // of what the innovation shows
+    EncoderSlip one = quiet();
+    const bool clock = std::abs(set) > 0.5;
+    EXPECT_EQ(one.follow(0.035, kVariance, kByTorque, kWay, set * 0.035, true), clock ? Step::kNone : Step::kPerhaps);
+    EncoderSlip next = quiet();
+    EXPECT_EQ(next.follow(0.035, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
+    EXPECT_EQ(next.follow(0.035, kVariance, kByTorque, kWay, kWay + set * 0.035, true),
+              clock ? Step::kNone : Step::kSlipped);
+  }
   EncoderSlip slip = quiet();
-  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 3.0, true), Step::kNone);  // three steps late
-  EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, 1.0, true), Step::kNone);
+  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, kWay, -0.035, true), Step::kNone);
+  EXPECT_EQ(slip.follow(1e-4, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);
   slip.endTurn();
-  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 1.0, true), Step::kNone);  // and the turn before
+  EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true), Step::kNone);  // and the turn before
 }
 
 /// Readings that were damaged for a while, and an index that is found again.
 TEST(EncoderSlip, AStepBackIsOneAtOnce) {
   EncoderSlip slip = quiet();
-  slip.follow(0.035, kVariance, kByTorque, 1.0, true);
-  slip.follow(0.035, kVariance, kByTorque, 2.0, true);
-  slip.follow(1e-4, kVariance, kByTorque, 1.0, true);
+  slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true);
+  slip.follow(0.035, kVariance, kByTorque, kWay, kWay, true);
+  slip.follow(1e-4, kVariance, kByTorque, kWay, 0.0, true);
   EXPECT_TRUE(slip.isFresh());
-  EXPECT_EQ(slip.follow(-0.0352, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
-  EXPECT_EQ(slip.follow(-0.0350, kVariance, kByTorque, 2.0, true), Step::kSlipped);
+  EXPECT_EQ(slip.follow(-0.0352, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
+  EXPECT_EQ(slip.follow(-0.0350, kVariance, kByTorque, kWay, kWay, true), Step::kSlipped);
   for (int i = 0; i < 5; ++i) slip.endTurn();
   EXPECT_FALSE(slip.isFresh());
 }
 
 TEST(EncoderSlip, NorWhatTheTorqueCanDo) {
   EncoderSlip slip = quiet();
-  EXPECT_EQ(slip.follow(0.035, kVariance, 0.04, 1.0, true), Step::kNone);
+  EXPECT_EQ(slip.follow(0.035, kVariance, 0.04, kWay, 0.0, true), Step::kNone);
 }
 
 /// Half a turn further the sensor is another one.
 TEST(EncoderSlip, NorIsASensorThatIsSomewhereElse) {
   for (const double step : {0.4, 0.625}) {
     EncoderSlip slip = quiet();
-    EXPECT_EQ(slip.follow(step, kVariance, kByTorque, 1.0, true), step < 0.5 ? Step::kPerhaps : Step::kNone) << step;
+    EXPECT_EQ(slip.follow(step, kVariance, kByTorque, kWay, 0.0, true), step < 0.5 ? Step::kPerhaps : Step::kNone)
+        << step;
   }
 }
 
@@ -85,8 +97,8 @@ TEST(EncoderSlip, NorIsASensorThatIsSomewhereElse) {
 TEST(EncoderSlip, IsAboutTheSameInTheNextReading) {
   for (const double more : {0.32, 0.5}) {
     EncoderSlip slip = quiet();
-    EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, 1.0, true), Step::kPerhaps);
-    EXPECT_EQ(slip.follow((1.0 + more) * 0.035, kVariance, kByTorque, 2.0, true),
+    EXPECT_EQ(slip.follow(0.035, kVariance, kByTorque, kWay, 0.0, true), Step::kPerhaps);
+    EXPECT_EQ(slip.follow((1.0 + more) * 0.035, kVariance, kByTorque, kWay, kWay, true),
               more < 0.4 ? Step::kSlipped : Step::kNone);
   }
 }

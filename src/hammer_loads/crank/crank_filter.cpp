@@ -277,6 +277,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   before_load_ = load_;
   before_hull_ = now_hull_;
   step_ = dt;
+  usual_step_.add(dt);
   angle_lag_.go(behind);
   outlier_ = 0.0;
   const bool revised = correct(last, dt, struck, innovation, sample, reading.angle);

@@ -20,6 +20,7 @@
 #include "hammer_loads/crank/supply_roughness.h"
 #include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/crank/weighed_sample.h"
+#include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/estimation/timing_noise.h"
 
 namespace hammer_loads {
@@ -142,6 +143,8 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kLost = 5.0, kOftenDoubted = 2.0;
   // Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kLost
   // Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kOftenDoubted
+  static constexpr double kSteps = 20.0;  ///< in their mean
+  // Numerical: kSteps
   static constexpr double kJump = 0.5;  ///< [rad]: an innovation that no working machine makes between two samples
   // Guard: FilterTrouble.OfAReadingThatNoWorkingMachineGives of kJump
 
@@ -228,9 +231,10 @@ class CrankFilter final : public CrankTracker {
   double fit_{};                        ///< logarithm of the last sample's likelihood by now_
   double speed_variance_;               ///< of measured speeds, as identified [rad2/s2]
   EncoderSlip slip_;
-  double interval_{};    ///< of the samples, where they are taken at equal ones [s]
-  double lost_time_{};   ///< of the last step, beyond what its stamps say [s]
-  double stamps_off_{};  ///< standard deviation of what all stamps are off alike [s]
+  RunningMean<> usual_step_{kSteps};  ///< [s]
+  double interval_{};                 ///< of the samples, where they are taken at equal ones [s]
+  double lost_time_{};                ///< of the last step, beyond what its stamps say [s]
+  double stamps_off_{};               ///< standard deviation of what all stamps are off alike [s]
   SpeedTrust speed_trust_;
   AngleLag angle_lag_;
   std::optional<SpeedTrust::Witness> witness_;  ///< of the last sample

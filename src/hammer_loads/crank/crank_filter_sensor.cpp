@@ -155,8 +155,9 @@ bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& 
 EncoderSlip::Step CrankFilter::followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept {
   // From the largest one way to the largest the other way: half its change times the square of the time.
   const double by_torque = square(dt) * settings_.initial_torque_deviation / now_.state.drive_inertia;
-  const EncoderSlip::Step step = slip_.follow(innovation.value, growth() * innovation.total, by_torque, dt / step_,
-                                              mayHaveSlipped(sample, innovation));
+  const double speed = now_.encoderSpeed(), usual = usual_step_.mean();
+  const EncoderSlip::Step step = slip_.follow(innovation.value, growth() * innovation.total, by_torque, speed * usual,
+                                              speed * (dt - usual), mayHaveSlipped(sample, innovation));
   if (step != EncoderSlip::Step::kSlipped) return step;
   encoder_.slip(slip_.last());
   errors_.stepZero(square(slip_.deviation()));

@@ -10,22 +10,22 @@ namespace hammer_loads {
 
 /// A crank has inertia: from one reading to the next no torque moves it by more than some milliradians, and what moves
 /// it goes on. A reading that is suddenly further off, and whose next one is off by the same, is of a sensor that
-/// moved; the step itself says by how much, to the count. Stamps must not jitter by as much, the steps must be of the
-/// usual length (a clock that was set looks alike), and the blow must not be near. A model that is surprised in every
+/// moved; the step itself says by how much, to the count. Stamps must not jitter by as much (a clock that was set looks
+/// alike, but makes its step longer or shorter), and the blow must not be near. A model that is surprised in every
 /// turn is wrong otherwise: some turns without must have gone before.
 class EncoderSlip {
  public:
   enum class Step { kNone, kPerhaps, kSlipped };
 
-  /// An innovation of an angle, its variance, what the largest torque does within the step [rad], and the step's length
-  /// over that of the one before. possible: place and samples before allow it. kPerhaps: the sample is not to be taken;
-  /// only the next one says, whose step then begins at the same sample.
-  Step follow(double innovation, double total, double by_torque, double length, bool possible) noexcept {
+  /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
+  /// in a step of usual length; longer: in what this one lasts beyond that [rad]. possible: place and samples before
+  /// allow it. kPerhaps: the sample is not to be taken; only the next one says, whose step then begins at the same one.
+  Step follow(double innovation, double total, double by_torque, double way, double longer, bool possible) noexcept {
     const double seen = std::exchange(seen_, 0.0), before = std::exchange(before_, innovation);
     if (seen != 0.0) {
       const bool stays = std::abs(innovation - seen) < kSame * std::abs(seen);
       before_ = 0.0;  // the sample is another one once the encoder has moved
-      if (!stays || length < kShortest + 1.0 || length > kLongest + 1.0) return Step::kNone;
+      if (!stays || std::abs(longer - way) > kOfClock * std::abs(innovation)) return Step::kNone;
       ++count_;
       turns_since_ = 0;
       last_ = 0.5 * (innovation + seen), deviation_ = std::sqrt(0.5 * total);
@@ -37,7 +37,7 @@ class EncoderSlip {
     const bool undoes = isFresh() && std::abs(innovation + last_) < kSame * std::abs(last_);
     const int quiet = std::exchange(quiet_turns_, 0);
     if ((quiet < kTurnsToTell && !undoes) || std::abs(innovation) > kMost) return Step::kNone;
-    if (length < kShortest || length > kLongest) return Step::kNone;
+    if (std::abs(longer) > kOfClock * std::abs(innovation)) return Step::kNone;
     seen_ = innovation;
     return Step::kPerhaps;
   }
@@ -56,12 +56,11 @@ class EncoderSlip {
  private:
   static constexpr double kMost = 0.5;  // [rad]: beyond it the sensor is another one, and the estimate begins anew
   // Guard: EncoderSlip.NorIsASensorThatIsSomewhereElse of kMost
-  static constexpr double kSame = 0.4;  // of it: a crank that was pushed is off by twice as much in the next sample
-  static constexpr double kShortest = 0.6, kLongest = 1.5;  // of the step before
-  static constexpr int kTurnsToTell = 5;                    // as many as a supply takes to be known
+  static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
+  static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
+  static constexpr int kTurnsToTell = 5;   // as many as a supply takes to be known
   // Guard: EncoderSlip.IsAboutTheSameInTheNextReading of kSame
-  // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kLongest
-  // Guard: EncoderSlip.IsWhatStaysAfterAJump of kShortest
+  // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kOfClock
   // Guard: EncoderSlip.AStepBackIsOneAtOnce of kTurnsToTell
   double before_{};  ///< innovation of the sample before [rad]
   double seen_{};    ///< the same where it may be a slip; else 0
