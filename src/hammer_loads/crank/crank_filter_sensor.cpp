@@ -135,20 +135,25 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
 double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
   const double speed = now_.encoderSpeed();
   if (!(interval_ > 0.0) || std::abs(speed) < kLearnSpeed || !innovation.exceeds(gate::kImpossible)) return 0.0;
+  if (mayBeRod(innovation)) return 0.0;
   const double intervals = innovation.value / (speed * interval_), whole = std::nearbyint(intervals);
   if (whole < 1.0 || std::abs(innovation.value) > kJump) return 0.0;
   const double rest = (intervals - whole) * speed * interval_;
   return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
 }
 
-/// (5) Whether a step of the reading would differ from the crank's own and from what a rod that rings moves.
-bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
+/// What a rod that gives may have done to the crank: all but a large step of a crank that has calmed down.
+bool CrankFilter::mayBeRod(const Innovation& innovation) const noexcept {
   const CrankAngle& at = now_.state.position.angle;
   const bool calm = at.side == Side::kBeforeBlow && at.offset < -kStrikeBegins;
-  const bool rings = rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
+  return rod_evidence_.gives() && !(calm && std::abs(innovation.value) > kRodMoves);
+}
+
+/// (5) Whether a step of the reading would differ from the crank's own and from what a rod that rings moves.
+bool CrankFilter::mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept {
   const bool at_work = std::abs(now_.state.speed) > kLearnSpeed && surprises_ < 1.0 && !isLost();
   const double nearest = std::min(std::abs(now_.encoderOffset()), std::abs(sample.angle));
-  return lost_time_ == 0.0 && !rings && at_work && !mirrored_ && !rival_.isOpen() && nearest > kNotSlip;
+  return lost_time_ == 0.0 && !mayBeRod(innovation) && at_work && !mirrored_ && !rival_.isOpen() && nearest > kNotSlip;
 }
 
 /// (5) A slip that has shown itself is taken off the reading.
