@@ -29,9 +29,9 @@ constexpr std::array<const char*, static_cast<std::size_t>(ImuRefusal::kCount)> 
     "not finite", "implausible", "out of order", "jumps"};
 
 /// From readings to the hull's motion at D: replaces weight and tilt together. The turning's acceleration is the
-/// difference of the last two rates 0.1 ms apart or more: half an interval late, noise sqrt(2)/interval times the
-/// rate's. It also moves the
-/// specific force from the unit to D, so mounting the unit near D keeps that noise out of the wrench (model.md 3).
+/// difference of the last two rates that did not come together: half an interval late, noise sqrt(2)/interval times the
+/// rate's. It also moves the specific force from the unit to D, so mounting the unit near D keeps that noise out of the
+/// wrench (model.md 3).
 class HullImu {
  public:
   explicit HullImu(const HullImuSettings& settings) : settings_(settings) {}
