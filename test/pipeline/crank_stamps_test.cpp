@@ -1,0 +1,78 @@
+// Instants of crank samples whose stamps repeat, are rounded or jitter, on machines that make them hard to find.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/session_player.h"
+
+namespace hammer_loads {
+namespace {
+
+/// Messages of bursts or of whole milliseconds, some of them twice, without speeds: a reading that a crank that turns
+/// cannot give again is no new one, and one at rest teaches no line of stamps.
+TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
+  for (const bool bursts : {true, false}) {
+    simulation::MachineSettings machine = simulation::workingMo100();
+    machine.duration = 8.0;
+    machine.drive.stop_time = 20.0;
+    machine.crank.drop_outs.clear();
+    machine.crank.speed = false;
+    machine.crank.duplicate_share = 0.03;
+    if (bursts)
+      machine.crank.burst = 3;
+    else
+      machine.crank.stamp_step = 1e-3;
+    const simulation::Session session = simulation::recordSession(machine);
+    test::Player player(test::settingsWith("{}"), false, session);
+    std::size_t i = 0, taken = 0, samples = 0;
+    double worst = 0.0;
+    player.playTo(8.0, [&](double time, const SampleResult& result) {
+      const double instant = session.taken[i++];
+      if (time < 3.0) return;
+      ++samples;
+      if (result.refusal) return;
+      ++taken;
+      worst = std::max(worst, std::abs(seconds(result.stamp - machine.start_stamp) - instant));
+    });
+    EXPECT_LT(worst, 1.1e-3) << bursts << " [s]";
+    EXPECT_GT(static_cast<double>(taken), 0.95 * static_cast<double>(samples)) << bursts;
+  }
+}
+
+/// Where samples are taken at equal intervals a reading ahead shows lost ones, but a rod that rings moves a crank by as
+/// much: instants were half a second off, and blows found where none was.
+TEST(CrankOnARodThatGives, LosesNoSamplesToItsRing) {
+  const Settings settings = test::settingsWith("{}");
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.hammer = settings.mechanism.parameters();
+  machine.level = Level::kLinkage;
+  machine.duration = 8.0;
+  machine.drive.stop_time = 20.0;
+  machine.crank.drop_outs.clear();
+  machine.rod.stiffness = 5e8;
+  machine.rod.damping_ratio = 0.2;
+  for (const bool bursts : {true, false}) {
+    machine.crank.burst = bursts ? 3 : 1;
+    machine.crank.stamp_noise = bursts ? 0.0 : 5e-4;
+    const simulation::Session session = simulation::recordSession(machine);
+    test::Player player(settings, false, session);
+    std::size_t i = 0;
+    double worst = 0.0;
+    player.playTo(8.0, [&](double time, const SampleResult& result) {
+      const double instant = session.taken[i++];
+      if (time < 3.0 || result.refusal) return;
+      worst = std::max(worst, std::abs(seconds(result.stamp - machine.start_stamp) - instant));
+      for (std::size_t k = 0; k < result.turn_ends; ++k) {
+        const double blow = seconds(result.ends[k].stamp - machine.start_stamp);
+        EXPECT_TRUE(std::any_of(session.blows.begin(), session.blows.end(), [&](const auto& each) {
+          return std::abs(each.time - blow) < 0.03;
+        })) << blow;
+      }
+    });
+    EXPECT_LT(worst, bursts ? 5e-4 : 3e-3) << " [s]";
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
