@@ -10,6 +10,7 @@ inline MachineSettings flawedRun() {
   s.duration = 8.0;
   s.drive.start_time = 0.7;
   s.drive.stop_time = 20.0;
+  s.step = 1e-4;  // for the accounts' tenth digit
   return s;
 }
 

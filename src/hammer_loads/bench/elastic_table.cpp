@@ -61,7 +61,7 @@ double sinceBlow(const std::vector<simulation::BlowTruth>& blows, double time) {
 ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& session, const MachineSettings& machine) {
   const std::vector<CrankTruth> truth = simulation::truthAt(machine, run.accepted);
   Gathering whole, strike, after;
-  LifeError life;
+  LifeError life, with_touch;
   std::array<double, 3> largest{};
   auto published = run.wrenches.begin();
   for (std::size_t k = 0; k < run.accepted.size(); ++k) {
@@ -71,15 +71,18 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
     if (time < kFrom || time > machine.duration - 3.0) continue;
     const std::array<double, 3> values = valuesOf(truth[k]);
     for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
-    life.right.add(values[1]);
+    const bool touches = truth[k].tool_force != 0.0 || truth[k].retainer_force != 0.0;
+    with_touch.right.add(values[1]);
+    if (!touches) life.right.add(values[1]);
     if (is_withheld) continue;
-    life.estimated.add(wrench.force_z);
+    with_touch.estimated.add(wrench.force_z);
+    if (!touches) life.estimated.add(wrench.force_z);
     whole.add(wrench, values);
     if (truth[k].angle >= kPi) strike.add(wrench, values);
     const double since = sinceBlow(session.blows, time);
     if (since >= kAfterFrom && since <= kAfterTo) after.add(wrench, values);
   }
-  return {whole.over(largest), strike.over(largest), after.over(after.truthRms()), life.error()};
+  return {whole.over(largest), strike.over(largest), after.over(after.truthRms()), life.error(), with_touch.error()};
 }
 
 /// Everything a little, and a usual sensor.
@@ -169,8 +172,9 @@ std::string markdown(const std::vector<ElasticRow>& rows) {
 std::string json(const std::vector<ElasticRow>& rows) {
   std::string text = "[";
   for (const ElasticRow& row : rows) {
-    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"life\": %.6g, ", &row == rows.data() ? "" : ",",
-                   row.machine.c_str(), nameOf(row.level), row.errors.life) +
+    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"life\": %.6g, \"life_with_touch\": %.6g, ",
+                   &row == rows.data() ? "" : ",", row.machine.c_str(), nameOf(row.level), row.errors.life,
+                   row.errors.life_with_touch) +
             jsonOf("whole", row.errors.whole) + ", " + jsonOf("strike", row.errors.strike) + ", " +
             jsonOf("after", row.errors.after) + "}";
   }

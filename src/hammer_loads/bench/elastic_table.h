@@ -23,7 +23,9 @@ struct ElasticErrors {
   PartErrors whole;   ///< over the largest of the truth
   PartErrors strike;  ///< crank from 180 to 360 deg; as above
   PartErrors after;   ///< 6 to 40 ms after the first touch; over the root mean square of the truth there
-  double life{};      ///< of the damage-equivalent range of Fz at slope kLifeSlope, relative, > 0 too large
+  /// Of the damage-equivalent range of Fz at slope kLifeSlope, relative, > 0 too large: without the samples in which
+  /// the rocker touches tool or retainer, whose impulse is the blow's and no wrench; with them.
+  double life{}, life_with_touch{};
 };
 
 struct ElasticRow {

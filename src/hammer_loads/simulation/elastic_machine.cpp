@@ -10,7 +10,8 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kShortest = 1e-8;  // step in which a contact may begin or end [s]
+constexpr double kLongestStep = 1e-4;  // step that no contact begins and ends in [s]
+constexpr double kShortest = 1e-8;     // step in which a contact may begin or end [s]
 /// Error of a step at most: angles [rad], their speeds [rad/s], tool's way and speed [m], [m/s], yielded [m], pressure
 /// [Pa]. 1e-11 rad are 0.5 N in a rod of 1e9 N/m.
 constexpr double kError[] = {1e-11, 1e-11, 1e-6, 1e-6, 1e-11, 1e-6, 1e-11, 10.0};
@@ -22,7 +23,7 @@ ElasticMachine::ElasticMachine(const MachineSettings& settings)
       links_(settings.hammer, settings.level),
       rod_(settings.rod),
       struck_(settings),
-      next_step_(settings.step) {
+      next_step_(std::min(settings.step, kLongestStep)) {
   const double start = settings_.start_angle;
   now_[kCrank] = start > kPi ? start - kTwoPi : start;
   now_[kRocker] = links_.rockerAngle(start);
@@ -116,7 +117,7 @@ void ElasticMachine::step() {
       dt = std::max(0.25 * dt, 0.9 * kShortest);
       continue;
     }
-    next_step_ = std::min(settings_.step, dt * factor);
+    next_step_ = std::min({settings_.step, kLongestStep, dt * factor});
     return accept(next, slope, dt, after);
   }
 }

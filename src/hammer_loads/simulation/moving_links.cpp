@@ -7,10 +7,17 @@
 namespace hammer_loads::simulation {
 namespace {
 
-/// sin(phi/2) within the turn, phi in [0, 2 pi]: from the offset, so that it is exact at both ends.
-Jet sinHalf(TurnAngle angle) noexcept {
-  const Jet half{0.5 * angle.offset, 0.5, 0.0};
-  return angle.before_blow ? -1.0 * sin(half) : sin(half);
+/// Of phi, by phi.
+struct CrankPlace {
+  Jet cos, sin;
+  Jet sin_half;  ///< of phi/2 within the turn, phi in [0, 2 pi]: from the offset, so that it is exact at both ends
+};
+
+CrankPlace placeOf(TurnAngle angle) noexcept {
+  const double s = std::sin(0.5 * angle.offset), c = std::cos(0.5 * angle.offset);
+  const double sin_phi = 2.0 * s * c, cos_phi = (c - s) * (c + s);
+  const Jet half{s, 0.5 * c, -0.25 * s};
+  return {{cos_phi, -sin_phi, -cos_phi}, {sin_phi, cos_phi, -sin_phi}, angle.before_blow ? -1.0 * half : half};
 }
 
 }  // namespace
@@ -33,11 +40,10 @@ MovingLinks::MovingLinks(const Mechanism& mechanism, Level level)
 /// c = DB, l3, l2, and sin^2 delta = ((l3 + c)^2 - l2^2)/(4 l3 c), where c - (l2 - l3) = 4 l0 l1 s^2/(c + l0 - l1).
 Jet MovingLinks::rockerAngleUp(TurnAngle angle) const noexcept {
   const double l0 = p_.lengths.pivot_distance, l1 = p_.lengths.crank, l2 = p_.lengths.rod, l3 = p_.lengths.rocker;
-  const Jet phi{angle.offset, 1.0, 0.0};
-  const Jet s = sinHalf(angle);
+  const auto [cos_phi, sin_phi, s] = placeOf(angle);
   const Jet c = sqrt(4.0 * l0 * l1 * (s * s) + (l0 - l1) * (l0 - l1));
   const Jet delta = asin(s * sqrt((l0 * l1 / l3) * (c + (l2 + l3)) / (c * (c + (l0 - l1)))));
-  const Jet alpha = atan(l1 * sin(phi) / (l0 - l1 * cos(phi)));  // |alpha| < pi/2 since l1 < l0
+  const Jet alpha = atan(l1 * sin_phi / (l0 - l1 * cos_phi));  // |alpha| < pi/2 since l1 < l0
   return 2.0 * delta - alpha;
 }
 
@@ -52,19 +58,20 @@ LinkBodies MovingLinks::at(TurnAngle angle) const noexcept {
   const double l0 = p_.lengths.pivot_distance, l1 = p_.lengths.crank, l2 = p_.lengths.rod, l3 = p_.lengths.rocker;
   LinkBodies all;
   const Jet psi = rockerAngle(angle);
-  const Jet to_com = psi + p_.rocker_com_angle;
-  const double ls = p_.rocker_com_distance, m3 = p_.rocker_mass;
-  all.body[all.count++] = {m3, p_.rocker_inertia_about_pivot - m3 * ls * ls, ls * cos(to_com) + l0, ls * sin(to_com),
-                           psi};
+  const Jet cos_psi = cos(psi), sin_psi = sin(psi);
+  const double m3 = p_.rocker_mass, ls = p_.rocker_com_distance, along = ls * cos_a_, across = ls * sin_a_;
+  all.body[all.count++] = {m3, p_.rocker_inertia_about_pivot - m3 * ls * ls, along * cos_psi - across * sin_psi + l0,
+                           along * sin_psi + across * cos_psi, psi};
   if (level_ == Level::kRocker) return all;
 
-  const Jet phi{angle.offset, 1.0, 0.0};
-  const Jet cos_phi = cos(phi), sin_phi = sin(phi);
-  all.body[all.count++] = {p_.crank_mass, p_.crank_inertia_about_com,
+  const auto [cos_phi, sin_phi, unused] = placeOf(angle);
+  all.body[all.count++] = {p_.crank_mass,
+                           p_.crank_inertia_about_com,
                            p_.crank_com_along * cos_phi - p_.crank_com_across * sin_phi,
-                           p_.crank_com_along * sin_phi + p_.crank_com_across * cos_phi, phi};
+                           p_.crank_com_along * sin_phi + p_.crank_com_across * cos_phi,
+                           {angle.offset, 1.0, 0.0}};
   const Jet b_xi = l1 * cos_phi, b_eta = l1 * sin_phi;
-  const Jet cos_beta = (1.0 / l2) * (l3 * cos(psi) + l0 - b_xi), sin_beta = (1.0 / l2) * (l3 * sin(psi) - b_eta);
+  const Jet cos_beta = (1.0 / l2) * (l3 * cos_psi + l0 - b_xi), sin_beta = (1.0 / l2) * (l3 * sin_psi - b_eta);
   const Jet beta{0.0, cos_beta.value * sin_beta.first - sin_beta.value * cos_beta.first,
                  cos_beta.value * sin_beta.second - sin_beta.value * cos_beta.second};
   all.body[all.count++] = {p_.rod_mass, p_.rod_inertia_about_com,

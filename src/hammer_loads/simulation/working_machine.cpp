@@ -11,6 +11,9 @@
 namespace hammer_loads::simulation {
 namespace {
 
+constexpr double kSwing = 0.04;  // of the coupling in a step [rad]
+// Numerical: kSwing
+
 /// Largest value of the parabola through three points with the largest in the middle.
 double parabolaPeak(const double* t, const double* f, double t2, double f2) noexcept {
   const double a = (f[0] - f[1]) / (t[0] - t[1]), b = (f2 - f[1]) / (t2 - t[1]);
@@ -26,6 +29,7 @@ WorkingMachine::WorkingMachine(const MachineSettings& settings)
     : settings_(settings),
       links_(mechanismFrom(settings.hammer), settings.level),
       crank_side_inertia_(settings.drive.inertia),
+      step_(settings.step),
       draws_(settings.seed ^ kBlowSeed) {
   const DriveSettings& d = settings_.drive;
   if (flexible()) {
@@ -35,6 +39,7 @@ WorkingMachine::WorkingMachine(const MachineSettings& settings)
     const double both = motor_inertia_ * crank_side_inertia_ / d.inertia;
     stiffness_ = rate * rate * both;
     damping_ = 2.0 * d.coupling_damping * rate * both;
+    step_ = std::min(step_, kSwing / rate);
   }
   drawBlow();
   now_.before_blow = settings_.start_angle > kPi;
@@ -159,7 +164,7 @@ void WorkingMachine::advanceTo(double time) noexcept {
       rate_ = rate(now_);
     }
     const double left = time - now_.outside.time;
-    double dt = std::min(settings_.step, left);
+    double dt = std::min(step_, left);
     State next = step(dt);
     const double event = eventOffset();
     const bool meets = now_.before_blow ? next.y[kOffset] > event : next.y[kOffset] < 0.0;

@@ -70,7 +70,7 @@ struct EnergyAccount {
 /// Turning back onto the tool would need a restitution above 1 to go on: the crank stops there until the torque is
 /// positive again. Without a tool the rocker goes through onto the mirrored branch and comes back a turn later.
 /// Neglects: acceleration of the hull by boom motion and by the load itself, elasticity of links.
-/// Runge-Kutta of order 4, steps of at most settings.step.
+/// Runge-Kutta of order 4, steps of at most settings.step, shorter where a coupling swings.
 class WorkingMachine {
  public:
   /// Throws std::invalid_argument when the hammer's linkage is impossible.
@@ -149,6 +149,7 @@ class WorkingMachine {
   double released_{-1.0};  ///< from the tool, last time [s]
   std::vector<BlowTruth> blows_;
   double crank_side_inertia_, motor_inertia_{}, stiffness_{}, damping_{};  ///< about the coupling
+  double step_;                                                            ///< longest [s]
   NormalNoise draws_;
   NextBlow next_blow_;
   std::optional<Strike> early_;  ///< of this turn, at early_time_

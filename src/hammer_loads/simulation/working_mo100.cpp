@@ -69,7 +69,7 @@ MachineSettings workingMo100() {
   s.gravity = 9.80665;
   s.start_angle = 1.0;
   s.duration = 20.0;
-  s.step = 1e-4;
+  s.step = 5e-4;
   s.start_stamp = 1700000000000000000;
   s.seed = 1;
   return s;
