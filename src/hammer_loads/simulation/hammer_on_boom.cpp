@@ -150,7 +150,8 @@ HammerOnBoom::Bodies HammerOnBoom::bodies(const State& s, const Links& links, co
     const PlanePoint turned = all.hull_turned = turnedBy(all.angle[k]);
     const PlanePoint middle = all.joint[k] + turned * middleOf(k);
     if (k < 2) all.middle[k] = middle;
-    all.joint[k + 1] = middle + turnedBy(bentAngle(s, k)) * (link.to_next - middleOf(k));
+    const PlanePoint beyond = k < 2 && bends() ? turnedBy(bentAngle(s, k)) : turned;
+    all.joint[k + 1] = middle + beyond * (link.to_next - middleOf(k));
     Body& body = all.body[k];
     body.mass = link.mass, body.inertia = link.inertia;
     body.place = all.joint[k] + turned * link.com;
