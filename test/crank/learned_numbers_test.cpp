@@ -32,6 +32,23 @@ TEST(LearnedNumbers, ConsistencyIsAMeanOfFiveHundred) {
   expectAbout(strikes.mean(), 100.0);
 }
 
+/// Samples that are missing count as what was before: 1, and after a restart what had been found.
+TEST(LearnedNumbers, AYoungConsistencyIsAsDoubtfulAsTheOneBefore) {
+  Consistency consistency;
+  for (int i = 0; i < 50; ++i) consistency.add(9.0);
+  expectAbout(consistency.doubt(), 1.0 + 8.0 * 50.0 / 200.0);
+  EXPECT_TRUE(std::isnan(consistency.mean()));
+  for (int i = 0; i < 150; ++i) consistency.add(9.0);
+  expectAbout(consistency.doubt(), 9.0);
+  consistency.restart();
+  expectAbout(consistency.doubt(), 9.0);
+  EXPECT_TRUE(std::isnan(consistency.mean()));
+  for (int i = 0; i < 100; ++i) consistency.add(1.0);
+  expectAbout(consistency.doubt(), 5.0);
+  for (int i = 0; i < 100; ++i) consistency.add(1.0);
+  expectAbout(consistency.doubt(), 1.0);
+}
+
 /// A supply that kept its sign for long, while stamps were exact.
 TEST(LearnedNumbers, TheSupplysWalk) {
   SupplyRoughness supply;

@@ -20,14 +20,26 @@ class Consistency {
   }
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
-  /// The factor of variances: never below 1.
+  /// The factor of variances in what the filter learns: never below 1.
   double growth() const noexcept { return samples_ < kEnough ? 1.0 : std::max(1.0, mean_); }
+  /// The same of what is published: samples that are not there yet count as what was before them.
+  double doubt() const noexcept {
+    const double known = std::min(1.0, static_cast<double>(samples_) / kEnough);
+    return std::max(1.0, known * mean_ + (1.0 - known) * before_);
+  }
+  /// What comes is of another belief, which is as doubtful at first.
+  void restart() noexcept {
+    before_ = doubt();
+    samples_ = 0, mean_ = 0.0;
+  }
 
  private:
   static constexpr int kLength = 500, kEnough = 200;
   // Guard: LearnedNumbers.ConsistencyIsAMeanOfFiveHundred of kMostSurprise, kLength
+  // Guard: LearnedNumbers.AYoungConsistencyIsAsDoubtfulAsTheOneBefore of kEnough
   int samples_{};
   double mean_{};
+  double before_{1.0};  ///< doubt() before the restart
 };
 
 /// The same of the half turns before the blow: the lesser of the last two, so that one disturbance is no contradiction,

@@ -68,7 +68,7 @@ void CrankFilter::forgetInertia() noexcept {
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings_.initial_inertia_deviation);
   now_.covariance(Belief::kTorque, Belief::kTorque) += square(settings_.initial_torque_deviation);
   if (now_.motor) doubtStiffness(*model_.coupling(), now_);
-  consistency_ = {};
+  consistency_.restart();
 }
 
 }  // namespace hammer_loads

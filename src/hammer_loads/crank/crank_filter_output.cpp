@@ -39,7 +39,7 @@ Innovation CrankFilter::withoutRod(double dt, Innovation innovation) const noexc
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  BlowFactor factor = now_.blowFactor(growth(), errors_.root());
+  BlowFactor factor = now_.blowFactor(consistency_.doubt(), errors_.root());
   if (!now_.motor) return factor;
   const double share = 1.0 - struckInertia() / driveInertia();
   factor.drive_inertia = struckInertia();
@@ -78,8 +78,9 @@ CrankUncertainty CrankFilter::uncertaintyBetween(double dt, double torque_part) 
 CrankUncertainty CrankFilter::uncertaintyOf(const CrankBelief& belief, const ShaftLoad& load,
                                             double torque_part) const noexcept {
   const double part = std::min(1.0, torque_part * roughness_.deviationFactor());
-  return belief.motor ? flexibleUncertainty(model_, belief, consistency_.growth(), errors_.root(), part)
-                      : motionUncertainty(model_, load, belief, consistency_.growth(), errors_.root(), part);
+  const double doubt = consistency_.doubt();
+  return belief.motor ? flexibleUncertainty(model_, belief, doubt, errors_.root(), part)
+                      : motionUncertainty(model_, load, belief, doubt, errors_.root(), part);
 }
 
 }  // namespace hammer_loads
