@@ -38,6 +38,16 @@ TEST(BeliefBounds, OfABlowsFactor) {
   expectNear(belief.factor, 4.0);
 }
 
+/// What the bound takes off the factor it gives to the speed that goes with it.
+TEST(BeliefBounds, ABoundFactorTakesTheSpeedAlong) {
+  CrankBelief belief = turning();
+  constexpr double kBefore = 13.0;
+  belief.factor = -0.3, belief.state.speed = kBefore * belief.factor;
+  belief.addNoise(CrankBelief::kSpeed, CrankBelief::kFactor, kBefore * 1e-4);
+  belief.boundFactor();
+  EXPECT_NEAR(belief.state.speed, kBefore * belief.factor, 1e-9);
+}
+
 /// A speed that is off by less than restitutions make of it is the blow's doing; by more it is no blow.
 TEST(BeliefBounds, OfABlowThatIsUnlikeTheOthers) {
   for (const double part : {1.0 / kAround, kAround}) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/shaft_load.h"
 #include "support/mo100.h"
@@ -50,6 +52,23 @@ TEST(Blow, MeasuredImpulsesAreTheMomentaOfAllLinks) {
     EXPECT_GT(b.energy_deviation, 0.0);
     EXPECT_NEAR(b.restitution_deviation, 0.01 * 0.94 / 1.95, 3e-3);
   }
+}
+
+/// The rod holds the rocker: the tool gets what drive and links lose together, and its impulse what slows both.
+TEST(Blow, AToolMetEarlySlowsDriveAndLinksTogether) {
+  const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
+  constexpr double kDrive = 0.6, kSpeed = 13.0, kFactor = 0.3;
+  const CrankAngle angle{0.0, Side::kBeforeBlow};
+  const ShaftLoad load = shaftLoadLinkage(mechanism, linkMotion(mechanism.linkage(), angle), {});
+  const double inertia = kDrive + load.inertia, lost = kSpeed * (1.0 - kFactor);
+  const double arm = -motion(mechanism.linkage(), angle).u * mechanism.parameters().striking_distance;
+  const RockerBlow b = measuredBlow(mechanism, Level::kLinkage, {kSpeed, 0.1, kFactor, 0.01, kDrive, 0.02, true});
+  EXPECT_NEAR(b.energy, 0.5 * inertia * kSpeed * kSpeed * (1.0 - kFactor * kFactor), 1e-9);
+  EXPECT_NEAR(b.tool_impulse_z, inertia * lost / arm, 1e-9);
+  EXPECT_TRUE(std::isnan(b.restitution));
+  const double by_speed = 2.0 * 0.1 / kSpeed, by_factor = 2.0 * 0.01 * kFactor / (1.0 - kFactor * kFactor);
+  const double by_inertia = 0.02 * kDrive / inertia;
+  EXPECT_NEAR(b.energy_deviation, b.energy * std::hypot(by_speed, by_factor, by_inertia), 0.05 * b.energy_deviation);
 }
 
 TEST(Blow, LeavesThePercussionCentresSupportWithoutImpulse) {

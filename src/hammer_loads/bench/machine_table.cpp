@@ -198,13 +198,13 @@ std::string markdown(const std::vector<MachineRow>& rows) {
       continue;
     }
     text += format(
-        "| %s | %.0f | %s | %.2f, %.2f, %.2f, %.2f %% | %.1f, %.1f, %.1f, %.1f %% | %.0f, %.0f, %.0f %% | %.2f ms | "
-        "%.1f "
-        "%% | %d | %d | %d |\n",
+        "| %s | %.0f | %s | %.2f, %.2f, %.2f, %.2f %% | %.1f, %.1f, %.1f, %.1f %% | %.0f, %.0f, %.0f %% | %.2f ms | %s "
+        "| %d | "
+        "%d | %d |\n",
         row.machine.c_str(), row.rate, row.speed ? "measured" : "none", 100 * e.rms_force, 100 * e.rms_x, 100 * e.rms_z,
         100 * e.rms_torque, 100 * e.worst_force, 100 * e.worst_x, 100 * e.worst_z, 100 * e.worst_torque,
-        100 * e.covered_x, 100 * e.covered_z, 100 * e.covered_torque, 1e3 * e.blow_time, 100 * e.energy, e.blows,
-        e.unseen_blows, e.false_blows);
+        100 * e.covered_x, 100 * e.covered_z, 100 * e.covered_torque, 1e3 * e.blow_time, energyCell(e, 1).c_str(),
+        e.blows, e.unseen_blows, e.false_blows);
   }
   return text;
 }
@@ -222,11 +222,11 @@ std::string json(const std::vector<MachineRow>& rows) {
         "%s\n  {\"machine\": \"%s\", \"rate_hz\": %g, \"speed_measured\": %s, \"rms_z\": %.6g, \"worst_z\": %.6g, "
         "\"covered_z\": %.6g, \"rms_force\": %.6g, \"worst_force\": %.6g, \"rms_x\": %.6g, \"worst_x\": %.6g, "
         "\"covered_x\": %.6g, \"rms_torque\": %.6g, \"worst_torque\": %.6g, \"covered_torque\": %.6g, \"blow_time_s\": "
-        "%.6g, \"energy\": %.6g, \"blows\": %d, \"missed_blows\": %d, "
+        "%.6g, \"energy\": %s, \"blows\": %d, \"missed_blows\": %d, "
         "\"false_blows\": %d}",
         &row == rows.data() ? "" : ",", row.machine.c_str(), row.rate, row.speed ? "true" : "false", e.rms_z, e.worst_z,
         e.covered_z, e.rms_force, e.worst_force, e.rms_x, e.worst_x, e.covered_x, e.rms_torque, e.worst_torque,
-        e.covered_torque, e.blow_time, e.energy, e.blows, e.unseen_blows, e.false_blows);
+        e.covered_torque, e.blow_time, energyJson(e).c_str(), e.blows, e.unseen_blows, e.false_blows);
   }
   return text + "\n]";
 }

@@ -19,7 +19,7 @@ struct BlowAt {
   double time{}, energy{}, tool_impulse{};
   double turn_peak{std::numeric_limits<double>::quiet_NaN()};
   double turn_impulse_z{std::numeric_limits<double>::quiet_NaN()};
-  double energy_deviation{};  ///< of an estimate
+  double energy_deviation{}, tool_impulse_deviation{};  ///< of an estimate
 };
 
 /// Largest or root-mean-square errors; of the peak of each quantity where nothing else is said.
@@ -31,7 +31,9 @@ struct SessionErrors {
   double turn_peak{};                                 ///< relative, worst turn
   double turn_impulse{};                              ///< of the blow's tool impulse, worst turn
   double blow_time{};                                 ///< [s], worst
-  double energy{};                                    ///< relative, worst
+  /// Relative, worst of those that are known; NaN where none is.
+  double energy{std::numeric_limits<double>::quiet_NaN()};
+  int known_energies{};
   int blows{}, missed_blows{}, extra_blows{};         ///< missed: without pulse as well
   int unseen_blows{}, false_blows{};                  ///< nothing near them; nothing there
 };
@@ -92,7 +94,8 @@ inline SessionErrors sessionErrors(const std::vector<WrenchAt>& estimate, const 
       continue;
     }
     e.blow_time = std::max(e.blow_time, std::abs(nearest->time - t.time));
-    e.energy = std::max(e.energy, std::abs(nearest->energy / t.energy - 1.0));
+    e.energy = std::fmax(e.energy, std::abs(nearest->energy / t.energy - 1.0));  // no heed to what is no number
+    e.known_energies += !std::isnan(nearest->energy);
     e.turn_peak = std::max(e.turn_peak, std::abs(nearest->turn_peak / t.turn_peak - 1.0));
     e.turn_impulse = std::max(e.turn_impulse, std::abs(nearest->turn_impulse_z - t.turn_impulse_z) / t.tool_impulse);
   }

@@ -2,6 +2,7 @@
 
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/util/constants.h"
+#include "hammer_loads/util/format.h"
 
 namespace hammer_loads::accuracy {
 
@@ -15,6 +16,7 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
       const TurnEnd& end = loads.ends[i];
       BlowAt blow{seconds(end.stamp), end.blow.energy, end.blow.tool_impulse_z};
       blow.energy_deviation = end.blow.energy_deviation;
+      blow.tool_impulse_deviation = end.blow_errors.tool_impulse_z.deviation();
       if (end.pulse) {
         blow.turn_peak = end.pulse->amplitude;
         blow.turn_impulse_z = end.pulse->turn_impulse_z;
@@ -30,6 +32,17 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
   });
   run.counts = player.pipeline.counts();
   return run;
+}
+
+std::string energyCell(const SessionErrors& e, int digits) {
+  if (e.known_energies == 0) return "not known";
+  const std::string worst = format("%.*f %%", digits, 100 * e.energy);
+  const int seen = e.blows - e.missed_blows;
+  return e.known_energies == seen ? worst : worst + format(", %d of %d known", e.known_energies, seen);
+}
+
+std::string energyJson(const SessionErrors& e) {
+  return e.known_energies == 0 ? std::string("null") : format("%.6g", e.energy);
 }
 
 namespace {

@@ -19,6 +19,10 @@ struct SessionRun {
 SessionRun runSession(const simulation::Session& session, std::int64_t start, const Mechanism& mechanism,
                       const PipelineSettings& settings, const TrackerMaker& make = makeTracker);
 
+/// The blows' energy as a table's cell, and in JSON: null where none is known.
+std::string energyCell(const SessionErrors& errors, int digits);
+std::string energyJson(const SessionErrors& errors);
+
 /// Judged from 3 s after the start to 3 s before the end, without the two turns after each drop-out.
 SessionErrors judge(const SessionRun& run, const simulation::Session& session,
                     const simulation::MachineSettings& machine);

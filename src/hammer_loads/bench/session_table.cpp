@@ -67,10 +67,10 @@ std::string markdown(const std::vector<SessionRow>& rows) {
       "impulse | blow instant | energy |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SessionRow& row : rows) {
     const SessionErrors& e = row.errors;
-    text += format("| %s | %.0f | %d | %s | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %.2f %% |\n",
+    text += format("| %s | %.0f | %d | %s | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f ms | %s |\n",
                    row.estimator.c_str(), row.rate, row.counts, row.speed ? "measured" : "none", 100 * e.rms_x,
                    100 * e.rms_z, 100 * e.rms_torque, 100 * e.turn_peak, 100 * e.turn_impulse, 1e3 * e.blow_time,
-                   100 * e.energy);
+                   energyCell(e, 2).c_str());
   }
   return text;
 }
@@ -83,9 +83,10 @@ std::string json(const std::vector<SessionRow>& rows) {
         "%s\n  {\"estimator\": \"%s\", \"rate_hz\": %g, \"encoder_counts\": %d, \"speed_measured\": %s, \"rms_x\": "
         "%.6g, "
         "\"rms_z\": %.6g, \"rms_torque\": %.6g, \"turn_peak\": %.6g, \"turn_impulse\": %.6g, \"blow_time_s\": %.6g, "
-        "\"energy\": %.6g, \"blows\": %d, \"missed_blows\": %d}",
+        "\"energy\": %s, \"blows\": %d, \"missed_blows\": %d}",
         &row == rows.data() ? "" : ",", row.estimator.c_str(), row.rate, row.counts, row.speed ? "true" : "false",
-        e.rms_x, e.rms_z, e.rms_torque, e.turn_peak, e.turn_impulse, e.blow_time, e.energy, e.blows, e.missed_blows);
+        e.rms_x, e.rms_z, e.rms_torque, e.turn_peak, e.turn_impulse, e.blow_time, energyJson(e).c_str(), e.blows,
+        e.missed_blows);
   }
   return text + "\n]";
 }

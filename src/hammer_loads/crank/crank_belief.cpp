@@ -116,7 +116,11 @@ void CrankBelief::move(const Vector& change) noexcept {
   factor += change[kFactor];
 }
 
-void CrankBelief::boundFactor() noexcept { factor = std::clamp(factor, kLeastFactor, kMostFactor); }
+void CrankBelief::boundFactor() noexcept {
+  const double bounded = std::clamp(factor, kLeastFactor, kMostFactor), variance = covariance(kFactor, kFactor);
+  if (!motor && bounded != factor && variance > 0.0) move((bounded - factor) / variance * covariance.col(kFactor));
+  factor = bounded;
+}
 
 void CrankBelief::correct(Row row, double innovation, double variance, const ConstantErrors::Row& by_error,
                           const std::optional<ConstantErrors::Row>& of_constants) noexcept {
@@ -152,9 +156,9 @@ void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, Shaf
   Base::predict<kAngle, kSpeed>(f);
 }
 
-void CrankBelief::meetTool(double deviation, double dt) noexcept {
-  drawFactor({1.0, deviation});
-  doubtSpeedChange(square(deviation), state.speed, 0.5 * dt, dt, *this);
+void CrankBelief::meetTool(double slowed, double deviation, double dt) noexcept {
+  drawFactor({slowed, deviation});
+  doubtSpeedChange(square(deviation), state.speed / slowed, 0.5 * dt, dt, *this);
 }
 
 bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt) noexcept {

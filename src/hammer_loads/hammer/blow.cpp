@@ -26,6 +26,18 @@ double impulsePerSpeed(const StrikingRocker& rocker, double w) noexcept {
   return strikingInertia(rocker) / (-k.x + rocker.friction * std::abs(k.z) * sign(w));
 }
 
+/// Of a tool that was met before the dead centre, as close to it as matters.
+RockerBlow earlyBlow(const StrikingRocker& rocker, const BlowInertia& inertia, double speed, double factor) noexcept {
+  RockerBlow blow;
+  blow.rocker_speed_before = inertia.u_before * speed;
+  blow.rocker_speed_after = factor * blow.rocker_speed_before;
+  blow.restitution = std::numeric_limits<double>::quiet_NaN();
+  blow.energy = 0.5 * inertia.before() * (1.0 - factor * factor) * speed * speed;
+  blow.tool_impulse_z =
+      2.0 * blow.energy / (rocker.striking_point.x * (blow.rocker_speed_before + blow.rocker_speed_after));
+  return blow;
+}
+
 }  // namespace
 
 StrikingRocker strikingRocker(const Mechanism& mechanism, Level level) noexcept {
@@ -81,7 +93,8 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
     return blowInSupport(rocker, before, -restitution * before);
   };
   const double restitution = inertia.restitution(crank.factor);
-  RockerBlow blow = blowOf(crank.speed, restitution);
+  RockerBlow blow =
+      crank.early ? earlyBlow(rocker, inertia, crank.speed, crank.factor) : blowOf(crank.speed, restitution);
   const double after = crank.factor * crank.speed;
   blow.crank_speed_before = crank.speed;
   blow.crank_speed_after = after;
@@ -95,6 +108,15 @@ RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow
   blow.drive_impulse_y = driveReaction(mechanism, links, crank.drive_inertia).torque(after - crank.speed, 0.0);
   // Deviations, each cause by a difference at its own size.
   const BlowInertia heavier = blowInertia(mechanism, links, crank.drive_inertia * (1.0 + crank.inertia_deviation));
+  if (crank.early) {
+    const auto change = [&](const BlowInertia& of, double speed, double factor) {
+      return earlyBlow(rocker, of, speed, factor).energy - blow.energy;
+    };
+    blow.energy_deviation = std::hypot(change(inertia, crank.speed + crank.speed_deviation, crank.factor),
+                                       change(inertia, crank.speed, crank.factor + crank.factor_deviation),
+                                       change(heavier, crank.speed, crank.factor));
+    return blow;
+  }
   const double by_factor = inertia.restitutionPerFactor() * crank.factor_deviation;
   const double by_inertia = heavier.restitution(crank.factor) - restitution;
   blow.restitution_deviation = std::hypot(by_factor, by_inertia);

@@ -37,6 +37,7 @@ struct CrankBlow {
   double factor_deviation{};   ///< standard [-]
   double drive_inertia{};      ///< Jc [kg m2], > 0
   double inertia_deviation{};  ///< standard, relative [-]
+  bool early{};                ///< the tool was met before the dead centre
 };
 
 /// A point in hammer_hull axes, from the pivot D [m].
@@ -78,6 +79,8 @@ RockerBlow blowAtCrankSpeed(const Mechanism& mechanism, Level level, double cran
 /// The blow by its factor on the crank's speed. Restitution, speeds of the rocker, tool impulse and energy are
 /// those of rocker and tool, before the linkage takes the rocker up (BlowInertia); the support's impulse is that of the
 /// links' whole change of momentum, to u+ k w-. Level pulse: as rocker.
+/// A tool met early slows the rocker together with the crank, by which the rod holds it: it gets what both lose, and a
+/// restitution is not known.
 RockerBlow measuredBlow(const Mechanism& mechanism, Level level, const CrankBlow& crank) noexcept;
 
 /// Blow of a crank that does not keep its speed: [rad/s] before, > 0, and after.

@@ -22,6 +22,8 @@ struct BlowInertia {
   double u_before{};  ///< psi'/phi' just before the blow [-], < 0
   double u_after{};   ///< just after [-], > 0
 
+  /// Of both on the branch before the blow [kg m2].
+  double before() const noexcept { return crank + u_before * (2.0 * coupling + u_before * rocker); }
   /// Of both on the branch after the blow [kg m2].
   double after() const noexcept { return crank + u_after * (2.0 * coupling + u_after * rocker); }
   /// Of the rocker alone with the crank free to follow [kg m2].

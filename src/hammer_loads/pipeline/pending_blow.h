@@ -68,6 +68,7 @@ class PendingBlow {
     waiting_ = false;
     if (!early_) return blow_;
     CrankBlow blow = blow_;
+    blow.early = true;
     blow.speed /= blow.factor;
     blow.speed_deviation = std::hypot(blow_.speed_deviation, blow.speed * blow.factor_deviation) / blow.factor;
     return blow;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/pipeline/crank_trust.h"
@@ -127,6 +128,27 @@ void TurnFollower::takeUpLater(const CrankBlow& crank, LinkMomentum& after, Rock
   blow.support_impulse_y -= model_->mechanism().parameters().rocker_inertia_about_pivot * missing;
 }
 
+/// No blow at the dead centre slows the crank so. Where the tool had been met before, its impulses show, in doubt by
+/// what a blow at the dead centre would have; else they are in doubt by what the nearest blow that can be has.
+void TurnFollower::doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept {
+  RockerBlow other = end.blow;
+  if (early) {
+    crank.early = true;
+    end.blow = measuredBlow(*model_, crank);
+    end.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), end.blow);
+    end.blow.impossible = true;
+    end.blow.energy = std::numeric_limits<double>::quiet_NaN();
+  } else {
+    const double restitution = -other.rocker_speed_after / other.rocker_speed_before;
+    const double nearest = (1.0 + std::clamp(restitution, 0.0, 1.0)) / (1.0 + restitution);
+    other.support_impulse_z += (nearest - 1.0) * other.tool_impulse_z;
+    other.tool_impulse_z *= nearest;
+  }
+  const auto doubt = [](double by, double& own) { own = std::hypot(own, by); };
+  doubt(end.blow.tool_impulse_z - other.tool_impulse_z, end.blow_errors.tool_impulse_z.own);
+  doubt(end.blow.support_impulse_z - other.support_impulse_z, end.blow_errors.support_impulse_z.own);
+}
+
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!pending_.isWaiting()) return;
   if (pending_.isWithheld() && !(tracker_->strikeConsistency() <= CrankTrust::kMost)) return discard();
@@ -154,11 +176,13 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::hypot(after.z * doubt, taken_up), 0.0},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
                                             pending_.columnsAfter()));
+  const bool early = std::exchange(crank.early, false);
   blow = measuredBlow(*model_, crank);
   if (elastic) takeUpLater(crank, after, blow);
   turn_.correctBegin(after);
   pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
   voidImpossible(model_->mechanism(), model_->level(), blow);
+  if (blow.impossible) doubtImpossible(crank, early, pending_end_);
   impossible_ += blow.impossible;
   blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull
   pending_end_.mean_press_force *= blow.tool_impulse_z;

@@ -60,6 +60,7 @@ class TurnFollower {
   std::uint64_t backwardPasses() const noexcept { return backward_; }  ///< of the blow, less those forward again
 
  private:
+  void doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept;
   void takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept;
   void countBackward(const CrankStep::Passage& passage) noexcept;
   void recordTo(double from, double to) noexcept;
