@@ -264,5 +264,20 @@ TEST(CrankPosition, PassesABlowOnlyWhenItIsAtOrBehindIt) {
   EXPECT_EQ(p.blowsPassed(), 2);
 }
 
+/// A filter that has gone astray may be fast: no tool stands a radian before the dead centre.
+TEST_F(CrankDynamics, AToolIsMetNearTheDeadCentreAlone) {
+  const auto isNear = [](double offset, double speed) {
+    ShaftState state;
+    state.position.angle = {offset, Side::kBeforeBlow};
+    state.speed = speed;
+    return isNearTool(state, 0.01);
+  };
+  EXPECT_TRUE(isNear(-0.05, 0.0));
+  EXPECT_FALSE(isNear(-0.07, 0.0));
+  EXPECT_TRUE(isNear(-0.2, 14.0));
+  EXPECT_TRUE(isNear(-0.45, 84.0));
+  EXPECT_FALSE(isNear(-0.55, 84.0));
+}
+
 }  // namespace
 }  // namespace hammer_loads

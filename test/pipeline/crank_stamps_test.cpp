@@ -40,6 +40,45 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
   }
 }
 
+/// Which sample of a burst was lost its stamp does not say: where the readings show that it was a later one, the sample
+/// counted too late goes back. Energies were 2 times the true one, forces off by their peak.
+TEST(CrankLosses, WithinBurstsStandWhereTheReadingsHaveThem) {
+  for (const double rate : {200.0, 500.0, 1000.0}) {
+    for (const std::uint64_t seed : {1u, 2u}) {
+      SCOPED_TRACE(testing::Message() << rate << " Hz, " << seed);
+      simulation::MachineSettings machine = simulation::workingMo100();
+      machine.hammer = test::settingsWith("{}").mechanism.parameters();
+      machine.seed = seed;
+      machine.level = Level::kLinkage;
+      machine.duration = 8.0;
+      machine.drive.stop_time = 20.0;
+      machine.crank.drop_outs.clear();
+      machine.crank.rate = rate;
+      machine.crank.burst = 3;
+      machine.crank.loss_share = 0.01;
+      const simulation::Session session = simulation::recordSession(machine);
+      test::Player player(test::settingsWith("{}"), false, session);
+      std::size_t i = 0, taken = 0, late = 0, blows = 0;
+      player.playTo(8.0, [&](double time, const SampleResult& result) {
+        const double instant = session.taken[i++];
+        if (time < 3.0 || result.refusal) return;
+        ++taken;
+        late += std::abs(seconds(result.stamp - machine.start_stamp) - instant) > 0.5 / rate;
+        for (std::size_t k = 0; k < result.turn_ends; ++k) {
+          const double blow = seconds(result.ends[k].stamp - machine.start_stamp);
+          const auto truth = std::find_if(session.blows.begin(), session.blows.end(),
+                                          [&](const auto& each) { return std::abs(each.time - blow) < 0.03; });
+          if (truth == session.blows.end() || blow < 3.0) continue;
+          ++blows;
+          EXPECT_NEAR(result.ends[k].blow.energy / truth->strike.energy, 1.0, 0.05) << blow;
+        }
+      });
+      EXPECT_LT(static_cast<double>(late), 0.002 * static_cast<double>(taken));  // until the next sample shows it
+      EXPECT_GT(blows, 15u);
+    }
+  }
+}
+
 /// Where samples are taken at equal intervals a reading ahead shows lost ones, but a rod that rings moves a crank by as
 /// much: instants were half a second off, and blows found where none was.
 TEST(CrankOnARodThatGives, LosesNoSamplesToItsRing) {

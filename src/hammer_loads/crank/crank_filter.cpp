@@ -224,8 +224,8 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   double behind = takeOffLag(last, dt, struck, read, sample);
   if (begins) return begin(sample);
   Innovation innovation = sample.ofAngle(now_);
-  if (has_speed_) lost_time_ = timeLost(innovation);
-  if (lost_time_ > 0.0) {
+  if (has_speed_) lost_time_ = timeLost(dt, innovation);
+  if (lost_time_ != 0.0) {
     now_ = last;
     dt += lost_time_;
     struck = predict(dt, true, now_) > 0;

@@ -168,7 +168,7 @@ class CrankFilter final : public CrankTracker {
   Innovation withoutRod(double dt, Innovation innovation) const noexcept;
   std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                      const WeighedSample& sample) noexcept;
-  double timeLost(const Innovation& innovation) const noexcept;
+  double timeLost(double dt, const Innovation& innovation) const noexcept;
   bool mayBeRod(const Innovation& innovation) const noexcept;
   bool mayHaveSlipped(const WeighedSample& sample, const Innovation& innovation) const noexcept;
   EncoderSlip::Step followSlip(double dt, const Innovation& innovation, WeighedSample& sample) noexcept;

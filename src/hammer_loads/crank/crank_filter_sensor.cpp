@@ -132,12 +132,13 @@ void CrankFilter::correctSpeed(const WeighedSample& sample, double dt, bool stru
 
 /// (5) Samples were lost before this one, where they are taken at equal intervals: the reading is whole intervals
 /// ahead.
-double CrankFilter::timeLost(const Innovation& innovation) const noexcept {
+double CrankFilter::timeLost(double dt, const Innovation& innovation) const noexcept {
   const double speed = now_.encoderSpeed();
   if (!(interval_ > 0.0) || std::abs(speed) < kLearnSpeed || !innovation.exceeds(gate::kImpossible)) return 0.0;
   if (mayBeRod(innovation)) return 0.0;
   const double intervals = innovation.value / (speed * interval_), whole = std::nearbyint(intervals);
-  if (whole < 1.0 || std::abs(innovation.value) > kJump) return 0.0;
+  const bool counted_before = whole < 0.0 && dt + whole * interval_ > 0.5 * interval_;
+  if (!(whole > 0.0 || counted_before) || std::abs(innovation.value) > kJump) return 0.0;
   const double rest = (intervals - whole) * speed * interval_;
   return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
 }

@@ -127,7 +127,8 @@ class CrankTracker {
   /// Samples are taken at equal intervals [s], so that a reading that is whole intervals ahead has lost samples before
   /// it; 0: not known.
   virtual void setInterval(double /*interval*/) noexcept {}
-  /// What the last step took longer than was given, by such samples [s].
+  /// What the last step took longer than was given, by such samples [s]; < 0: one that was counted there was lost
+  /// later.
   virtual double lostTime() const noexcept { return 0.0; }
   /// Steps of the encoder on its shaft that were found since the beginning.
   virtual int slips() const noexcept { return 0; }

@@ -116,7 +116,9 @@ void CrankFollower::followLostTime() noexcept {
   if (tracker_->slips() > slips_) slipped_ = stamp_;
   slips_ = tracker_->slips();
   const double lost = tracker_->lostTime();
-  if (!(lost > 0.0)) return;
+  // Single stamps show in some ten samples that one had been lost before them, and the crank has made up for it.
+  const bool had_been_lost = lost < 0.0 && !sequence_.fit().inBursts();
+  if (lost == 0.0 || had_been_lost) return;
   stamp_ = sequence_.skip(lost);
   verdict_.step += lost;
 }
