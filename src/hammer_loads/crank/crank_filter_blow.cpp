@@ -13,7 +13,6 @@ using Belief = CrankBelief;
 constexpr double kNearCounts = 4.0;       // counts from the blow within which the encoder decides its side
 constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
 constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
-constexpr double kLeastKept = 0.1;        // of a crank's speed, by a tool that shows little
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
 // Guard: FilterAtBlow.ACrankAtRestStandsThereWithinFourCounts of kNearCounts
 // Guard: FilterAtBlow.AToolMayTakeMostOfTheSpeed of kToolDeviation
@@ -41,7 +40,7 @@ double CrankFilter::slowedBefore(const CrankBelief& last) const noexcept {
   CrankBelief foretold = before();
   predict(step_, true, foretold);
   const double part = last.state.speed / foretold.state.speed;
-  return part > kLeastKept && part < 1.0 ? part : 1.0;
+  return part > 0.0 && part < 1.0 ? part : 1.0;
 }
 
 /// (4) A crank that is suddenly slower near the dead centre: the tool. True where the belief has taken it up.
