@@ -44,6 +44,32 @@ TEST_F(FilterAtBlow, AToolMayTakeMostOfTheSpeed) {
   EXPECT_GT(worst, 1.0);
 }
 
+/// Just before a sample it shows little there, just after one at once: without speeds, by readings in counts.
+TEST_F(FilterAtBlow, WhatAToolTookIsKnownWhereverItIsMet) {
+  double sum = 0.0, worst = 0.0;
+  constexpr int kPlaces = 40;
+  for (int place = 0; place < kPlaces; ++place) {
+    test::StrikingCrank crank(mechanism_.linkage(), 0.737, 0.6);
+    crank.blow = [&](int number) {
+      const bool early = number == 6;
+      return test::StrikingCrank::Blow{early ? 0.3 : 0.9, true, early ? 0.03 + 0.0005 * place : 0.0};
+    };
+    CrankFilter f = filterOf(test::filterSettings(kTwoPi / 4096.0));
+    const auto read = [&] { return kTwoPi / 4096.0 * (std::floor(crank.angle() / (kTwoPi / 4096.0)) + 0.5); };
+    f.start({read(), std::nullopt});
+    int met = 0;
+    for (int i = 1; i < 4000 && met < 6; ++i) {
+      crank.advanceTo(1e-3 * i);
+      f.update(1e-3, {read(), std::nullopt});
+      met += crank.blows() == 7 && f.belief().struck_early;
+    }
+    const double error = f.belief().factor - 0.3;
+    sum += error, worst = std::max(worst, std::abs(error));
+  }
+  EXPECT_LT(std::abs(sum / kPlaces), 0.005);
+  EXPECT_LT(worst, 0.03);
+}
+
 /// A crank that rests just behind the blow does not go back over it for four counts and the reading's noise.
 TEST_F(FilterAtBlow, ACrankAtRestStandsThereWithinFourCounts) {
   constexpr double kCount = test::kEncoderCount;

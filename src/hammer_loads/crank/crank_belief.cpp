@@ -156,9 +156,9 @@ void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, Shaf
   Base::predict<kAngle, kSpeed>(f);
 }
 
-void CrankBelief::meetTool(double slowed, double deviation, double dt) noexcept {
-  drawFactor({slowed, deviation});
-  doubtSpeedChange(square(deviation), state.speed / slowed, 0.5 * dt, dt, *this);
+void CrankBelief::meetTool(double deviation, double dt) noexcept {
+  drawFactor({1.0, deviation});
+  doubtSpeedChange(square(deviation), state.speed, 0.5 * dt, dt, *this);
 }
 
 bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt) noexcept {

@@ -69,9 +69,8 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   void forgetAngle(double variance) noexcept;
   /// The position stands beyond the blow that it should have passed: passes it now.
   void passLate(const ShaftModel& model, const BlowPrior& prior, ShaftMatrix* transition = nullptr) noexcept;
-  /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself. slowed: part of
-  /// its speed that the crank had kept at the sample before, which came after the tool then.
-  void meetTool(double slowed, double deviation, double dt) noexcept;
+  /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
+  void meetTool(double deviation, double dt) noexcept;
   /// Just after a blow, struck some time within the last dt [s]: its factor is in doubt by as much as explains an
   /// innovation of variance `total` of angle or speed. False: no factor explains it, all stays; nor is a motor of its
   /// own reached by the blow so soon.

@@ -259,7 +259,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
     }
     const bool without_contact = ratio > square(kToolSeen) && rivalExplains(dt, sample);
     const bool unlike =
-        !without_contact && (meetsTool(last, dt, innovation, sample) || meetsOtherBlow(dt, innovation, sample));
+        !without_contact && (meetsTool(dt, innovation, sample) || meetsOtherBlow(dt, innovation, sample));
     if (unlike) innovation = sample.ofAngle(now_);                           // (4)
     if (!without_contact && isContradiction(dt, innovation) && !isLost()) {  // (5)
       if (const auto result = contradict(last, dt, innovation, sample)) {

@@ -162,8 +162,7 @@ class CrankFilter final : public CrankTracker {
   bool isSpeedOfOtherSide(const WeighedSample& sample) const noexcept;
   bool isAtTool(double dt) const noexcept;
   bool meetsOtherBlow(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
-  double slowedBefore(const CrankBelief& last) const noexcept;
-  bool meetsTool(const CrankBelief& last, double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
+  bool meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept;
   bool isContradiction(double dt, const Innovation& innovation) const noexcept;
   Innovation withoutRod(double dt, Innovation innovation) const noexcept;
   std::optional<Tracking> contradict(const CrankBelief& last, double dt, const Innovation& innovation,

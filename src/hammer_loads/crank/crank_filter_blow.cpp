@@ -35,17 +35,8 @@ bool CrankFilter::isAtTool(double dt) const noexcept {
   return isNearTool(now_.state, dt) && now_.state.speed > 1.0 && !mirrored_;
 }
 
-/// Part of its speed that the last sample left the crank: met just before, the tool shows little in the angle.
-double CrankFilter::slowedBefore(const CrankBelief& last) const noexcept {
-  CrankBelief foretold = before();
-  predict(step_, true, foretold);
-  const double part = last.state.speed / foretold.state.speed;
-  return part > 0.0 && part < 1.0 ? part : 1.0;
-}
-
 /// (4) A crank that is suddenly slower near the dead centre: the tool. True where the belief has taken it up.
-bool CrankFilter::meetsTool(const CrankBelief& last, double dt, const Innovation& angle,
-                            const WeighedSample& sample) noexcept {
+bool CrankFilter::meetsTool(double dt, const Innovation& angle, const WeighedSample& sample) noexcept {
   const bool before = now_.state.position.angle.side == Side::kBeforeBlow;
   if (!before || !(angle.value < 0.0) || !isAtTool(dt)) return false;
   const bool jitters = sample.timing_variance > 0.0;
@@ -56,7 +47,7 @@ bool CrankFilter::meetsTool(const CrankBelief& last, double dt, const Innovation
     seen = (slower && speed.exceeds(kToolSeen)) || (seen && (!jitters || (slower && speed.exceeds(gate::kUsual))));
   }
   if (!seen) return false;
-  now_.meetTool(slowedBefore(last), kToolDeviation, dt);
+  now_.meetTool(kToolDeviation, dt);
   now_.tool_met = now_.struck_early = true;
   return true;
 }
@@ -83,7 +74,7 @@ void CrankFilter::takeBack(const CrankBelief& last, double dt, const WeighedSamp
   predict(dt, false, now_);
   Innovation again = sample.ofAngle(now_);
   const bool may_be_tool = again.value > -std::abs(last.state.speed) * dt;  // which stops the crank at most
-  if (may_be_tool && meetsTool(last, dt, again, sample)) again = sample.ofAngle(now_);
+  if (may_be_tool && meetsTool(dt, again, sample)) again = sample.ofAngle(now_);
   now_.correct(Belief::kAngle, again.value, again.variance, again.by_error);
   if (now_.state.position.isMirrored()) now_.standAtBlow();
 }
