@@ -9,14 +9,38 @@
 namespace hammer_loads {
 namespace {
 
+simulation::MachineSettings eightSeconds() {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.duration = 8.0;
+  machine.drive.stop_time = 20.0;
+  machine.crank.drop_outs.clear();
+  return machine;
+}
+
+/// With crank and rod as the settings have them.
+simulation::MachineSettings eightSecondsOf(const Settings& settings) {
+  simulation::MachineSettings machine = eightSeconds();
+  machine.hammer = settings.mechanism.parameters();
+  machine.level = Level::kLinkage;
+  return machine;
+}
+
+double secondsOf(StampNs stamp, const simulation::MachineSettings& machine) {
+  return seconds(stamp - machine.start_stamp);
+}
+
+/// None: there is none within 30 ms.
+const simulation::BlowTruth* blowNear(double time, const simulation::Session& session) {
+  const auto near = [time](const auto& each) { return std::abs(each.time - time) < 0.03; };
+  const auto found = std::find_if(session.blows.begin(), session.blows.end(), near);
+  return found == session.blows.end() ? nullptr : &*found;
+}
+
 /// Messages of bursts or of whole milliseconds, some of them twice, without speeds: a reading that a crank that turns
 /// cannot give again is no new one, and one at rest teaches no line of stamps.
 TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
   for (const bool bursts : {true, false}) {
-    simulation::MachineSettings machine = simulation::workingMo100();
-    machine.duration = 8.0;
-    machine.drive.stop_time = 20.0;
-    machine.crank.drop_outs.clear();
+    simulation::MachineSettings machine = eightSeconds();
     machine.crank.speed = false;
     machine.crank.duplicate_share = 0.03;
     if (bursts)
@@ -33,7 +57,7 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
       ++samples;
       if (result.refusal) return;
       ++taken;
-      worst = std::max(worst, std::abs(seconds(result.stamp - machine.start_stamp) - instant));
+      worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
     });
     EXPECT_LT(worst, 1.1e-3) << bursts << " [s]";
     EXPECT_GT(static_cast<double>(taken), 0.95 * static_cast<double>(samples)) << bursts;
@@ -43,32 +67,27 @@ TEST(CrankTwice, BurstsWithoutSpeedsKeepTheirInstants) {
 /// Which sample of a burst was lost its stamp does not say: where the readings show that it was a later one, the sample
 /// counted too late goes back. Energies were 2 times the true one, forces off by their peak.
 TEST(CrankLosses, WithinBurstsStandWhereTheReadingsHaveThem) {
+  const Settings settings = test::settingsWith("{}");
   for (const double rate : {200.0, 500.0, 1000.0}) {
     for (const std::uint64_t seed : {1u, 2u}) {
       SCOPED_TRACE(testing::Message() << rate << " Hz, " << seed);
-      simulation::MachineSettings machine = simulation::workingMo100();
-      machine.hammer = test::settingsWith("{}").mechanism.parameters();
+      simulation::MachineSettings machine = eightSecondsOf(settings);
       machine.seed = seed;
-      machine.level = Level::kLinkage;
-      machine.duration = 8.0;
-      machine.drive.stop_time = 20.0;
-      machine.crank.drop_outs.clear();
       machine.crank.rate = rate;
       machine.crank.burst = 3;
       machine.crank.loss_share = 0.01;
       const simulation::Session session = simulation::recordSession(machine);
-      test::Player player(test::settingsWith("{}"), false, session);
+      test::Player player(settings, false, session);
       std::size_t i = 0, taken = 0, late = 0, blows = 0;
       player.playTo(8.0, [&](double time, const SampleResult& result) {
         const double instant = session.taken[i++];
         if (time < 3.0 || result.refusal) return;
         ++taken;
-        late += std::abs(seconds(result.stamp - machine.start_stamp) - instant) > 0.5 / rate;
+        late += std::abs(secondsOf(result.stamp, machine) - instant) > 0.5 / rate;
         for (std::size_t k = 0; k < result.turn_ends; ++k) {
-          const double blow = seconds(result.ends[k].stamp - machine.start_stamp);
-          const auto truth = std::find_if(session.blows.begin(), session.blows.end(),
-                                          [&](const auto& each) { return std::abs(each.time - blow) < 0.03; });
-          if (truth == session.blows.end() || blow < 3.0) continue;
+          const double blow = secondsOf(result.ends[k].stamp, machine);
+          const simulation::BlowTruth* truth = blowNear(blow, session);
+          if (!truth || blow < 3.0) continue;
           ++blows;
           EXPECT_NEAR(result.ends[k].blow.energy / truth->strike.energy, 1.0, 0.05) << blow;
         }
@@ -83,12 +102,7 @@ TEST(CrankLosses, WithinBurstsStandWhereTheReadingsHaveThem) {
 /// much: instants were half a second off, and blows found where none was.
 TEST(CrankOnARodThatGives, LosesNoSamplesToItsRing) {
   const Settings settings = test::settingsWith("{}");
-  simulation::MachineSettings machine = simulation::workingMo100();
-  machine.hammer = settings.mechanism.parameters();
-  machine.level = Level::kLinkage;
-  machine.duration = 8.0;
-  machine.drive.stop_time = 20.0;
-  machine.crank.drop_outs.clear();
+  simulation::MachineSettings machine = eightSecondsOf(settings);
   machine.rod.stiffness = 5e8;
   machine.rod.damping_ratio = 0.2;
   for (const bool bursts : {true, false}) {
@@ -101,12 +115,10 @@ TEST(CrankOnARodThatGives, LosesNoSamplesToItsRing) {
     player.playTo(8.0, [&](double time, const SampleResult& result) {
       const double instant = session.taken[i++];
       if (time < 3.0 || result.refusal) return;
-      worst = std::max(worst, std::abs(seconds(result.stamp - machine.start_stamp) - instant));
+      worst = std::max(worst, std::abs(secondsOf(result.stamp, machine) - instant));
       for (std::size_t k = 0; k < result.turn_ends; ++k) {
-        const double blow = seconds(result.ends[k].stamp - machine.start_stamp);
-        EXPECT_TRUE(std::any_of(session.blows.begin(), session.blows.end(), [&](const auto& each) {
-          return std::abs(each.time - blow) < 0.03;
-        })) << blow;
+        const double blow = secondsOf(result.ends[k].stamp, machine);
+        EXPECT_TRUE(blowNear(blow, session)) << blow;
       }
     });
     EXPECT_LT(worst, bursts ? 5e-4 : 3e-3) << " [s]";

@@ -199,8 +199,7 @@ std::string markdown(const std::vector<MachineRow>& rows) {
     }
     text += format(
         "| %s | %.0f | %s | %.2f, %.2f, %.2f, %.2f %% | %.1f, %.1f, %.1f, %.1f %% | %.0f, %.0f, %.0f %% | %.2f ms | %s "
-        "| %d | "
-        "%d | %d |\n",
+        "| %d | %d | %d |\n",
         row.machine.c_str(), row.rate, row.speed ? "measured" : "none", 100 * e.rms_force, 100 * e.rms_x, 100 * e.rms_z,
         100 * e.rms_torque, 100 * e.worst_force, 100 * e.worst_x, 100 * e.worst_z, 100 * e.worst_torque,
         100 * e.covered_x, 100 * e.covered_z, 100 * e.covered_torque, 1e3 * e.blow_time, energyCell(e, 1).c_str(),

@@ -34,8 +34,8 @@ struct SessionErrors {
   /// Relative, worst of those that are known; NaN where none is.
   double energy{std::numeric_limits<double>::quiet_NaN()};
   int known_energies{};
-  int blows{}, missed_blows{}, extra_blows{};         ///< missed: without pulse as well
-  int unseen_blows{}, false_blows{};                  ///< nothing near them; nothing there
+  int blows{}, missed_blows{}, extra_blows{};  ///< missed: without pulse as well
+  int unseen_blows{}, false_blows{};           ///< nothing near them; nothing there
 };
 
 /// The judged time: [from, to], without the two turns after each drop-out.

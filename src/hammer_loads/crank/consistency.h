@@ -21,7 +21,7 @@ class Consistency {
   /// NaN before 200 samples.
   double mean() const noexcept { return samples_ < kEnough ? std::numeric_limits<double>::quiet_NaN() : mean_; }
   /// The factor of variances in what the filter learns: never below 1.
-  double growth() const noexcept { return samples_ < kEnough ? 1.0 : std::max(1.0, mean_); }
+  double growth() const noexcept { return samples_ < kEnough ? 1.0 : doubt(); }
   /// The same of what is published: samples that are not there yet count as what was before them.
   double doubt() const noexcept {
     const double known = std::min(1.0, static_cast<double>(samples_) / kEnough);

@@ -7,12 +7,7 @@ namespace {
 
 /// Of the impulses, by the readings.
 void addOwn(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow, BlowErrors& errors) noexcept {
-  const auto add = [&](const CrankBlow& other) {
-    const RockerBlow there = measuredBlow(model, other);
-    errors.tool_impulse_z.own = std::hypot(errors.tool_impulse_z.own, there.tool_impulse_z - blow.tool_impulse_z);
-    errors.support_impulse_z.own =
-        std::hypot(errors.support_impulse_z.own, there.support_impulse_z - blow.support_impulse_z);
-  };
+  const auto add = [&](const CrankBlow& other) { addDoubt(blow, measuredBlow(model, other), errors); };
   CrankBlow faster = crank, rebound = crank, heavier = crank;
   faster.speed += crank.speed_deviation;
   rebound.factor += crank.factor_deviation;
@@ -21,6 +16,12 @@ void addOwn(const HullModel& model, const CrankBlow& crank, const RockerBlow& bl
 }
 
 }  // namespace
+
+void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept {
+  errors.tool_impulse_z.own = std::hypot(errors.tool_impulse_z.own, other.tool_impulse_z - blow.tool_impulse_z);
+  errors.support_impulse_z.own =
+      std::hypot(errors.support_impulse_z.own, other.support_impulse_z - blow.support_impulse_z);
+}
 
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
                       const BlowColumns& columns, RockerBlow& blow) noexcept {

@@ -15,4 +15,7 @@ using BlowColumns = ByConstants<3, ConstantErrors::kSize>;
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
                       const BlowColumns& columns, RockerBlow& blow) noexcept;
 
+/// Of the impulses: what they are in another blow that cannot be ruled out, independent of all else.
+void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept;
+
 }  // namespace hammer_loads

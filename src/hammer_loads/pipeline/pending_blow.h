@@ -29,6 +29,7 @@ class PendingBlow {
     columns_.row(0) = doubt.speedAtAngle(rate);
   }
   bool isWaiting() const noexcept { return waiting_; }
+  bool isEarly() const noexcept { return early_; }  ///< the tool was met before the dead centre
   /// It was none.
   void drop() noexcept { waiting_ = false; }
   /// The estimate at the latest sample; call after begin() and then at each sample that continues.
@@ -68,7 +69,6 @@ class PendingBlow {
     waiting_ = false;
     if (!early_) return blow_;
     CrankBlow blow = blow_;
-    blow.early = true;
     blow.speed /= blow.factor;
     blow.speed_deviation = std::hypot(blow_.speed_deviation, blow.speed * blow.factor_deviation) / blow.factor;
     return blow;

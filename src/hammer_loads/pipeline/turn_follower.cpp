@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/pipeline/crank_trust.h"
@@ -144,9 +143,7 @@ void TurnFollower::doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) co
     other.support_impulse_z += (nearest - 1.0) * other.tool_impulse_z;
     other.tool_impulse_z *= nearest;
   }
-  const auto doubt = [](double by, double& own) { own = std::hypot(own, by); };
-  doubt(end.blow.tool_impulse_z - other.tool_impulse_z, end.blow_errors.tool_impulse_z.own);
-  doubt(end.blow.support_impulse_z - other.support_impulse_z, end.blow_errors.support_impulse_z.own);
+  addDoubt(end.blow, other, end.blow_errors);
 }
 
 void TurnFollower::finishBlow(SampleResult& result) noexcept {
@@ -176,13 +173,12 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::hypot(after.z * doubt, taken_up), 0.0},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
                                             pending_.columnsAfter()));
-  const bool early = std::exchange(crank.early, false);
   blow = measuredBlow(*model_, crank);
   if (elastic) takeUpLater(crank, after, blow);
   turn_.correctBegin(after);
   pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
   voidImpossible(model_->mechanism(), model_->level(), blow);
-  if (blow.impossible) doubtImpossible(crank, early, pending_end_);
+  if (blow.impossible) doubtImpossible(crank, !elastic && pending_.isEarly(), pending_end_);
   impossible_ += blow.impossible;
   blow.energy -= blow.tool_impulse_z * pending_.hullSpeed();  // the tool rests on the rock, not in the hull
   pending_end_.mean_press_force *= blow.tool_impulse_z;

@@ -23,7 +23,8 @@ ElasticMachine::ElasticMachine(const MachineSettings& settings)
       links_(settings.hammer, settings.level),
       rod_(settings.rod),
       struck_(settings),
-      next_step_(std::min(settings.step, kLongestStep)) {
+      longest_step_(std::min(settings.step, kLongestStep)),
+      next_step_(longest_step_) {
   const double start = settings_.start_angle;
   now_[kCrank] = start > kPi ? start - kTwoPi : start;
   now_[kRocker] = links_.rockerAngle(start);
@@ -117,7 +118,7 @@ void ElasticMachine::step() {
       dt = std::max(0.25 * dt, 0.9 * kShortest);
       continue;
     }
-    next_step_ = std::min({settings_.step, kLongestStep, dt * factor});
+    next_step_ = std::min(longest_step_, dt * factor);
     return accept(next, slope, dt, after);
   }
 }

@@ -102,7 +102,7 @@ class ElasticMachine {
   StruckTool struck_;
   State now_{}, slope_{};            ///< at the last step's end
   State before_{}, before_slope_{};  ///< at its begin
-  double time_{}, before_time_{}, next_step_;
+  double time_{}, before_time_{}, longest_step_, next_step_;
   double asked_{};  ///< within the last step
   State view_{};    ///< then
   std::int64_t view_turn_{};

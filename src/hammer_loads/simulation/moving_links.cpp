@@ -64,7 +64,8 @@ LinkBodies MovingLinks::at(TurnAngle angle) const noexcept {
                            along * sin_psi + across * cos_psi, psi};
   if (level_ == Level::kRocker) return all;
 
-  const auto [cos_phi, sin_phi, unused] = placeOf(angle);
+  const CrankPlace place = placeOf(angle);
+  const Jet &cos_phi = place.cos, &sin_phi = place.sin;
   all.body[all.count++] = {p_.crank_mass,
                            p_.crank_inertia_about_com,
                            p_.crank_com_along * cos_phi - p_.crank_com_across * sin_phi,
