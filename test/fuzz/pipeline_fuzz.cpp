@@ -58,13 +58,7 @@ class Session {
  private:
   void step() {
     const auto operation = bytes_.take<std::uint8_t>();
-    if (operation == 254) {
-      if (const std::optional<Settings> drawn = test::drawnSettings(bytes_)) {
-        mechanism_ = drawn->mechanism;
-        settings_ = drawn->pipeline;
-      }
-    }
-    if (operation >= 254) return beginAnew();
+    if (operation >= 254 && begun_ < kMostBegun) return beginAnew(operation == 254);
     switch (operation % 8) {
       case 4:
         return stampedSample();
@@ -79,7 +73,13 @@ class Session {
     }
   }
 
-  void beginAnew() {
+  void beginAnew(bool elsewhere) {
+    ++begun_;
+    const std::optional<Settings> drawn = elsewhere ? test::drawnSettings(bytes_) : std::nullopt;
+    if (drawn) {
+      mechanism_ = drawn->mechanism;
+      settings_ = drawn->pipeline;
+    }
     const SampleCounts counts = pipeline_->counts();
     pipeline_.emplace(mechanism_, settings_, std::nullopt, counts);
     life_.emplace(*pipeline_, counted());
@@ -155,7 +155,11 @@ class Session {
     }
   }
 
+  /// The nominal turn of a hammer drawn next to a dead centre takes a second with the instruments, once a column.
+  static constexpr int kMostBegun = 4;
+
   Bytes bytes_;
+  int begun_{};
   Mechanism mechanism_;
   PipelineSettings settings_;
   std::optional<Pipeline> pipeline_;

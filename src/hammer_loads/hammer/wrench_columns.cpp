@@ -50,6 +50,7 @@ LinkMasses::Effect effectOnHull(const Mechanism& mechanism, const LinkMotion& l,
 WrenchColumns::WrenchColumns(const HullModel& model)
     : model_(&model), columns_(machineColumns(model.mechanism(), model.level())) {
   if (!columns_) return;
+  models_.reserve(columns_->columns().size());
   for (const MachineColumn& column : columns_->columns()) models_.emplace_back(column.mechanism, column.level);
 }
 

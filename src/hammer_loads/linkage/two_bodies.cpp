@@ -179,6 +179,12 @@ TwoBodyAccelerations TwoBodies::accelerations(const RodSpring& rod, const TwoBod
   return {crank, links.rocker.u * crank + links.rocker.du * s.speed * s.speed + beside};
 }
 
+double TwoBodies::rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyState& s,
+                                    const LinkMotion& links) const noexcept {
+  const Local a = local(drive, {s.angle, s.speed, 0.0, 0.0}, links);
+  return a.on_crank * a.per_reflected;
+}
+
 LinkAccelerations TwoBodies::linkAccelerations(const TwoBodyState& s, const TwoBodyAccelerations& a,
                                                const LinkMotion& links) const noexcept {
   const LinkLengths& l = mechanism_->linkage().lengths();

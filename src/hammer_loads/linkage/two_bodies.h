@@ -47,6 +47,9 @@ class TwoBodies {
   /// At a state.
   TwoBodyAccelerations accelerations(const RodSpring& rod, const TwoBodyDrive& drive, const TwoBodyState& state,
                                      const LinkMotion& links) const noexcept;
+  /// Of the crank, if the rod were rigid [rad/s2].
+  double rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyState& state,
+                           const LinkMotion& links) const noexcept;
   /// rod: in LinkAccelerations also its change of length.
   LinkAccelerations linkAccelerations(const TwoBodyState& state, const TwoBodyAccelerations& a,
                                       const LinkMotion& links) const noexcept;

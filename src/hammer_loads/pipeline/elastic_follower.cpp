@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/estimation/gates.h"
@@ -28,6 +29,9 @@ constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of like
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 // Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
 
+constexpr double kRoot3 = 1.7320508075688772;
+const RunningMean<> kOfAll(std::numeric_limits<double>::infinity());
+
 /// One that was never struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
@@ -41,7 +45,8 @@ ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
       wanted_(level == Level::kElastic &&
               priorOf(model.mechanism().parameters().rod, model.mechanism().parameters().rod_deviation).gives),
       filters_{RodFilter(model.mechanism(), RodFilter::Pins::kTight),
-               RodFilter(model.mechanism(), RodFilter::Pins::kPlay)} {}
+               RodFilter(model.mechanism(), RodFilter::Pins::kPlay)},
+      squares_(kOfAll) {}
 
 bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept {
   const CrankPosition& at = crank.estimate().position;
@@ -106,45 +111,67 @@ CrankEstimate ElasticFollower::crank() const noexcept {
   CrankEstimate crank;
   crank.position = {blow_, m.state.angle};
   crank.speed = m.state.speed;
-  crank.acceleration = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, links).crank;
+  crank.acceleration = bodies.rigidAcceleration(filter().drive(m), m.state, links);
   return crank;
 }
 
-Eigen::Vector3d ElasticFollower::beside(const RodMotion& m) const noexcept {
+ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const DriveReaction& drive) const noexcept {
   const TwoBodies& bodies = filter().bodies();
   const LinkMotion links = bodies.links(m.state.angle);
-  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, links);
-  const HullWrench elastic = hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), {});
-  const CrankMotion rigid{m.state.angle, m.state.speed, a.crank};
-  return vectorOf(elastic) - vectorOf(hullWrenchLinkage(model_->mechanism(), links, rigid, {}));
+  const TwoBodyDrive by = filter().drive(m);
+  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, links);
+  LinkMotion there = links;  // lively rock throws the rocker back by a tenth of a radian
+  there.psi = links.psi * Planar{std::cos(m.state.beside), std::sin(m.state.beside)};
+  const HullWrench w =
+      hullWrenchOf(model_->mechanism(), there, bodies.linkAccelerations(m.state, a, there), by.gravity);
+  Loads loads;
+  loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank,
+      a.rocker - links.rocker.u * a.crank - links.rocker.du * square(m.state.speed);
+  return loads;
 }
 
-Eigen::Vector3d ElasticFollower::variance(const DriveReaction& drive) const noexcept {
-  const TwoBodies& bodies = filter().bodies();
-  const auto all = [&](const RodMotion& m) {
-    const LinkMotion links = bodies.links(m.state.angle);
-    const TwoBodyDrive by = filter().drive(m);
-    const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, links);
-    HullWrench w = hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), by.gravity);
-    w.torque_y += drive.torque(a.crank, 0.0);
-    return vectorOf(w);
-  };
-  const Eigen::Vector3d here = all(filter().motion());
+ElasticFollower::Loads ElasticFollower::rigidLoads(const DriveReaction& drive) const noexcept {
+  const CrankMotion m = motionOf(crank());
+  const LinkMotion links = filter().bodies().links(m.angle);
+  const HullWrench w = hullWrenchLinkage(model_->mechanism(), links, m, filter().drive(filter().motion()).gravity);
+  Loads loads;
+  loads << w.force_x, w.force_z, w.torque_y + drive.torque(m.acceleration, 0.0), m.acceleration, 0.0;
+  return loads;
+}
+
+/// Of pins with play, which may meet within an error, by Gauss-Hermite quadrature at three points.
+ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction& drive,
+                                                            const Loads& here) const noexcept {
   const RodFilter::Belief::Matrix errors = filter().errors();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i)
-    if (errors(i, i) > 0.0) sum += (all(filter().displaced(errors.col(i))) - here).cwiseAbs2();
+  LoadCovariance sum = LoadCovariance::Zero();
+  const auto add = [&](const RodFilter::Belief::Vector& error, double weight) {
+    const Loads off = loads(filter().displaced(error), drive) - here;
+    sum += weight * off * off.transpose();
+  };
+  const bool worn = filter().motion().play > 0.0;
+  for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i) {
+    if (!(errors(i, i) > 0.0)) continue;
+    if (!worn) add(errors.col(i), 1.0);
+    if (worn) add(-kRoot3 * errors.col(i), 1.0 / 6.0), add(kRoot3 * errors.col(i), 1.0 / 6.0);
+  }
   return sum;
 }
 
-ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive) const noexcept {
-  Eigen::Vector3d wrench = beside(filter().motion()), of = variance(drive);
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const double size = square(wrench[i]), part = size > 0.0 ? size / (size + of[i]) : 0.0;
-    of[i] = square(part) * of[i] + square(1.0 - part) * size;
-    wrench[i] *= part;
+/// A Kalman correction by x'' = 0 +- what is expected of a ring.
+ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, double ring) noexcept {
+  Loads mean = loads(filter().motion(), drive);
+  const LoadCovariance errors = covariance(drive, mean);
+  if (!filter().hasStruck()) squares_ = kOfAll;
+  squares_.add(square(mean[kBesideRigid]));
+  Loads variance = errors.diagonal();
+  if (filter().hasStruck()) {
+    const double expected = std::max({square(ring), squares_.mean(), std::numeric_limits<double>::min()});
+    const Loads gain = errors.col(kBesideRigid) / (errors(kBesideRigid, kBesideRigid) + expected);
+    mean -= gain * mean[kBesideRigid];
+    variance -= gain.cwiseProduct(errors.col(kBesideRigid));
   }
-  return {wrenchOf(wrench), wrenchOf(of.cwiseSqrt())};
+  mean -= rigidLoads(drive);
+  return {wrenchOf(mean.head<3>()), wrenchOf(variance.head<3>().cwiseMax(0.0).cwiseSqrt()), mean[kCrank]};
 }
 
 double ElasticFollower::speedBeside() const noexcept {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hammer_loads/crank/rod_filter.h"
+#include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/pipeline/crank_follower.h"
 
 namespace hammer_loads {
@@ -23,14 +24,17 @@ class ElasticFollower {
   void follow(const CrankFollower& crank, Gravity gravity) noexcept;
   bool runs() const noexcept { return best_ != nullptr && best_->isRunning() && best_->isProven(); }
 
-  /// While it runs: the crank as the two bodies have it.
+  /// While it runs: the crank as the two bodies have it, its acceleration as if its rod were rigid.
   CrankEstimate crank() const noexcept;
-  /// What the hull feels beside a rigid rod at that crank, and the standard deviation of the whole wrench by readings
-  /// and rod. Of a ring that is known no better than it is large only a part is given (Wiener): its least square error.
+  /// What a rod that gives adds to the loads of a rigid one at that crank.
   struct Beside {
-    HullWrench wrench, deviation;
+    HullWrench wrench, deviation;  ///< deviation: of the whole wrench by readings and rod
+    double crank{};                ///< acceleration [rad/s2]
   };
-  Beside beside(const DriveReaction& drive) const noexcept;
+  /// Once a sample. ring: of the rocker's acceleration beside a rigid rod's, of any phase (RodRing) [rad/s2]. That of
+  /// the two bodies is weighed with it, or with its own mean since the blow where that is more, by the variances: what
+  /// is known no better than that is the moment of an impact within the pins.
+  Beside beside(const DriveReaction& drive, double ring) noexcept;
   /// Of the rocker's speed beside a rigid rod's and its standard deviation the root of the squares [rad/s].
   double speedBeside() const noexcept;
   /// While it runs: of a crank whose rigid rod moves the rocker as it is before the blow [rad/s].
@@ -44,8 +48,13 @@ class ElasticFollower {
   const RodFilter& filter() const noexcept { return best_ != nullptr ? *best_ : filters_[0]; }
 
  private:
-  Eigen::Vector3d beside(const RodMotion& motion) const noexcept;
-  Eigen::Vector3d variance(const DriveReaction& drive) const noexcept;
+  /// Of the hull as HullWrench; acceleration of the crank, and of the rocker beside a rigid rod's, x'' [rad/s2].
+  using Loads = Eigen::Matrix<double, 5, 1>;
+  using LoadCovariance = Eigen::Matrix<double, 5, 5>;
+  enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
+  Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
+  Loads rigidLoads(const DriveReaction& drive) const noexcept;
+  LoadCovariance covariance(const DriveReaction& drive, const Loads& here) const noexcept;
   void begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept;
   const RodFilter& likelier() const noexcept;
   void judge() noexcept;
@@ -58,6 +67,7 @@ class ElasticFollower {
   double rigid_fit_{};       ///< of this blow
   const RodFilter* best_{};  ///< null: rigid
   std::int64_t blow_{};      ///< CrankPosition::blow
+  RunningMean<> squares_;    ///< of x'' since the blow [rad2/s4]
 };
 
 }  // namespace hammer_loads

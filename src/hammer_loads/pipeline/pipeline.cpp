@@ -105,7 +105,7 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   settled_ = isPlausible(hullWrench(model_, links.here.links, motion, hull_.motion().motion));
   if (!settled_) return withhold(Refusal::kImplausible);
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
-  const HullWrench rod = weigh(links, drive);
+  const ElasticFollower::Beside rod = weigh(links, drive);
   followBoom(links, drive);
   hullMovedAtBlow();
   hull_.vibrates(result_.boom != nullptr ? &*boom_ : nullptr);
@@ -169,15 +169,15 @@ HullWrench Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& 
   return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)).cwiseAbs());
 }
 
-/// Deviations, and whether the blow's side is certain. Returns what a rod that gives adds to the wrench.
-HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive) noexcept {
+/// Deviations, and whether the blow's side is certain. Returns what a rod that gives adds to the loads.
+ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive) noexcept {
   const bool gives = elastic_.runs();
   result_.doubt = crank_.tracker().uncertainty(settings_.torque_deviation_part);
   result_.deviation = hullDeviation(columns_, model_, crank_.tracker().driveInertia(), result_.crank, links,
                                     hull_.motion().motion, result_.doubt, result_.load_columns);
   const HullWrench own = gives ? result_.deviation.common : result_.deviation.wrench;
   const ElasticFollower::Beside rod =
-      gives ? elastic_.beside(drive)
+      gives ? elastic_.beside(drive, rod_.acceleration())
             : ElasticFollower::Beside{{}, rockerWrench(mechanism_, links.here.links, rod_.acceleration())};
   result_.rod_ring = rod.deviation;
   result_.contact_doubt = contactDoubt(links.here.links, drive);
@@ -187,16 +187,17 @@ HullWrench Pipeline::weigh(const LinksBeside& links, const DriveReaction& drive)
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;
   result_.beside_blow =
       gives ? elastic_.isBesideBlow() : isBesideBlow(result_.crank, deviationFromBlow(tracker, of_angle));
-  return rod.wrench;
+  return rod;
 }
 
 /// Hull, links, wrench and pin forces.
-void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const HullWrench& rod) noexcept {
+void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept {
   const CrankMotion motion = motionOf(result_.crank);
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
   result_.links = linkState(links.here.links, motion);
-  result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod;
+  result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
+  result_.crank.acceleration += rod.crank;
   // Of a rigid rod at every level: what the spring makes of them is not known here.
   result_.pins = pinForces(model_, crank_.step().links().links, motionOf(crank_.estimate()), result_.hull.motion,
                            settings_.near_blow, result_.deviation.angle);

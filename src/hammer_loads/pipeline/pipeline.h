@@ -71,8 +71,8 @@ class Pipeline {
   void follow(CrankFollower::Taken taken) noexcept;
   std::optional<Refusal> whyWithheld() noexcept;
   HullWrench contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept;
-  HullWrench weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
-  void fill(const LinksBeside& links, const DriveReaction& drive, const HullWrench& rod) noexcept;
+  ElasticFollower::Beside weigh(const LinksBeside& links, const DriveReaction& drive) noexcept;
+  void fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept;
   bool isPlausible(const HullWrench& wrench) const noexcept;
   void followTrust(CrankFollower::Taken taken) noexcept;
   void hullMovedAtBlow() noexcept;
