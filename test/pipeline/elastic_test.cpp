@@ -74,6 +74,16 @@ TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
   EXPECT_GT(e.whole.covered[1], 0.85);
 }
 
+/// All stamps are up to a millisecond early, which is a seventh of a ring.
+TEST(ElasticSession, StampsOfWholeMillisecondsAreInTheDeviation) {
+  simulation::MachineSettings machine = machineWithRod({6e8, 0.25, 0.0}, 741);
+  machine.crank.stamp_step = 1e-3;
+  const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic);
+  EXPECT_GT(e.after.covered[0], 0.90);
+  EXPECT_GT(e.after.covered[1], 0.90);
+  EXPECT_GT(e.after.covered[2], 0.90);
+}
+
 /// The pins' play is not given.
 TEST(ElasticSession, PlayIsLearned) {
   const accuracy::ElasticErrors e = rodErrors(machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);

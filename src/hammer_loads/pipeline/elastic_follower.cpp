@@ -77,6 +77,7 @@ void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexce
   const double dt = crank.step().length();
   if (!(dt < kLongestKnown)) return rest();
   rigid_fit_ += filter->angleFit();
+  late_ = filter->constantErrors().considered(ConstantErrors::kLatency);
   for (RodFilter& rod : filters_) {
     if (!rod.isRunning()) continue;
     rod.move(dt, filter->walks(), gravity);
@@ -106,12 +107,11 @@ void ElasticFollower::judge() noexcept {
 
 CrankEstimate ElasticFollower::crank() const noexcept {
   const RodMotion& m = filter().motion();
-  const TwoBodies& bodies = filter().bodies();
-  const LinkMotion links = bodies.links(m.state.angle);
   CrankEstimate crank;
   crank.position = {blow_, m.state.angle};
   crank.speed = m.state.speed;
-  crank.acceleration = bodies.rigidAcceleration(filter().drive(m), m.state, links);
+  crank.acceleration =
+      filter().bodies().rigidAcceleration(filter().drive(m), m.state, filter().bodies().links(m.state.angle));
   return crank;
 }
 
@@ -130,13 +130,22 @@ ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const DriveRea
   return loads;
 }
 
-ElasticFollower::Loads ElasticFollower::rigidLoads(const DriveReaction& drive) const noexcept {
-  const CrankMotion m = motionOf(crank());
-  const LinkMotion links = filter().bodies().links(m.angle);
-  const HullWrench w = hullWrenchLinkage(model_->mechanism(), links, m, filter().drive(filter().motion()).gravity);
+ElasticFollower::Loads ElasticFollower::rigidLoads(const RodMotion& m, const DriveReaction& drive) const noexcept {
+  const TwoBodyDrive by = filter().drive(m);
+  const LinkMotion links = filter().bodies().links(m.state.angle);
+  const double crank = filter().bodies().rigidAcceleration(by, m.state, links);
+  const HullWrench w = hullWrenchLinkage(model_->mechanism(), links, {m.state.angle, m.state.speed, crank}, by.gravity);
   Loads loads;
-  loads << w.force_x, w.force_z, w.torque_y + drive.torque(m.acceleration, 0.0), m.acceleration, 0.0;
+  loads << w.force_x, w.force_z, w.torque_y + drive.torque(crank, 0.0), crank, 0.0;
   return loads;
+}
+
+/// What a rod that gives adds a time later [s], less what it adds here: a ring that is read too late or too early.
+ElasticFollower::Loads ElasticFollower::besideLater(const DriveReaction& drive, const Loads& here,
+                                                    double time) const noexcept {
+  RodMotion later = filter().motion();
+  filter().bodies().move(filter().rod(later), filter().drive(later), time, later.state);
+  return loads(later, drive) - here - (rigidLoads(later, drive) - rigidLoads(filter().motion(), drive));
 }
 
 /// Of pins with play, which may meet within an error, by Gauss-Hermite quadrature at three points.
@@ -148,6 +157,10 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
     const Loads off = loads(filter().displaced(error), drive) - here;
     sum += weight * off * off.transpose();
   };
+  if (late_ > 0.0 && filter().hasStruck()) {
+    const Loads off = besideLater(drive, here, late_);
+    sum += off * off.transpose();
+  }
   const bool worn = filter().motion().play > 0.0;
   for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i) {
     if (!(errors(i, i) > 0.0)) continue;
@@ -170,7 +183,7 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
     mean -= gain * mean[kBesideRigid];
     variance -= gain.cwiseProduct(errors.col(kBesideRigid));
   }
-  mean -= rigidLoads(drive);
+  mean -= rigidLoads(filter().motion(), drive);
   return {wrenchOf(mean.head<3>()), wrenchOf(variance.head<3>().cwiseMax(0.0).cwiseSqrt()), mean[kCrank]};
 }
 

@@ -53,7 +53,8 @@ class ElasticFollower {
   using LoadCovariance = Eigen::Matrix<double, 5, 5>;
   enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
-  Loads rigidLoads(const DriveReaction& drive) const noexcept;
+  Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
+  Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;
   LoadCovariance covariance(const DriveReaction& drive, const Loads& here) const noexcept;
   void begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept;
   const RodFilter& likelier() const noexcept;
@@ -67,6 +68,7 @@ class ElasticFollower {
   double rigid_fit_{};       ///< of this blow
   const RodFilter* best_{};  ///< null: rigid
   std::int64_t blow_{};      ///< CrankPosition::blow
+  double late_{};            ///< standard deviation of what all stamps are off alike [s]
   RunningMean<> squares_;    ///< of x'' since the blow [rad2/s4]
 };
 
