@@ -205,6 +205,37 @@ TEST(RodRing, OfLivelyRockARigidLevelKnowsNoRestitution) {
   }
 }
 
+/// Past the dead centre the linkage stops the rocker within some 10 ms, with more force than at any blow: a rod rings.
+TEST(RodRing, RingsWhereNoToolIsMetAsWell) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.hammer = drawingOfRing().mechanism.parameters();
+  machine.level = Level::kLinkage;
+  machine.duration = 14.0, machine.drive.stop_time = 20.0;
+  machine.rod = {6e8, 0.2, 0.0};
+  machine.blow.blank_share = 0.2;
+  machine.seed = 4712;
+  const simulation::Session session = simulation::recordSession(machine);
+  Pipeline pipeline(drawingOfRing().mechanism, drawingOfRing().pipeline);
+  std::size_t blow = 0;
+  int samples = 0, covered = 0;
+  double error = 0.0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const simulation::CrankTruth& truth = session.truth[i];
+    const SampleResult& result =
+        pipeline.crankSample(session.crank[i].stamp, {session.crank[i].angle, session.crank[i].speed});
+    while (blow < session.blows.size() && session.blows[blow].time <= truth.time) ++blow;
+    const double way = result.crank.position.angle.offset;
+    const bool struck = blow > 0 && truth.time < session.blows[blow - 1].time + 0.1;
+    if (truth.time < 4.0 || struck || !(way > 0.2 && way < 1.0) || result.refusal) continue;
+    const double off = result.wrench.force_z - truth.load.force_z;
+    ++samples, error += square(off);
+    covered += std::abs(off) < 2.0 * result.deviation.wrench.force_z;
+  }
+  EXPECT_GT(samples, 100);
+  EXPECT_GT(std::sqrt(error / samples), 1000.0);
+  EXPECT_GT(covered, 0.85 * samples) << samples;
+}
+
 /// Issue: counted damage 0.7 to 1.4 of the true; the rocker is picked up within the turn, whose impulse that is.
 TEST(RodRing, LevelElasticCountsItAndItsImpulse) {
   for (const simulation::RodSettings& rod :

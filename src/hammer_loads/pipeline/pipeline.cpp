@@ -138,7 +138,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
     if (counts) turn_.follow(hull_.motion().motion, result_);
   } else {
     restart(taken == CrankFollower::Taken::kRevised);
-    rod_.rest();
+    rod_.restart(crank_.tracker());
     elastic_.rest();
   }
 }

@@ -7,6 +7,8 @@
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/linkage/oscillator.h"
+#include "hammer_loads/linkage/shaft_load.h"
+#include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -18,8 +20,9 @@ constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a m
 // Guard: RodRing.RestitutionIsCovered of kRestitutionDoubt
 constexpr double kAnyRestitution = 0.29;  // standard deviation of one that may be anything from 0 to 1
 // Guard: RodRing.OfLivelyRockARigidLevelKnowsNoRestitution of kAnyRestitution
+constexpr double kRungOut = 90.0 * kDegree, kApproach = 30.0 * kDegree;  // behind the blow, before it
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
-// Numerical: kLongest, kBallistic
+// Numerical: kLongest, kRungOut, kApproach, kBallistic
 
 /// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
 double acceleration(const Oscillator& rod, double y, double speed) noexcept {
@@ -71,40 +74,87 @@ RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   take(nullptr);
 }
 
-void RodRing::strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {
-  if (!(blow.drive_inertia > 0.0) || !(passage.speed_before > 0.0)) return rest();
+void RodRing::begin(double beside_speed) noexcept {
+  moves_ = true;
+  acceleration_ = 0.0;
+  struck_ = std::abs(beside_speed);
+  states_.fill({0.0, beside_speed});
+}
+
+void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
+  if (!(blow.drive_inertia > 0.0) || !(speed_before > 0.0)) return rest();
   const BlowInertia at = blowInertia(model_->mechanism(), model_->level(), blow.drive_inertia);
   const double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0);
-  const double rocker = -restitution * at.u_before * passage.speed_before;  // as it leaves the tool
+  const double rocker = -restitution * at.u_before * speed_before;  // as it leaves the tool
   const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
-  const double doubt = std::hypot(measured, doubt_) * at.u_before * passage.speed_before;
-  const double missing = rocker - at.u_after * blow.mean * passage.speed_before;
+  const double doubt = std::hypot(measured, doubt_) * at.u_before * speed_before;
+  const double missing = rocker - at.u_after * blow.mean * speed_before;
   rings_ = true;
-  struck_ = std::hypot(missing, doubt);
-  states_.fill({0.0, std::copysign(struck_, missing)});
+  begin(std::copysign(std::hypot(missing, doubt), missing));
+}
+
+/// angle, speed, acceleration: of the crank in the middle of a time in which its lever counts as constant.
+void RodRing::moveThrough(const CrankAngle& angle, double speed, double acceleration, double time) noexcept {
+  if (!(angle.offset > -kApproach) || !(speed > 0.0)) return rest();
+  const HammerParameters& p = model_->mechanism().parameters();
+  const LinkMotion links = linkMotion(model_->mechanism().linkage(), angle);
+  const double lever = p.lengths.rocker * links.sin_mu;
+  const double rigid = links.rocker.du * square(speed) + links.rocker.u * acceleration;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < rods_.size(); ++k)
+    sum += square(moved(rods_[k], lever, p.rocker_inertia_about_pivot, rigid, time, states_[k].x, states_[k].speed));
+  acceleration_ = std::sqrt(sum / static_cast<double>(rods_.size()));
 }
 
 void RodRing::move(const CrankStep& step, double from, double to) noexcept {
-  if (!rings_ || !(to > from)) return;
-  const HammerParameters& p = model_->mechanism().parameters();
+  if (!moves_ || !(to > from)) return;
   const int parts = static_cast<int>(std::ceil((to - from) / kLongest));
   const double time = (to - from) / parts;
-  for (int i = 0; i < parts; ++i) {
+  for (int i = 0; i < parts && moves_; ++i) {
     CrankEstimate crank = step.at(step.length());  // turned back at its speed: the lever needs no more
     crank.position.slide(-crank.speed * (step.length() - from - (i + 0.5) * time));
-    if (crank.position.angle.side == Side::kBeforeBlow || !(crank.speed > 0.0)) return rest();
-    const LinkMotion links = linkMotion(model_->mechanism().linkage(), crank.position.angle);
-    const double lever = p.lengths.rocker * links.sin_mu;
-    const double rigid = links.rocker.du * square(crank.speed) + links.rocker.u * crank.acceleration;
-    double sum = 0.0;
-    for (std::size_t k = 0; k < rods_.size(); ++k)
-      sum += square(moved(rods_[k], lever, p.rocker_inertia_about_pivot, rigid, time, states_[k].x, states_[k].speed));
-    acceleration_ = std::sqrt(sum / static_cast<double>(rods_.size()));
+    moveThrough(crank.position.angle, crank.speed, crank.acceleration, time);
+  }
+}
+
+/// The crank came here with the kinetic energy that it has.
+void RodRing::restart(const CrankTracker& tracker) noexcept {
+  rest();
+  const CrankEstimate now = tracker.estimate();
+  const CrankAngle at = now.position.angle;
+  if (!gives_ || !(at.offset > 0.0) || !(at.offset < kRungOut) || !(now.speed > kSlowCrank)) return;
+  const auto inertiaAt = [&](double offset) {
+    ShaftLoad load =
+        shaftLoadLinkage(model_->mechanism(), linkMotion(model_->mechanism().linkage(), {offset, at.side}), {});
+    load.inertia += tracker.driveInertia();
+    return load;
+  };
+  const double here = inertiaAt(at.offset).inertia;
+  const auto speedAt = [&](const ShaftLoad& m) { return now.speed * std::sqrt(here / m.inertia); };
+  double offset = 0.0;
+  if (now.position.isMirrored()) {
+    rings_ = true;
+    begin(0.0);
+    offset = -kApproach;
+  } else {
+    strike(speedAt(inertiaAt(0.0)) / tracker.blowFactor().mean, tracker.blowFactor());
+  }
+  while (moves_ && offset < at.offset) {
+    const double time = std::min(kLongest, (at.offset - offset) / speedAt(inertiaAt(offset)));
+    const double middle = offset + 0.5 * time * speedAt(inertiaAt(offset));
+    const ShaftLoad m = inertiaAt(middle);
+    const double speed = speedAt(m);
+    moveThrough({middle, at.side}, speed, -m.half_inertia_slope * square(speed) / m.inertia, time);
+    offset += std::max(time * speed, kBallistic);
   }
 }
 
 void RodRing::drive(const CrankStep& step, const CrankEstimate& crank) noexcept {
   const CrankAngle at = crank.position.angle;
+  if (at.offset < 0.0 && at.offset > -kApproach && (rings_ || !moves_)) {
+    rings_ = false;
+    begin(0.0);
+  }
   if (at.side != Side::kBeforeBlow || !(at.offset < 0.0) || !(crank.speed > 0.0)) return;
   const LinkMotion links = step.linksAt(at);
   const double lever = model_->mechanism().parameters().lengths.rocker * std::abs(links.sin_mu);
@@ -118,13 +168,21 @@ void RodRing::letGo(const CrankStep::Passage& passage) noexcept {
   driven_ = 0.0;
 }
 
+void RodRing::pass(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {
+  if (passage.strikes) {
+    letGo(passage);
+    strike(passage.speed_before, blow);
+  } else {
+    rings_ = moves_ && passage.forward && passage.smooth;
+  }
+}
+
 void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcept {
   if (!gives_) return;
   double from = 0.0;
   for (const CrankStep::Passage& passage : step) {
-    if (!passage.strikes) continue;
-    letGo(passage);
-    strike(passage, tracker.blowFactor());
+    move(step, from, passage.time);
+    pass(passage, tracker.blowFactor());
     from = passage.time;
   }
   move(step, from, step.length());

@@ -21,7 +21,8 @@ Rods rodsOf(const RodPrior& prior) noexcept;
 ///
 ///     I x'' = -h^2 (k x + c x') - I psi_rigid'',  x(0) = 0,  x'(0) = R |u- w-| - u+ w+
 ///
-/// the rocker picks up as the lever opens, and rings; within the pins' play the spring does nothing. x'' is missing in
+/// the rocker picks up as the lever opens, and rings; within the pins' play the spring does nothing. A rocker that
+/// meets no tool is driven past the dead centre by psi_rigid'' alone. x'' is missing in
 /// a wrench of rigid links; its phase hangs on a stiffness that is hardly known, its size does not: the mean square
 /// over the rods counts. Each step is that of the oscillator with the lever at its middle.
 class RodRing {
@@ -29,8 +30,8 @@ class RodRing {
   /// A rod that is said to be rigid does not ring.
   explicit RodRing(const HullModel& model) noexcept;
 
-  /// Nothing rings, and no stroke has begun.
-  void rest() noexcept { rings_ = false, driven_ = 0.0; }
+  /// What came before the crank's last sample is not known: it has passed the blow at its present speed.
+  void restart(const CrankTracker& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankTracker& tracker) noexcept;
   /// The filter that has followed the readings, if any: they may show that no rod rings.
@@ -49,13 +50,17 @@ class RodRing {
   double speed() const noexcept;
 
  private:
-  void strike(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
+  void rest() noexcept { rings_ = moves_ = false, driven_ = 0.0; }
+  void begin(double beside_speed) noexcept;
+  void strike(double speed_before, const BlowFactor& blow) noexcept;
   void move(const CrankStep& step, double from, double to) noexcept;
+  void moveThrough(const CrankAngle& angle, double speed, double acceleration, double time) noexcept;
+  void pass(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
   void drive(const CrankStep& step, const CrankEstimate& crank) noexcept;
   void letGo(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;
-  bool gives_, rings_{};
+  bool gives_, moves_{}, rings_{};  ///< moves: from the run-up on, which may turn out to be a blank stroke
   struct State {
     double x{}, speed{};  ///< [rad], [rad/s]
   };
