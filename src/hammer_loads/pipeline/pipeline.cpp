@@ -178,7 +178,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
   const HullWrench own = gives ? result_.deviation.common : result_.deviation.wrench;
   const ElasticFollower::Beside rod =
       gives ? elastic_.beside(drive, rod_.acceleration())
-            : ElasticFollower::Beside{{}, rockerWrench(mechanism_, links.here.links, rod_.acceleration())};
+            : ElasticFollower::Beside{{}, rod_.deviation(links.here.links, result_.crank.speed)};
   result_.rod_ring = rod.deviation;
   result_.contact_doubt = contactDoubt(links.here.links, drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, gives ? elastic_.speedBeside() : rod_.speed());

@@ -207,6 +207,14 @@ double RodRing::speed() const noexcept {
   return rings_ ? share_ * std::sqrt(sum / static_cast<double>(states_.size())) : 0.0;
 }
 
+HullWrench RodRing::deviation(const LinkMotion& links, double crank) const noexcept {
+  const double beside = speed(), square_of_speed = std::hypot(2.0 * links.rocker.u * crank * beside, square(beside));
+  const double along = model_->mechanism().rockerFirstMoment() * square_of_speed;
+  const HullWrench across = rockerWrench(model_->mechanism(), links, acceleration());
+  return {std::hypot(across.force_x, along * links.rocker.cos_psi),
+          std::hypot(across.force_z, along * links.rocker.sin_psi), std::abs(across.torque_y)};
+}
+
 HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, double acceleration) noexcept {
   const double force = mechanism.rockerFirstMoment() * acceleration;
   return {-force * links.rocker.sin_psi, -force * links.rocker.cos_psi,

@@ -36,6 +36,9 @@ class RodRing {
   void follow(const CrankStep& step, const CrankTracker& tracker) noexcept;
   /// The filter that has followed the readings, if any: they may show that no rod rings.
   void take(const CrankFilter* filter) noexcept;
+  /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
+  /// crank: speed [rad/s].
+  HullWrench deviation(const LinkMotion& links, double crank) const noexcept;
   /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
   double acceleration() const noexcept { return rings_ ? share_ * acceleration_ : 0.0; }
   /// How far a restitution may be off that was read off a crank as if the rod were rigid, standard [-].
