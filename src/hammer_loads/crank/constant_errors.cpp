@@ -64,8 +64,8 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   const auto ofSensor = [&](int i) {  // variance of what is seen, as if the hammer were right
     return square(unmodelled * kUnknowns[static_cast<std::size_t>(i)].unmodelled) + growth * covariance(i, i);
   };
-  const double zero = covariance.row(kZero).dot(fit_.score());
-  zero_seen_ = exceeds(zero, ofSensor(kZero), gate::kUsual) ? std::abs(zero) : 0.0;
+  zero_looks_ = covariance.row(kZero).dot(fit_.score());
+  zero_is_seen_ = exceeds(zero_looks_, ofSensor(kZero), gate::kUsual);
   if (turns_ == kFirstTurns) {
     fit_.begin(prior_);
     beside_.setZero();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <utility>
 
 #include "hammer_loads/crank/unknowns.h"
@@ -72,7 +73,9 @@ class ConstantErrors {
   const Vector& deviation() const noexcept { return deviation_; }
   /// How far the readings say that the blow is from where the sensor's zero has it, as if the hammer were right [rad]:
   /// from the first turn that shows it on, before anything else is concluded; 0 where a clean machine may show as much.
-  double zeroSeen() const noexcept { return zero_seen_; }
+  double zeroSeen() const noexcept { return zero_is_seen_ ? zeroLooks() : 0.0; }
+  /// The same, whether or not a clean machine may show as much: a rod that gives shows it.
+  double zeroLooks() const noexcept { return std::abs(zero_looks_); }
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }
   /// L with L L^T = moment(): its columns are errors that are independent of each other.
@@ -101,7 +104,8 @@ class ConstantErrors {
       ByConstants<kPlace, kMachineColumns>::Zero()};  ///< what the hammer's errors make of fit_'s score
   Vector estimate_{Vector::Zero()}, deviation_{Vector::Zero()};
   Matrix moment_{Matrix::Zero()}, root_{Matrix::Zero()};
-  double zero_seen_{};       ///< [rad]
+  double zero_looks_{};  ///< [rad]
+  bool zero_is_seen_{};
   double stepped_{};         ///< variance of the zero's steps [rad2]
   int turns_{}, samples_{};  ///< samples: of this turn
 };

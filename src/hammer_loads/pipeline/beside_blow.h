@@ -9,11 +9,14 @@
 
 namespace hammer_loads {
 
-/// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong.
+/// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong, or that a
+/// rod which gives lets the rocker strike later.
 /// angle_deviation: its own [rad]; NaN: not known.
 inline double deviationFromBlow(const CrankTracker& tracker, double angle_deviation) noexcept {
   const CrankFilter* filter = tracker.filter();
-  return filter == nullptr ? angle_deviation : std::hypot(angle_deviation, filter->constantErrors().zeroSeen());
+  if (filter == nullptr) return angle_deviation;
+  const ConstantErrors& errors = filter->constantErrors();
+  return std::hypot(angle_deviation, filter->rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
 }
 
 /// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
