@@ -164,8 +164,10 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
   const bool worn = filter().motion().play > 0.0;
   for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i) {
     if (!(errors(i, i) > 0.0)) continue;
-    if (!worn) add(errors.col(i), 1.0);
-    if (worn) add(-kRoot3 * errors.col(i), 1.0 / 6.0), add(kRoot3 * errors.col(i), 1.0 / 6.0);
+    if (worn)
+      add(-kRoot3 * errors.col(i), 1.0 / 6.0), add(kRoot3 * errors.col(i), 1.0 / 6.0);
+    else
+      add(errors.col(i), 1.0);
   }
   return sum;
 }

@@ -21,8 +21,9 @@ constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a m
 constexpr double kAnyRestitution = 0.29;  // standard deviation of one that may be anything from 0 to 1
 // Guard: RodRing.OfLivelyRockARigidLevelKnowsNoRestitution of kAnyRestitution
 constexpr double kRungOut = 90.0 * kDegree, kApproach = 30.0 * kDegree;  // behind the blow, before it
+constexpr double kPart = 1e-2;                                           // [rad], as kLongest
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
-// Numerical: kLongest, kRungOut, kApproach, kBallistic
+// Numerical: kLongest, kRungOut, kApproach, kPart, kBallistic
 
 /// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
 double acceleration(const Oscillator& rod, double y, double speed) noexcept {
@@ -77,7 +78,6 @@ RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
 void RodRing::begin(double beside_speed) noexcept {
   moves_ = true;
   acceleration_ = 0.0;
-  struck_ = std::abs(beside_speed);
   states_.fill({0.0, beside_speed});
 }
 
@@ -90,7 +90,8 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   const double doubt = std::hypot(measured, doubt_) * at.u_before * speed_before;
   const double missing = rocker - at.u_after * blow.mean * speed_before;
   rings_ = true;
-  begin(std::copysign(std::hypot(missing, doubt), missing));
+  struck_ = std::hypot(missing, doubt);
+  begin(std::copysign(struck_, missing));
 }
 
 /// angle, speed, acceleration: of the crank in the middle of a time in which its lever counts as constant.
@@ -123,29 +124,28 @@ void RodRing::restart(const CrankTracker& tracker) noexcept {
   const CrankEstimate now = tracker.estimate();
   const CrankAngle at = now.position.angle;
   if (!gives_ || !(at.offset > 0.0) || !(at.offset < kRungOut) || !(now.speed > kSlowCrank)) return;
-  const auto inertiaAt = [&](double offset) {
-    ShaftLoad load =
-        shaftLoadLinkage(model_->mechanism(), linkMotion(model_->mechanism().linkage(), {offset, at.side}), {});
+  const auto loadAt = [&](double offset) {
+    const LinkMotion links = linkMotion(model_->mechanism().linkage(), {offset, at.side});
+    ShaftLoad load = shaftLoadLinkage(model_->mechanism(), links, {});
     load.inertia += tracker.driveInertia();
     return load;
   };
-  const double here = inertiaAt(at.offset).inertia;
-  const auto speedAt = [&](const ShaftLoad& m) { return now.speed * std::sqrt(here / m.inertia); };
-  double offset = 0.0;
+  const double energy = loadAt(at.offset).inertia * square(now.speed);  // twice
+  double from = 0.0;
   if (now.position.isMirrored()) {
     rings_ = true;
     begin(0.0);
-    offset = -kApproach;
+    from = -kApproach;
   } else {
-    strike(speedAt(inertiaAt(0.0)) / tracker.blowFactor().mean, tracker.blowFactor());
+    strike(std::sqrt(energy / loadAt(0.0).inertia) / tracker.blowFactor().mean, tracker.blowFactor());
   }
-  while (moves_ && offset < at.offset) {
-    const double time = std::min(kLongest, (at.offset - offset) / speedAt(inertiaAt(offset)));
-    const double middle = offset + 0.5 * time * speedAt(inertiaAt(offset));
-    const ShaftLoad m = inertiaAt(middle);
-    const double speed = speedAt(m);
-    moveThrough({middle, at.side}, speed, -m.half_inertia_slope * square(speed) / m.inertia, time);
-    offset += std::max(time * speed, kBallistic);
+  const int parts = static_cast<int>(std::ceil((at.offset - from) / kPart));
+  const double part = (at.offset - from) / parts;
+  for (int i = 0; i < parts && moves_; ++i) {
+    const CrankAngle middle{from + (i + 0.5) * part, at.side};
+    const ShaftLoad load = loadAt(middle.offset);
+    const double speed = std::sqrt(energy / load.inertia);
+    moveThrough(middle, speed, -load.half_inertia_slope * square(speed) / load.inertia, part / speed);
   }
 }
 
