@@ -29,7 +29,6 @@ constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of like
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 // Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
 
-constexpr double kRoot3 = 1.7320508075688772;
 const RunningMean<> kOfAll(std::numeric_limits<double>::infinity());
 
 /// One that was never struck is contradicted long before.
@@ -162,10 +161,11 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
     sum += off * off.transpose();
   }
   const bool worn = filter().motion().play > 0.0;
+  const double away = std::sqrt(3.0);
   for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i) {
     if (!(errors(i, i) > 0.0)) continue;
     if (worn)
-      add(-kRoot3 * errors.col(i), 1.0 / 6.0), add(kRoot3 * errors.col(i), 1.0 / 6.0);
+      add(-away * errors.col(i), 1.0 / 6.0), add(away * errors.col(i), 1.0 / 6.0);
     else
       add(errors.col(i), 1.0);
   }

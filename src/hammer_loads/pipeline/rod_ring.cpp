@@ -118,7 +118,6 @@ void RodRing::move(const CrankStep& step, double from, double to) noexcept {
   }
 }
 
-/// The crank came here with the kinetic energy that it has.
 void RodRing::restart(const CrankTracker& tracker) noexcept {
   rest();
   const CrankEstimate now = tracker.estimate();

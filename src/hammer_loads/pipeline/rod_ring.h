@@ -22,15 +22,16 @@ Rods rodsOf(const RodPrior& prior) noexcept;
 ///     I x'' = -h^2 (k x + c x') - I psi_rigid'',  x(0) = 0,  x'(0) = R |u- w-| - u+ w+
 ///
 /// the rocker picks up as the lever opens, and rings; within the pins' play the spring does nothing. A rocker that
-/// meets no tool is driven past the dead centre by psi_rigid'' alone. x'' is missing in
-/// a wrench of rigid links; its phase hangs on a stiffness that is hardly known, its size does not: the mean square
-/// over the rods counts. Each step is that of the oscillator with the lever at its middle.
+/// meets no tool is driven past the dead centre by psi_rigid'' alone. What x'' and x' do is missing in a wrench of
+/// rigid links; its phase hangs on a stiffness that is hardly known, its size does not: the mean square over the rods
+/// counts. Each step is that of the oscillator with the lever at its middle.
 class RodRing {
  public:
   /// A rod that is said to be rigid does not ring.
   explicit RodRing(const HullModel& model) noexcept;
 
-  /// What came before the crank's last sample is not known: it has passed the blow at its present speed.
+  /// What came before the crank's last sample is not known: it has passed the blow, if it is behind it, by the kinetic
+  /// energy that it has.
   void restart(const CrankTracker& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankTracker& tracker) noexcept;
