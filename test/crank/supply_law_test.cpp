@@ -64,6 +64,17 @@ TEST(SupplyLaw, NothingLeadsBeforeATurnWasSeen) {
   EXPECT_EQ(supply.law().lead(1.0, 0.1), 0.0);
 }
 
+/// The first guess counts as a turn.
+TEST(SupplyLaw, ATorqueIsUsualWithinThreeTurns) {
+  LearnedSupply supply(400.0);
+  EXPECT_EQ(supply.usual(), square(400.0));
+  supply.take(-100.0);
+  supply.take(100.0);
+  EXPECT_NEAR(supply.usual(), (square(400.0) + 2.0 * square(100.0)) / 3.0, 1e-6);
+  for (int i = 0; i < 3; ++i) supply.take(100.0);
+  EXPECT_NEAR(supply.usual(), square(100.0) + std::pow(2.0 / 3.0, 3) * 50000.0, 1e-6);
+}
+
 TEST(SupplyLaw, NeverPushesTheOtherWay) {
   LearnedSupply supply(100.0);
   EXPECT_EQ(supply.learn(0.5), 0.0);

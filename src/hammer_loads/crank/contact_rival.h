@@ -18,6 +18,12 @@ class ContactRival {
   void begin(const CrankBelief& belief) noexcept;
   /// At a restart, which does not show whether there was contact at the last blow. estimate: as if there was.
   void beginAnew(const CrankBelief& estimate) noexcept;
+  /// Behind a blow that is in question: either is as likely. estimate: as if there was contact where there was none, or
+  /// the other way round.
+  void ask(const CrankBelief& estimate) noexcept {
+    beginAnew(estimate);
+    evidence_ = 0.0;
+  }
   void drop() noexcept { belief_.reset(); }
   bool isThere() const noexcept { return belief_.has_value(); }
   /// It is there and not set aside.

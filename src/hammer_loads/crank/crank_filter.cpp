@@ -205,6 +205,7 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
     predict(dt, mirrored_, rival_.belief());
     rival_.follow(sample, model_, fit_, consistency_.growth(), mostSpeed());
   }
+  doubtContact();
   return rival_.isThere() && rival_.choose(now_, mirrored_);
 }
 

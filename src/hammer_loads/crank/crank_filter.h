@@ -189,6 +189,7 @@ class CrankFilter final : public CrankTracker {
   void correctSpeed(const WeighedSample& sample, double dt, bool struck) noexcept;
   void meetRival(const CrankBelief& belief) noexcept;
   bool rivalExplains(double dt, const WeighedSample& sample) noexcept;
+  void doubtContact() noexcept;
   void learnFrom(const Innovation& innovation, double ratio) noexcept;
   void rememberBlow(const CrankBelief& last, double dt) noexcept;
   void learnSupply() noexcept;

@@ -13,6 +13,8 @@ using Belief = CrankBelief;
 constexpr double kNearCounts = 4.0;       // counts from the blow within which the encoder decides its side
 constexpr double kCertain = gate::kRare;  // of the stamp: within it the encoder's edge decides nothing
 constexpr double kToolDeviation = 0.5;    // of the crank's speed: what a tool met there may take
+constexpr double kRingOver = 0.8;         // [rad] behind the blow: a rod's ring is not taken for a torque any more
+// Guard: BlankStrokes.OneThatIsMissedIsFoundByTheTorque of kRingOver
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
 // Guard: FilterAtBlow.ACrankAtRestStandsThereWithinFourCounts of kNearCounts
 // Guard: FilterAtBlow.AToolMayTakeMostOfTheSpeed of kToolDeviation
@@ -147,6 +149,20 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
   CrankBelief rival = rival_.belief();
   predict(dt, mirrored_, rival);
   return !sample.ofAngle(rival).exceeds(gate::kRare);
+}
+
+/// (9) Half a turn on a wrong branch, and no sample contradicts it: the torque makes up for what the blow did to the
+/// crank, or did not. Where the supply never has such a torque, the other branch is looked at, with one that it has.
+void CrankFilter::doubtContact() noexcept {
+  if (rival_.isThere() || !(now_.state.position.angle.offset > kRingOver)) return;
+  const double own = consistency_.growth() * now_.covariance(Belief::kTorque, Belief::kTorque);
+  if (consistency_.growth() > mismatch::kContradicts ||
+      !exceeds(now_.state.torque, supply_.usual() + own, gate::kImpossible))
+    return;
+  CrankBelief other = now_;
+  other.state.torque = 0.0;
+  other.draw(Belief::kTorque, supply_.usual());
+  rival_.ask(other);
 }
 
 }  // namespace hammer_loads

@@ -24,6 +24,7 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   speed_trust_.endTurn();
   slip_.endTurn();
   if (from.isMirrored() || to.isMirrored()) return;
+  supply_.take(now_.state.torque);
   considerSensor();
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   learnSupply();

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "hammer_loads/crank/crank_state.h"
+#include "hammer_loads/estimation/running_mean.h"
+#include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 
@@ -20,11 +22,11 @@ struct SupplyLaw {
   double lead(double turned, double dt) const noexcept { return mean_speed > 0.0 ? turned - mean_speed * dt : 0.0; }
 };
 
-/// The law, with the mean speed of the last turn and a stiffness that is learned.
+/// The law, with the mean speed of the last turn and a stiffness that is learned; and what torque it has.
 class LearnedSupply {
  public:
   /// unit: largest stiffness [N m/rad], > 0.
-  explicit LearnedSupply(double unit) noexcept { law_.unit = unit; }
+  explicit LearnedSupply(double unit) noexcept : usual_(kTurns, square(unit), 1.0) { law_.unit = unit; }
   const SupplyLaw& law() const noexcept { return law_; }
   /// The time before is not known.
   void restart() noexcept {
@@ -39,6 +41,10 @@ class LearnedSupply {
     from_ = at;
     turn_time_ = 0.0;
   }
+  /// Once a turn that is known to be right: torque [N m] half a turn after the blow.
+  void take(double torque) noexcept { usual_.add(square(torque)); }
+  /// Mean square of those of the last turns [N2 m2]; at first the unit's.
+  double usual() const noexcept { return usual_.mean(); }
   /// error: of the stiffness, as the innovations show it [unit]. By how much the stiffness changes [unit].
   double learn(double error) noexcept {
     const double change = std::clamp(law_.stiffness / law_.unit - error, 0.0, 1.0) - law_.stiffness / law_.unit;
@@ -47,6 +53,9 @@ class LearnedSupply {
   }
 
  private:
+  static constexpr double kTurns = 3.0;
+  // Guard: SupplyLaw.ATorqueIsUsualWithinThreeTurns of kTurns
+  RunningMean<> usual_;
   SupplyLaw law_;
   CrankPosition from_;
   double turn_time_{std::numeric_limits<double>::quiet_NaN()};  ///< since from_ [s]; NaN: not seen from there

@@ -37,7 +37,7 @@ class CrankTrust {
     followTurning(turned);
     followSpeed(sensor_.angle(reading), turned, step);
     if (std::isfinite(strike_consistency)) inconsistent_ = strike_consistency > kMost;
-    contradicted_ = contradicted_ || inconsistent_ || isLost();
+    contradicted_ = inconsistent_ || isLost() || (contradicted_ && (zeroFarOff() || !slowBehind()));
   }
   /// Time ran back, or a gap: what the crank did meanwhile is not known.
   void begin() noexcept {
@@ -109,19 +109,23 @@ class CrankTrust {
     if (std::abs(window_turned_) < kWindow) return;
     const double speed = window_turned_ / window_time_, middle = angle - 0.5 * window_turned_;
     if (window_time_ > 0.0) {
-      along_.add(speed * std::cos(middle), std::abs(window_turned_));
-      across_.add(speed * std::sin(middle), std::abs(window_turned_));
+      const double weight = std::abs(window_turned_);
+      mean_.add(speed, weight);  // a part of a turn is no harmonic of it
+      along_.add((speed - mean_.mean()) * std::cos(middle), weight);
+      across_.add((speed - mean_.mean()) * std::sin(middle), weight);
     }
     window_turned_ = window_time_ = 0.0;
   }
 
   CrankSensor sensor_;
-  std::optional<double> reading_;                                   ///< the last one [rad]
-  RunningMean<> along_{kTurns * kTwoPi}, across_{kTurns * kTwoPi};  ///< speed times cosine, sine of the angle
+  std::optional<double> reading_;        ///< the last one [rad]
+  RunningMean<> mean_{kTurns * kTwoPi};  ///< of the speed [rad/s]
+  /// What is beside it, times cosine and sine of the angle.
+  RunningMean<> along_{kTurns * kTwoPi}, across_{kTurns * kTwoPi};
   double window_turned_{}, window_time_{};
   double forward_{}, back_{};  ///< since it was furthest back, forward [rad]
   bool backward_{}, inconsistent_{};
-  bool contradicted_{};  ///< it was inconsistent since it began
+  bool contradicted_{};  ///< it was inconsistent since it began or was last seen to be slow in the right place
   int unbelieved_{};     ///< strokes in a row of which the estimate was not good enough to be published
 };
 
