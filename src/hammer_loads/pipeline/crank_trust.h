@@ -37,7 +37,7 @@ class CrankTrust {
     followTurning(turned);
     followSpeed(sensor_.angle(reading), turned, step);
     if (std::isfinite(strike_consistency)) inconsistent_ = strike_consistency > kMost;
-    contradicted_ = inconsistent_ || isLost() || (contradicted_ && (zeroFarOff() || !slowBehind()));
+    contradicted_ = contradicted_ || inconsistent_ || isLost();
   }
   /// Time ran back, or a gap: what the crank did meanwhile is not known.
   void begin() noexcept {
@@ -125,7 +125,7 @@ class CrankTrust {
   double window_turned_{}, window_time_{};
   double forward_{}, back_{};  ///< since it was furthest back, forward [rad]
   bool backward_{}, inconsistent_{};
-  bool contradicted_{};  ///< it was inconsistent since it began or was last seen to be slow in the right place
+  bool contradicted_{};  ///< it was inconsistent since it began
   int unbelieved_{};     ///< strokes in a row of which the estimate was not good enough to be published
 };
 
