@@ -155,10 +155,9 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
 /// crank, or did not. Where the supply never has such a torque, the other branch is looked at, with one that it has.
 void CrankFilter::doubtContact() noexcept {
   if (rival_.isThere() || !(now_.state.position.angle.offset > kRingOver)) return;
-  const double own = consistency_.growth() * now_.covariance(Belief::kTorque, Belief::kTorque);
-  if (consistency_.growth() > mismatch::kContradicts ||
-      !exceeds(now_.state.torque, supply_.usual() + own, gate::kImpossible))
-    return;
+  const double doubt = consistency_.doubt();
+  const double variance = supply_.usual() + doubt * now_.covariance(Belief::kTorque, Belief::kTorque);
+  if (doubt > mismatch::kContradicts || !exceeds(now_.state.torque, variance, gate::kImpossible)) return;
   CrankBelief other = now_;
   other.state.torque = 0.0;
   other.draw(Belief::kTorque, supply_.usual());
