@@ -208,7 +208,7 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
 void Pipeline::followTrust(CrankFollower::Taken taken) noexcept {
   const double step = taken == CrankFollower::Taken::kContinued ? crank_.step().length() : 0.0;
   if (taken == CrankFollower::Taken::kBegan) trust_.begin();
-  trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step);
+  trust_.follow(crank_.reading(), crank_.tracker().strikeConsistency(), step, !crank_.estimate().position.isMirrored());
   if (taken == CrankFollower::Taken::kContinued) {
     for (const CrankStep::Passage& passage : crank_.step())
       if (passage.forward) trust_.passBlow(settled_);
