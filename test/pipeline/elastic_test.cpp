@@ -175,5 +175,33 @@ TEST(ElasticSession, AMissedToolIsNoRing) {
   EXPECT_GT(e.whole.covered[1], 0.85);
 }
 
+/// The drive has stopped, the crank stands within three degrees of the dead centre and the rocker on its tool, which
+/// carries it: half of its weight is not on the hull.
+TEST(ElasticSession, AToolThatCarriesTheRockerIsInTheDeviation) {
+  int samples = 0, covered_force = 0, covered_torque = 0, less = 0;
+  for (std::uint64_t seed = 760; seed < 772; ++seed) {
+    simulation::MachineSettings machine = machineWithRod({8e8, 0.4, 0.0}, seed);
+    machine.drive.stop_time = 5.0 + 0.02 * static_cast<double>(seed - 760);
+    machine.duration = 7.0;
+    const simulation::Session session = simulation::recordSession(machine);
+    accuracy::SessionPlayer player(drawingOfRods().mechanism, drawingOfRods().pipeline, {}, session);
+    std::size_t i = 0;
+    player.playTo(1e9, [&](double time, const SampleResult& r) {
+      const simulation::CrankTruth& truth = session.truth[i++];
+      if (time < 6.0 || std::abs(CrankAngle::wrapToPi(truth.angle)) > 0.05 || std::abs(truth.speed) > 0.1) return;
+      if (r.refusal) return;
+      ++samples;
+      const double off = r.wrench.force_z - truth.load.force_z;
+      less += off < -100.0;
+      covered_force += std::abs(off) < 2.0 * r.deviation.wrench.force_z;
+      covered_torque += std::abs(r.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y) <
+                        2.0 * r.deviation.wrench.torque_y;
+    });
+  }
+  EXPECT_GT(less, 1000) << "what there is to doubt";
+  EXPECT_GT(covered_force, 0.9 * samples) << samples;
+  EXPECT_GT(covered_torque, 0.9 * samples) << samples;
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -152,7 +152,8 @@ std::optional<Refusal> Pipeline::whyWithheld() noexcept {
 }
 
 /// What the wrench is off if the last blow met no tool, or one that the estimate does not know of, by its probability;
-/// and, where a slow crank lands on the tool or leaves it, if that takes what moves.
+/// and, where a slow crank lands on the tool, leaves it or rests there, if that takes what moves and carries the
+/// rocker.
 HullWrench Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& drive) const noexcept {
   const bool lands = std::abs(result_.crank.speed) < kSlowCrank && transmissionAngle(links) < settings_.near_blow;
   const double probability = lands ? 1.0 : crank_.tracker().otherBranch();
@@ -165,7 +166,8 @@ HullWrench Pipeline::contactDoubt(const LinkMotion& links, const DriveReaction& 
   } else {
     other.angle.side = opposite(other.angle.side);
   }
-  const HullWrench there = hullWrench(model_, drive, other, hull);
+  HullWrench there = hullWrench(model_, drive, other, hull);
+  if (lands) there = there + rockerOnTool(mechanism_, links, hull.gravity);
   return wrenchOf(std::sqrt(probability) * (vectorOf(there) - vectorOf(here)).cwiseAbs());
 }
 

@@ -220,4 +220,10 @@ HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, dou
           -mechanism.parameters().rocker_inertia_about_pivot * acceleration};
 }
 
+HullWrench rockerOnTool(const Mechanism& mechanism, const LinkMotion& links, Gravity gravity) noexcept {
+  const double lift = gravity.x * links.rocker.sin_psi + gravity.z * links.rocker.cos_psi;  // of its mass, by psi
+  const double torque = std::max(0.0, -mechanism.rockerFirstMoment() * lift);
+  return {0.0, torque / mechanism.parameters().striking_distance, torque};
+}
+
 }  // namespace hammer_loads

@@ -78,5 +78,7 @@ class RodRing {
 
 /// What the rocker's angular acceleration [rad/s2] is on the hull; of a speed [rad/s] the momentum [N s, N m s].
 HullWrench rockerWrench(const Mechanism& mechanism, const LinkMotion& links, double acceleration) noexcept;
+/// What a tool takes off the hull that carries the rocker, at rest at the dead centre: it pushes along z there.
+HullWrench rockerOnTool(const Mechanism& mechanism, const LinkMotion& links, Gravity gravity) noexcept;
 
 }  // namespace hammer_loads
