@@ -129,12 +129,12 @@ TEST(PoseAndTrust, ACrankHasRunUpAfterARadian) {
   }
 }
 
-/// A crank that is slowest 0.83 rad after the blow; over so many turns.
-std::optional<double> slowBehind(double turns) {
+/// A crank that is slowest 0.83 rad after the blow, by so much [rad/s] of 30; over so many turns.
+std::optional<double> slowBehind(double turns, double swing = 8.0) {
   CrankTrust trust{CrankSensor{}};
   double angle = 0.0;
   while (angle < turns * kTwoPi) {
-    angle += kPoseStep * (30.0 - 8.0 * std::cos(angle - 0.83));
+    angle += kPoseStep * (30.0 - swing * std::cos(angle - 0.83));
     trust.follow(angle, 1.0, kPoseStep);
   }
   return trust.slowBehind();
@@ -167,6 +167,12 @@ TEST(PoseAndTrust, ATurnWithoutAToolDoesNotSayWhereItIsSlow) {
     trust.follow(angle, 1.0, kPoseStep, struck);
   }
   EXPECT_NEAR(trust.slowBehind().value_or(kTwoPi), 0.0, 0.15);
+}
+
+TEST(PoseAndTrust, ACrankThatTurnsEvenlyIsSlowNowhere) {
+  EXPECT_FALSE(slowBehind(10.0, 0.0));
+  EXPECT_FALSE(slowBehind(10.0, 0.6 * 0.03 * 30.0));
+  EXPECT_TRUE(slowBehind(10.0, 1.6 * 0.03 * 30.0));
 }
 
 }  // namespace

@@ -154,7 +154,9 @@ bool CrankFilter::rivalExplains(double dt, const WeighedSample& sample) noexcept
 /// (9) Half a turn on a wrong branch, and no sample contradicts it: the torque makes up for what the blow did to the
 /// crank, or did not. Where the supply never has such a torque, the other branch is looked at, with one that it has.
 void CrankFilter::doubtContact() noexcept {
-  if (rival_.isThere() || !(now_.state.position.angle.offset > kRingOver)) return;
+  if (!(now_.state.position.angle.offset > kRingOver)) return;
+  supply_.feel(now_.state.torque);
+  if (rival_.isThere()) return;
   const double doubt = consistency_.doubt();
   const double variance = supply_.usual() + doubt * now_.covariance(Belief::kTorque, Belief::kTorque);
   if (doubt > mismatch::kContradicts || !exceeds(now_.state.torque, variance, gate::kImpossible)) return;

@@ -20,11 +20,10 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   supply_.pass(dt);
   const CrankPosition &from = last.state.position, &to = now_.state.position;
   if (from.angle.side != Side::kAfterBlow || to.angle.side != Side::kBeforeBlow || to.blow != from.blow + 1) return;
-  supply_.endTurn(to);
+  supply_.endTurn(to, !from.isMirrored() && !to.isMirrored());
   speed_trust_.endTurn();
   slip_.endTurn();
   if (from.isMirrored() || to.isMirrored()) return;
-  supply_.take(now_.state.torque);
   considerSensor();
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   learnSupply();

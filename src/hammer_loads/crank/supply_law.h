@@ -34,15 +34,17 @@ class LearnedSupply {
     turn_time_ = std::numeric_limits<double>::quiet_NaN();
   }
   void pass(double dt) noexcept { turn_time_ += dt; }  ///< [s]
-  /// Once a turn.
-  void endTurn(const CrankPosition& at) noexcept {
+  /// A torque [N m] between a blow and the end of its half turn.
+  void feel(double torque) noexcept { half_turn_.add(square(torque)); }
+  /// Once a turn, half a turn after the blow. known: the torques since were those of the supply.
+  void endTurn(const CrankPosition& at, bool known = true) noexcept {
+    if (known && half_turn_.count() > 0.0) usual_.add(half_turn_.mean());
+    half_turn_ = kOfHalfTurn;
     const double speed = difference(at, from_) / turn_time_;
     law_.mean_speed = speed > 0.0 ? speed : 0.0;
     from_ = at;
     turn_time_ = 0.0;
   }
-  /// Once a turn that is known to be right: torque [N m] half a turn after the blow.
-  void take(double torque) noexcept { usual_.add(square(torque)); }
   /// Mean square of those of the last turns [N2 m2]; at first the unit's.
   double usual() const noexcept { return usual_.mean(); }
   /// error: of the stiffness, as the innovations show it [unit]. By how much the stiffness changes [unit].
@@ -55,7 +57,8 @@ class LearnedSupply {
  private:
   static constexpr double kTurns = 3.0;
   // Guard: SupplyLaw.ATorqueIsUsualWithinThreeTurns of kTurns
-  RunningMean<> usual_;
+  static inline const RunningMean<> kOfHalfTurn{std::numeric_limits<double>::infinity()};
+  RunningMean<> usual_, half_turn_{kOfHalfTurn};
   SupplyLaw law_;
   CrankPosition from_;
   double turn_time_{std::numeric_limits<double>::quiet_NaN()};  ///< since from_ [s]; NaN: not seen from there

@@ -53,9 +53,10 @@ class CrankTrust {
   }
 
   /// How far the crank is slowest behind the place where such cranks are, by the first harmonic of its speed over the
-  /// angle [rad]. Nothing before some turns.
+  /// angle [rad]. Nothing before some turns, or of one that turns evenly.
   std::optional<double> slowBehind() const noexcept {
-    if (!along_.isFull()) return std::nullopt;
+    const double swing = 2.0 * std::hypot(along_.mean(), across_.mean());
+    if (!along_.isFull() || !(swing > kLeastSwing * std::abs(mean_.mean()))) return std::nullopt;
     return CrankAngle::wrapToPi(std::atan2(-across_.mean(), -along_.mean()) - kSlowest);
   }
   bool turnsBackward() const noexcept { return backward_; }
@@ -88,6 +89,8 @@ class CrankTrust {
   /// of them with a rod that gives.
   static constexpr double kSlowest = 0.83;
   // Guard: PoseAndTrust.ACrankIsSlowWhereSuchAreWithinFiveTurns of kTurns, kSlowest
+  static constexpr double kLeastSwing = 0.03;  ///< of the mean speed: a tenth of what such machines have
+  // Guard: PoseAndTrust.ACrankThatTurnsEvenlyIsSlowNowhere of kLeastSwing
   static constexpr double kWindow = 0.3;  ///< [rad] over which a speed is taken: jitter of stamps counts little
   // Numerical: kWindow
 
