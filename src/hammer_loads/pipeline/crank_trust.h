@@ -85,7 +85,7 @@ class CrankTrust {
   // Guard: PoseAndTrust.ACrankHasRunUpAfterARadian of kRunUp
   static constexpr double kTurns = 5.0;  ///< over which it is looked where the crank is slow
   /// [rad] after the blow, once five turns are like each other: 0.79 to 0.89 (medians) on the machines of the
-  /// recordings that their drive keeps at work, whatever their rod, rock and boom, 0.75 to 0.93 on 60 drawn ones, half
+  /// recordings that their drive keeps at work, whatever their rod, rock and boom, 0.75 to 0.93 on 58 drawn ones, half
   /// of them with a rod that gives.
   static constexpr double kSlowest = 0.83;
   // Guard: PoseAndTrust.ACrankIsSlowWhereSuchAreWithinFiveTurns of kTurns, kSlowest
