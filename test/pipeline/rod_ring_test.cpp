@@ -243,6 +243,34 @@ TEST(RodRing, RingsWhereNoToolIsMetAsWell) {
   }
 }
 
+/// Just before the blow the rod loses its lever: the rocker lags, and the crank that it no longer brakes runs ahead.
+TEST(RodRing, BeginsBeforeTheBlow) {
+  simulation::MachineSettings machine = simulation::workingMo100();
+  machine.hammer = drawingOfRing().mechanism.parameters();
+  machine.level = Level::kLinkage;
+  machine.duration = 10.0, machine.drive.stop_time = 20.0;
+  machine.rod = {5e8, 0.65, 0.0};
+  machine.seed = 4713;
+  const simulation::Session session = simulation::recordSession(machine);
+  Pipeline pipeline(drawingOfRing().mechanism, drawingOfRing().pipeline);
+  int samples = 0, covered = 0;
+  double error = 0.0, said = 0.0;
+  for (std::size_t i = 0; i < session.crank.size(); ++i) {
+    const simulation::CrankTruth& truth = session.truth[i];
+    const SampleResult& r =
+        pipeline.crankSample(session.crank[i].stamp, {session.crank[i].angle, session.crank[i].speed});
+    const double offset = CrankAngle::wrapToPi(truth.angle);
+    if (truth.time < 4.0 || r.refusal || r.beside_blow || !(offset > -0.15 && offset < 0.0)) continue;
+    const double off = r.wrench.torque_y - truth.load.torque_y - truth.drive_reaction_y;
+    ++samples, error += square(off), said += square(r.deviation.wrench.torque_y);
+    covered += std::abs(off) < 2.0 * r.deviation.wrench.torque_y;
+  }
+  ASSERT_GT(samples, 150);
+  EXPECT_GT(std::sqrt(error / samples), 20.0) << "what there is to cover";
+  EXPECT_GT(covered, 0.9 * samples);
+  EXPECT_LT(said, square(4.0) * error);
+}
+
 /// Issue: counted damage 0.7 to 1.4 of the true; the rocker is picked up within the turn, whose impulse that is.
 TEST(RodRing, LevelElasticCountsItAndItsImpulse) {
   for (const simulation::RodSettings& rod :

@@ -38,6 +38,12 @@ double fly(double rigid, double time, double& x, double& speed) noexcept {
   return std::abs(rigid);
 }
 
+/// Pressed against one side, x as the motion of the rigid linkage asks for.
+double settled(const RodSpring& spring, double lever, double inertia, double rigid) noexcept {
+  return -std::copysign(0.5 * spring.play / std::abs(lever), rigid) -
+         rigid * inertia / (spring.stiffness * square(lever));
+}
+
 /// Over a time; the acceleration after it.
 double moved(const RodSpring& spring, double lever, double inertia, double rigid, double time, double& x,
              double& speed) noexcept {
@@ -89,7 +95,6 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
   const double doubt = std::hypot(measured, doubt_) * at.u_before * speed_before;
   const double missing = rocker - at.u_after * blow.mean * speed_before;
-  rings_ = true;
   struck_ = std::hypot(missing, doubt);
   begin(std::copysign(struck_, missing));
 }
@@ -102,6 +107,9 @@ void RodRing::moveThrough(const CrankAngle& angle, double speed, double accelera
   const double lever = p.lengths.rocker * links.sin_mu;
   const double rigid = links.rocker.du * square(speed) + links.rocker.u * acceleration;
   double sum = 0.0;
+  for (std::size_t k = 0; k < rods_.size() && settles_; ++k)
+    states_[k] = {settled(rods_[k], lever, p.rocker_inertia_about_pivot, rigid), 0.0};
+  settles_ = false;
   for (std::size_t k = 0; k < rods_.size(); ++k)
     sum += square(moved(rods_[k], lever, p.rocker_inertia_about_pivot, rigid, time, states_[k].x, states_[k].speed));
   acceleration_ = std::sqrt(sum / static_cast<double>(rods_.size()));
@@ -132,7 +140,6 @@ void RodRing::restart(const CrankTracker& tracker) noexcept {
   const double energy = loadAt(at.offset).inertia * square(now.speed);  // twice
   double from = 0.0;
   if (now.position.isMirrored()) {
-    rings_ = true;
     begin(0.0);
     from = -kApproach;
   } else {
@@ -150,9 +157,9 @@ void RodRing::restart(const CrankTracker& tracker) noexcept {
 
 void RodRing::drive(const CrankStep& step, const CrankEstimate& crank) noexcept {
   const CrankAngle at = crank.position.angle;
-  if (at.offset < 0.0 && at.offset > -kApproach && (rings_ || !moves_)) {
-    rings_ = false;
+  if (at.offset < 0.0 && at.offset > -kApproach && !approaches_) {
     begin(0.0);
+    approaches_ = settles_ = true;
   }
   if (at.side != Side::kBeforeBlow || !(at.offset < 0.0) || !(crank.speed > 0.0)) return;
   const LinkMotion links = step.linksAt(at);
@@ -168,12 +175,10 @@ void RodRing::letGo(const CrankStep::Passage& passage) noexcept {
 }
 
 void RodRing::pass(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept {
-  if (passage.strikes) {
-    letGo(passage);
-    strike(passage.speed_before, blow);
-  } else {
-    rings_ = moves_ && passage.forward && passage.smooth;
-  }
+  if (passage.forward) approaches_ = false;
+  if (!passage.strikes) return;
+  letGo(passage);
+  strike(passage.speed_before, blow);
 }
 
 void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcept {
@@ -203,7 +208,7 @@ double RodRing::restitutionDoubt() const noexcept { return gives_ ? std::max(sha
 double RodRing::speed() const noexcept {
   double sum = 0.0;
   for (const State& state : states_) sum += square(state.speed);
-  return rings_ ? share_ * std::sqrt(sum / static_cast<double>(states_.size())) : 0.0;
+  return moves_ ? share_ * std::sqrt(sum / static_cast<double>(states_.size())) : 0.0;
 }
 
 HullWrench RodRing::deviation(const LinkMotion& links, double crank) const noexcept {

@@ -22,9 +22,10 @@ Rods rodsOf(const RodPrior& prior) noexcept;
 ///     I x'' = -h^2 (k x + c x') - I psi_rigid'',  x(0) = 0,  x'(0) = R |u- w-| - u+ w+
 ///
 /// the rocker picks up as the lever opens, and rings; within the pins' play the spring does nothing. A rocker that
-/// meets no tool is driven past the dead centre by psi_rigid'' alone. What x'' and x' do is missing in a wrench of
-/// rigid links; its phase hangs on a stiffness that is hardly known, its size does not: the mean square over the rods
-/// counts. Each step is that of the oscillator with the lever at its middle.
+/// meets no tool is driven past the dead centre by psi_rigid'' alone. Before it the lever is lost: from 30 deg on,
+/// where the rod is at rest on its spring, x is followed. What x'' and x' do is missing in a wrench of rigid links; its
+/// phase hangs on a stiffness that is hardly known, its size does not: the mean square over the rods counts. Each step
+/// is that of the oscillator with the lever at its middle.
 class RodRing {
  public:
   /// A rod that is said to be rigid does not ring.
@@ -41,7 +42,7 @@ class RodRing {
   /// crank: speed [rad/s].
   HullWrench deviation(const LinkMotion& links, double crank) const noexcept;
   /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
-  double acceleration() const noexcept { return rings_ ? share_ * acceleration_ : 0.0; }
+  double acceleration() const noexcept { return moves_ ? share_ * acceleration_ : 0.0; }
   /// How far a restitution may be off that was read off a crank as if the rod were rigid, standard [-].
   double restitutionDoubt() const noexcept;
   /// How far the crank's speed at the last blow may be above that which drives a rigid mechanism's rocker as fast as
@@ -54,7 +55,7 @@ class RodRing {
   double speed() const noexcept;
 
  private:
-  void rest() noexcept { rings_ = moves_ = false, driven_ = 0.0; }
+  void rest() noexcept { moves_ = approaches_ = false, driven_ = 0.0; }
   void begin(double beside_speed) noexcept;
   void strike(double speed_before, const BlowFactor& blow) noexcept;
   void move(const CrankStep& step, double from, double to) noexcept;
@@ -64,7 +65,8 @@ class RodRing {
   void letGo(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;
-  bool gives_, moves_{}, rings_{};  ///< moves: from the run-up on, which may turn out to be a blank stroke
+  bool gives_, moves_{};           ///< moves: from the run-up on, which may turn out to be a blank stroke
+  bool approaches_{}, settles_{};  ///< in this run-up, which began settled
   struct State {
     double x{}, speed{};  ///< [rad], [rad/s]
   };
