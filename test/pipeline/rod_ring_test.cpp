@@ -32,16 +32,23 @@ double equivalentOf(const life::ExactCycles& cycles, double slope) {
   return life::equivalentLoad(life::rangesAndMeans(cycles), slope, 1.0, {}).value;
 }
 
-RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanism& mechanism, double rate = 1000.0,
-                 const simulation::StrikeSettings& struck = {}) {
+/// At work to the end of its duration [s].
+simulation::MachineSettings ringingMachine(const Mechanism& mechanism, const simulation::RodSettings& rod,
+                                           double duration, std::uint64_t seed) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = mechanism.parameters();
   machine.level = Level::kLinkage;
-  machine.duration = 12.0;
+  machine.duration = duration;
   machine.drive.stop_time = 20.0;
   machine.rod = rod;
+  machine.seed = seed;
+  return machine;
+}
+
+RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanism& mechanism, double rate = 1000.0,
+                 const simulation::StrikeSettings& struck = {}) {
+  simulation::MachineSettings machine = ringingMachine(mechanism, rod, 12.0, 4711);
   machine.strike = struck;
-  machine.seed = 4711;
   machine.crank.rate = rate;
   const simulation::Session session = simulation::recordSession(machine);
   PipelineSettings settings = drawingOfRing().pipeline;
@@ -207,13 +214,8 @@ TEST(RodRing, OfLivelyRockARigidLevelKnowsNoRestitution) {
 
 /// Past the dead centre the linkage stops the rocker within some 10 ms, with more force than at any blow: a rod rings.
 TEST(RodRing, RingsWhereNoToolIsMetAsWell) {
-  simulation::MachineSettings machine = simulation::workingMo100();
-  machine.hammer = drawingOfRing().mechanism.parameters();
-  machine.level = Level::kLinkage;
-  machine.duration = 14.0, machine.drive.stop_time = 20.0;
-  machine.rod = {6e8, 0.2, 0.0};
+  simulation::MachineSettings machine = ringingMachine(drawingOfRing().mechanism, {6e8, 0.2, 0.0}, 14.0, 4712);
   machine.blow.blank_share = 0.2;
-  machine.seed = 4712;
   const simulation::Session session = simulation::recordSession(machine);
   Pipeline pipeline(drawingOfRing().mechanism, drawingOfRing().pipeline);
   struct Found {
@@ -245,13 +247,8 @@ TEST(RodRing, RingsWhereNoToolIsMetAsWell) {
 
 /// Just before the blow the rod loses its lever: the rocker lags, and the crank that it no longer brakes runs ahead.
 TEST(RodRing, BeginsBeforeTheBlow) {
-  simulation::MachineSettings machine = simulation::workingMo100();
-  machine.hammer = drawingOfRing().mechanism.parameters();
-  machine.level = Level::kLinkage;
-  machine.duration = 10.0, machine.drive.stop_time = 20.0;
-  machine.rod = {5e8, 0.65, 0.0};
-  machine.seed = 4713;
-  const simulation::Session session = simulation::recordSession(machine);
+  const simulation::Session session =
+      simulation::recordSession(ringingMachine(drawingOfRing().mechanism, {5e8, 0.65, 0.0}, 10.0, 4713));
   Pipeline pipeline(drawingOfRing().mechanism, drawingOfRing().pipeline);
   int samples = 0, covered = 0;
   double error = 0.0, said = 0.0;

@@ -20,10 +20,11 @@ void CrankFilter::rememberBlow(const CrankBelief& last, double dt) noexcept {
   supply_.pass(dt);
   const CrankPosition &from = last.state.position, &to = now_.state.position;
   if (from.angle.side != Side::kAfterBlow || to.angle.side != Side::kBeforeBlow || to.blow != from.blow + 1) return;
-  supply_.endTurn(to, !from.isMirrored() && !to.isMirrored());
+  const bool had_contact = !from.isMirrored() && !to.isMirrored();
+  supply_.endTurn(to, had_contact);
   speed_trust_.endTurn();
   slip_.endTurn();
-  if (from.isMirrored() || to.isMirrored()) return;
+  if (!had_contact) return;
   considerSensor();
   errors_.endTurn(consistency_.growth(), encoder_.resolution());
   learnSupply();

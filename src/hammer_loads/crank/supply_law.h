@@ -39,7 +39,7 @@ class LearnedSupply {
   /// Once a turn, half a turn after the blow. known: the torques since were those of the supply.
   void endTurn(const CrankPosition& at, bool known = true) noexcept {
     if (known && half_turn_.count() > 0.0) usual_.add(half_turn_.mean());
-    half_turn_ = kOfHalfTurn;
+    half_turn_ = {};
     const double speed = difference(at, from_) / turn_time_;
     law_.mean_speed = speed > 0.0 ? speed : 0.0;
     from_ = at;
@@ -57,8 +57,7 @@ class LearnedSupply {
  private:
   static constexpr double kTurns = 3.0;
   // Guard: SupplyLaw.ATorqueIsUsualWithinThreeTurns of kTurns
-  static inline const RunningMean<> kOfHalfTurn{std::numeric_limits<double>::infinity()};
-  RunningMean<> usual_, half_turn_{kOfHalfTurn};
+  RunningMean<> usual_, half_turn_;
   SupplyLaw law_;
   CrankPosition from_;
   double turn_time_{std::numeric_limits<double>::quiet_NaN()};  ///< since from_ [s]; NaN: not seen from there

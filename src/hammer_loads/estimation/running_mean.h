@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 namespace hammer_loads {
 
@@ -10,6 +11,8 @@ namespace hammer_loads {
 template <typename Value = double>
 class RunningMean {
  public:
+  /// Of all that comes, each alike.
+  RunningMean() noexcept : RunningMean(std::numeric_limits<double>::infinity()) {}
   /// length > 0; first: counts as this many values, in [0, length].
   explicit RunningMean(double length, const Value& first = Value(), double first_counts = 0.0) noexcept
       : length_(length), count_(first_counts), mean_(first) {}

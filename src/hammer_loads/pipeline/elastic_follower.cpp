@@ -29,8 +29,6 @@ constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of like
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 // Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
 
-const RunningMean<> kOfAll(std::numeric_limits<double>::infinity());
-
 /// One that was never struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
@@ -44,8 +42,7 @@ ElasticFollower::ElasticFollower(const HullModel& model, Level level) noexcept
       wanted_(level == Level::kElastic &&
               priorOf(model.mechanism().parameters().rod, model.mechanism().parameters().rod_deviation).gives),
       filters_{RodFilter(model.mechanism(), RodFilter::Pins::kTight),
-               RodFilter(model.mechanism(), RodFilter::Pins::kPlay)},
-      squares_(kOfAll) {}
+               RodFilter(model.mechanism(), RodFilter::Pins::kPlay)} {}
 
 bool ElasticFollower::mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept {
   const CrankPosition& at = crank.estimate().position;
@@ -176,7 +173,7 @@ ElasticFollower::LoadCovariance ElasticFollower::covariance(const DriveReaction&
 ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, double ring) noexcept {
   Loads mean = loads(filter().motion(), drive);
   const LoadCovariance errors = covariance(drive, mean);
-  if (!filter().hasStruck()) squares_ = kOfAll;
+  if (!filter().hasStruck()) squares_ = {};
   squares_.add(square(mean[kBesideRigid]));
   Loads variance = errors.diagonal();
   if (filter().hasStruck()) {

@@ -83,6 +83,7 @@ RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
 
 void RodRing::begin(double beside_speed) noexcept {
   moves_ = true;
+  settles_ = false;
   acceleration_ = 0.0;
   states_.fill({0.0, beside_speed});
 }
@@ -107,11 +108,12 @@ void RodRing::moveThrough(const CrankAngle& angle, double speed, double accelera
   const double lever = p.lengths.rocker * links.sin_mu;
   const double rigid = links.rocker.du * square(speed) + links.rocker.u * acceleration;
   double sum = 0.0;
-  for (std::size_t k = 0; k < rods_.size() && settles_; ++k)
-    states_[k] = {settled(rods_[k], lever, p.rocker_inertia_about_pivot, rigid), 0.0};
+  for (std::size_t k = 0; k < rods_.size(); ++k) {
+    State& s = states_[k];
+    if (settles_) s = {settled(rods_[k], lever, p.rocker_inertia_about_pivot, rigid), 0.0};
+    sum += square(moved(rods_[k], lever, p.rocker_inertia_about_pivot, rigid, time, s.x, s.speed));
+  }
   settles_ = false;
-  for (std::size_t k = 0; k < rods_.size(); ++k)
-    sum += square(moved(rods_[k], lever, p.rocker_inertia_about_pivot, rigid, time, states_[k].x, states_[k].speed));
   acceleration_ = std::sqrt(sum / static_cast<double>(rods_.size()));
 }
 
@@ -155,12 +157,14 @@ void RodRing::restart(const CrankTracker& tracker) noexcept {
   }
 }
 
+void RodRing::approach(const CrankAngle& at) noexcept {
+  if (approaches_ || !(at.offset < 0.0 && at.offset > -kApproach)) return;
+  begin(0.0);
+  approaches_ = settles_ = true;
+}
+
 void RodRing::drive(const CrankStep& step, const CrankEstimate& crank) noexcept {
   const CrankAngle at = crank.position.angle;
-  if (at.offset < 0.0 && at.offset > -kApproach && !approaches_) {
-    begin(0.0);
-    approaches_ = settles_ = true;
-  }
   if (at.side != Side::kBeforeBlow || !(at.offset < 0.0) || !(crank.speed > 0.0)) return;
   const LinkMotion links = step.linksAt(at);
   const double lever = model_->mechanism().parameters().lengths.rocker * std::abs(links.sin_mu);
@@ -190,7 +194,9 @@ void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcep
     from = passage.time;
   }
   move(step, from, step.length());
-  drive(step, tracker.estimate());
+  const CrankEstimate crank = tracker.estimate();
+  approach(crank.position.angle);
+  drive(step, crank);
 }
 
 void RodRing::take(const CrankFilter* filter) noexcept {

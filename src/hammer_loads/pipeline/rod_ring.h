@@ -61,6 +61,7 @@ class RodRing {
   void move(const CrankStep& step, double from, double to) noexcept;
   void moveThrough(const CrankAngle& angle, double speed, double acceleration, double time) noexcept;
   void pass(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
+  void approach(const CrankAngle& at) noexcept;
   void drive(const CrankStep& step, const CrankEstimate& crank) noexcept;
   void letGo(const CrankStep::Passage& passage) noexcept;
 
