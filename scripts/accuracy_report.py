@@ -168,7 +168,7 @@ def life_excerpt(boom):
     """What fatigue is judged by."""
     rows = {(row["machine"], row["sensors"]): row for row in boom}
     lines = ["| machine | force on the hull | joint torque | bending |", "|---|---|---|---|"]
-    lines += ["| " + text + " | " + " | ".join(f"{100 * rows[machine, sensors][key]:+.1f} %"
+    lines += ["| " + text + " | " + " | ".join(f"{100 * rows[machine, sensors][key]['error']:+.1f} %"
                                                for key in ("life_force", "life_torque", "life_section")) + " |"
               for machine, sensors, text in LIFE]
     lines += ["| towers, simulated; measured; corrected in the field | | | 5 to 10 %; 10 to 15 %; below 5 % |"]

@@ -18,11 +18,33 @@ LifeError errorOf(double factor, double offset) {
 
 /// A range of every cycle that is 3 % too large makes the equivalent one 3 % too large, at any slope.
 TEST(LifeError, IsTheFactorOfTheLoad) {
-  EXPECT_NEAR(errorOf(1.03, 0.0).error(), 0.03, 1e-12);
-  EXPECT_NEAR(errorOf(0.9, 0.0).error(), -0.1, 1e-12);
+  EXPECT_NEAR(errorOf(1.03, 0.0).figure().error, 0.03, 1e-12);
+  EXPECT_NEAR(errorOf(0.9, 0.0).figure().error, -0.1, 1e-12);
 }
 
-TEST(LifeError, AConstantErrorCostsNothing) { EXPECT_NEAR(errorOf(1.0, 5e4).error(), 0.0, 1e-12); }
+TEST(LifeError, AConstantErrorCostsNothing) { EXPECT_NEAR(errorOf(1.0, 5e4).figure().error, 0.0, 1e-12); }
+
+/// Two turns of ranges 20 and 60: weighed by the range, 20 is known to hypot(1, 2) and 60 to hypot(6, 8) of its own.
+TEST(LifeError, SaysWhatTheRangesOfTurnsSay) {
+  LifeError error;
+  const auto turn = [&](double top, double least_own, double top_own) {
+    error.add(-10.0, -10.0, {least_own, 0.5}), error.add(top, top, {top_own, 1.5});
+    error.endTurn();
+  };
+  turn(10.0, 1.0, 2.0), turn(50.0, 6.0, 8.0);
+  const LifeFigure figure = error.figure();
+  EXPECT_NEAR(figure.error, 0.0, 1e-12);
+  EXPECT_NEAR(figure.own, (20.0 * std::sqrt(5.0) + 60.0 * 10.0) / (20.0 * 20.0 + 60.0 * 60.0), 1e-12);
+  EXPECT_NEAR(figure.common, 2.0 * (20.0 + 60.0) / (20.0 * 20.0 + 60.0 * 60.0), 1e-12);
+}
+
+TEST(LifeError, SaysNothingOfLoadsWithoutDeviations) {
+  LifeError error;
+  error.add(0.0, 0.0), error.add(1.0, 1.0);
+  error.endTurn();
+  EXPECT_TRUE(std::isnan(error.figure().own) && std::isnan(error.figure().common));
+  EXPECT_NE(json(error.figure()).find("\"own\": null"), std::string::npos);
+}
 
 /// One range r among n of size 1: (r^m + n)^(1/m) against (1 + n)^(1/m), from the definition.
 TEST(LifeError, ASingleCycleCountsByItsPower) {
@@ -33,8 +55,8 @@ TEST(LifeError, ASingleCycleCountsByItsPower) {
     error.add(0.0, 0.0), error.add(top, 1.0);
   }
   error.add(0.0, 0.0);
-  EXPECT_NEAR(error.error(), std::pow((std::pow(2.0, kLifeSlope) + kCycles - 1) / kCycles, 1.0 / kLifeSlope) - 1.0,
-              1e-12);
+  EXPECT_NEAR(error.figure().error,
+              std::pow((std::pow(2.0, kLifeSlope) + kCycles - 1) / kCycles, 1.0 / kLifeSlope) - 1.0, 1e-12);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ double rangeError(const Work& drawn, const Work& right) {
   for (std::size_t i = 0; i < right.force_z.size(); ++i)
     if (std::isfinite(drawn.force_z[i]) && std::isfinite(right.force_z[i]))
       error.add(drawn.force_z[i], right.force_z[i]);
-  return error.error();
+  return error.figure().error;
 }
 
 /// What the constants do to each figure, one standard deviation each: the linear part of a fit to its values. Squares

@@ -56,6 +56,8 @@ std::string BoomErrors::text() const {
 
 void BoomErrors::addBlows(const simulation::Session& session, const SampleResult& result) {
   for (std::size_t k = 0; k < result.turn_ends; ++k) {
+    life_force_z.endTurn();
+    for (LifeError* each : {life_torque, life_section}) std::for_each_n(each, 3, [](LifeError& l) { l.endTurn(); });
     const double time = seconds(result.ends[k].stamp - simulation::workingMo100().start_stamp);
     for (const simulation::BlowTruth& blow : session.blows) {
       if (std::abs(blow.time - time) > kSameBlow) continue;
@@ -81,21 +83,23 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   ++samples;
   force_x.add(result.wrench.force_x, truth.load.force_x);
   force_z.add(result.wrench.force_z, truth.load.force_z);
-  life_force_z.add(result.wrench.force_z, truth.load.force_z);
+  const auto said = life::LoadError::of;
+  life_force_z.add(result.wrench.force_z, truth.load.force_z,
+                   said(result.deviation.wrench.force_z, result.deviation.common.force_z));
   addWrench(truth, result);
   moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
   const BoomState& boom = *result.boom;
   for (int j = 0; j < 3; ++j) {
     const double weight = boom.loads.weight[j + 1], total = boom.loads.total[j + 1];
     torque[j].add(total - weight, -truth.hold[j] - weight);
-    life_torque[j].add(total, -truth.hold[j]);
+    life_torque[j].add(total, -truth.hold[j], said(boom.deviations.torque[j + 1], boom.common.torque[j + 1]));
     torque_said[j] += square(boom.deviations.torque[j + 1]);
     within += std::abs(total + truth.hold[j]) <= 2.0 * boom.deviations.torque[j + 1];
   }
   for (std::size_t s = 0; s < 3; ++s) {
     const double bending = boom.steel.section[s].torque.y(), right = truth.cut[s].torque_y;
     section[s].add(bending, right);
-    life_section[s].add(bending, right);
+    life_section[s].add(bending, right, said(boom.deviations.section[s].torque.y(), boom.common.section[s].torque.y()));
     sections_within += std::abs(bending - right) <= 2.0 * boom.deviations.section[s].torque.y();
   }
   contact.add(boom.contact.force.z(), truth.rock.force_z);

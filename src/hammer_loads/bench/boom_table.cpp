@@ -62,9 +62,9 @@ simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose, const
   return m;
 }
 
-void takeWorse(const LifeError& e, double& worst) {
-  const double error = e.error();
-  if (std::abs(error) > std::abs(worst)) worst = error;
+void takeWorse(const LifeError& e, LifeFigure& worst) {
+  const LifeFigure figure = e.figure();
+  if (std::abs(figure.error) > std::abs(worst.error)) worst = figure;
 }
 
 void takeWorst(const BoomErrors& e, BoomRow& row) {
@@ -135,10 +135,10 @@ std::string json(const std::vector<BoomRow>& rows) {
         "%s\n  {\"machine\": \"%s\", \"sensors\": \"%s\", \"torque\": %.4g, \"section\": %.4g, \"moment\": %.4g, "
         "\"rms_z\": %.4g, \"worst_z\": %.4g, \"energy\": %.4g, \"contact\": %s, \"covered_torque\": %.4g, "
         "\"rms_x\": %.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g, "
-        "\"life_force\": %.4g, \"life_torque\": %.4g, \"life_section\": %.4g}",
+        "\"life_force\": %s, \"life_torque\": %s, \"life_section\": %s}",
         &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), r.torque, r.section, r.moment, r.force_z,
         r.worst_z, r.energy, number(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force, r.covered_wrench,
-        r.life_force, r.life_torque, r.life_section);
+        json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());
   return text + "\n]";
 }
 

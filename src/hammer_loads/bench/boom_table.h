@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/bench/life_error.h"
+
 namespace hammer_loads::accuracy {
 
 /// Errors as parts of one: root mean squares over those of the truth, of sections and the rock's force over its range,
@@ -21,7 +23,7 @@ struct BoomRow {
   double covered{1.0};            ///< torques within two deviations, the least
   /// Of the damage-equivalent range at slope kLifeSlope, > 0 too large: hull force z, torque of the worst joint with
   /// weight, bending at the worst cut.
-  double life_force{}, life_torque{}, life_section{};
+  LifeFigure life_force{}, life_torque{}, life_section{};
 };
 
 /// The simulated EO-2621 on its oil with the shipped boom file, which may be wrong of the oil; poses drawn, the same on

@@ -6,7 +6,6 @@
 
 #include "hammer_loads/bench/life_error.h"
 #include "hammer_loads/bench/session_player.h"
-#include "hammer_loads/life/life_recorder.h"
 #include "hammer_loads/linkage/hammer_constants.h"
 #include "hammer_loads/simulation/normal_noise.h"
 #include "hammer_loads/simulation/session.h"
@@ -56,15 +55,6 @@ class FigureErrors {
   double count_{}, squares_{}, said_{}, inside_{};
 };
 
-/// The samples' Fz as the life of a machine counts it, for what that says of its ranges' deviation.
-life::LifeRecorder forceRecorder() {
-  constexpr const char* kForce = "hull_wrench/force_z_N";
-  life::LifeSettings settings;
-  settings.channels = {{kForce, *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
-  settings.period = 1;
-  return *life::LifeRecorder::make(settings, {kForce}).value;
-}
-
 }  // namespace
 
 DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) {
@@ -84,7 +74,6 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
   std::array<FigureErrors, 3> samples;
   FigureErrors energy, impulse, amplitude;
   LifeError life;
-  life::LifeRecorder recorder = forceRecorder();
   player.playTo(kInfinity, [&](double, const SampleResult& loads) {
     const auto time = [&](std::int64_t stamp) { return 1e-9 * static_cast<double>(stamp - machine.start_stamp); };
     for (std::size_t i = 0; i < loads.turn_ends; ++i) {
@@ -93,7 +82,7 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
         return std::abs(b.time - time(end.stamp)) < 0.05;
       });
       if (near == session.blows.end() || near->time < 3.0) continue;
-      recorder.turn();
+      life.endTurn();
       energy.addRelative(end.blow.energy, near->strike.energy, end.blow.energy_deviation);
       if (!end.pulse || !near->whole_turn) continue;
       impulse.addRelative(end.pulse->turn_impulse_z, near->turn_impulse_z, end.pulse_errors.turn_impulse_z.deviation());
@@ -105,9 +94,8 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
     if (truth == session.truth.end() || std::abs(truth->time - time(loads.stamp)) > 1e-6) return;
     const std::array<double, 3> is{truth->load.force_x, truth->load.force_z,
                                    truth->load.torque_y + truth->drive_reaction_y};
-    life.add(loads.wrench.force_z, is[1]);
-    recorder.sample(loads.stamp, &loads.wrench.force_z, &loads.deviation.wrench.force_z,
-                    &loads.deviation.common.force_z);
+    life.add(loads.wrench.force_z, is[1],
+             life::LoadError::of(loads.deviation.wrench.force_z, loads.deviation.common.force_z));
     const Eigen::Vector3d found = vectorOf(loads.wrench), deviation = vectorOf(loads.deviation.wrench);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
@@ -119,9 +107,9 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
   row.energy = energy.result();
   row.impulse = impulse.result();
   row.amplitude = amplitude.result();
-  const life::RangeDeviation deviation = life::rangeDeviation(recorder.take().counts[0]);
+  const LifeFigure figure = life.figure();
   FigureErrors range;
-  range.add(life.error(), std::hypot(deviation.own, deviation.common));
+  range.add(figure.error, std::hypot(figure.own, figure.common));
   row.range = range.result();
   return row;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "hammer_loads/bench/life_error.h"
 #include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_run.h"
 #include "hammer_loads/util/constants.h"
@@ -64,25 +63,28 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
   LifeError life, with_touch;
   std::array<double, 3> largest{};
   auto published = run.wrenches.begin();
+  auto blow = session.blows.begin();
   for (std::size_t k = 0; k < run.accepted.size(); ++k) {
     const double time = run.accepted[k];
     const bool is_withheld = published == run.wrenches.end() || published->time != time;
     const WrenchAt wrench = is_withheld ? WrenchAt{} : *published++;
     if (time < kFrom || time > machine.duration - 3.0) continue;
+    for (; blow != session.blows.end() && blow->time <= time; ++blow) life.endTurn(), with_touch.endTurn();
     const std::array<double, 3> values = valuesOf(truth[k]);
     for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
     const bool touches = truth[k].tool_force != 0.0 || truth[k].retainer_force != 0.0;
-    with_touch.right.add(values[1]);
-    if (!touches) life.right.add(values[1]);
+    with_touch.addTruth(values[1]);
+    if (!touches) life.addTruth(values[1]);
     if (is_withheld) continue;
-    with_touch.estimated.add(wrench.force_z);
-    if (!touches) life.estimated.add(wrench.force_z);
+    const life::LoadError said = life::LoadError::of(wrench.force_z_deviation, wrench.force_z_common);
+    with_touch.addEstimate(wrench.force_z, said);
+    if (!touches) life.addEstimate(wrench.force_z, said);
     whole.add(wrench, values);
     if (truth[k].angle >= kPi) strike.add(wrench, values);
     const double since = sinceBlow(session.blows, time);
     if (since >= kAfterFrom && since <= kAfterTo) after.add(wrench, values);
   }
-  return {whole.over(largest), strike.over(largest), after.over(after.truthRms()), life.error(), with_touch.error()};
+  return {whole.over(largest), strike.over(largest), after.over(after.truthRms()), life.figure(), with_touch.figure()};
 }
 
 /// Everything a little, and a usual sensor.
@@ -172,9 +174,9 @@ std::string markdown(const std::vector<ElasticRow>& rows) {
 std::string json(const std::vector<ElasticRow>& rows) {
   std::string text = "[";
   for (const ElasticRow& row : rows) {
-    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"life\": %.6g, \"life_with_touch\": %.6g, ",
-                   &row == rows.data() ? "" : ",", row.machine.c_str(), nameOf(row.level), row.errors.life,
-                   row.errors.life_with_touch) +
+    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"life\": %s, \"life_with_touch\": %s, ",
+                   &row == rows.data() ? "" : ",", row.machine.c_str(), nameOf(row.level),
+                   json(row.errors.life).c_str(), json(row.errors.life_with_touch).c_str()) +
             jsonOf("whole", row.errors.whole) + ", " + jsonOf("strike", row.errors.strike) + ", " +
             jsonOf("after", row.errors.after) + "}";
   }

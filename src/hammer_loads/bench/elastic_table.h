@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/bench/life_error.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/machine_settings.h"
@@ -23,9 +24,9 @@ struct ElasticErrors {
   PartErrors whole;   ///< over the largest of the truth
   PartErrors strike;  ///< crank from 180 to 360 deg; as above
   PartErrors after;   ///< 6 to 40 ms after the first touch; over the root mean square of the truth there
-  /// Of the damage-equivalent range of Fz at slope kLifeSlope, relative, > 0 too large: without the samples in which
-  /// the rocker touches tool or retainer, whose impulse is the blow's and no wrench; with them.
-  double life{}, life_with_touch{};
+  /// Of Fz: without the samples in which the rocker touches tool or retainer, whose impulse is the blow's and no
+  /// wrench; with them.
+  LifeFigure life, life_with_touch;
 };
 
 struct ElasticRow {

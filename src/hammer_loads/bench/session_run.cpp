@@ -26,9 +26,9 @@ SessionRun runSession(const simulation::Session& session, std::int64_t start, co
     if (loads.refusal) return;
     run.accepted.push_back(seconds(loads.stamp));
     if (loads.beside_blow) return;
-    const HullWrench deviation = loads.outputs.empty() ? HullWrench{} : loads.outputs.front().deviation.wrench;
+    const HullDeviation said = loads.outputs.empty() ? HullDeviation{} : loads.outputs.front().deviation;
     run.wrenches.push_back({seconds(loads.stamp), loads.wrench.force_x, loads.wrench.force_z, loads.wrench.torque_y,
-                            deviation.force_x, deviation.force_z, deviation.torque_y});
+                            said.wrench.force_x, said.wrench.force_z, said.wrench.torque_y, said.common.force_z});
   });
   run.counts = player.pipeline.counts();
   return run;

@@ -1,6 +1,8 @@
 /// Text for one-line reports: printf into a std::string, names in a row.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -9,8 +11,9 @@ namespace hammer_loads {
 
 template <typename... Args>
 std::string format(const char* pattern, Args... args) {
-  char text[512];
-  std::snprintf(text, sizeof text, pattern, args...);
+  const int size = std::snprintf(nullptr, 0, pattern, args...);
+  std::string text(static_cast<std::size_t>(std::max(0, size)), '\0');
+  std::snprintf(text.data(), text.size() + 1, pattern, args...);
   return text;
 }
 

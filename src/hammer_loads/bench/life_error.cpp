@@ -1,0 +1,37 @@
+#include "hammer_loads/bench/life_error.h"
+
+#include <cmath>
+
+#include "hammer_loads/life/damage.h"
+#include "hammer_loads/util/format.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads::accuracy {
+namespace {
+
+double equivalentRange(const life::ExactCycles& cycles) {
+  return life::equivalentLoad(life::rangesAndMeans(cycles), kLifeSlope, 1.0, {}).value;
+}
+
+}  // namespace
+
+void LifeError::endTurn() {
+  const double range = turn_.range();
+  const life::LoadError said = turn_.ofRange();
+  turn_ = {};
+  if (!(range > 0.0 && said.own >= 0.0 && said.common >= 0.0)) return;
+  square_ += square(range), own_ += range * said.own, common_ += range * said.common;
+}
+
+LifeFigure LifeError::figure() const {
+  const double ratio = equivalentRange(estimated_) / equivalentRange(right_);
+  return {ratio - 1.0, ratio * own_ / square_, ratio * common_ / square_};
+}
+
+std::string json(const LifeFigure& figure) {
+  const auto number = [](double value) { return std::isfinite(value) ? format("%.4g", value) : std::string("null"); };
+  return "{\"error\": " + number(figure.error) + ", \"own\": " + number(figure.own) +
+         ", \"common\": " + number(figure.common) + "}";
+}
+
+}  // namespace hammer_loads::accuracy
