@@ -175,6 +175,24 @@ def life_excerpt(boom):
     return "\n".join(lines) + "\n"
 
 
+BUDGETED = [("blow/energy_J", "energy of a blow", 1.0, "J"),
+            ("pulse/turn_impulse_z_Ns", "impulse of a turn, z", 1.0, "N s"),
+            ("equivalent_range_3/hull_wrench/force_z_N", "damage-equivalent range of Fz, slope 3", 1e-3, "kN")]
+
+
+def budget_excerpt(machine):
+    """Where the uncertainty of a recording's figures comes from."""
+    figures = {figure["quantity"]: figure for figure in machine["figures"]}
+    lines = ["| | value | standard deviation | with the largest source halved | most of the variance |", "|---|---|---|---|---|"]
+    for quantity, text, factor, unit in BUDGETED:
+        figure = figures[quantity]
+        of_unit = [f"{factor * figure[key]:.{digits}g} {unit}"
+                   for key, digits in (("value", 4), ("deviation", 2), ("deviation_with_largest_halved", 2))]
+        sources = ", ".join(f"`{one['source']}` {100 * one['share']:.0f} %" for one in figure["sources"][:3])
+        lines.append(f"| {text} | " + " | ".join(of_unit) + f" | {sources} |")
+    return "\n".join(lines) + "\n"
+
+
 def replace(path, marker, text):
     """Text between <!-- marker --> and <!-- /marker -->."""
     begin, end = f"<!-- {marker} -->\n", f"<!-- /{marker} -->"
@@ -184,7 +202,7 @@ def replace(path, marker, text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json), perhaps costs(.json) and recorded")
+    parser.add_argument("work", type=pathlib.Path, help="directory with sessions(.json) and budget.json, perhaps costs(.json) and recorded")
     parser.add_argument("root", type=pathlib.Path, help="of the source")
     arguments = parser.parse_args()
     work, root = arguments.work, arguments.root
@@ -192,6 +210,8 @@ def main():
     replace(root / "doc" / "accuracy.md", "sessions", (work / "sessions").read_text())
     replace(root / "README.md", "machines", machines_excerpt(figures["machines"]) + drawings_excerpt(figures["drawings"]))
     replace(root / "README.md", "life", life_excerpt(figures["boom"]))
+    machine, = json.loads((work / "budget.json").read_text())["machines"]
+    replace(root / "README.md", "budget", budget_excerpt(machine))
     if not (work / "costs.json").exists():
         return
     figures.update(json.loads((work / "costs.json").read_text()))

@@ -9,6 +9,7 @@ import unittest
 from support import HERE, ReportTest, program
 
 import sample_database as sample
+from report import budget_command
 from report.budget import budget_of
 from report.database import Database
 from report.subjects import subjects_of
@@ -71,6 +72,11 @@ class Budget(ReportTest):
             self.assertEqual(shares, sorted(shares, reverse=True))
             self.assertGreater(found[quantity]["deviation"], found[quantity]["deviation_with_largest_halved"])
         self.assertIn("rocker_mass_kg", [s["source"] for s in found["pulse/turn_impulse_z_Ns"]["sources"]])
+
+    def test_what_would_be_nothing_is_one_line(self):
+        shares = [("rocker_mass_kg", 0.9991), ("readings", 5e-4), ("supply", 3e-4), ("crank_mass_kg", 1e-4)]
+        self.assertEqual(budget_command.shown(shares), ["   99.9 %  rocker_mass_kg", "    0.1 %  readings", "    0.0 %  2 more"])
+        self.assertEqual(budget_command.shown(shares[:1]), ["   99.9 %  rocker_mass_kg"])
 
     @unittest.skipUnless(program("budget"), "needs the built command")
     def test_wrong_files_are_named(self):

@@ -11,6 +11,7 @@ from report.problem import Problem
 from report.subjects import subjects_of
 
 TEXT, JSON, CSV = "text", "json", "csv"
+LEAST_SHOWN = 5e-4
 
 
 def parser():
@@ -38,13 +39,21 @@ def found(database):
     return budgets
 
 
+def shown(shares):
+    """Lines; one for all that would be 0.0 %."""
+    seen = [one for one in shares if one[1] >= LEAST_SHOWN]
+    few = [f"  {100.0 * share:5.1f} %  {source}" for source, share in seen]
+    rest = len(shares) - len(seen)
+    return few + [f"  {100.0 * sum(share for _, share in shares[len(seen):]):5.1f} %  {rest} more"] * (rest > 0)
+
+
 def as_text(budgets):
     lines = []
     for machine, figures in budgets:
         lines.append(f"{machine}: standard deviations of one turn, by source")
         for f in figures:
             lines.append(f"{f.quantity}: {f.value:.5g} +- {f.deviation:.2g}; {f.halved:.2g} with the largest source halved")
-            lines += [f"  {100.0 * share:5.1f} %  {source}" for source, share in f.shares]
+            lines += shown(f.shares)
     return "\n".join(lines) + "\n"
 
 
