@@ -104,6 +104,29 @@ def draw(figures, path):
     figure.savefig(path)
 
 
+def draw_blow(blow, path):
+    """Force z around a blow: the truth and what the levels say, with bands of two deviations."""
+    figure, axes = plt.subplots(figsize=(9.5, 5.0), dpi=110)
+    most = 0.0
+    for level, color, marker in (("linkage", "#d1602b", "s"), ("elastic", "#1f5fa8", "o")):
+        time, force, deviation = (blow[level][key] for key in ("time_ms", "force_z_N", "deviation_N"))
+        low, high = ([(f + sign * 2.0 * d) / 1e3 for f, d in zip(force, deviation)] for sign in (-1, 1))
+        most = max(most, max(high), -min(low))
+        axes.fill_between(time, low, high, color=color, alpha=0.18, linewidth=0, label=f"{level}: two deviations")
+        axes.plot(time, [f / 1e3 for f in force], marker, color=color, markersize=3.5, label=f"{level}: published")
+    axes.plot(blow["truth"]["time_ms"], [f / 1e3 for f in blow["truth"]["force_z_N"]], color="#202020", linewidth=1.0,
+              label="truth")
+    axes.set(xlabel="time from the first touch of the tool [ms]", ylabel="force z on the hull [kN]",
+             ylim=(-1.05 * most, 1.05 * most), xlim=(blow["truth"]["time_ms"][0], blow["truth"]["time_ms"][-1]))
+    axes.grid(axis="y", color="#ececec")
+    axes.set_axisbelow(True)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    axes.legend(frameon=False, fontsize=9, ncol=5, loc="upper center", bbox_to_anchor=(0.5, -0.12), columnspacing=1.2)
+    figure.tight_layout()
+    figure.savefig(path)
+
+
 def cost_line(row):
     error = "see below" if row["group"] in ("crank", "pipeline") else f"{worst(row):.0e}"
     if row["name"] == "pulse":
@@ -210,6 +233,7 @@ def main():
     replace(root / "doc" / "accuracy.md", "sessions", (work / "sessions").read_text())
     replace(root / "README.md", "machines", machines_excerpt(figures["machines"]) + drawings_excerpt(figures["drawings"]))
     replace(root / "README.md", "life", life_excerpt(figures["boom"]))
+    draw_blow(figures["blow"], root / "doc" / "blow.png")
     machine, = json.loads((work / "budget.json").read_text())["machines"]
     replace(root / "README.md", "budget", budget_excerpt(machine))
     if not (work / "costs.json").exists():

@@ -36,25 +36,6 @@ Mechanism withRigidRod(HammerParameters p) {
   return *Mechanism::make(p).value;
 }
 
-/// Of samples or of figures of which there is one a turn.
-class FigureErrors {
- public:
-  void add(double error, double deviation) {
-    ++count_;
-    squares_ += square(error), said_ += square(deviation);
-    inside_ += std::abs(error) <= 2.0 * deviation;
-  }
-  void addRelative(double found, double truth, double deviation) {
-    add((found - truth) / truth, deviation / std::abs(truth));
-  }
-  DrawingRow::Figure result(double peak = 1.0) const {
-    return {std::sqrt(squares_ / count_) / peak, std::sqrt(said_ / count_) / peak, inside_ / count_};
-  }
-
- private:
-  double count_{}, squares_{}, said_{}, inside_{};
-};
-
 }  // namespace
 
 DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) {
@@ -125,7 +106,7 @@ std::vector<DrawingSummary> summary(const std::vector<DrawingRow>& rows) {
   const auto add = [&](const char* quantity, const auto& figure) {
     DrawingSummary sum{quantity, {}};
     for (const DrawingRow& row : rows) {
-      const DrawingRow::Figure one = figure(row);
+      const FigureErrors::Result one = figure(row);
       sum.all.rms += square(one.rms), sum.all.said += square(one.said), sum.all.covered += one.covered;
       sum.least = std::min(sum.least, one.covered);
     }

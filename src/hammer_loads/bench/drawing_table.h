@@ -6,17 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "hammer_loads/bench/figure_errors.h"
 #include "hammer_loads/settings/load.h"
 
 namespace hammer_loads::accuracy {
 
 /// One machine whose constants were drawn from the deviations of the hammer file; the file is what the pipeline has.
 struct DrawingRow {
-  struct Figure {
-    double rms{};      ///< root of the mean squared error
-    double said{};     ///< the same of the standard deviation
-    double covered{};  ///< part of the errors within two deviations
-  };
+  using Figure = FigureErrors::Result;
   std::uint64_t seed{};
   std::array<Figure, 3> samples;      ///< of the peak of force_x, force_z, torque_y
   Figure energy, impulse, amplitude;  ///< relative: of the blow; of Fz over the turn; its peak
@@ -31,7 +28,7 @@ std::vector<DrawingRow> drawingTable(const Settings& settings, int drawings);
 /// A figure over all drawings.
 struct DrawingSummary {
   const char* quantity;
-  DrawingRow::Figure all;
+  FigureErrors::Result all;
   double least{1.0};  ///< of the parts within two deviations, of all drawings
 };
 std::vector<DrawingSummary> summary(const std::vector<DrawingRow>& rows);

@@ -22,6 +22,8 @@ std::array<double, 3> valuesOf(const CrankTruth& t) {
   return {t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
 }
 
+bool touches(const CrankTruth& t) { return t.tool_force != 0.0 || t.retainer_force != 0.0; }
+
 /// Gathers one part of the turn.
 struct Gathering {
   std::array<double, 3> square{}, truth_square{}, within{};
@@ -62,29 +64,36 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
   Gathering whole, strike, after;
   LifeError life, with_touch;
   std::array<double, 3> largest{};
+  const auto isJudged = [&](double time) { return time >= kFrom && time <= machine.duration - 3.0; };
+  double readings = 0.0, wrenches = 0.0;
+  for (const CrankTruth& t : session.truth) {  // what is withheld is done to the hull all the same
+    if (!isJudged(t.time)) continue;
+    ++readings;
+    with_touch.addTruth(t.load.force_z);
+    if (!touches(t)) life.addTruth(t.load.force_z);
+  }
   auto published = run.wrenches.begin();
   auto blow = session.blows.begin();
   for (std::size_t k = 0; k < run.accepted.size(); ++k) {
     const double time = run.accepted[k];
     const bool is_withheld = published == run.wrenches.end() || published->time != time;
     const WrenchAt wrench = is_withheld ? WrenchAt{} : *published++;
-    if (time < kFrom || time > machine.duration - 3.0) continue;
+    if (!isJudged(time)) continue;
     for (; blow != session.blows.end() && blow->time <= time; ++blow) life.endTurn(), with_touch.endTurn();
     const std::array<double, 3> values = valuesOf(truth[k]);
     for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::abs(values[i]));
-    const bool touches = truth[k].tool_force != 0.0 || truth[k].retainer_force != 0.0;
-    with_touch.addTruth(values[1]);
-    if (!touches) life.addTruth(values[1]);
     if (is_withheld) continue;
+    ++wrenches;
     const life::LoadError said = life::LoadError::of(wrench.force_z_deviation, wrench.force_z_common);
     with_touch.addEstimate(wrench.force_z, said);
-    if (!touches) life.addEstimate(wrench.force_z, said);
+    if (!touches(truth[k])) life.addEstimate(wrench.force_z, said);
     whole.add(wrench, values);
     if (truth[k].angle >= kPi) strike.add(wrench, values);
     const double since = sinceBlow(session.blows, time);
     if (since >= kAfterFrom && since <= kAfterTo) after.add(wrench, values);
   }
-  return {whole.over(largest), strike.over(largest), after.over(after.truthRms()), life.figure(), with_touch.figure()};
+  return {whole.over(largest), strike.over(largest), after.over(after.truthRms()),
+          life.figure(),       with_touch.figure(),  1.0 - wrenches / readings};
 }
 
 /// Everything a little, and a usual sensor.
@@ -160,13 +169,14 @@ std::string jsonOf(const char* name, const PartErrors& e) {
 
 std::string markdown(const std::vector<ElasticRow>& rows) {
   std::string text =
-      "| machine | level | whole turn: rms Fx, Fz, moment | within two deviations | 180 to 360 deg: rms | within two "
-      "deviations | 6 to 40 ms after the blow: rms over the truth's | within two deviations | true Fz there |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
+      "| machine | level | withheld | whole turn: rms Fx, Fz, moment | within two deviations | 180 to 360 deg: rms | "
+      "within two deviations | 6 to 40 ms after the blow: rms over the truth's | within two deviations | true Fz there "
+      "|\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ElasticRow& row : rows) {
     const ElasticErrors& e = row.errors;
-    text += "| " + row.machine + " | " + nameOf(row.level) + " | " + cells(e.whole, 2) + cells(e.strike, 2) +
-            cells(e.after, 0) + format("%.0f N rms |\n", e.after.scale[1]);
+    text += "| " + row.machine + " | " + nameOf(row.level) + format(" | %.1f %% | ", 100.0 * e.withheld) +
+            cells(e.whole, 2) + cells(e.strike, 2) + cells(e.after, 0) + format("%.0f N rms |\n", e.after.scale[1]);
   }
   return text;
 }
@@ -174,9 +184,11 @@ std::string markdown(const std::vector<ElasticRow>& rows) {
 std::string json(const std::vector<ElasticRow>& rows) {
   std::string text = "[";
   for (const ElasticRow& row : rows) {
-    text += format("%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"life\": %s, \"life_with_touch\": %s, ",
-                   &row == rows.data() ? "" : ",", row.machine.c_str(), nameOf(row.level),
-                   json(row.errors.life).c_str(), json(row.errors.life_with_touch).c_str()) +
+    text += format(
+                "%s\n  {\"machine\": \"%s\", \"level\": \"%s\", \"withheld\": %.4g, \"life\": %s, \"life_with_touch\": "
+                "%s, ",
+                &row == rows.data() ? "" : ",", row.machine.c_str(), nameOf(row.level), row.errors.withheld,
+                json(row.errors.life).c_str(), json(row.errors.life_with_touch).c_str()) +
             jsonOf("whole", row.errors.whole) + ", " + jsonOf("strike", row.errors.strike) + ", " +
             jsonOf("after", row.errors.after) + "}";
   }

@@ -27,6 +27,7 @@ struct ElasticErrors {
   /// Of Fz: without the samples in which the rocker touches tool or retainer, whose impulse is the blow's and no
   /// wrench; with them.
   LifeFigure life, life_with_touch;
+  double withheld{};  ///< part of the samples without a wrench, those beside the blow among them [-]
 };
 
 struct ElasticRow {

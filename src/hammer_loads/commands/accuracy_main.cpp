@@ -2,6 +2,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "hammer_loads/bench/blow_trace.h"
 #include "hammer_loads/bench/boom_table.h"
 #include "hammer_loads/bench/cost_table.h"
 #include "hammer_loads/bench/drawing_table.h"
@@ -9,6 +10,7 @@
 #include "hammer_loads/bench/kdl_observer.h"
 #include "hammer_loads/bench/life_table.h"
 #include "hammer_loads/bench/machine_table.h"
+#include "hammer_loads/bench/scene_table.h"
 #include "hammer_loads/bench/session_table.h"
 #include "hammer_loads/commands/command_line.h"
 #include "hammer_loads/commands/output_file.h"
@@ -17,7 +19,8 @@ namespace hammer_loads {
 namespace {
 
 constexpr char kCosts[] = "\"costs\": ", kSessions[] = "\"sessions\": ", kMachines[] = "\"machines\": ",
-               kBoom[] = "\"boom\": ", kElastic[] = "\"elastic\": ", kDrawn[] = "\"drawings\": ";
+               kBoom[] = "\"boom\": ", kElastic[] = "\"elastic\": ", kDrawn[] = "\"drawings\": ",
+               kBlow[] = "\"blow\": ", kScene[] = "\"scene\": ";
 
 constexpr int kDrawings = 50;
 
@@ -72,7 +75,10 @@ std::string printTables(const Settings& settings, const std::string& only) {
   if (only == "elastic") {
     const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
     std::cout << accuracy::markdown(elastic);
-    return kElastic + accuracy::json(elastic);
+    const std::vector<accuracy::SceneRow> scene = accuracy::sceneTable(settings, elastic);
+    std::cout << "\n" << accuracy::markdown(scene);
+    return kElastic + accuracy::json(elastic) + ",\n" + kScene + accuracy::json(scene) + ",\n" + kBlow +
+           accuracy::json(accuracy::blowTrace(settings));
   }
   if (only != "sessions") {
     const std::vector<accuracy::CostRow> costs = accuracy::costTable(settings);
@@ -94,7 +100,8 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << "\n### Clean sessions\n\n" << accuracy::markdown(sessions);
     json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
             (kMachines + accuracy::json(machines)) + ",\n" + (kDrawn + accuracy::json(drawings)) + ",\n" +
-            (kBoom + accuracy::json(boom)) + ",\n" + (kElastic + accuracy::json(elastic));
+            (kBoom + accuracy::json(boom)) + ",\n" + (kElastic + accuracy::json(elastic)) + ",\n" +
+            (kBlow + accuracy::json(accuracy::blowTrace(settings)));
   }
   return json;
 }

@@ -1,0 +1,55 @@
+#include "hammer_loads/bench/blow_trace.h"
+
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace hammer_loads::accuracy {
+namespace {
+
+/// Part of an estimate's samples, those during the touch aside, whose truth, a tenth of a millisecond away at most, is
+/// within two deviations.
+double covered(const ForceTrace& estimate, const ForceTrace& truth) {
+  int within = 0, all = 0;
+  for (std::size_t i = 0; i < estimate.time.size(); ++i) {
+    if (std::abs(estimate.time[i]) < 2e-3) continue;
+    const auto near = std::lower_bound(truth.time.begin(), truth.time.end(), estimate.time[i] - 5e-5);
+    const double error = estimate.force_z[i] - truth.force_z[static_cast<std::size_t>(near - truth.time.begin())];
+    within += std::abs(error) <= 2.0 * estimate.deviation[i] + 50.0;
+    ++all;
+  }
+  return static_cast<double>(within) / all;
+}
+
+/// What the picture is to show: a ring of some kilonewtons, which linkage knows the size of and elastic follows.
+TEST(BlowTrace, ShowsARingThatOneLevelFollows) {
+  const BlowTrace trace = blowTrace(*load(configDirectory(), {}).value);
+  EXPECT_EQ(trace.truth.time.size(), 501U);
+  EXPECT_GE(trace.linkage.time.size(), 45U);
+  EXPECT_GE(trace.elastic.time.size(), 45U);
+  EXPECT_NEAR(trace.truth.time.front(), -0.005, 1e-9);
+  const auto [least, most] = std::minmax_element(trace.truth.force_z.begin() + 100, trace.truth.force_z.end());
+  EXPECT_LT(*least, -4000.0);
+  EXPECT_GT(*most, 4000.0);
+  EXPECT_GT(covered(trace.linkage, trace.truth), 0.85);
+  EXPECT_GT(covered(trace.elastic, trace.truth), 0.85);
+  const double widest = *std::max_element(trace.elastic.deviation.begin(), trace.elastic.deviation.end());
+  EXPECT_LT(4.0 * widest, *std::max_element(trace.linkage.deviation.begin(), trace.linkage.deviation.end()));
+}
+
+TEST(BlowTrace, IsJson) {
+  BlowTrace trace;
+  trace.machine = "m";
+  trace.elastic = {{-1e-3, 2e-3}, {5.0, -6.5}, {0.25, 1.0}};
+  const YAML::Node node = YAML::Load(json(trace));
+  EXPECT_EQ(node["elastic"]["time_ms"].as<std::vector<double>>(), (std::vector<double>{-1.0, 2.0}));
+  EXPECT_EQ(node["elastic"]["force_z_N"].as<std::vector<double>>(), (std::vector<double>{5.0, -6.5}));
+  EXPECT_EQ(node["elastic"]["deviation_N"].as<std::vector<double>>(), (std::vector<double>{0.25, 1.0}));
+  EXPECT_EQ(node["truth"]["time_ms"].size(), 0U);
+}
+
+}  // namespace
+}  // namespace hammer_loads::accuracy
