@@ -139,6 +139,37 @@ TEST(TwoBodies, AStiffRodIsTheRigidMechanism) {
   }
 }
 
+/// What the links lose of their momentum in ten microseconds is the wrench without weight, a fiftieth of a radian
+/// beside the rigid place as well.
+TEST(TwoBodies, MomentumIsWhatTheWrenchTakes) {
+  const Mechanism mechanism = test::mechanismOf(heavy());
+  const TwoBodies bodies(mechanism);
+  const RodSpring rod{3e7, 0.3, 0.0};
+  const TwoBodyDrive drive{kJc, kTorque, kWeight};
+  const auto linksOf = [&](const TwoBodyState& s) {
+    LinkMotion links = bodies.links(s.angle);
+    links.psi = links.psi * Planar{std::cos(s.beside), std::sin(s.beside)};
+    return links;
+  };
+  const auto momentum = [&](const TwoBodyState& s) {
+    return -1.0 * hullWrenchOf(mechanism, linksOf(s), bodies.linkSpeeds(s, linksOf(s)), {0.0, 0.0});
+  };
+  for (const double beside : {1e-5, 0.02}) {
+    TwoBodyState s{CrankAngle::fromOffset(0.3), 14.0, beside, 3.0};
+    const LinkMotion links = linksOf(s);
+    const TwoBodyAccelerations a = bodies.accelerations(rod, drive, s, bodies.links(s.angle));
+    const HullWrench wrench = hullWrenchOf(mechanism, links, bodies.linkAccelerations(s, a, links), {0.0, 0.0});
+    const HullWrench before = momentum(s);
+    constexpr double kTime = 1e-5;
+    bodies.move(rod, drive, kTime, s);
+    const HullWrench lost = (1.0 / kTime) * (before + -1.0 * momentum(s));
+    const double size = std::hypot(wrench.force_x, wrench.force_z);
+    EXPECT_NEAR(lost.force_x, wrench.force_x, 0.01 * size) << beside;
+    EXPECT_NEAR(lost.force_z, wrench.force_z, 0.01 * size) << beside;
+    EXPECT_NEAR(lost.torque_y, wrench.torque_y, 0.01 * std::abs(wrench.torque_y) + 0.002 * size) << beside;
+  }
+}
+
 /// At the tool the rocker's speed turns, the momentum that the crank has stays, and nothing of the place is lost.
 TEST(TwoBodies, ABlowActsOnTheRockerAlone) {
   const Mechanism mechanism = test::mechanismOf(heavy());
@@ -147,8 +178,15 @@ TEST(TwoBodies, ABlowActsOnTheRockerAlone) {
   const TwoBodyDrive drive{kJc, 0.0, {}};
   TwoBodyState s{{-1e-4, Side::kBeforeBlow}, 14.0, 0.0, 0.0};
   const double before = bodies.links(s.angle).rocker.u * s.speed;
-  bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, s);
+  const std::optional<TwoBodies::Blow> blow = bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, s);
   ASSERT_EQ(s.angle.side, Side::kAfterBlow);
+  ASSERT_TRUE(blow);
+  EXPECT_NEAR(blow->time, 1e-4 / 14.0, 1e-8);
+  EXPECT_NEAR(rockerOf(bodies, blow->before), 0.0, 1e-7);
+  EXPECT_EQ(blow->before.angle.side, Side::kBeforeBlow);
+  EXPECT_NEAR(rockerOf(bodies, blow->after), 0.0, 1e-7);
+  TwoBodyState later = s;
+  EXPECT_FALSE(bodies.moveToTool(rod, drive, {0.0, 0.16}, 2e-5, later)) << "it is behind it";
   EXPECT_NEAR(bodies.links(s.angle).rocker.u * s.speed + s.beside_speed, -0.16 * before, 1e-2);
   EXPECT_NEAR(rockerOf(bodies, s), 0.0, 1e-3);
   TwoBodyState early{{-1e-4, Side::kBeforeBlow}, 14.0, 0.0, 0.0};

@@ -93,6 +93,8 @@ std::string printTables(const Settings& settings, const std::string& only) {
     std::cout << "\n### Machines of a drawing\n\n" << accuracy::markdown(drawings);
     const std::vector<accuracy::ElasticRow> elastic = accuracy::elasticTable(settings);
     std::cout << "\n### Machines whose rod gives\n\n" << accuracy::markdown(elastic);
+    const std::vector<accuracy::SceneRow> scene = accuracy::sceneTable(settings, elastic);
+    std::cout << "\n### What a scene needs\n\n" << accuracy::markdown(scene);
     const std::vector<accuracy::BoomRow> boom = accuracy::boomTable();
     std::cout << "\n### Loads of steel\n\n" << accuracy::markdown(boom);
     std::cout << "\n### Beside KDL's momentum observer\n\n" << accuracy::markdown(accuracy::observerTable());
@@ -101,7 +103,7 @@ std::string printTables(const Settings& settings, const std::string& only) {
     json += (json.empty() ? "" : ",\n") + (kSessions + accuracy::json(sessions)) + ",\n" +
             (kMachines + accuracy::json(machines)) + ",\n" + (kDrawn + accuracy::json(drawings)) + ",\n" +
             (kBoom + accuracy::json(boom)) + ",\n" + (kElastic + accuracy::json(elastic)) + ",\n" +
-            (kBlow + accuracy::json(accuracy::blowTrace(settings)));
+            (kScene + accuracy::json(scene)) + ",\n" + (kBlow + accuracy::json(accuracy::blowTrace(settings)));
   }
   return json;
 }

@@ -113,34 +113,47 @@ RodFilter::Belief::Vector RodFilter::difference(const RodMotion& of, const RodMo
   return d;
 }
 
-void RodFilter::advance(double dt, const SupplyLaw& supply, bool strikes, RodMotion& m) const noexcept {
+std::optional<TwoBodies::Blow> RodFilter::advance(double dt, bool strikes, RodMotion& m) const noexcept {
   const RodSpring spring = rod(m);
   const TwoBodyDrive by = drive(m);
   const double longest = std::abs(m.state.angle.offset) < kNear ? kLongest : kLongestLater;
   const int parts = std::max(1, static_cast<int>(std::ceil(dt / longest)));
-  const double from = m.state.angle.offset;
-  for (int i = 0; i < parts; ++i)
-    if (strikes)
-      bodies_.moveToTool(spring, by, {m.place, m.restitution}, dt / parts, m.state);
-    else
-      bodies_.move(spring, by, dt / parts, m.state);
-  m.torque -= supply.stiffness * supply.lead(m.state.angle.offset - from, dt);
+  const double from = m.state.angle.offset, part = dt / parts;
+  std::optional<TwoBodies::Blow> blow;
+  for (int i = 0; i < parts; ++i) {
+    if (!strikes) {
+      bodies_.move(spring, by, part, m.state);
+    } else if (const auto now = bodies_.moveToTool(spring, by, {m.place, m.restitution}, part, m.state)) {
+      blow = now;
+      blow->time += i * part;
+    }
+  }
+  m.torque -= supply_.stiffness * supply_.lead(m.state.angle.offset - from, dt);
+  return blow;
+}
+
+RodMotion RodFilter::between(double time) const noexcept {
+  RodMotion there = before_;
+  if (time > 0.0) advance(time, true, there);
+  return there;
 }
 
 void RodFilter::move(double dt, const CrankWalks& walks, Gravity gravity) noexcept {
   gravity_ = gravity;
+  supply_ = walks.supply;
+  before_ = motion_;
   const Belief::Matrix root = covarianceRoot(belief_.covariance);
   RodMotion there = motion_;
-  advance(dt, walks.supply, true, there);
+  blow_ = advance(dt, true, there);
   const bool struck = there.state.angle.side == Side::kAfterBlow;
   const Eigen::Index count = struck && !hasStruck() ? kSize : kRestitution;  // of the columns that a step moves
-  if (!hasStruck())
-    rocker_before_ = bodies_.links(motion_.state.angle).rocker.u * motion_.state.speed + motion_.state.beside_speed;
+  const TwoBodyState& last = blow_ ? blow_->before : motion_.state;
+  if (!hasStruck()) rocker_before_ = bodies_.links(last.angle).rocker.u * last.speed + last.beside_speed;
   Belief::Matrix moved = root;
   for (Eigen::Index i = 0; i < count; ++i) {
     if (!(root(i, i) > 0.0)) continue;
     RodMotion other = displaced(root.col(i));
-    advance(dt, walks.supply, struck, other);
+    advance(dt, struck, other);
     if (struck && other.state.angle.side == Side::kBeforeBlow)
       bodies_.strikeEarly(drive(other), {other.place, other.restitution}, other.state);
     moved.col(i) = difference(other, there);

@@ -65,6 +65,12 @@ class RodFilter {
   bool isProven() const noexcept { return proven_; }
 
   const RodMotion& motion() const noexcept { return motion_; }
+  /// It has moved since it began: there is a last step.
+  bool hasMoved() const noexcept { return running_ && samples_ > 0; }
+  /// Within that, by the way forward from the sample before; time after it [s].
+  RodMotion between(double time) const noexcept;
+  /// Of that, its time likewise.
+  const std::optional<TwoBodies::Blow>& blowOfStep() const noexcept { return blow_; }
   bool hasStruck() const noexcept { return motion_.state.angle.side == Side::kAfterBlow; }
   double sinceBlow() const noexcept { return since_blow_; }        ///< [s]
   double rockerBefore() const noexcept { return rocker_before_; }  ///< psi' at the tool [rad/s]
@@ -79,13 +85,15 @@ class RodFilter {
   const TwoBodies& bodies() const noexcept { return bodies_; }
 
  private:
-  void advance(double dt, const SupplyLaw& supply, bool strikes, RodMotion& motion) const noexcept;
+  std::optional<TwoBodies::Blow> advance(double dt, bool strikes, RodMotion& motion) const noexcept;
   Belief::Vector difference(const RodMotion& of, const RodMotion& from) const noexcept;
   double growth() const noexcept;
 
   TwoBodies bodies_;
   Gravity gravity_;
-  RodMotion motion_;
+  SupplyLaw supply_;
+  RodMotion motion_, before_;  ///< at the last sample, at the one before
+  std::optional<TwoBodies::Blow> blow_;
   Belief belief_;
   static constexpr Eigen::Index kLearned = kSize - kStiffness;  ///< the last rows
   using Learned = Eigen::Matrix<double, kLearned, kLearned>;

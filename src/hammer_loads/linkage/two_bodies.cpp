@@ -140,19 +140,22 @@ void TwoBodies::strike(const TwoBodyDrive& drive, double restitution, TwoBodySta
   s.beside_speed = v + gained - after.rocker.u * s.speed;
 }
 
-void TwoBodies::moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool, double dt,
-                           TwoBodyState& s) const noexcept {
+std::optional<TwoBodies::Blow> TwoBodies::moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool,
+                                                     double dt, TwoBodyState& s) const noexcept {
   const TwoBodyState from = s;
   move(rod, drive, dt, s);
-  if (s.angle.side == Side::kAfterBlow) return;
+  if (s.angle.side == Side::kAfterBlow) return std::nullopt;
   const double there = links(s.angle).rocker.sin_psi + s.beside - tool.place;
-  if (there > 0.0) return;
+  if (there > 0.0) return std::nullopt;
   const double here = links(from.angle).rocker.sin_psi + from.beside - tool.place;
   const double part = here > 0.0 ? here / (here - there) : 0.0;
   s = from;
   if (part > 0.0) move(rod, drive, part * dt, s);
-  strike(drive, tool.restitution, s);
+  Blow blow{part * dt, s, s};
+  strike(drive, tool.restitution, blow.after);
+  s = blow.after;
   if (part < 1.0) move(rod, drive, (1.0 - part) * dt, s);
+  return blow;
 }
 
 void TwoBodies::strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBodyState& s) const noexcept {
@@ -187,12 +190,20 @@ double TwoBodies::rigidAcceleration(const TwoBodyDrive& drive, const TwoBodyStat
 
 LinkAccelerations TwoBodies::linkAccelerations(const TwoBodyState& s, const TwoBodyAccelerations& a,
                                                const LinkMotion& links) const noexcept {
-  const LinkLengths& l = mechanism_->linkage().lengths();
   const double v = links.rocker.u * s.speed + s.beside_speed;
+  return withRod({-s.speed * s.speed, a.crank}, {-v * v, a.rocker}, links);
+}
+
+LinkAccelerations TwoBodies::linkSpeeds(const TwoBodyState& s, const LinkMotion& links) const noexcept {
+  return withRod({0.0, s.speed}, {0.0, links.rocker.u * s.speed + s.beside_speed}, links);
+}
+
+/// The rod's between those of its pins.
+LinkAccelerations TwoBodies::withRod(Planar crank, Planar rocker, const LinkMotion& links) const noexcept {
+  const LinkLengths& l = mechanism_->linkage().lengths();
   LinkAccelerations q;
-  q.crank = {-s.speed * s.speed, a.crank};
-  q.rocker = {-v * v, a.rocker};
-  q.rod = conj(links.beta) * ((l.rocker / l.rod) * (links.psi * q.rocker) - (l.crank / l.rod) * (links.phi * q.crank));
+  q.crank = crank, q.rocker = rocker;
+  q.rod = conj(links.beta) * ((l.rocker / l.rod) * (links.psi * rocker) - (l.crank / l.rod) * (links.phi * crank));
   return q;
 }
 

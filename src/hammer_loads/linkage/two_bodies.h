@@ -1,6 +1,8 @@
 /// Crank and rocker as two bodies, the rod between them a spring: how they move after a blow.
 #pragma once
 
+#include <optional>
+
 #include "hammer_loads/linkage/hull_motion.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
@@ -53,6 +55,8 @@ class TwoBodies {
   /// rod: in LinkAccelerations also its change of length.
   LinkAccelerations linkAccelerations(const TwoBodyState& state, const TwoBodyAccelerations& a,
                                       const LinkMotion& links) const noexcept;
+  /// The same with i times the links' speeds in place of accelerations: hullWrenchOf() gives minus their momentum.
+  LinkAccelerations linkSpeeds(const TwoBodyState& state, const LinkMotion& links) const noexcept;
   LinkMotion links(CrankAngle angle) const noexcept { return linkMotion(mechanism_->linkage(), angle); }
   /// A rod at rest on its spring: x as the motion of the crank asks for, its rate 0.
   void settle(const RodSpring& rod, const TwoBodyDrive& drive, TwoBodyState& state) const noexcept;
@@ -61,13 +65,19 @@ class TwoBodies {
     double place{};        ///< psi [rad]
     double restitution{};  ///< [-]
   };
-  /// As move(), with a blow where the rocker reaches the tool.
-  void moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool, double dt,
-                  TwoBodyState& state) const noexcept;
+  /// The time of a blow [s] and the states on both sides of it.
+  struct Blow {
+    double time{};
+    TwoBodyState before, after;
+  };
+  /// As move(), with a blow where the rocker reaches the tool: that, its time after the beginning.
+  std::optional<Blow> moveToTool(const RodSpring& rod, const TwoBodyDrive& drive, const Tool& tool, double dt,
+                                 TwoBodyState& state) const noexcept;
   /// Of a state before its blow: as if it had been struck already, by the way back on both sides (saltation).
   void strikeEarly(const TwoBodyDrive& drive, const Tool& tool, TwoBodyState& state) const noexcept;
 
  private:
+  LinkAccelerations withRod(Planar crank, Planar rocker, const LinkMotion& links) const noexcept;
   void strike(const TwoBodyDrive& drive, double restitution, TwoBodyState& state) const noexcept;
   struct Local;
   Local local(const TwoBodyDrive& drive, const TwoBodyState& at, const LinkMotion& links) const noexcept;

@@ -70,7 +70,7 @@ void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexce
     if (mayBegin(crank, *filter)) begin(crank, *filter, gravity);
     return;
   }
-  const double dt = crank.step().length();
+  const double dt = length_ = crank.step().length();
   if (!(dt < kLongestKnown)) return rest();
   rigid_fit_ += filter->angleFit();
   late_ = filter->constantErrors().considered(ConstantErrors::kLatency);
@@ -101,8 +101,7 @@ void ElasticFollower::judge() noexcept {
   best_ = evidence_ > (best_ == nullptr ? odds::kLikely : 0.0) ? &rod : nullptr;
 }
 
-CrankEstimate ElasticFollower::crank() const noexcept {
-  const RodMotion& m = filter().motion();
+CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {
   CrankEstimate crank;
   crank.position = {blow_, m.state.angle};
   crank.speed = m.state.speed;
@@ -175,15 +174,56 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
   const LoadCovariance errors = covariance(drive, mean);
   if (!filter().hasStruck()) squares_ = {};
   squares_.add(square(mean[kBesideRigid]));
-  Loads variance = errors.diagonal();
+  gain_.setZero();
   if (filter().hasStruck()) {
     const double expected = std::max({square(ring), squares_.mean(), std::numeric_limits<double>::min()});
-    const Loads gain = errors.col(kBesideRigid) / (errors(kBesideRigid, kBesideRigid) + expected);
-    mean -= gain * mean[kBesideRigid];
-    variance -= gain.cwiseProduct(errors.col(kBesideRigid));
+    gain_ = errors.col(kBesideRigid) / (errors(kBesideRigid, kBesideRigid) + expected);
   }
-  mean -= rigidLoads(filter().motion(), drive);
+  const Loads variance = errors.diagonal() - gain_.cwiseProduct(errors.col(kBesideRigid));
+  mean -= gain_ * mean[kBesideRigid] + rigidLoads(filter().motion(), drive);
   return {wrenchOf(mean.head<3>()), wrenchOf(variance.head<3>().cwiseMax(0.0).cwiseSqrt()), mean[kCrank]};
+}
+
+ElasticFollower::Beside ElasticFollower::besideAt(double time, const DriveReaction& drive) const noexcept {
+  const RodMotion there = motionAt(time);
+  Loads mean = loads(there, drive);
+  if (there.state.angle.side == Side::kAfterBlow) mean -= gain_ * mean[kBesideRigid];
+  mean -= rigidLoads(there, drive);
+  return {wrenchOf(mean.head<3>()), {}, mean[kCrank]};
+}
+
+LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const DriveReaction& drive) const noexcept {
+  LinkMotion there = filter().bodies().links(s.angle);
+  there.psi = there.psi * Planar{std::cos(s.beside), std::sin(s.beside)};
+  const HullWrench minus =
+      hullWrenchOf(model_->mechanism(), there, filter().bodies().linkSpeeds(s, there), Gravity{0.0, 0.0});
+  const double drive_y = drive.by_crank * s.speed;
+  return {-1.0 * minus + HullWrench{0.0, 0.0, drive_y}, drive_y};
+}
+
+ElasticFollower::Impulse ElasticFollower::impulse(const DriveReaction& drive, double from, double to) const noexcept {
+  const auto lost = [&](const TwoBodyState& a, const TwoBodyState& b) {
+    const LoadImpulse before = momentum(a, drive), after = momentum(b, drive);
+    return LoadImpulse{before.all + -1.0 * after.all, before.drive_y - after.drive_y};
+  };
+  const TwoBodyState begin = motionAt(from).state, end = motionAt(to).state;
+  Impulse result{lost(begin, end), {}};
+  const std::optional<TwoBodies::Blow>& blow = filter().blowOfStep();
+  if (!blow || begin.angle.side == end.angle.side) return result;
+  const LoadImpulse jump = lost(blow->before, blow->after);
+  result.motion = {result.motion.all + -1.0 * jump.all, result.motion.drive_y - jump.drive_y};
+  const double restitution = std::hypot(filter().deviation(RodFilter::kRestitution), kContactsShare);
+  result.doubt = wrenchOf(restitution / (1.0 + filter().motion().restitution) * vectorOf(jump.all).cwiseAbs());
+  return result;
+}
+
+HullWrench ElasticFollower::momentumDeviation(const DriveReaction& drive) const noexcept {
+  const RodFilter::Belief::Matrix errors = filter().errors();
+  const Eigen::Vector3d here = vectorOf(momentum(filter().motion().state, drive).all);
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i)
+    squares += (vectorOf(momentum(filter().displaced(errors.col(i)).state, drive).all) - here).cwiseAbs2();
+  return wrenchOf(squares.cwiseSqrt());
 }
 
 double ElasticFollower::speedBeside() const noexcept {
@@ -209,9 +249,15 @@ std::optional<CrankBlow> ElasticFollower::blow() const noexcept {
   return blow;
 }
 
-bool ElasticFollower::isBesideBlow() const noexcept {
-  if (filter().hasStruck()) return filter().sinceBlow() < kContact;
-  const RodMotion& m = filter().motion();
+bool ElasticFollower::isInContact() const noexcept { return filter().sinceBlow() < kContact; }
+
+bool ElasticFollower::isBesideBlowAt(double time) const noexcept {
+  const RodMotion there = motionAt(time);
+  if (there.state.angle.side == Side::kBeforeBlow) return mayTouch(there);
+  return filter().blowOfStep() || filter().sinceBlow() - (length_ - time) < kContact;
+}
+
+bool ElasticFollower::mayTouch(const RodMotion& m) const noexcept {
   const LinkMotion links = filter().bodies().links(m.state.angle);
   const double way = links.rocker.sin_psi + m.state.beside - m.place;
   const double speed = -(links.rocker.u * m.state.speed + m.state.beside_speed);

@@ -7,6 +7,7 @@
 #include "hammer_loads/crank/rod_filter.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/pipeline/crank_follower.h"
+#include "hammer_loads/pipeline/step_impulse.h"
 
 namespace hammer_loads {
 
@@ -25,7 +26,7 @@ class ElasticFollower {
   bool runs() const noexcept { return best_ != nullptr && best_->isRunning() && best_->isProven(); }
 
   /// While it runs: the crank as the two bodies have it, its acceleration as if its rod were rigid.
-  CrankEstimate crank() const noexcept;
+  CrankEstimate crank() const noexcept { return crankOf(filter().motion()); }
   /// What a rod that gives adds to the loads of a rigid one at that crank.
   struct Beside {
     HullWrench wrench, deviation;  ///< deviation: of the whole wrench by readings and rod
@@ -43,7 +44,22 @@ class ElasticFollower {
   /// feel them whose rod takes the rocker up at once.
   std::optional<CrankBlow> blow() const noexcept;
   /// Contact lasts, or may have begun or not.
-  bool isBesideBlow() const noexcept;
+  bool isBesideBlow() const noexcept { return filter().hasStruck() ? isInContact() : mayTouch(filter().motion()); }
+
+  /// It runs, and has over the step to the crank's last sample: what follows is within that, times after its start [s].
+  bool ranOverStep() const noexcept { return runs() && best_->hasMoved(); }
+  CrankEstimate crankAt(double time) const noexcept { return crankOf(motionAt(time)); }
+  /// As beside(), without a deviation: that of the sample stands for it.
+  Beside besideAt(double time, const DriveReaction& drive) const noexcept;
+  bool isBesideBlowAt(double time) const noexcept;
+  /// As motionImpulse(), the jump at the blow left out likewise; doubt: by a restitution that is not known better.
+  struct Impulse {
+    LoadImpulse motion;
+    HullWrench doubt;
+  };
+  Impulse impulse(const DriveReaction& drive, double from, double to) const noexcept;
+  /// Of the links' and the drive's momentum at the sample, standard [N s, N s, N m s].
+  HullWrench momentumDeviation(const DriveReaction& drive) const noexcept;
   /// While it runs: with pins tight, or with play where the last blow showed one.
   const RodFilter& filter() const noexcept { return best_ != nullptr ? *best_ : filters_[0]; }
 
@@ -52,6 +68,11 @@ class ElasticFollower {
   using Loads = Eigen::Matrix<double, 5, 1>;
   using LoadCovariance = Eigen::Matrix<double, 5, 5>;
   enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
+  RodMotion motionAt(double time) const noexcept { return time < length_ ? filter().between(time) : filter().motion(); }
+  CrankEstimate crankOf(const RodMotion& motion) const noexcept;
+  bool isInContact() const noexcept;
+  bool mayTouch(const RodMotion& motion) const noexcept;
+  LoadImpulse momentum(const TwoBodyState& state, const DriveReaction& drive) const noexcept;
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;
@@ -64,12 +85,14 @@ class ElasticFollower {
   const HullModel* model_;
   bool wanted_, runs_{};
   std::array<RodFilter, 2> filters_;
-  double evidence_{};        ///< mean over some blows of the rod's fit less that of the rigid mechanism
-  double rigid_fit_{};       ///< of this blow
-  const RodFilter* best_{};  ///< null: rigid
-  std::int64_t blow_{};      ///< CrankPosition::blow
-  double late_{};            ///< standard deviation of what all stamps are off alike [s]
-  RunningMean<> squares_;    ///< of x'' since the blow [rad2/s4]
+  double evidence_{};          ///< mean over some blows of the rod's fit less that of the rigid mechanism
+  double rigid_fit_{};         ///< of this blow
+  const RodFilter* best_{};    ///< null: rigid
+  std::int64_t blow_{};        ///< CrankPosition::blow
+  double late_{};              ///< standard deviation of what all stamps are off alike [s]
+  RunningMean<> squares_;      ///< of x'' since the blow [rad2/s4]
+  double length_{};            ///< of the last step [s]
+  Loads gain_{Loads::Zero()};  ///< of beside()'s correction, by x''
 };
 
 }  // namespace hammer_loads

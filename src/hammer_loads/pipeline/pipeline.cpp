@@ -35,7 +35,7 @@ Pipeline::Pipeline(const Mechanism& mechanism, const PipelineSettings& settings,
       rod_(model_),
       elastic_(model_, settings_.level),
       turn_(model_, columns_, crank_.step(), crank_.tracker(), rod_, elastic_),
-      sampler_(model_, columns_, crank_.step(), crank_.tracker(), settings_),
+      sampler_(model_, columns_, crank_.step(), crank_.tracker(), elastic_, settings_),
       nominal_force_(
           pulseAtConstantSpeed(mechanism_, model_.level(), kTwoPi * settings_.turn_rate, {}).pulse.amplitude),
       counts_(counts) {

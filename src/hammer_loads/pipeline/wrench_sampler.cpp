@@ -9,11 +9,13 @@
 namespace hammer_loads {
 
 WrenchSampler::WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step,
-                             const CrankTracker& tracker, const PipelineSettings& settings)
+                             const CrankTracker& tracker, const ElasticFollower& elastic,
+                             const PipelineSettings& settings)
     : model_(&model),
       hammer_(&columns),
       step_(&step),
       tracker_(&tracker),
+      elastic_(&elastic),
       kind_(settings.output),
       rate_(settings.output_rate),
       longest_gap_(settings.stale_after),
@@ -30,7 +32,7 @@ bool WrenchSampler::begin(const SampleResult& result) noexcept {
   origin_ = last_output_ = result.stamp;
   index_ = kind_ == OutputKind::kMean ? 1 : 0;
   impulse_ = {};
-  momentum_deviation_ = {};
+  momentum_deviation_ = blow_doubt_ = {};
   column_impulse_.setZero();
   columns_ = result.load_columns;
   return kind_ != OutputKind::kMean;
@@ -44,16 +46,17 @@ void WrenchSampler::sample(const LinksBeside& links, SampleResult& result) noexc
   StampNs stamp{};
   while (isDue(result.stamp, stamp)) {
     const WrenchOutput made = output(stamp, links, result);
-    if (isKnown(made, result)) result.outputs.push_back(made);
+    if (isKnown(seconds(stamp - step_->start()), made, result)) result.outputs.push_back(made);
     if (stamp == result.stamp) return;
   }
   if (kind_ == OutputKind::kMean) addUpTo(step_->length(), result);
 }
 
 /// Whether it is clear on which side of the blow the output is; a mean does not depend on it.
-bool WrenchSampler::isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept {
+bool WrenchSampler::isKnown(double time, const WrenchOutput& output, const SampleResult& result) const noexcept {
   if (kind_ == OutputKind::kMean) return true;
   if (output.stamp == result.stamp) return !result.beside_blow;
+  if (elastic_->ranOverStep()) return !elastic_->isBesideBlowAt(time);
   return !isBesideBlow(output.crank, deviationFromBlow(*tracker_, output.deviation.angle));
 }
 
@@ -68,13 +71,21 @@ bool WrenchSampler::isDue(StampNs sample, StampNs& stamp) const noexcept {
   return stamp <= sample;
 }
 
+/// From where it was added up to. With a rod that gives by crank and rocker, from momentum to momentum as well.
+LoadImpulse WrenchSampler::motionTo(double time) noexcept {
+  if (!elastic_->ranOverStep()) return motionImpulse(*model_, drive_, *step_, added_up_to_, time);
+  const ElasticFollower::Impulse impulse = elastic_->impulse(drive_, added_up_to_, time);
+  blow_doubt_ = blow_doubt_ + impulse.doubt;
+  return impulse.motion;
+}
+
 void WrenchSampler::addUpTo(double time, const SampleResult& result) noexcept {
   if (!(time > added_up_to_)) return;
   const double part = (time - added_up_to_) / (step_->length() - added_up_to_);  // of the rest of the step
   const LoadColumns there = columns_ + part * (result.load_columns - columns_);
   column_impulse_ += 0.5 * (time - added_up_to_) * (columns_ + there);
   columns_ = there;
-  const LoadImpulse motion = motionImpulse(*model_, drive_, *step_, added_up_to_, time);
+  const LoadImpulse motion = motionTo(time);
   const LoadImpulse added = addedImpulse(*model_, drive_, *step_, hull_, added_up_to_, time);
   impulse_ = {impulse_.all + motion.all + added.all, impulse_.drive_y + motion.drive_y + added.drive_y};
   added_up_to_ = time;
@@ -97,7 +108,7 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   const HullMotion hull = at_sample ? result.hull.motion : hull_.at(time);
   WrenchOutput output;
   output.stamp = stamp;
-  output.crank = at_sample ? result.crank : step_->at(time);
+  output.crank = at_sample ? result.crank : elastic_->ranOverStep() ? elastic_->crankAt(time) : step_->at(time);
   if (kind_ == OutputKind::kMean) {
     addUpTo(time, result);
     output.interval = seconds(stamp - last_output_);
@@ -105,7 +116,10 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
     output.drive_reaction_y = impulse_.drive_y / output.interval;
     impulse_ = {};
   } else {
-    output.wrench = at_sample ? result.wrench : hullWrench(*model_, drive_, motionOf(output.crank), hull);
+    if (at_sample)
+      output.wrench = result.wrench;
+    else
+      setInstant(time, hull, output);
     const double drive_acceleration = output.crank.acceleration + output.crank.drive_lead_acceleration;
     output.drive_reaction_y = drive_.torque(drive_acceleration, hull.acceleration);
   }
@@ -122,6 +136,15 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
   output.deviation = deviation(output.crank, doubt, there, hull, result);
   boundMean(there, doubt.own, result.rod_momentum, output);
   return output;
+}
+
+/// Between two samples.
+void WrenchSampler::setInstant(double time, const HullMotion& hull, WrenchOutput& output) const noexcept {
+  output.wrench = hullWrench(*model_, drive_, motionOf(output.crank), hull);
+  if (!elastic_->ranOverStep()) return;
+  const ElasticFollower::Beside rod = elastic_->besideAt(time, drive_);
+  output.wrench = output.wrench + rod.wrench;
+  output.crank.acceleration += rod.crank;
 }
 
 HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUncertainty& doubt,
@@ -146,10 +169,12 @@ void WrenchSampler::boundMean(const LinksBeside& links, const Eigen::Matrix3d& o
                               WrenchOutput& output) noexcept {
   if (kind_ != OutputKind::kMean) return;
   HullDeviation& deviation = output.deviation;
-  const HullWrench of_crank = momentumDeviation(*model_, drive_, output.crank, links, own);
-  const HullWrench momentum = of_crank + wrenchOf(vectorOf(rod).cwiseAbs());
-  const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_deviation_ + momentum);
+  const HullWrench momentum = elastic_->ranOverStep() ? elastic_->momentumDeviation(drive_)
+                                                      : momentumDeviation(*model_, drive_, output.crank, links, own) +
+                                                            wrenchOf(vectorOf(rod).cwiseAbs());
+  const Eigen::Vector3d allowed = (1.0 / output.interval) * vectorOf(momentum_deviation_ + momentum + blow_doubt_);
   momentum_deviation_ = momentum;
+  blow_doubt_ = {};
   const Eigen::Vector3d of_end =
       (vectorOf(deviation.wrench).cwiseAbs2() - vectorOf(deviation.common).cwiseAbs2()).cwiseMax(0.0);
   const Eigen::Vector3d common = (1.0 / square(output.interval)) * column_impulse_.rowwise().squaredNorm();

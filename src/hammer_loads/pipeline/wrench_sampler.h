@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hammer_loads/pipeline/crank_step.h"
+#include "hammer_loads/pipeline/elastic_follower.h"
 #include "hammer_loads/pipeline/sample_result.h"
 #include "hammer_loads/pipeline/step_impulse.h"
 #include "hammer_loads/settings/pipeline_settings.h"
@@ -18,7 +19,7 @@ namespace hammer_loads {
 class WrenchSampler {
  public:
   WrenchSampler(const HullModel& model, const WrenchColumns& columns, const CrankStep& step,
-                const CrankTracker& tracker, const PipelineSettings& settings);
+                const CrankTracker& tracker, const ElasticFollower& elastic, const PipelineSettings& settings);
 
   /// Outputs restart with the next sample.
   void forget() noexcept { begun_ = false; }
@@ -33,11 +34,13 @@ class WrenchSampler {
  private:
   bool begin(const SampleResult& result) noexcept;
   bool isDue(StampNs sample, StampNs& stamp) const noexcept;
-  bool isKnown(const WrenchOutput& output, const SampleResult& result) const noexcept;
+  bool isKnown(double time, const WrenchOutput& output, const SampleResult& result) const noexcept;
   HullDeviation deviation(const CrankEstimate& crank, const CrankUncertainty& doubt, const LinksBeside& there,
                           const HullMotion& hull, const SampleResult& result) const noexcept;
   WrenchOutput output(StampNs stamp, const LinksBeside& links, const SampleResult& result) noexcept;
+  LoadImpulse motionTo(double time) noexcept;
   void addUpTo(double time, const SampleResult& result) noexcept;
+  void setInstant(double time, const HullMotion& hull, WrenchOutput& output) const noexcept;
   void followHull(const HullMotion& hull) noexcept;
   void boundMean(const LinksBeside& links, const Eigen::Matrix3d& own, const HullWrench& rod,
                  WrenchOutput& output) noexcept;
@@ -46,6 +49,7 @@ class WrenchSampler {
   const WrenchColumns* hammer_;
   const CrankStep* step_;
   const CrankTracker* tracker_;
+  const ElasticFollower* elastic_;
   OutputKind kind_;
   double rate_;         ///< [Hz]; 0: at each sample
   double longest_gap_;  ///< between samples [s]
@@ -62,6 +66,7 @@ class WrenchSampler {
   LoadColumns columns_{LoadColumns::Zero()};         ///< at the last sample
   LoadColumns column_impulse_{LoadColumns::Zero()};  ///< since the last output, of a mean
   HullWrench momentum_deviation_;                    ///< at the last output
+  HullWrench blow_doubt_;                            ///< ElasticFollower::Impulse::doubt since the last output
 };
 
 }  // namespace hammer_loads
