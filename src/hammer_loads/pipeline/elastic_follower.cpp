@@ -184,12 +184,15 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
   return {wrenchOf(mean.head<3>()), wrenchOf(variance.head<3>().cwiseMax(0.0).cwiseSqrt()), mean[kCrank]};
 }
 
-ElasticFollower::Beside ElasticFollower::besideAt(double time, const DriveReaction& drive) const noexcept {
-  const RodMotion there = motionAt(time);
-  Loads mean = loads(there, drive);
-  if (there.state.angle.side == Side::kAfterBlow) mean -= gain_ * mean[kBesideRigid];
-  mean -= rigidLoads(there, drive);
-  return {wrenchOf(mean.head<3>()), {}, mean[kCrank]};
+ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, const DriveReaction& drive,
+                                                    const HullMotion& hull) const noexcept {
+  Loads beside = loads(there, drive);
+  if (there.state.angle.side == Side::kAfterBlow) beside -= gain_ * beside[kBesideRigid];
+  beside -= rigidLoads(there, drive);
+  Instant instant{crankOf(there), {}};
+  instant.wrench = hullWrench(*model_, drive, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());
+  instant.crank.acceleration += beside[kCrank];
+  return instant;
 }
 
 LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const DriveReaction& drive) const noexcept {

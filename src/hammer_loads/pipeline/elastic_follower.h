@@ -49,8 +49,18 @@ class ElasticFollower {
   /// It runs, and has over the step to the crank's last sample: what follows is within that, times after its start [s].
   bool ranOverStep() const noexcept { return runs() && best_->hasMoved(); }
   CrankEstimate crankAt(double time) const noexcept { return crankOf(motionAt(time)); }
-  /// As beside(), without a deviation: that of the sample stands for it.
-  Beside besideAt(double time, const DriveReaction& drive) const noexcept;
+  /// With what a rod that gives adds; the deviations of the samples stand for its own.
+  struct Instant {
+    CrankEstimate crank;
+    HullWrench wrench;
+  };
+  Instant at(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
+    return instantOf(motionAt(time), drive, hull);
+  }
+  /// At the step's end, as it was expected before the sample there.
+  Instant expected(const DriveReaction& drive, const HullMotion& hull) const noexcept {
+    return instantOf(filter().between(length_), drive, hull);
+  }
   bool isBesideBlowAt(double time) const noexcept;
   /// As motionImpulse(), the jump at the blow left out likewise; doubt: by a restitution that is not known better.
   struct Impulse {
@@ -70,6 +80,7 @@ class ElasticFollower {
   enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
   RodMotion motionAt(double time) const noexcept { return time < length_ ? filter().between(time) : filter().motion(); }
   CrankEstimate crankOf(const RodMotion& motion) const noexcept;
+  Instant instantOf(const RodMotion& motion, const DriveReaction& drive, const HullMotion& hull) const noexcept;
   bool isInContact() const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
   LoadImpulse momentum(const TwoBodyState& state, const DriveReaction& drive) const noexcept;

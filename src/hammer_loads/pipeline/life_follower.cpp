@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kKnown = gate::kRare;  // deviations from the blow: no reading stands for what is counted closer
 // Guard: TurnLoads.ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme of kKnown
+constexpr double kRingStep = 2e-4;  // [s]: a ring of 500 Hz has a tenth of a turn between
+// Numerical: kRingStep
 
 }  // namespace
 
@@ -73,19 +75,58 @@ void LifeFollower::followStep(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   const StepLoad load{pipeline_->model(), drive, result.hull.motion};
-  const bool rod_gives = pipeline_->elastic().runs();  // then the loads between are not those of this path
+  if (pipeline_->elastic().ranOverStep()) return followRing(result);
   std::array<double, kHullChannels> end;
   wrenchValues(result.wrench, end.data());
   forEachStepExtreme(
       load, step,
       [&](StepPlace place, CrankEstimate crank) {
-        if (rod_gives || !moveToKnown(place, crank)) return;
+        if (!moveToKnown(place, crank)) return;
         wrenchValues(load.at(crank), between_.data());
         keepWhatBothEndsSay(load, place, crank, end);
-        recorder_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
-        turn_.between(step.stampAt(place.time), between_.data(), deviations_there_.data(), common_there_.data());
+        countBetween(step.stampAt(place.time));
       },
       [&](double time) { endTurn(step.stampAt(time)); });
+}
+
+void LifeFollower::countBetween(StampNs stamp) noexcept {
+  recorder_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
+  turn_.between(stamp, between_.data(), deviations_there_.data(), common_there_.data());
+}
+
+/// A rod that gives rings between samples: what its path has there, beyond the samples as far as the path comes to the
+/// second of them within the deviations published at both.
+void LifeFollower::followRing(const SampleResult& result) noexcept {
+  const CrankStep& step = pipeline_->crank().step();
+  const ElasticFollower& rod = pipeline_->elastic();
+  const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
+  std::array<double, kHullChannels> end, expected, end_deviation, end_common;
+  wrenchValues(result.wrench, end.data());
+  wrenchValues(result.deviation.wrench, end_deviation.data());
+  wrenchValues(result.deviation.common, end_common.data());
+  wrenchValues(rod.expected(drive, result.hull.motion).wrench, expected.data());
+  const auto count = static_cast<int>(std::ceil(step.length() / kRingStep));
+  const CrankStep::Passage* passage = step.begin();
+  const auto endTurnsUntil = [&](double time) {
+    for (; passage != step.end() && passage->time <= time; ++passage)
+      if (passage->may_strike) endTurn(step.stampAt(passage->time));
+  };
+  for (int i = 1; i < count; ++i) {
+    const double time = step.length() * i / count;
+    endTurnsUntil(time);
+    if (rod.isBesideBlowAt(time)) continue;
+    wrenchValues(rod.at(time, drive, result.hull.motion).wrench, between_.data());
+    for (std::size_t k = 0; k < end.size(); ++k) {
+      const double own = life::LoadError::at(k, deviations_.data(), common_.data()).own +
+                         life::LoadError::at(k, end_deviation.data(), end_common.data()).own;
+      if (!(std::abs(expected[k] - end[k]) <= own))
+        between_[k] = std::clamp(between_[k], std::min(values_[k], end[k]), std::max(values_[k], end[k]));
+      deviations_there_[k] = std::max(deviations_[k], end_deviation[k]);
+      common_there_[k] = std::max(common_[k], end_common[k]);
+    }
+    countBetween(step.stampAt(time));
+  }
+  endTurnsUntil(step.length());
 }
 
 /// What is closer to the blow than the crank's angle is known counts as little as a sample there: of the blow's sides,

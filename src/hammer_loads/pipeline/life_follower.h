@@ -47,6 +47,8 @@ class LifeFollower {
  private:
   void count(const SampleResult& result) noexcept;
   void followStep(const SampleResult& result) noexcept;
+  void followRing(const SampleResult& result) noexcept;
+  void countBetween(StampNs stamp) noexcept;
   bool moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept;
   void keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place, const CrankEstimate& crank,
                            const std::array<double, kHullChannels>& end) noexcept;

@@ -140,11 +140,12 @@ WrenchOutput WrenchSampler::output(StampNs stamp, const LinksBeside& links, cons
 
 /// Between two samples.
 void WrenchSampler::setInstant(double time, const HullMotion& hull, WrenchOutput& output) const noexcept {
-  output.wrench = hullWrench(*model_, drive_, motionOf(output.crank), hull);
-  if (!elastic_->ranOverStep()) return;
-  const ElasticFollower::Beside rod = elastic_->besideAt(time, drive_);
-  output.wrench = output.wrench + rod.wrench;
-  output.crank.acceleration += rod.crank;
+  if (!elastic_->ranOverStep()) {
+    output.wrench = hullWrench(*model_, drive_, motionOf(output.crank), hull);
+    return;
+  }
+  const ElasticFollower::Instant instant = elastic_->at(time, drive_, hull);
+  output.crank = instant.crank, output.wrench = instant.wrench;
 }
 
 HullDeviation WrenchSampler::deviation(const CrankEstimate& crank, const CrankUncertainty& doubt,
