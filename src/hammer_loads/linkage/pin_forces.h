@@ -111,17 +111,43 @@ HAMMER_LOADS_INLINE PinReactions pinForcesRocker(const Mechanism& mechanism, con
   return pins;
 }
 
+namespace detail {
+
+/// From the force in C, (along + i across) e^(i beta), to the others; of_crank: moment of that force and its weight
+/// about A that turns the crank [N m].
+HAMMER_LOADS_INLINE PinReactions fromRodForce(const Mechanism& mechanism, const LinkMotion& l,
+                                              const LinkAccelerations& q, Gravity gravity, Planar rod_force,
+                                              double of_crank) noexcept {
+  const HammerParameters& p = mechanism.parameters();
+  const LinkMoments& k = mechanism.moments();
+  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta, coupling = k.coupling * l.delta;
+  const Planar weight{-gravity.x, gravity.z};  // per mass
+  const Planar on_rocker = rod_force * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
+  const Planar above_crank = on_rocker + rod * q.rod;
+  const Planar on_rod = above_crank + (k.rod_at_b * l.phi) * q.crank - p.rod_mass * weight;
+  const Planar on_crank = above_crank + crank * q.crank - (k.mass - p.rocker_mass) * weight;
+  PinReactions pins;
+  pins.rod_on_rocker = toHull(on_rocker);
+  pins.crank_on_rod = toHull(on_rod);
+  pins.hull_on_crank = toHull(on_crank);
+  pins.hull_on_rocker = toHull(k.rocker * (l.psi * q.rocker) - p.rocker_mass * weight - on_rocker);
+  // Crank about A, the rod's mass at B counted with it.
+  pins.drive_torque = k.crank_inertia * q.crank.im - (crank.im * gravity.x + crank.re * gravity.z) +
+                      coupling.re * q.rod.im + coupling.im * q.rod.re + of_crank;
+  return pins;
+}
+
+}  // namespace detail
+
 /// Level linkage: mass, centre of mass, inertia and weight of all three links. Neglects friction, inertia of motor and
 /// flywheel.
 HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, const LinkMotion& l, const CrankMotion& c,
                                                   Gravity gravity, const NearBlow& near_blow) noexcept {
   const HammerParameters& p = mechanism.parameters();
   const LinkMoments& k = mechanism.moments();
-  const LinkAccelerations q = linkAccelerations(l, c.speed, c.acceleration);
   const Motion& m = l.rocker;
   const double ww = c.speed * c.speed, e = c.acceleration;
-  const Planar crank = k.crank * l.phi, rod = k.rod * l.beta;
-  const Planar coupling = k.coupling * l.delta;
+  const Planar rod = k.rod * l.beta, coupling = k.coupling * l.delta;
 
   // Rocker about D: l3 cross(e^(i psi), R23) = s rocker_s + rocker_rest.
   const double inertia = p.rocker_inertia_about_pivot;
@@ -139,19 +165,30 @@ HAMMER_LOADS_INLINE PinReactions pinForcesLinkage(const Mechanism& mechanism, co
       -((rocker_s + rod_part * rod_s) * s + (rocker_rest + rod_part * rod_rest)) * (k.rod_force_factor * m.inv_r);
   const double along = detail::overSine(along_s, s);
 
-  const Planar weight{-gravity.x, gravity.z};  // per mass
-  const Planar on_rocker = Planar{along, across} * (l.beta * Planar{mechanism.cosComAngle(), -mechanism.sinComAngle()});
-  const Planar above_crank = on_rocker + rod * q.rod;
-  const Planar on_rod = above_crank + (k.rod_at_b * l.phi) * q.crank - p.rod_mass * weight;
-  const Planar on_crank = above_crank + crank * q.crank - (k.mass - p.rocker_mass) * weight;
-  PinReactions pins;
-  pins.rod_on_rocker = detail::toHull(on_rocker);
-  pins.crank_on_rod = detail::toHull(on_rod);
-  pins.hull_on_crank = detail::toHull(on_crank);
-  pins.hull_on_rocker = detail::toHull(k.rocker * (l.psi * q.rocker) - p.rocker_mass * weight - on_rocker);
-  // Crank about A, the rod's mass at B counted with it.
-  pins.drive_torque = k.crank_inertia * e - (crank.im * gravity.x + crank.re * gravity.z) + coupling.re * q.rod.im +
-                      coupling.im * q.rod.re + p.lengths.crank * (along_s * l.sin_delta_over_s + across * l.delta.re);
+  const double of_crank = p.lengths.crank * (along_s * l.sin_delta_over_s + across * l.delta.re);
+  PinReactions pins = detail::fromRodForce(mechanism, l, linkAccelerations(l, c.speed, c.acceleration), gravity,
+                                           {along, across}, of_crank);
+  pins.near_blow = near_blow(l);
+  return pins;
+}
+
+/// The same dyads for links that move otherwise than a rigid rod has them: psi and accelerations are given. Beside the
+/// blow the rod's force is the difference of large moments, as good as these are; NaN within the error of the angle.
+inline PinReactions pinForcesOf(const Mechanism& mechanism, const LinkMotion& l, const LinkAccelerations& q,
+                                Gravity gravity, const NearBlow& near_blow) noexcept {
+  const LinkLengths& lengths = mechanism.linkage().lengths();
+  const LinkMoments& k = mechanism.moments();
+  const Planar rod = k.rod * l.beta, coupling = k.coupling * l.delta, mu = l.psi * conj(l.beta);
+  const double rocker_moment = mechanism.parameters().rocker_inertia_about_pivot * q.rocker.im -
+                               k.rocker * (l.psi.re * gravity.z + l.psi.im * gravity.x);
+  const double rod_moment = k.rod_inertia * q.rod.im + coupling.re * q.crank.im - coupling.im * q.crank.re -
+                            (rod.im * gravity.x + rod.re * gravity.z);
+  const double across = -rod_moment / lengths.rod;
+  const bool has_none = near_blow.sine(l.rocker.sin_half) == detail::kNoSine;
+  const double along =
+      has_none ? std::numeric_limits<double>::quiet_NaN() : (across * mu.re - rocker_moment / lengths.rocker) / mu.im;
+  PinReactions pins = detail::fromRodForce(mechanism, l, q, gravity, {along, across},
+                                           lengths.crank * (along * l.delta.im + across * l.delta.re));
   pins.near_blow = near_blow(l);
   return pins;
 }

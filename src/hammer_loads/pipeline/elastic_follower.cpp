@@ -110,15 +110,20 @@ CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {
   return crank;
 }
 
+/// The rocker where it is: lively rock throws it back by a tenth of a radian.
+LinkMotion ElasticFollower::linksOf(const TwoBodyState& s) const noexcept {
+  LinkMotion links = filter().bodies().links(s.angle);
+  links.psi = links.psi * Planar{std::cos(s.beside), std::sin(s.beside)};
+  return links;
+}
+
 ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const DriveReaction& drive) const noexcept {
   const TwoBodies& bodies = filter().bodies();
-  const LinkMotion links = bodies.links(m.state.angle);
+  const LinkMotion links = linksOf(m.state);
   const TwoBodyDrive by = filter().drive(m);
-  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, links);
-  LinkMotion there = links;  // lively rock throws the rocker back by a tenth of a radian
-  there.psi = links.psi * Planar{std::cos(m.state.beside), std::sin(m.state.beside)};
+  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, bodies.links(m.state.angle));
   const HullWrench w =
-      hullWrenchOf(model_->mechanism(), there, bodies.linkAccelerations(m.state, a, there), by.gravity);
+      hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), by.gravity);
   Loads loads;
   loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank,
       a.rocker - links.rocker.u * a.crank - links.rocker.du * square(m.state.speed);
@@ -196,10 +201,9 @@ ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, cons
 }
 
 LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const DriveReaction& drive) const noexcept {
-  LinkMotion there = filter().bodies().links(s.angle);
-  there.psi = there.psi * Planar{std::cos(s.beside), std::sin(s.beside)};
+  const LinkMotion links = linksOf(s);
   const HullWrench minus =
-      hullWrenchOf(model_->mechanism(), there, filter().bodies().linkSpeeds(s, there), Gravity{0.0, 0.0});
+      hullWrenchOf(model_->mechanism(), links, filter().bodies().linkSpeeds(s, links), Gravity{0.0, 0.0});
   const double drive_y = drive.by_crank * s.speed;
   return {-1.0 * minus + HullWrench{0.0, 0.0, drive_y}, drive_y};
 }
@@ -227,6 +231,21 @@ HullWrench ElasticFollower::momentumDeviation(const DriveReaction& drive) const 
   for (Eigen::Index i = 0; i < RodFilter::kRestitution; ++i)
     squares += (vectorOf(momentum(filter().displaced(errors.col(i)).state, drive).all) - here).cwiseAbs2();
   return wrenchOf(squares.cwiseSqrt());
+}
+
+PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, double angle_deviation) const noexcept {
+  const RodMotion& m = filter().motion();
+  const TwoBodies& bodies = filter().bodies();
+  const LinkMotion rigid = bodies.links(m.state.angle), links = linksOf(m.state);
+  TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, rigid);
+  const double beside = a.rocker - rigid.rocker.u * a.crank - rigid.rocker.du * square(m.state.speed);
+  a.crank -= gain_[kCrank] * beside;
+  a.rocker -= (rigid.rocker.u * gain_[kCrank] + gain_[kBesideRigid]) * beside;
+  const NearBlow near(near_blow, angle_deviation);
+  PinReactions pins =
+      pinForcesOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), hull.gravity, near);
+  if (hull.turns()) addTurningLinkage(model_->mechanism(), rigid, m.state.speed, hull, near, pins);
+  return pins;
 }
 
 double ElasticFollower::speedBeside() const noexcept {

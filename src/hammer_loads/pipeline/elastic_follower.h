@@ -36,6 +36,9 @@ class ElasticFollower {
   /// the two bodies is weighed with it, or with its own mean since the blow where that is more, by the variances: what
   /// is known no better than that is the moment of an impact within the pins.
   Beside beside(const DriveReaction& drive, double ring) noexcept;
+  /// While it runs: with links as the spring has them. near_blow: transmission angle below which they are flagged
+  /// [rad]; angle_deviation: of the crank [rad].
+  PinReactions pins(const HullMotion& hull, double near_blow, double angle_deviation) const noexcept;
   /// Of the rocker's speed beside a rigid rod's and its standard deviation the root of the squares [rad/s].
   double speedBeside() const noexcept;
   /// While it runs: of a crank whose rigid rod moves the rocker as it is before the blow [rad/s].
@@ -83,6 +86,7 @@ class ElasticFollower {
   Instant instantOf(const RodMotion& motion, const DriveReaction& drive, const HullMotion& hull) const noexcept;
   bool isInContact() const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
+  LinkMotion linksOf(const TwoBodyState& state) const noexcept;
   LoadImpulse momentum(const TwoBodyState& state, const DriveReaction& drive) const noexcept;
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;

@@ -200,9 +200,9 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
   result_.links = linkState(links.here.links, motion);
   result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
   result_.crank.acceleration += rod.crank;
-  // Of a rigid rod at every level: what the spring makes of them is not known here.
-  result_.pins = pinForces(model_, crank_.step().links().links, motionOf(crank_.estimate()), result_.hull.motion,
-                           settings_.near_blow, result_.deviation.angle);
+  result_.pins = elastic_.runs() ? elastic_.pins(result_.hull.motion, settings_.near_blow, result_.deviation.angle)
+                                 : pinForces(model_, links.here.links, motion, result_.hull.motion, settings_.near_blow,
+                                             result_.deviation.angle);
   addHullMotion(model_, drive, links.here.links, result_.crank.speed, result_.hull.motion, result_.hull.covariance,
                 result_.deviation.wrench);
 }
