@@ -175,6 +175,29 @@ TEST(ElasticOutputs, PinForcesHaveTheRing) {
   EXPECT_LT(elastic.before.result().rms, 0.5 * linkage.before.result().rms);
 }
 
+/// In the ring the rocker swings by radians a second beside a rigid linkage's.
+TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
+  const simulation::Session session = simulation::recordSession(machineOfOutputs({8e8, 0.3, 0.0}, 861));
+  const auto errorOf = [&](Level level) {
+    PipelineSettings settings = drawingOfOutputs().pipeline;
+    settings.level = level;
+    accuracy::SessionPlayer player(drawingOfOutputs().mechanism, settings, {}, session);
+    accuracy::FigureErrors speed;
+    std::size_t sample = 0;
+    auto blow = session.blows.begin();
+    player.playTo(10.0, [&](double time, const SampleResult& result) {
+      const simulation::CrankTruth& truth = session.truth[sample++];
+      while (std::next(blow) != session.blows.end() && std::next(blow)->time <= time) ++blow;
+      const double since = time - blow->time;
+      if (time < 4.0 || result.refusal || result.beside_blow || since < 0.003 || since > 0.030) return;
+      speed.add(result.links.rocker_speed - truth.rocker_speed, 0.0);
+    });
+    return speed.result().rms;
+  };
+  EXPECT_LT(errorOf(Level::kElastic), 0.15);
+  EXPECT_GT(errorOf(Level::kLinkage), 1.0);
+}
+
 /// Truth each 0.1 ms. At 200 Hz a ring of 150 to 250 Hz has all its peaks between samples: of the true loads the
 /// samples alone have ranges that are a tenth to a fifth too small.
 TEST(ElasticOutputs, ARingBetweenSparseSamplesIsCounted) {

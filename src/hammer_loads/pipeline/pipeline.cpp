@@ -198,6 +198,10 @@ void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const 
   result_.hull = hull_.motion();
   result_.pitch_known = hull_.pitch().known();
   result_.links = linkState(links.here.links, motion);
+  if (elastic_.runs()) {
+    const TwoBodyState& bodies = elastic_.filter().motion().state;
+    result_.links.rocker_angle += bodies.beside, result_.links.rocker_speed += bodies.beside_speed;
+  }
   result_.wrench = hullWrench(model_, drive, links.here.links, motion, result_.hull.motion) + rod.wrench;
   result_.crank.acceleration += rod.crank;
   result_.pins = elastic_.runs() ? elastic_.pins(result_.hull.motion, settings_.near_blow, result_.deviation.angle)
