@@ -6,8 +6,11 @@
 #include <cmath>
 #include <map>
 
+#include "hammer_loads/bench/machine_table.h"
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/linkage/hammer_constants.h"
+#include "hammer_loads/pipeline/life_follower.h"
+#include "hammer_loads/util/square.h"
 #include "pipeline/shipped_machine.h"
 #include "support/exact_hammer.h"
 
@@ -92,6 +95,50 @@ TEST(Budget, RangesOfTheHullsLoadsHaveThePartOfTheMass) {
     for (const BudgetFigure::Source& s : budget.ofRange(1)) by_mass += s.name == "rocker_mass_kg" ? s.variance : 0.0;
   });
   EXPECT_NEAR(std::sqrt(by_mass), 0.03, 0.003);
+}
+
+/// The shipped file says nothing of the rod: what a ring may do to blow and pulse is its share, whatever the readings.
+TEST(Budget, ARodThatNoFileGivesIsNoReading) {
+  Settings shipped = *load(configDirectory(), {}).value;
+  shipped.pipeline.level = Level::kLinkage;
+  const auto figures = figuresOf(shipped);
+  for (const char* name : {"blow/restitution", "blow/energy_J", "pulse/turn_impulse_z_Ns"}) {
+    const BudgetFigure& figure = figures.at(name);
+    EXPECT_GT(variance(figure, "rod_stiffness_N_m"), 5.0 * variance(figure, "readings")) << name;
+    double all = 0.0;
+    for (const BudgetFigure::Source& source : figure.sources) all += source.variance;
+    EXPECT_NEAR(all, square(figure.deviation), 1e-9 * all) << name;
+  }
+  for (const auto& [name, figure] : figuresOf(test::withExactHammer(shipped))) {
+    EXPECT_EQ(variance(figure, "rod_stiffness_N_m"), 0.0) << name;
+    EXPECT_GT(variance(figure, "readings"), 0.0) << name;
+  }
+}
+
+/// Readings of 1024 counts that jitter do not show whether the rod rings: that is most of the range's own deviation, in
+/// the budget as in the ledger.
+TEST(Budget, RangesReachAsFarAsInTheLedger) {
+  Settings shipped = *load(configDirectory(), {}).value;
+  simulation::MachineSettings machine = test::shippedMachine(shipped, 12.0, 78);
+  machine.level = Level::kLinkage;
+  accuracy::makeTypical(machine);
+  const simulation::Session session = simulation::recordSession(machine);
+  accuracy::SessionPlayer player(shipped.mechanism, shipped.pipeline, {}, session);
+  BudgetRecorder budget(player.pipeline);
+  life::LifeSettings counted;
+  counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-1e5, 1e5, 4096).value}};
+  counted.period = 1;
+  LifeFollower follower(player.pipeline, counted);
+  player.playTo(kInfinity, [&](double, const SampleResult&) { budget.follow(), follower.follow(); });
+  const life::RangeDeviation ledger = life::rangeDeviation(follower.take().counts[0]);
+  double readings = 0.0, rod = 0.0;
+  for (const BudgetFigure::Source& source : budget.ofRange(1)) {
+    if (source.name == "readings") readings = source.variance;
+    if (source.name == "rod_stiffness_N_m") rod = source.variance;
+  }
+  EXPECT_GT(ledger.own, 0.2);
+  EXPECT_NEAR(std::sqrt(readings + rod), ledger.own, 0.1 * ledger.own);
+  EXPECT_GT(rod, 10.0 * readings);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "hammer_loads/util/square.h"
 
@@ -24,20 +26,40 @@ void BudgetRecorder::Sum::add(double number, const NumberError& error) noexcept 
   if (!std::isfinite(number) || !std::isfinite(error.own) || !error.columns.allFinite()) return;
   ++count;
   value += number;
-  own += square(error.own);
+  own += square(error.own), rod += square(error.rod);
   columns += error.columns;
 }
 
-void BudgetRecorder::Range::endTurn() noexcept {
-  const double range = greatest.value - least.value;
-  if (range > 0.0) {
-    square += range * range;
-    readings += range * std::sqrt(greatest.readings + least.readings);
-    rod += range * std::sqrt(greatest.rod + least.rod);
-    columns += range * (greatest.columns - least.columns);
+void BudgetRecorder::Extreme::add(const End& sample) noexcept {
+  if (sign * sample.value > sign * end.value) end = sample;
+  const double reaches = sign * sample.value + std::sqrt(sample.readings + sample.rod);
+  if (reaches > reached) reached = reaches, reach = sample;
+}
+
+BudgetRecorder::End BudgetRecorder::Extreme::known() const noexcept {
+  const double beyond = square(reached - sign * end.value), own = reach.readings + reach.rod;
+  if (!(beyond > end.readings + end.rod) || !(own > 0.0)) return end;
+  return {end.value, end.columns, beyond * reach.readings / own, beyond * reach.rod / own};
+}
+
+void BudgetRecorder::Range::add(const End& sample) noexcept {
+  if (!std::exchange(begun, true)) {
+    constexpr double kNothing = -std::numeric_limits<double>::infinity();
+    least = {sample, sample, kNothing, -1.0}, greatest = {sample, sample, kNothing, 1.0};
   }
-  least = {std::numeric_limits<double>::infinity()};
-  greatest = {-std::numeric_limits<double>::infinity()};
+  least.add(sample), greatest.add(sample);
+}
+
+void BudgetRecorder::Range::endTurn() noexcept {
+  const End low = least.known(), high = greatest.known();
+  const double range = high.value - low.value;
+  if (begun && range > 0.0) {
+    square += range * range;
+    readings += range * std::sqrt(high.readings + low.readings);
+    rod += range * std::sqrt(high.rod + low.rod);
+    columns += range * (high.columns - low.columns);
+  }
+  begun = false;
 }
 
 void BudgetRecorder::sample(const SampleResult& result) noexcept {
@@ -48,8 +70,7 @@ void BudgetRecorder::sample(const SampleResult& result) noexcept {
     if (!std::isfinite(all[row])) continue;
     End end{load[row], result.load_columns.row(row), 0.0, square(rod[row])};
     end.readings = std::max(0.0, square(all[row]) - square(common[row]) - end.rod);
-    if (end.value < ranges_[i].least.value) ranges_[i].least = end;
-    if (end.value > ranges_[i].greatest.value) ranges_[i].greatest = end;
+    ranges_[i].add(end);
   }
 }
 
@@ -96,7 +117,7 @@ std::vector<BudgetFigure> BudgetRecorder::figures() const {
     const double part = 1.0 / static_cast<double>(sum.count);
     const Columns columns = part * sum.columns;
     figures.push_back({quantity, part * sum.value, std::sqrt(columns.squaredNorm() + part * sum.own),
-                       sources(columns, part * sum.own, 0.0)});
+                       sources(columns, part * (sum.own - sum.rod), part * sum.rod)});
   };
   add("pulse/turn_impulse_x_Ns", turn_impulse_x_);
   add("pulse/turn_impulse_z_Ns", turn_impulse_z_);

@@ -40,7 +40,7 @@ class BudgetRecorder {
   using Columns = NumberError::Columns;
   struct Sum {
     std::uint64_t count{};
-    double value{}, own{};  ///< own: of variances
+    double value{}, own{}, rod{};  ///< the latter of variances
     Columns columns{Columns::Zero()};
 
     void add(double number, const NumberError& error) noexcept;
@@ -50,12 +50,23 @@ class BudgetRecorder {
     Columns columns{Columns::Zero()};
     double readings{}, rod{};  ///< variances
   };
+  /// Of a turn: the sample that is extreme, and that which may be by one of its own deviations (life::TurnExtremes).
+  struct Extreme {
+    End end{}, reach{};
+    double reached{};  ///< how far [channel's unit], times the sign
+    double sign{1.0};  ///< -1: the least
+
+    void add(const End& sample) noexcept;
+    End known() const noexcept;  ///< the sample, its variances those of the turn's extreme
+  };
   /// Of one channel: of the present turn, and sums over turns weighed by the range.
   struct Range {
-    End least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
+    Extreme least, greatest;
+    bool begun{};
     double square{}, readings{}, rod{};
     Columns columns{Columns::Zero()};
 
+    void add(const End& sample) noexcept;
     void endTurn() noexcept;
   };
   void sample(const SampleResult& result) noexcept;

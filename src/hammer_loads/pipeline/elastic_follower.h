@@ -11,6 +11,9 @@
 
 namespace hammer_loads {
 
+constexpr double kRingStep = 2e-4;  ///< [s] between points of its path: a ring of 500 Hz has a tenth of a turn between
+// Numerical: kRingStep
+
 /// Elsewhere, and where readings contradict the rod's model, the machine is that of level linkage.
 class ElasticFollower {
  public:
@@ -70,6 +73,10 @@ class ElasticFollower {
     LoadImpulse motion;
     HullWrench doubt;
   };
+  /// Of links and drive [N s, N s, N m s].
+  HullWrench momentumAt(double time, const DriveReaction& drive) const noexcept {
+    return momentum(motionAt(time).state, drive).all;
+  }
   Impulse impulse(const DriveReaction& drive, double from, double to) const noexcept;
   /// Of the links' and the drive's momentum at the sample, standard [N s, N s, N m s].
   HullWrench momentumDeviation(const DriveReaction& drive) const noexcept;

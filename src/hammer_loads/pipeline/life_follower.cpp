@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kKnown = gate::kRare;  // deviations from the blow: no reading stands for what is counted closer
 // Guard: TurnLoads.ATurnWhoseSampleBesideTheBlowIsWithheldKeepsItsExtreme of kKnown
-constexpr double kRingStep = 2e-4;  // [s]: a ring of 500 Hz has a tenth of a turn between
-// Numerical: kRingStep
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "hammer_loads/pipeline/hull_deviation.h"
@@ -15,7 +16,10 @@ struct NumberError {
 
   Columns columns{Columns::Zero()};  ///< unit of the number
   double own{};                      ///< standard deviation, as above
+  double rod{};                      ///< the part of it that a rod makes which may give
 
+  /// Where that is not known apart: what a deviation is beyond that of readings alone.
+  void setRodBeyond(double readings) noexcept { rod = std::sqrt(std::max(0.0, own * own - readings * readings)); }
   double common() const noexcept { return columns.norm(); }
   double deviation() const noexcept { return std::hypot(own, common()); }
 };
@@ -28,6 +32,12 @@ struct PulseErrors {
 /// Of a RockerBlow.
 struct BlowErrors {
   NumberError restitution, energy, tool_impulse_z, support_impulse_z;
+
+  void setRodBeyond(const BlowErrors& readings) noexcept {
+    restitution.setRodBeyond(readings.restitution.own), energy.setRodBeyond(readings.energy.own);
+    tool_impulse_z.setRodBeyond(readings.tool_impulse_z.own);
+    support_impulse_z.setRodBeyond(readings.support_impulse_z.own);
+  }
 };
 
 }  // namespace hammer_loads

@@ -15,20 +15,24 @@ class TurnErrors {
  public:
   /// A turn begins with a blow.
   void begin(StampNs blow) noexcept;
-  /// The momentum after that blow: how far it may be off, by samples and by constants [N s]. Known some time later.
-  void momentumAfterBlow(const HullWrench& deviation, const MomentumColumns& columns) noexcept {
+  /// How far a momentum may be off [N s]: in all, and by readings alone, without a rod that may give.
+  struct Momentum {
+    HullWrench all, by_readings;
+  };
+  /// That after the blow, and by constants [N s]. Known some time later.
+  void momentumAfterBlow(const Momentum& deviation, const MomentumColumns& columns) noexcept {
     after_blow_ = deviation, at_begin_ = columns;
   }
   /// Whether Fz rises through zero with the coming sample: who knows says rose() first.
   bool rises(double force_z) const noexcept { return last_force_ <= 0.0 && force_z > 0.0; }
   /// A lobe begins here. There the momentum along z stands still, so that the instant itself does not matter.
   void rose(StampNs stamp, const MomentumColumns& columns) noexcept { rise_ = {stamp, columns}; }
-  /// The load at a sample.
-  void sample(double force_z, const HullDeviation& deviation, const LoadColumns& columns) noexcept;
+  /// The load at a sample. rod: of its deviation what a rod makes that may give.
+  void sample(double force_z, const HullDeviation& deviation, double rod, const LoadColumns& columns) noexcept;
   /// At the blow that ends the turn. before_blow, at_end: how far the momentum there may be off, by samples and by
   /// constants [N s]; weight: what constants make of the links' weight [N].
-  PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const HullWrench& before_blow,
-                  const MomentumColumns& at_end, const MomentumColumns& weight) const noexcept;
+  PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow, const MomentumColumns& at_end,
+                  const MomentumColumns& weight) const noexcept;
 
  private:
   struct Lobe {
@@ -38,10 +42,12 @@ class TurnErrors {
 
   StampNs begin_{};
   MomentumColumns at_begin_{MomentumColumns::Zero()};
-  HullWrench after_blow_;
+  Momentum after_blow_;
   std::optional<Lobe> rise_, lobe_;  ///< of the last rise; of the last lobe that counts
   double last_force_{1.0}, peak_{};  ///< Fz of the last sample; its largest [N]
   NumberError at_peak_;
+  NumberError highest_;  ///< own, rod: of the sample that may be highest, by one of its own deviations
+  double reach_{};       ///< there [N]
 };
 
 }  // namespace hammer_loads

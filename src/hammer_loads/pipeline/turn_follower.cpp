@@ -29,14 +29,26 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
           added.force_x, added.force_z};
 }
 
+/// Where the rod's spring is followed; origin: of the step's start [s].
+TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
+  const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
+  const ElasticFollower::Instant there = elastic_->at(time, drive, hull_);
+  TurnInstant point = instant(origin + time, there.crank);
+  point.wrench = there.wrench;
+  const HullWrench momentum = elastic_->momentumAt(time, drive);
+  point.momentum.x = momentum.force_x, point.momentum.z = momentum.force_z;
+  return point;
+}
+
 /// Points of the turn in (from, to] [s] after the step's start.
 void TurnFollower::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
   const double origin = seconds(step_->start() - epoch_);
-  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kPulseStep)));
+  const bool rings = elastic_->ranOverStep();
+  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / (rings ? kRingStep : kPulseStep))));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
-    const TurnInstant point = instant(origin + time, step_->at(time));
+    const TurnInstant point = rings ? ringing(origin, time) : instant(origin + time, step_->at(time));
     turn_.add(point);
     peak_.of_step = std::max(peak_.of_step, point.wrench.force_z);
   }
@@ -75,7 +87,7 @@ void TurnFollower::trackErrors(const SampleResult& result) noexcept {
   if (errors_.rises(result.wrench.force_z))
     errors_.rose(result.stamp, momentumColumns(*columns_, *model_, crank.position.angle, crank.speed,
                                                result.doubt.speedAtAngle(crank.acceleration / crank.speed)));
-  errors_.sample(result.wrench.force_z, result.deviation, result.load_columns);
+  errors_.sample(result.wrench.force_z, result.deviation, result.rod_ring.force_z, result.load_columns);
 }
 
 /// The turn ends now; what the blow was shows later.
@@ -88,6 +100,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   CrankEstimate before = step_->besides(passage, Side::kBeforeBlow);
   if (elastic_->runs()) before.speed = elastic_->strikingSpeed();
   CrankUncertainty doubt = tracker_->uncertaintyBetween(std::max(0.0, passage.time - kBesideBlow), 1.0);
+  const Eigen::Matrix3d by_readings = doubt.own;
   if (!elastic_->runs()) doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed) += square(rod_->lackingSpeed());
   const double rate = before.acceleration / before.speed;
   end.pulse = turn_.end(instant(time, before));
@@ -96,11 +109,13 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   if (end.pulse) {
     peak_force_ = end.pulse->amplitude;
     const LinksBeside links(*model_, linksAt(*model_, before.position.angle));
-    end.pulse_errors = errors_.end(
-        end.stamp, *end.pulse,
-        momentumDeviation(*model_, driveReaction(*model_, tracker_->driveInertia()), before, links, doubt.own),
-        momentumColumns(*columns_, *model_, before.position.angle, before.speed, doubt.speedAtAngle(rate)),
-        weightColumns(*columns_, *model_, hull_.gravity));
+    const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
+    end.pulse_errors =
+        errors_.end(end.stamp, *end.pulse,
+                    {momentumDeviation(*model_, drive, before, links, doubt.own),
+                     momentumDeviation(*model_, drive, before, links, by_readings)},
+                    momentumColumns(*columns_, *model_, before.position.angle, before.speed, doubt.speedAtAngle(rate)),
+                    weightColumns(*columns_, *model_, hull_.gravity));
   }
   errors_.begin(end.stamp);
   end.mean_press_force =  // times the impulse, once that is known
@@ -170,13 +185,22 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
   const double doubt =
       std::hypot(measured.speed_deviation / measured.speed, measured.factor_deviation / measured.factor);
-  errors_.momentumAfterBlow({std::abs(after.x) * doubt, std::hypot(after.z * doubt, taken_up), 0.0},
+  const HullWrench read{std::abs(after.x) * doubt, std::abs(after.z) * doubt, 0.0};
+  errors_.momentumAfterBlow({{read.force_x, std::hypot(read.force_z, taken_up), 0.0}, read},
                             momentumColumns(*columns_, *model_, {0.0, Side::kAfterBlow}, pending_.crankSpeedAfter(),
                                             pending_.columnsAfter()));
   blow = measuredBlow(*model_, crank);
   if (elastic) takeUpLater(crank, after, blow);
   turn_.correctBegin(after);
-  pending_end_.blow_errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
+  BlowErrors& errors = pending_end_.blow_errors;
+  errors = blowErrors(*columns_, *model_, crank, pending_.columns(), blow);
+  if (!elastic) {
+    CrankBlow rigid = measured;
+    const double lacking = square(rod_->lackingSpeed());
+    rigid.speed_deviation = std::sqrt(std::max(0.0, square(rigid.speed_deviation) - lacking));
+    RockerBlow of_rigid = measuredBlow(*model_, rigid);
+    errors.setRodBeyond(blowErrors(*columns_, *model_, rigid, pending_.columns(), of_rigid));
+  }
   voidImpossible(model_->mechanism(), model_->level(), blow);
   if (blow.impossible) doubtImpossible(crank, !elastic && pending_.isEarly(), pending_end_);
   impossible_ += blow.impossible;

@@ -67,6 +67,7 @@ class TurnFollower {
   void endTurn(const CrankStep::Passage& passage) noexcept;
   void trackErrors(const SampleResult& result) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
+  TurnInstant ringing(double origin, double time) const noexcept;
 
   const HullModel* model_;
   const WrenchColumns* columns_;
