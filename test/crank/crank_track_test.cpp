@@ -116,7 +116,8 @@ TEST(CrankTrack, CountsMoreOfTheSensorAndLessOfTheSupplyThanLive) {
   const auto track = std::make_shared<CrankTrack>(mechanism, Level::kRocker, 0.6, test::filterSettings());
   record(4.0, 100.0, *track);
   track->close();
-  SmoothedCrank smoothed(ShaftModel(mechanism, Level::kRocker), track);
+  const ShaftModel model(mechanism, Level::kRocker);
+  SmoothedCrank smoothed(model, CrankFilter(model, 0.6, test::filterSettings()), track);
   while (track->isReady()) smoothed.update(0.0, {});
   const CrankFilter& live = track->filter();
   const auto accelerationVariance = [&](double part) {

@@ -122,6 +122,8 @@ class CrankTracker {
   virtual double strikeConsistency() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
   /// The filter that learns of sensor and machine behind the estimates; null: none.
   virtual const CrankFilter* filter() const noexcept { return nullptr; }
+  /// The filter as it is at the last sample, whatever is known by later ones.
+  virtual const CrankFilter* filterNow() const noexcept { return filter(); }
   /// One count of the angle sensor [rad], as far as known.
   virtual double angleResolution() const noexcept = 0;
   /// Samples are taken at equal intervals [s], so that a reading that is whole intervals ahead has lost samples before

@@ -14,13 +14,16 @@ constexpr double kTorquePart = 0.2;
 
 }  // namespace
 
-SmoothedCrank::SmoothedCrank(const ShaftModel& model, std::shared_ptr<CrankTrack> track)
-    : track_(std::move(track)), model_(model), step_model_(model) {
+SmoothedCrank::SmoothedCrank(const ShaftModel& model, CrankFilter now, std::shared_ptr<CrankTrack> track)
+    : track_(std::move(track)), live_(std::move(now)), model_(model), step_model_(model) {
   now_.belief = track_->filter().belief();
   now_.resolution = track_->filter().angleResolution();
 }
 
-void SmoothedCrank::setHullMotion(const HullMotion& hull) noexcept { model_.setHullMotion(hull); }
+void SmoothedCrank::setHullMotion(const HullMotion& hull) noexcept {
+  model_.setHullMotion(hull);
+  live_.setHullMotion(hull);
+}
 
 Tracking SmoothedCrank::next() noexcept {
   TrackedSample sample = track_->take();
@@ -34,9 +37,22 @@ Tracking SmoothedCrank::next() noexcept {
   return now_.tracking;
 }
 
-void SmoothedCrank::start(const CrankSample&) noexcept { next(); }
+void SmoothedCrank::start(const CrankSample& sample) noexcept {
+  live_.start(sample);
+  next();
+}
 
-Tracking SmoothedCrank::update(double, const CrankSample&) noexcept { return next(); }
+Tracking SmoothedCrank::update(double dt, const CrankSample& sample) noexcept {
+  live_.update(dt, sample);
+  return next();
+}
+
+/// What is given is beside the estimate by later samples.
+void SmoothedCrank::considerRod(double angle, double speed) noexcept {
+  const ShaftState &later = now_.belief.state, &now = live_.state();
+  const double ahead = CrankAngle::wrapToPi(later.position.angle.offset - now.position.angle.offset);
+  live_.considerRod(angle + ahead, speed + later.speed - now.speed);
+}
 
 CrankEstimate SmoothedCrank::estimate() const noexcept {
   const ShaftState& state = now_.belief.state;

@@ -13,7 +13,8 @@ namespace hammer_loads {
 /// what the filter took it for.
 class SmoothedCrank final : public CrankTracker {
  public:
-  SmoothedCrank(const ShaftModel& model, std::shared_ptr<CrankTrack> track);
+  /// now: a filter as the track's began.
+  SmoothedCrank(const ShaftModel& model, CrankFilter now, std::shared_ptr<CrankTrack> track);
 
   void start(const CrankSample& sample) noexcept override;
   Tracking update(double dt, const CrankSample& sample) noexcept override;
@@ -35,6 +36,10 @@ class SmoothedCrank final : public CrankTracker {
   double strikeConsistency() const noexcept override { return now_.strike_consistency; }
   /// As it is after the last sample that came into the track.
   const CrankFilter* filter() const noexcept override { return &track_->filter(); }
+  const CrankFilter* filterNow() const noexcept override { return &live_; }
+  void setInterval(double interval) noexcept override { live_.setInterval(interval); }
+  void considerLatency(double deviation) noexcept override { live_.considerLatency(deviation); }
+  void considerRod(double angle, double speed) noexcept override;
   double lostTime() const noexcept override { return now_.lost_time; }
   int slips() const noexcept override { return now_.slips; }
   double angleResolution() const noexcept override { return now_.resolution; }
@@ -45,6 +50,7 @@ class SmoothedCrank final : public CrankTracker {
   CrankUncertainty uncertaintyOf(const CrankBelief& belief, double torque_part) const noexcept;
 
   std::shared_ptr<CrankTrack> track_;
+  CrankFilter live_;
   ShaftModel model_;       ///< with the latest motion of the hull
   ShaftModel step_model_;  ///< with its mean over the step
   HullMotion before_hull_, now_hull_;

@@ -64,7 +64,7 @@ void ElasticFollower::begin(const CrankFollower& crank, const CrankFilter& filte
 }
 
 void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexcept {
-  const CrankFilter* filter = wanted_ ? crank.tracker().filter() : nullptr;
+  const CrankFilter* filter = wanted_ ? crank.tracker().filterNow() : nullptr;
   if (filter == nullptr) return;
   if (!runs_) {
     if (mayBegin(crank, *filter)) begin(crank, *filter, gravity);

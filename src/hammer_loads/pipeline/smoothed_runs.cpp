@@ -17,7 +17,10 @@ TrackerMaker SmoothedRuns::behind() {
   return [this](const Mechanism& mechanism, const PipelineSettings& settings) -> std::unique_ptr<CrankTracker> {
     if (behind_begun_) tracks_.pop_front();
     behind_begun_ = true;
-    return std::make_unique<SmoothedCrank>(ShaftModel(mechanism, settings.level), tracks_.front());
+    const ShaftModel model(mechanism, settings.level);
+    return std::make_unique<SmoothedCrank>(
+        model, CrankFilter(model, mechanism.parameters().drive_inertia, filterSettings(mechanism, settings)),
+        tracks_.front());
   };
 }
 
