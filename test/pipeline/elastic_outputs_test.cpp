@@ -13,27 +13,17 @@
 #include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
+#include "pipeline/machine_with_rod.h"
 #include "support/counting_new.h"
 
 namespace hammer_loads {
 namespace {
 
-const Settings& drawingOfOutputs() {
-  static const Settings settings = *load(configDirectory(), {}).value;
-  return settings;
-}
-
 /// Stamps without jitter: a mean over whole steps ends at samples.
 simulation::MachineSettings machineOfOutputs(const simulation::RodSettings& rod, std::uint64_t seed) {
-  simulation::MachineSettings s = simulation::workingMo100();
-  s.hammer = drawingOfOutputs().mechanism.parameters();
-  s.level = Level::kLinkage;
-  s.duration = 13.0;
-  s.drive.stop_time = 11.5;
+  simulation::MachineSettings s = test::machineWithRod(rod, seed);
   s.crank.jitter = 0.0;
   s.crank.drop_outs.clear();
-  s.rod = rod;
-  s.seed = seed;
   return s;
 }
 
@@ -49,12 +39,12 @@ TEST(ElasticOutputs, MeansHaveTheRing) {
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
     const accuracy::ElasticKind kind{"", machineOfOutputs(rod, ++seed)};
     SCOPED_TRACE(rod.stiffness);
-    const accuracy::SceneRow elastic = accuracy::sceneRow(drawingOfOutputs(), kind, Level::kElastic);
+    const accuracy::SceneRow elastic = accuracy::sceneRow(test::shippedDrawing(), kind, Level::kElastic);
     for (const auto& component : elastic.slow) {
       EXPECT_LT(component.rms, 0.004);
       EXPECT_GT(component.covered, 0.88);
     }
-    EXPECT_GT(accuracy::sceneRow(drawingOfOutputs(), kind, Level::kLinkage).slow[1].rms, 0.012);
+    EXPECT_GT(accuracy::sceneRow(test::shippedDrawing(), kind, Level::kLinkage).slow[1].rms, 0.012);
   }
 }
 
@@ -65,11 +55,11 @@ struct SumOfMeans {
 };
 
 SumOfMeans sumOfMeans(const simulation::Session& session, double rate) {
-  PipelineSettings settings = drawingOfOutputs().pipeline;
+  PipelineSettings settings = test::shippedDrawing().pipeline;
   settings.level = Level::kElastic;
   settings.output = OutputKind::kMean;
   settings.output_rate = rate;
-  accuracy::SessionPlayer player(drawingOfOutputs().mechanism, settings, {}, session);
+  accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
   const StampNs first = session.crank.front().stamp;
   SumOfMeans sum;
   player.playTo(12.0, [&](double, const SampleResult& result) {
@@ -103,10 +93,10 @@ TEST(ElasticOutputs, BetweenSamplesTheRodIsASpringToo) {
   const simulation::MachineSettings machine = machineOfOutputs({8e8, 0.3, 0.0}, 831);
   const simulation::Session session = simulation::recordSession(machine);
   const auto ringErrors = [&](Level level) {
-    PipelineSettings settings = drawingOfOutputs().pipeline;
+    PipelineSettings settings = test::shippedDrawing().pipeline;
     settings.level = level;
     settings.output_rate = 2300.0;
-    accuracy::SessionPlayer player(drawingOfOutputs().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     std::vector<WrenchOutput> outputs;
     std::vector<double> times;
     auto blow = session.blows.begin();
@@ -148,9 +138,9 @@ TEST(ElasticOutputs, PinForcesHaveTheRing) {
     double size{};  ///< of the ring's force, squares [N2]
   };
   const auto errorsOf = [&](Level level) {
-    PipelineSettings settings = drawingOfOutputs().pipeline;
+    PipelineSettings settings = test::shippedDrawing().pipeline;
     settings.level = level;
-    accuracy::SessionPlayer player(drawingOfOutputs().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     Errors errors;
     std::size_t sample = 0;
     auto blow = session.blows.begin();
@@ -179,9 +169,9 @@ TEST(ElasticOutputs, PinForcesHaveTheRing) {
 TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
   const simulation::Session session = simulation::recordSession(machineOfOutputs({8e8, 0.3, 0.0}, 861));
   const auto errorOf = [&](Level level) {
-    PipelineSettings settings = drawingOfOutputs().pipeline;
+    PipelineSettings settings = test::shippedDrawing().pipeline;
     settings.level = level;
-    accuracy::SessionPlayer player(drawingOfOutputs().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     accuracy::FigureErrors speed;
     std::size_t sample = 0;
     auto blow = session.blows.begin();
@@ -205,9 +195,9 @@ TEST(ElasticOutputs, ThePeakOfATurnMayBeTheRings) {
   machine.strike.contact_stiffness = 1e8, machine.strike.rock_strength = 3e5;
   const simulation::Session session = simulation::recordSession(machine);
   for (const Level level : {Level::kElastic, Level::kLinkage}) {
-    PipelineSettings settings = drawingOfOutputs().pipeline;
+    PipelineSettings settings = test::shippedDrawing().pipeline;
     settings.level = level;
-    accuracy::SessionPlayer player(drawingOfOutputs().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     accuracy::FigureErrors peak;
     double largest_force = 0.0;
     player.playTo(11.0, [&](double time, const SampleResult& result) {
@@ -240,9 +230,9 @@ TEST(ElasticOutputs, ARingBetweenSparseSamplesIsCounted) {
     simulation::MachineSettings machine = machineOfOutputs(rod, ++seed);
     machine.crank.rate = 200.0;
     const simulation::Session session = simulation::recordSession(machine);
-    PipelineSettings settings = drawingOfOutputs().pipeline;
+    PipelineSettings settings = test::shippedDrawing().pipeline;
     settings.level = Level::kElastic;
-    accuracy::SessionPlayer player(drawingOfOutputs().mechanism, settings, {}, session);
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     life::LifeSettings counted;
     counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
     counted.period = 1;

@@ -6,6 +6,7 @@
 #include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/session_player.h"
 #include "hammer_loads/bench/session_run.h"
+#include "pipeline/machine_with_rod.h"
 #include "support/counting_new.h"
 #include "support/csv.h"
 #include "support/mo100.h"
@@ -13,24 +14,8 @@
 namespace hammer_loads {
 namespace {
 
-const Settings& drawingOfRods() {
-  static const Settings settings = *load(configDirectory(), {}).value;
-  return settings;
-}
-
-simulation::MachineSettings machineWithRod(const simulation::RodSettings& rod, std::uint64_t seed) {
-  simulation::MachineSettings s = simulation::workingMo100();
-  s.hammer = drawingOfRods().mechanism.parameters();
-  s.level = Level::kLinkage;
-  s.duration = 13.0;
-  s.drive.stop_time = 11.5;
-  s.rod = rod;
-  s.seed = seed;
-  return s;
-}
-
 accuracy::ElasticErrors rodErrors(const simulation::MachineSettings& machine, Level level) {
-  return accuracy::elasticErrors(drawingOfRods(), {"", machine}, level);
+  return accuracy::elasticErrors(test::shippedDrawing(), {"", machine}, level);
 }
 
 /// Issue: 0.40 of the truth, the whole turn 3.5 %. The rigid level shows that the flaw is there.
@@ -38,7 +23,7 @@ TEST(ElasticSession, TheRingAfterTheBlowIsPublished) {
   std::uint64_t seed = 700;
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
-    const simulation::MachineSettings machine = machineWithRod(rod, ++seed);
+    const simulation::MachineSettings machine = test::machineWithRod(rod, ++seed);
     SCOPED_TRACE(rod.stiffness);
     const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic);
     EXPECT_LT(e.after.rms[1], 0.25);
@@ -51,7 +36,7 @@ TEST(ElasticSession, TheRingAfterTheBlowIsPublished) {
 /// Rock that throws the rocker back with two thirds of its speed: the rod takes it up 0.05 rad beside its rigid place,
 /// and turns the crank by more than any torque does within a sample. Such samples are published as any others.
 TEST(ElasticSession, LivelyRockThrowsTheRockerFar) {
-  simulation::MachineSettings machine = machineWithRod({8e8, 0.5, 0.0}, 705);
+  simulation::MachineSettings machine = test::machineWithRod({8e8, 0.5, 0.0}, 705);
   machine.strike.contact_stiffness = 6e7, machine.strike.rock_strength = 3e5;
   const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic);
   EXPECT_GT(e.after.scale[1], 8000.0);
@@ -60,12 +45,12 @@ TEST(ElasticSession, LivelyRockThrowsTheRockerFar) {
   EXPECT_LT(e.after.rms[0], 0.06);  // the force follows the rocker's own direction
   EXPECT_GT(e.after.covered[0], 0.95);
   EXPECT_LT(std::abs(e.life.error), 0.05);
-  EXPECT_GT(e.after.count, 0.95 * rodErrors(machineWithRod({8e8, 0.5, 0.0}, 705), Level::kElastic).after.count);
+  EXPECT_GT(e.after.count, 0.95 * rodErrors(test::machineWithRod({8e8, 0.5, 0.0}, 705), Level::kElastic).after.count);
 }
 
 /// 1024 counts and an encoder whose place is not known: deviations must hold, and they are those of a rigid rod.
 TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
-  simulation::MachineSettings machine = machineWithRod({8e8, 0.3, 0.0}, 731);
+  simulation::MachineSettings machine = test::machineWithRod({8e8, 0.3, 0.0}, 731);
   machine.crank.counts = 1024;
   machine.crank.speed = false;
   machine.crank.zero = 0.5 * kTwoPi / 360.0;
@@ -76,7 +61,7 @@ TEST(ElasticSession, ReadingsTooCoarseForARodLeaveLinkage) {
 
 /// All stamps are up to a millisecond early, which is a seventh of a ring.
 TEST(ElasticSession, StampsOfWholeMillisecondsAreInTheDeviation) {
-  simulation::MachineSettings machine = machineWithRod({6e8, 0.25, 0.0}, 741);
+  simulation::MachineSettings machine = test::machineWithRod({6e8, 0.25, 0.0}, 741);
   machine.crank.stamp_step = 1e-3;
   const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic);
   EXPECT_GT(e.after.covered[0], 0.90);
@@ -86,7 +71,7 @@ TEST(ElasticSession, StampsOfWholeMillisecondsAreInTheDeviation) {
 
 /// The pins' play is not given.
 TEST(ElasticSession, PlayIsLearned) {
-  const accuracy::ElasticErrors e = rodErrors(machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
+  const accuracy::ElasticErrors e = rodErrors(test::machineWithRod({1.1e9, 0.35, 4e-4}, 711), Level::kElastic);
   EXPECT_LT(e.after.rms[1], 0.5);
   EXPECT_GT(e.after.covered[1], 0.80);
 }
@@ -94,9 +79,9 @@ TEST(ElasticSession, PlayIsLearned) {
 /// A machine of other equations than ours (rod of three bodies, tool on rock): dead rod, 0.2 mm of play. Tight pins
 /// imitate worn ones there by a soft rod with much damping. Its crank and rod have no mass.
 TEST(ElasticSession, TightPinsDoNotPassForWornOnes) {
-  HammerParameters hammer = drawingOfRods().mechanism.parameters();
+  HammerParameters hammer = test::shippedDrawing().mechanism.parameters();
   hammer.crank_mass = hammer.crank_inertia_about_com = hammer.rod_mass = hammer.rod_inertia_about_com = 0.0;
-  PipelineSettings settings = drawingOfRods().pipeline;
+  PipelineSettings settings = test::shippedDrawing().pipeline;
   settings.level = Level::kElastic;
   const Mechanism mechanism = test::mechanismOf(hammer);
   Pipeline pipeline(mechanism, settings);
@@ -124,16 +109,16 @@ TEST(ElasticSession, TightPinsDoNotPassForWornOnes) {
 }
 
 std::vector<accuracy::WrenchAt> rodWrenches(const simulation::MachineSettings& machine, Level level) {
-  PipelineSettings pipeline = drawingOfRods().pipeline;
+  PipelineSettings pipeline = test::shippedDrawing().pipeline;
   pipeline.level = level;
-  return accuracy::runSession(simulation::recordSession(machine), machine.start_stamp, drawingOfRods().mechanism,
+  return accuracy::runSession(simulation::recordSession(machine), machine.start_stamp, test::shippedDrawing().mechanism,
                               pipeline)
       .wrenches;
 }
 
 /// A rod stiffer than the readings show is a rigid one: to the bit.
 TEST(ElasticSession, OfARigidMachineItIsLinkage) {
-  const simulation::MachineSettings machine = machineWithRod({}, 720);
+  const simulation::MachineSettings machine = test::machineWithRod({}, 720);
   const auto elastic = rodWrenches(machine, Level::kElastic), linkage = rodWrenches(machine, Level::kLinkage);
   ASSERT_EQ(elastic.size(), linkage.size());
   std::size_t others = 0;
@@ -142,15 +127,15 @@ TEST(ElasticSession, OfARigidMachineItIsLinkage) {
 }
 
 TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
-  simulation::MachineSettings machine = machineWithRod({8e8, 0.3, 0.0}, 730);
+  simulation::MachineSettings machine = test::machineWithRod({8e8, 0.3, 0.0}, 730);
   machine.duration = 6.0;
   const simulation::Session session = simulation::recordSession(machine);
-  PipelineSettings pipeline = drawingOfRods().pipeline;
+  PipelineSettings pipeline = test::shippedDrawing().pipeline;
   pipeline.level = Level::kElastic;
   const auto play = [&] {
     std::vector<double> forces;
     forces.reserve(session.crank.size());
-    accuracy::SessionPlayer player(drawingOfRods().mechanism, pipeline, {}, session);
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, pipeline, {}, session);
     bool ran = false;
     std::size_t allocated = 0, before = test::allocations;
     player.playTo(100.0, [&](double, const SampleResult& r) {
@@ -168,7 +153,7 @@ TEST(ElasticSession, TheSameReadingsGiveTheSameBitsAndNothingIsAllocated) {
 
 /// Without a tool nothing strikes: the rod's model is contradicted, and the machine is a rigid one.
 TEST(ElasticSession, AMissedToolIsNoRing) {
-  simulation::MachineSettings machine = machineWithRod({1e9, 0.3, 0.0}, 740);
+  simulation::MachineSettings machine = test::machineWithRod({1e9, 0.3, 0.0}, 740);
   machine.blow.blank_share = 0.2;
   const accuracy::ElasticErrors e = rodErrors(machine, Level::kElastic), rigid = rodErrors(machine, Level::kLinkage);
   EXPECT_LT(e.whole.rms[1], rigid.whole.rms[1]);
@@ -180,11 +165,11 @@ TEST(ElasticSession, AMissedToolIsNoRing) {
 TEST(ElasticSession, AToolThatCarriesTheRockerIsInTheDeviation) {
   int samples = 0, covered_force = 0, covered_torque = 0, less = 0;
   for (std::uint64_t seed = 760; seed < 772; ++seed) {
-    simulation::MachineSettings machine = machineWithRod({8e8, 0.4, 0.0}, seed);
+    simulation::MachineSettings machine = test::machineWithRod({8e8, 0.4, 0.0}, seed);
     machine.drive.stop_time = 5.0 + 0.02 * static_cast<double>(seed - 760);
     machine.duration = 7.0;
     const simulation::Session session = simulation::recordSession(machine);
-    accuracy::SessionPlayer player(drawingOfRods().mechanism, drawingOfRods().pipeline, {}, session);
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, test::shippedDrawing().pipeline, {}, session);
     std::size_t i = 0;
     player.playTo(1e9, [&](double time, const SampleResult& r) {
       const simulation::CrankTruth& truth = session.truth[i++];

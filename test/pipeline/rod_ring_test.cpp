@@ -9,14 +9,10 @@
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/square.h"
+#include "pipeline/machine_with_rod.h"
 
 namespace hammer_loads {
 namespace {
-
-const Settings& drawingOfRing() {
-  static const Settings settings = *load(configDirectory(), {}).value;
-  return settings;
-}
 
 /// Root mean squares 10 to 40 ms after the blows [N], of Fz.
 struct RingFound {
@@ -51,7 +47,7 @@ RingFound ringOf(const simulation::RodSettings& rod, Level level, const Mechanis
   machine.strike = struck;
   machine.crank.rate = rate;
   const simulation::Session session = simulation::recordSession(machine);
-  PipelineSettings settings = drawingOfRing().pipeline;
+  PipelineSettings settings = test::shippedDrawing().pipeline;
   settings.level = level;
   Pipeline pipeline(mechanism, settings);
   life::LifeSettings counted;
@@ -124,7 +120,7 @@ TEST(RodRing, RigidLevelsSayHowLargeItIs) {
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
-    const RingFound found = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism);
+    const RingFound found = ringOf(rod, Level::kLinkage, test::shippedDrawing().mechanism);
     EXPECT_GT(found.said, 0.7 * found.error);
     EXPECT_LT(found.said, 4.0 * found.error);  // a rod softer than thought rings less
     EXPECT_LT(found.elsewhere, 0.05 * found.said);
@@ -139,18 +135,18 @@ TEST(RodRing, RigidLevelsSayHowLargeItIs) {
 TEST(RodRing, RestitutionIsCovered) {
   for (const simulation::RodSettings& rod : {simulation::RodSettings{1e9, 0.2, 0.0}, {1.4e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
-    const RingFound rigid = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism);
+    const RingFound rigid = ringOf(rod, Level::kLinkage, test::shippedDrawing().mechanism);
     EXPECT_GT(rigid.restitution_bias, 0.03);
     EXPECT_GT(rigid.restitution_covered, 0.88);
     EXPECT_LT(rigid.restitution_said, 0.08);
     EXPECT_GT(rigid.energy_covered, 0.88);
     EXPECT_GT(rigid.impulse_covered, 0.88);
-    const RingFound elastic = ringOf(rod, Level::kElastic, drawingOfRing().mechanism);
+    const RingFound elastic = ringOf(rod, Level::kElastic, test::shippedDrawing().mechanism);
     EXPECT_LT(std::abs(elastic.restitution_bias), 0.02);
     EXPECT_GT(elastic.restitution_covered, 0.88);
     EXPECT_GT(elastic.energy_covered, 0.88);
   }
-  EXPECT_LT(ringOf({}, Level::kLinkage, drawingOfRing().mechanism).restitution_said, 0.025);
+  EXPECT_LT(ringOf({}, Level::kLinkage, test::shippedDrawing().mechanism).restitution_said, 0.025);
 }
 
 /// The pins let go of the rocker before it strikes: slower than a rigid linkage has it, by a crank that runs ahead.
@@ -158,7 +154,7 @@ TEST(RodRing, RestitutionIsCovered) {
 TEST(RodRing, WornPinsThatLetGoOfTheRockerAreInTheBlow) {
   const auto check = [](const simulation::RodSettings& rod, double rate) {
     SCOPED_TRACE(rod.play);
-    const RingFound found = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism, rate);
+    const RingFound found = ringOf(rod, Level::kLinkage, test::shippedDrawing().mechanism, rate);
     EXPECT_GT(found.energy_bias, 0.1);
     EXPECT_GT(found.energy_covered, 0.88);
     EXPECT_GT(found.restitution_bias, 0.05);
@@ -170,11 +166,11 @@ TEST(RodRing, WornPinsThatLetGoOfTheRockerAreInTheBlow) {
   check({1e9, 3.0, 2e-4}, 1000.0);
   check({1e9, 3.0, 5e-4}, 1000.0);
   check({1e9, 1.0, 3e-4}, 500.0);
-  EXPECT_LT(ringOf({}, Level::kLinkage, drawingOfRing().mechanism).energy_said, 0.05);  // 0.045 by the drawing
+  EXPECT_LT(ringOf({}, Level::kLinkage, test::shippedDrawing().mechanism).energy_said, 0.05);  // 0.045 by the drawing
 }
 
 TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
-  const Mechanism& usual = drawingOfRing().mechanism;
+  const Mechanism& usual = test::shippedDrawing().mechanism;
   const RingFound rigid = ringOf({}, Level::kLinkage, usual), elastic = ringOf({1e9, 0.6, 0.0}, Level::kLinkage, usual);
   EXPECT_LT(rigid.said, 0.35 * elastic.said);
   EXPECT_LT(rigid.range_said[0], 0.2);
@@ -185,7 +181,7 @@ TEST(RodRing, ReadingsThatShowNoneLeaveLittleOfIt) {
 
 /// The lever changes within a step of 5 ms.
 TEST(RodRing, IsTheSameByRareReadings) {
-  const Mechanism& usual = drawingOfRing().mechanism;
+  const Mechanism& usual = test::shippedDrawing().mechanism;
   const double often = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual).said,
                rarely = ringOf({1e9, 0.3, 0.0}, Level::kLinkage, usual, 200.0).said;
   EXPECT_NEAR(rarely, often, 0.35 * often);
@@ -198,13 +194,13 @@ TEST(RodRing, OfLivelyRockARigidLevelKnowsNoRestitution) {
   lively.contact_stiffness = 1.2e8, lively.rock_strength = 3e5;
   for (const simulation::RodSettings& rod : {simulation::RodSettings{1e9, 0.6, 0.0}, {5e8, 1.0, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
-    const RingFound rigid = ringOf(rod, Level::kLinkage, drawingOfRing().mechanism, 1000.0, lively);
+    const RingFound rigid = ringOf(rod, Level::kLinkage, test::shippedDrawing().mechanism, 1000.0, lively);
     EXPECT_GT(std::abs(rigid.restitution_bias), 0.1);
     EXPECT_GT(rigid.restitution_covered, 0.9);
     EXPECT_GT(rigid.energy_covered, 0.9);
     EXPECT_NEAR(rigid.restitution_said, 0.29, 0.05);  // anything from 0 to 1
     EXPECT_GT(rigid.said, rigid.error);
-    const RingFound elastic = ringOf(rod, Level::kElastic, drawingOfRing().mechanism, 1000.0, lively);
+    const RingFound elastic = ringOf(rod, Level::kElastic, test::shippedDrawing().mechanism, 1000.0, lively);
     EXPECT_LT(std::abs(elastic.restitution_bias), 0.02);
     EXPECT_GT(elastic.restitution_covered, 0.88);
     EXPECT_GT(elastic.energy_covered, 0.88);
@@ -214,10 +210,10 @@ TEST(RodRing, OfLivelyRockARigidLevelKnowsNoRestitution) {
 
 /// Past the dead centre the linkage stops the rocker within some 10 ms, with more force than at any blow: a rod rings.
 TEST(RodRing, RingsWhereNoToolIsMetAsWell) {
-  simulation::MachineSettings machine = ringingMachine(drawingOfRing().mechanism, {6e8, 0.2, 0.0}, 14.0, 4712);
+  simulation::MachineSettings machine = ringingMachine(test::shippedDrawing().mechanism, {6e8, 0.2, 0.0}, 14.0, 4712);
   machine.blow.blank_share = 0.2;
   const simulation::Session session = simulation::recordSession(machine);
-  Pipeline pipeline(drawingOfRing().mechanism, drawingOfRing().pipeline);
+  Pipeline pipeline(test::shippedDrawing().mechanism, test::shippedDrawing().pipeline);
   struct Found {
     int samples{}, covered{};
     double error{};
@@ -248,8 +244,8 @@ TEST(RodRing, RingsWhereNoToolIsMetAsWell) {
 /// Just before the blow the rod loses its lever: the rocker lags, and the crank that it no longer brakes runs ahead.
 TEST(RodRing, BeginsBeforeTheBlow) {
   const simulation::Session session =
-      simulation::recordSession(ringingMachine(drawingOfRing().mechanism, {5e8, 0.65, 0.0}, 10.0, 4713));
-  Pipeline pipeline(drawingOfRing().mechanism, drawingOfRing().pipeline);
+      simulation::recordSession(ringingMachine(test::shippedDrawing().mechanism, {5e8, 0.65, 0.0}, 10.0, 4713));
+  Pipeline pipeline(test::shippedDrawing().mechanism, test::shippedDrawing().pipeline);
   int samples = 0, covered = 0;
   double error = 0.0, said = 0.0;
   for (std::size_t i = 0; i < session.crank.size(); ++i) {
@@ -273,7 +269,7 @@ TEST(RodRing, LevelElasticCountsItAndItsImpulse) {
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{1e9, 0.2, 0.0}, {6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}}) {
     SCOPED_TRACE(rod.stiffness);
-    const RingFound found = ringOf(rod, Level::kElastic, drawingOfRing().mechanism);
+    const RingFound found = ringOf(rod, Level::kElastic, test::shippedDrawing().mechanism);
     for (const int k : {0, 1}) {
       const double damage = std::pow(1.0 + found.range_error[k], k == 0 ? 3.0 : 5.0);
       EXPECT_GT(damage, 0.7);

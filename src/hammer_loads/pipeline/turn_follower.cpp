@@ -51,6 +51,7 @@ void TurnFollower::recordTo(double from, double to) noexcept {
     const TurnInstant point = rings ? ringing(origin, time) : instant(origin + time, step_->at(time));
     turn_.add(point);
     peak_.of_step = std::max(peak_.of_step, point.wrench.force_z);
+    if (!rings) peak_.of_strike = std::max(peak_.of_strike, point.wrench.force_z);
   }
 }
 
@@ -105,9 +106,9 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const double rate = before.acceleration / before.speed;
   end.pulse = turn_.end(instant(time, before));
   if (peak_.withheld > std::max(peak_.published, peak_.of_step)) end.pulse.reset();
-  peak_ = {};
+  const double of_strike = std::exchange(peak_, {}).of_strike;
   if (end.pulse) {
-    peak_force_ = end.pulse->amplitude;
+    peak_force_ = of_strike > 0.0 ? std::min(of_strike, end.pulse->amplitude) : end.pulse->amplitude;
     const LinksBeside links(*model_, linksAt(*model_, before.position.angle));
     const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
     end.pulse_errors =

@@ -53,7 +53,7 @@ class TurnFollower {
   /// Velocity of the hull at that blow; zero until it is given.
   void hullMovedAtBlow(const TipVelocity& hull) noexcept;
 
-  double peakForce() const noexcept { return peak_force_; }               ///< of the last whole turn [N], 0 before it
+  double peakForce() const noexcept { return peak_force_; }  ///< of the last whole turn's strike [N], 0 before it
   std::uint64_t blows() const noexcept { return turns_ - impossible_; }   ///< since the start
   std::uint64_t impossibleBlows() const noexcept { return impossible_; }  ///< RockerBlow::impossible, not among them
   std::uint64_t blankStrokes() const noexcept { return blank_; }       ///< onto the mirrored branch: no tool was there
@@ -88,6 +88,7 @@ class TurnFollower {
   /// Of Fz over the present turn [N]: of steps to a published sample, to a withheld one, and of the last step.
   struct Peak {
     double published{}, withheld{}, of_step{};
+    double of_strike{};  ///< where no rod rings
   };
   Peak peak_;
 };

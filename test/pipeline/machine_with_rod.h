@@ -1,0 +1,27 @@
+/// The shipped hammer with a rod that gives, at work.
+#pragma once
+
+#include <cstdint>
+
+#include "hammer_loads/settings/load.h"
+#include "hammer_loads/simulation/session.h"
+
+namespace hammer_loads::test {
+
+inline const Settings& shippedDrawing() {
+  static const Settings settings = *load(configDirectory(), {}).value;
+  return settings;
+}
+
+inline simulation::MachineSettings machineWithRod(const simulation::RodSettings& rod, std::uint64_t seed) {
+  simulation::MachineSettings s = simulation::workingMo100();
+  s.hammer = shippedDrawing().mechanism.parameters();
+  s.level = Level::kLinkage;
+  s.duration = 13.0;
+  s.drive.stop_time = 11.5;
+  s.rod = rod;
+  s.seed = seed;
+  return s;
+}
+
+}  // namespace hammer_loads::test
