@@ -194,7 +194,7 @@ ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, cons
   Loads beside = loads(there, drive);
   if (there.state.angle.side == Side::kAfterBlow) beside -= gain_ * beside[kBesideRigid];
   beside -= rigidLoads(there, drive);
-  Instant instant{crankOf(there), {}};
+  Instant instant{crankOf(there), {}, there.state};
   instant.wrench = hullWrench(*model_, drive, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());
   instant.crank.acceleration += beside[kCrank];
   return instant;

@@ -59,6 +59,7 @@ class ElasticFollower {
   struct Instant {
     CrankEstimate crank;
     HullWrench wrench;
+    TwoBodyState bodies;
   };
   Instant at(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
     return instantOf(motionAt(time), drive, hull);
@@ -73,10 +74,8 @@ class ElasticFollower {
     LoadImpulse motion;
     HullWrench doubt;
   };
-  /// Of links and drive [N s, N s, N m s].
-  HullWrench momentumAt(double time, const DriveReaction& drive) const noexcept {
-    return momentum(motionAt(time).state, drive).all;
-  }
+  /// Of links and drive, relative to the hull.
+  LoadImpulse momentum(const TwoBodyState& bodies, const DriveReaction& drive) const noexcept;
   Impulse impulse(const DriveReaction& drive, double from, double to) const noexcept;
   /// Of the links' and the drive's momentum at the sample, standard [N s, N s, N m s].
   HullWrench momentumDeviation(const DriveReaction& drive) const noexcept;
@@ -94,7 +93,6 @@ class ElasticFollower {
   bool isInContact() const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
   LinkMotion linksOf(const TwoBodyState& state) const noexcept;
-  LoadImpulse momentum(const TwoBodyState& state, const DriveReaction& drive) const noexcept;
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;

@@ -1,6 +1,8 @@
 /// How far the pulse of a turn may be off, from blow to blow.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "hammer_loads/hammer/pulse.h"
@@ -33,6 +35,11 @@ class TurnErrors {
   /// constants [N s]; weight: what constants make of the links' weight [N].
   PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow, const MomentumColumns& at_end,
                   const MomentumColumns& weight) const noexcept;
+  /// A ring's peak lies between samples, by its model alone: what it is beyond the highest of them is in doubt.
+  void doubtBetween(double peak, NumberError& error) const noexcept {
+    const double beyond = std::max(0.0, peak - peak_);
+    error.own = std::hypot(error.own, beyond), error.rod = std::hypot(error.rod, beyond);
+  }
 
  private:
   struct Lobe {

@@ -9,6 +9,13 @@
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
+namespace {
+
+constexpr double kRingPart = 5e-4;  // [s] between points of a turn where a rod rings; its peak is by a parabola
+// Numerical: kRingPart
+
+}  // namespace
+
 void TurnFollower::restart() noexcept {
   turn_.abandon();
   peak_ = {};
@@ -33,11 +40,14 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
 TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
   const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
   const ElasticFollower::Instant there = elastic_->at(time, drive, hull_);
-  TurnInstant point = instant(origin + time, there.crank);
-  point.wrench = there.wrench;
-  const HullWrench momentum = elastic_->momentumAt(time, drive);
-  point.momentum.x = momentum.force_x, point.momentum.z = momentum.force_z;
-  return point;
+  const HullWrench momentum = elastic_->momentum(there.bodies, drive).all;
+  const CrankMotion motion = motionOf(there.crank);
+  const HullWrench added = frameWrench(*model_, step_->linksAt(motion.angle), motion.speed, hull_);
+  return {origin + time,
+          there.wrench,
+          {momentum.force_x, momentum.force_z, momentum.torque_y},
+          added.force_x,
+          added.force_z};
 }
 
 /// Points of the turn in (from, to] [s] after the step's start.
@@ -45,7 +55,7 @@ void TurnFollower::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
   const double origin = seconds(step_->start() - epoch_);
   const bool rings = elastic_->ranOverStep();
-  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / (rings ? kRingStep : kPulseStep))));
+  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / (rings ? kRingPart : kPulseStep))));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
     const TurnInstant point = rings ? ringing(origin, time) : instant(origin + time, step_->at(time));
@@ -117,6 +127,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
                      momentumDeviation(*model_, drive, before, links, by_readings)},
                     momentumColumns(*columns_, *model_, before.position.angle, before.speed, doubt.speedAtAngle(rate)),
                     weightColumns(*columns_, *model_, hull_.gravity));
+    if (end.pulse->amplitude > of_strike) errors_.doubtBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
   }
   errors_.begin(end.stamp);
   end.mean_press_force =  // times the impulse, once that is known
