@@ -61,7 +61,8 @@ void TurnFollower::recordTo(double from, double to) noexcept {
     const TurnInstant point = rings ? ringing(origin, time) : instant(origin + time, step_->at(time));
     turn_.add(point);
     peak_.of_step = std::max(peak_.of_step, point.wrench.force_z);
-    if (!rings) peak_.of_strike = std::max(peak_.of_strike, point.wrench.force_z);
+    double& part = rings ? peak_.of_ring : peak_.of_strike;
+    part = std::max(part, point.wrench.force_z);
   }
 }
 
@@ -101,6 +102,26 @@ void TurnFollower::trackErrors(const SampleResult& result) noexcept {
   errors_.sample(result.wrench.force_z, result.deviation, result.rod_ring.force_z, result.load_columns);
 }
 
+/// by_readings: of the crank's covariance, without a rod that may give.
+void TurnFollower::endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& doubt,
+                            const Eigen::Matrix3d& by_readings, TurnEnd& end) noexcept {
+  end.pulse = turn_.end(at);
+  const auto [published, withheld, of_step, of_strike, of_ring] = std::exchange(peak_, {});
+  if (withheld > std::max(published, of_step)) end.pulse.reset();
+  if (!end.pulse) return;
+  const bool is_rings = of_ring > of_strike;
+  peak_force_ = is_rings && of_strike > 0.0 ? of_strike : end.pulse->amplitude;
+  const LinksBeside links(*model_, linksAt(*model_, before.position.angle));
+  const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
+  const MomentumColumns columns = momentumColumns(*columns_, *model_, before.position.angle, before.speed,
+                                                  doubt.speedAtAngle(before.acceleration / before.speed));
+  end.pulse_errors = errors_.end(end.stamp, *end.pulse,
+                                 {momentumDeviation(*model_, drive, before, links, doubt.own),
+                                  momentumDeviation(*model_, drive, before, links, by_readings)},
+                                 columns, weightColumns(*columns_, *model_, hull_.gravity));
+  if (is_rings) errors_.doubtBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
+}
+
 /// The turn ends now; what the blow was shows later.
 void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   TurnEnd& end = pending_end_;
@@ -114,21 +135,7 @@ void TurnFollower::endTurn(const CrankStep::Passage& passage) noexcept {
   const Eigen::Matrix3d by_readings = doubt.own;
   if (!elastic_->runs()) doubt.own(CrankUncertainty::kSpeed, CrankUncertainty::kSpeed) += square(rod_->lackingSpeed());
   const double rate = before.acceleration / before.speed;
-  end.pulse = turn_.end(instant(time, before));
-  if (peak_.withheld > std::max(peak_.published, peak_.of_step)) end.pulse.reset();
-  const double of_strike = std::exchange(peak_, {}).of_strike;
-  if (end.pulse) {
-    peak_force_ = of_strike > 0.0 ? std::min(of_strike, end.pulse->amplitude) : end.pulse->amplitude;
-    const LinksBeside links(*model_, linksAt(*model_, before.position.angle));
-    const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
-    end.pulse_errors =
-        errors_.end(end.stamp, *end.pulse,
-                    {momentumDeviation(*model_, drive, before, links, doubt.own),
-                     momentumDeviation(*model_, drive, before, links, by_readings)},
-                    momentumColumns(*columns_, *model_, before.position.angle, before.speed, doubt.speedAtAngle(rate)),
-                    weightColumns(*columns_, *model_, hull_.gravity));
-    if (end.pulse->amplitude > of_strike) errors_.doubtBetween(end.pulse->amplitude, end.pulse_errors.amplitude);
-  }
+  endPulse(instant(time, before), before, doubt, by_readings, end);
   errors_.begin(end.stamp);
   end.mean_press_force =  // times the impulse, once that is known
       last_blow_ ? 1.0 / seconds(end.stamp - *last_blow_) : std::numeric_limits<double>::quiet_NaN();

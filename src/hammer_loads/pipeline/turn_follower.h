@@ -65,6 +65,8 @@ class TurnFollower {
   void countBackward(const CrankStep::Passage& passage) noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
+  void endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& doubt,
+                const Eigen::Matrix3d& by_readings, TurnEnd& end) noexcept;
   void trackErrors(const SampleResult& result) noexcept;
   TurnInstant instant(double time, const CrankEstimate& crank) const noexcept;
   TurnInstant ringing(double origin, double time) const noexcept;
@@ -88,7 +90,7 @@ class TurnFollower {
   /// Of Fz over the present turn [N]: of steps to a published sample, to a withheld one, and of the last step.
   struct Peak {
     double published{}, withheld{}, of_step{};
-    double of_strike{};  ///< where no rod rings
+    double of_strike{}, of_ring{};  ///< of points where no rod rings, and where one does
   };
   Peak peak_;
 };
