@@ -248,10 +248,6 @@ PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, dou
   return pins;
 }
 
-double ElasticFollower::speedBeside() const noexcept {
-  return std::hypot(filter().motion().state.beside_speed, filter().deviation(RodFilter::kBesideSpeed));
-}
-
 double ElasticFollower::strikingSpeed() const noexcept {
   const double inertia = filter().drive(filter().motion()).inertia;
   return filter().rockerBefore() / blowInertia(model_->mechanism(), model_->level(), inertia).u_before;

@@ -42,8 +42,6 @@ class ElasticFollower {
   /// While it runs: with links as the spring has them. near_blow: transmission angle below which they are flagged
   /// [rad]; angle_deviation: of the crank [rad].
   PinReactions pins(const HullMotion& hull, double near_blow, double angle_deviation) const noexcept;
-  /// Of the rocker's speed beside a rigid rod's and its standard deviation the root of the squares [rad/s].
-  double speedBeside() const noexcept;
   /// While it runs: of a crank whose rigid rod moves the rocker as it is before the blow [rad/s].
   double strikingSpeed() const noexcept;
   /// Of the blow that was struck while it runs: the rocker's speed at the tool and its restitution, as a crank would
@@ -69,13 +67,13 @@ class ElasticFollower {
     return instantOf(filter().between(length_), drive, hull);
   }
   bool isBesideBlowAt(double time) const noexcept;
+  /// Of links and drive, relative to the hull.
+  LoadImpulse momentum(const TwoBodyState& bodies, const DriveReaction& drive) const noexcept;
   /// As motionImpulse(), the jump at the blow left out likewise; doubt: by a restitution that is not known better.
   struct Impulse {
     LoadImpulse motion;
     HullWrench doubt;
   };
-  /// Of links and drive, relative to the hull.
-  LoadImpulse momentum(const TwoBodyState& bodies, const DriveReaction& drive) const noexcept;
   Impulse impulse(const DriveReaction& drive, double from, double to) const noexcept;
   /// Of the links' and the drive's momentum at the sample, standard [N s, N s, N m s].
   HullWrench momentumDeviation(const DriveReaction& drive) const noexcept;

@@ -183,7 +183,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
             : ElasticFollower::Beside{{}, rod_.deviation(links.here.links, result_.crank.speed)};
   result_.rod_ring = rod.deviation;
   result_.contact_doubt = contactDoubt(links.here.links, drive);
-  result_.rod_momentum = rockerWrench(mechanism_, links.here.links, gives ? elastic_.speedBeside() : rod_.speed());
+  result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());
   const CrankTracker& tracker = crank_.tracker();
   const double of_angle = tracker.readingShowsSide() ? 0.0 : result_.deviation.angle;

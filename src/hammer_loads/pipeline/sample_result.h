@@ -56,7 +56,7 @@ struct SampleResult {
   CrankEstimate crank;
   CrankUncertainty doubt;    ///< of the crank's motion; zero where the estimator has none
   LoadColumns load_columns;  ///< of the wrench
-  HullWrench rod_momentum;   ///< that the rocker has beside a rigid rod's, as far as is not known [N s, N m s]
+  HullWrench rod_momentum;  ///< that the rocker may have beside a rigid rod's, where no spring is followed [N s, N m s]
   HullWrench contact_doubt;  ///< as below, of where it is not known whether the tool was met
   HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
   HullDeviation deviation;   ///< at the sample, with what the hull's motion adds
