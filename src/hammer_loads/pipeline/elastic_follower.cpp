@@ -29,6 +29,12 @@ constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of like
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 // Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
 
+/// The rocker where it is: lively rock throws it back by a tenth of a radian.
+LinkMotion withRocker(LinkMotion rigid, double beside) noexcept {
+  rigid.psi = rigid.psi * Planar{std::cos(beside), std::sin(beside)};
+  return rigid;
+}
+
 /// One that was never struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
@@ -110,18 +116,11 @@ CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {
   return crank;
 }
 
-/// The rocker where it is: lively rock throws it back by a tenth of a radian.
-LinkMotion ElasticFollower::linksOf(const TwoBodyState& s) const noexcept {
-  LinkMotion links = filter().bodies().links(s.angle);
-  links.psi = links.psi * Planar{std::cos(s.beside), std::sin(s.beside)};
-  return links;
-}
-
 ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const DriveReaction& drive) const noexcept {
   const TwoBodies& bodies = filter().bodies();
-  const LinkMotion links = linksOf(m.state);
+  const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
   const TwoBodyDrive by = filter().drive(m);
-  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, bodies.links(m.state.angle));
+  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, rigid);
   const HullWrench w =
       hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), by.gravity);
   Loads loads;
@@ -201,7 +200,7 @@ ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, cons
 }
 
 LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const DriveReaction& drive) const noexcept {
-  const LinkMotion links = linksOf(s);
+  const LinkMotion links = withRocker(filter().bodies().links(s.angle), s.beside);
   const HullWrench minus =
       hullWrenchOf(model_->mechanism(), links, filter().bodies().linkSpeeds(s, links), Gravity{0.0, 0.0});
   const double drive_y = drive.by_crank * s.speed;
@@ -236,7 +235,7 @@ HullWrench ElasticFollower::momentumDeviation(const DriveReaction& drive) const 
 PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, double angle_deviation) const noexcept {
   const RodMotion& m = filter().motion();
   const TwoBodies& bodies = filter().bodies();
-  const LinkMotion rigid = bodies.links(m.state.angle), links = linksOf(m.state);
+  const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
   TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, rigid);
   const double beside = a.rocker - rigid.rocker.u * a.crank - rigid.rocker.du * square(m.state.speed);
   a.crank -= gain_[kCrank] * beside;

@@ -90,7 +90,6 @@ class ElasticFollower {
   Instant instantOf(const RodMotion& motion, const DriveReaction& drive, const HullMotion& hull) const noexcept;
   bool isInContact() const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
-  LinkMotion linksOf(const TwoBodyState& state) const noexcept;
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;
