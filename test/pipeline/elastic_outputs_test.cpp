@@ -99,13 +99,11 @@ TEST(ElasticOutputs, BetweenSamplesTheRodIsASpringToo) {
     accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     std::vector<WrenchOutput> outputs;
     std::vector<double> times;
-    auto blow = session.blows.begin();
     player.playTo(10.0, [&](double, const SampleResult& result) {
       if (result.refusal) return;
       for (const WrenchOutput& output : result.outputs) {
         const double time = seconds(output.stamp - machine.start_stamp);
-        while (std::next(blow) != session.blows.end() && std::next(blow)->time <= time) ++blow;
-        if (time < 4.0 || output.stamp == result.stamp || time > blow->time + 0.040) continue;
+        if (time < 4.0 || output.stamp == result.stamp || accuracy::sinceBlow(session.blows, time) > 0.040) continue;
         outputs.push_back(output), times.push_back(time);
       }
     });
@@ -113,7 +111,7 @@ TEST(ElasticOutputs, BetweenSamplesTheRodIsASpringToo) {
     std::array<accuracy::FigureErrors, 3> errors;
     accuracy::FigureErrors right;
     for (std::size_t i = 0; i < outputs.size(); ++i) {
-      if (truth[i].tool_force != 0.0 || truth[i].retainer_force != 0.0) continue;
+      if (truth[i].touches()) continue;
       const Eigen::Vector3d error = vectorOf(outputs[i].wrench) - loadOf(truth[i]);
       const Eigen::Vector3d said = vectorOf(outputs[i].deviation.wrench);
       for (std::size_t k = 0; k < 3; ++k)
@@ -143,13 +141,12 @@ TEST(ElasticOutputs, PinForcesHaveTheRing) {
     accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     Errors errors;
     std::size_t sample = 0;
-    auto blow = session.blows.begin();
     player.playTo(10.0, [&](double time, const SampleResult& result) {
       const simulation::CrankTruth& truth = session.truth[sample++];
-      while (std::next(blow) != session.blows.end() && std::next(blow)->time <= time) ++blow;
       if (time < 4.0 || result.refusal || result.beside_blow || result.pins.near_blow) return;
       const PinForce& c = result.pins.rod_on_rocker;
-      const double error = std::hypot(c.x, c.z) - std::abs(truth.rod_force), since = time - blow->time;
+      const double error = std::hypot(c.x, c.z) - std::abs(truth.rod_force),
+                   since = accuracy::sinceBlow(session.blows, time);
       if (truth.angle > kPi) errors.before.add(error, 0.0);
       if (truth.angle > kPi || since < 0.006 || since > 0.040) return;
       errors.ring.add(error, 0.0);
@@ -174,11 +171,9 @@ TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
     accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
     accuracy::FigureErrors speed;
     std::size_t sample = 0;
-    auto blow = session.blows.begin();
     player.playTo(10.0, [&](double time, const SampleResult& result) {
       const simulation::CrankTruth& truth = session.truth[sample++];
-      while (std::next(blow) != session.blows.end() && std::next(blow)->time <= time) ++blow;
-      const double since = time - blow->time;
+      const double since = accuracy::sinceBlow(session.blows, time);
       if (time < 4.0 || result.refusal || result.beside_blow || since < 0.003 || since > 0.030) return;
       speed.add(result.links.rocker_speed - truth.rocker_speed, 0.0);
     });
@@ -253,7 +248,7 @@ TEST(ElasticOutputs, ARingBetweenSparseSamplesIsCounted) {
     life::ExactCycles fine, sparse;
     int step = 0;
     for (const simulation::CrankTruth& truth : simulation::truthAt(machine, times)) {
-      if (truth.tool_force != 0.0 || truth.retainer_force != 0.0) continue;
+      if (truth.touches()) continue;
       fine.add(truth.load.force_z);
       if (step++ % 50 == 0) sparse.add(truth.load.force_z);
     }

@@ -7,24 +7,17 @@
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/session.h"
 #include "hammer_loads/util/constants.h"
+#include "pipeline/machine_with_rod.h"
 
 namespace hammer_loads {
 namespace {
 
-const Settings& settingsOfRods() {
-  static const Settings settings = *load(configDirectory(), {}).value;
-  return settings;
-}
-
 /// Stiffness 2e8 to 1e10 N/m, damping ratio 0.2 to 3, a third of them without play, the others up to 0.5 mm.
 simulation::MachineSettings drawnMachine(std::mt19937_64& random, std::uint64_t seed) {
   std::uniform_real_distribution<double> part(0.0, 1.0);
-  simulation::MachineSettings s = simulation::workingMo100();
-  s.hammer = settingsOfRods().mechanism.parameters();
-  s.level = Level::kLinkage;
+  simulation::MachineSettings s = test::machineWithRod({}, seed);
   s.duration = 14.0;
   s.drive.stop_time = 20.0;
-  s.seed = seed;
   s.rod.stiffness = 2e8 * std::pow(50.0, part(random));
   s.rod.damping_ratio = 0.2 * std::pow(15.0, part(random));
   s.rod.play = seed % 3 == 0 ? 0.0 : 5e-4 * part(random);
@@ -35,10 +28,10 @@ simulation::MachineSettings drawnMachine(std::mt19937_64& random, std::uint64_t 
 
 /// The texts of all warnings, one line each, but for that of the pose.
 std::string heardOf(const simulation::MachineSettings& machine, Level level) {
-  PipelineSettings pipeline_settings = settingsOfRods().pipeline;
+  PipelineSettings pipeline_settings = test::shippedDrawing().pipeline;
   pipeline_settings.level = level;
   const simulation::Session session = simulation::recordSession(machine);
-  Pipeline pipeline(settingsOfRods().mechanism, pipeline_settings);
+  Pipeline pipeline(test::shippedDrawing().mechanism, pipeline_settings);
   for (const simulation::CrankReading& reading : session.crank)
     pipeline.crankSample(reading.stamp, {reading.angle, reading.speed});
   std::string text;
@@ -120,7 +113,7 @@ TEST(RodWarnings, ARigidRodIsNotBlamed) {
 TEST(RodWarnings, WhatNoRodMakesIsNamedBesideIt) {
   const auto heard = [](double zero, double eccentricity) {
     simulation::MachineSettings machine = simulation::workingMo100();
-    machine.hammer = settingsOfRods().mechanism.parameters();
+    machine.hammer = test::shippedDrawing().mechanism.parameters();
     machine.level = Level::kLinkage;
     machine.duration = 8.0;
     machine.drive.start_time = 0.1, machine.drive.stop_time = 20.0;

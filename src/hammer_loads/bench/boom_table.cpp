@@ -86,7 +86,6 @@ void takeWorst(const BoomErrors& e, BoomRow& row) {
 }
 
 std::string percent(double part) { return std::isfinite(part) ? format("%.1f %%", 100.0 * part) : "not known"; }
-std::string number(double value) { return std::isfinite(value) ? format("%.4g", value) : "null"; }
 
 }  // namespace
 
@@ -137,8 +136,8 @@ std::string json(const std::vector<BoomRow>& rows) {
         "\"rms_x\": %.4g, \"rms_force\": %.4g, \"worst_force\": %.4g, \"covered_wrench\": %.4g, "
         "\"life_force\": %s, \"life_torque\": %s, \"life_section\": %s}",
         &r == rows.data() ? "" : ",", r.machine.c_str(), r.sensors.c_str(), r.torque, r.section, r.moment, r.force_z,
-        r.worst_z, r.energy, number(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force, r.covered_wrench,
-        json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());
+        r.worst_z, r.energy, jsonNumber(r.contact).c_str(), r.covered, r.force_x, r.force, r.worst_force,
+        r.covered_wrench, json(r.life_force).c_str(), json(r.life_torque).c_str(), json(r.life_section).c_str());
   return text + "\n]";
 }
 

@@ -26,7 +26,6 @@ Error worstOf(const CostRow& row) {
 bool isLoad(const CostRow& row) { return row.group == "printed" || row.group == "scalar" || row.group == "batch"; }
 
 std::string shown(double error) { return std::isfinite(error) ? format("%.1e", error) : "no number"; }
-std::string shownJson(double error) { return std::isfinite(error) ? format("%.4g", error) : "null"; }
 
 std::string costCells(const CostRow& row) {
   return format("| %s | %s | %.1f | %.0f %% | %.3g million |", row.group.c_str(), row.name.c_str(), row.cost.median,
@@ -96,10 +95,10 @@ std::string json(const std::vector<CostRow>& rows) {
     text += format("%s\n  {\"group\": \"%s\", \"name\": \"%s\", \"ns\": %.5g, \"spread\": %.3g, \"per_second\": %.5g, ",
                    &row == rows.data() ? "" : ",", row.group.c_str(), row.name.c_str(), row.cost.median,
                    row.cost.spread, 1e9 / row.cost.median);
-    text += "\"left_out\": " + (row.left_out ? shownJson(*row.left_out) : "null") + ", \"errors\": {";
+    text += "\"left_out\": " + (row.left_out ? jsonNumber(*row.left_out) : "null") + ", \"errors\": {";
     for (const CaseError& c : row.errors) {
       text += format("%s\n    \"%s\": {\"of_peak\": %s, \"relative\": %s}", &c == row.errors.data() ? "" : ",",
-                     c.name.c_str(), shownJson(c.error.of_peak).c_str(), shownJson(c.error.relative).c_str());
+                     c.name.c_str(), jsonNumber(c.error.of_peak).c_str(), jsonNumber(c.error.relative).c_str());
     }
     text += "}}";
   }

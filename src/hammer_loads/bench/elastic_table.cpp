@@ -22,8 +22,6 @@ std::array<double, 3> valuesOf(const CrankTruth& t) {
   return {t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
 }
 
-bool touches(const CrankTruth& t) { return t.tool_force != 0.0 || t.retainer_force != 0.0; }
-
 /// Gathers one part of the turn.
 struct Gathering {
   std::array<double, 3> square{}, truth_square{}, within{};
@@ -52,13 +50,6 @@ struct Gathering {
   }
 };
 
-/// Since the last blow's first touch [s]; infinite before the first.
-double sinceBlow(const std::vector<simulation::BlowTruth>& blows, double time) {
-  const auto next = std::upper_bound(blows.begin(), blows.end(), time,
-                                     [](double t, const simulation::BlowTruth& b) { return t < b.time; });
-  return next == blows.begin() ? kInfinity : time - std::prev(next)->time;
-}
-
 ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& session, const MachineSettings& machine) {
   const std::vector<CrankTruth> truth = simulation::truthAt(machine, run.accepted);
   Gathering whole, strike, after;
@@ -70,7 +61,7 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
     if (!isJudged(t.time)) continue;
     ++readings;
     with_touch.addTruth(t.load.force_z);
-    if (!touches(t)) life.addTruth(t.load.force_z);
+    if (!t.touches()) life.addTruth(t.load.force_z);
   }
   auto published = run.wrenches.begin();
   auto blow = session.blows.begin();
@@ -86,7 +77,7 @@ ElasticErrors judgeParts(const SessionRun& run, const simulation::Session& sessi
     ++wrenches;
     const life::LoadError said = life::LoadError::of(wrench.force_z_deviation, wrench.force_z_common);
     with_touch.addEstimate(wrench.force_z, said);
-    if (!touches(truth[k])) life.addEstimate(wrench.force_z, said);
+    if (!truth[k].touches()) life.addEstimate(wrench.force_z, said);
     whole.add(wrench, values);
     if (truth[k].angle >= kPi) strike.add(wrench, values);
     const double since = sinceBlow(session.blows, time);
@@ -109,6 +100,12 @@ void makeTogether(MachineSettings& s) {
 }
 
 }  // namespace
+
+double sinceBlow(const std::vector<simulation::BlowTruth>& blows, double time) {
+  const auto next = std::upper_bound(blows.begin(), blows.end(), time,
+                                     [](double t, const simulation::BlowTruth& b) { return t < b.time; });
+  return next == blows.begin() ? kInfinity : time - std::prev(next)->time;
+}
 
 std::vector<ElasticKind> elasticKinds(const HammerParameters& hammer) {
   MachineSettings base = simulation::workingMo100();

@@ -9,6 +9,7 @@
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/machine_settings.h"
+#include "hammer_loads/simulation/working_machine.h"
 
 namespace hammer_loads::accuracy {
 
@@ -35,6 +36,9 @@ struct ElasticRow {
   Level level{};
   ElasticErrors errors;
 };
+
+/// Since the last blow's first touch [s]; infinite before the first.
+double sinceBlow(const std::vector<simulation::BlowTruth>& blows, double time);
 
 /// A machine of the elastic rows.
 struct ElasticKind {

@@ -29,9 +29,8 @@ LifeFigure LifeError::figure() const {
 }
 
 std::string json(const LifeFigure& figure) {
-  const auto number = [](double value) { return std::isfinite(value) ? format("%.4g", value) : std::string("null"); };
-  return "{\"error\": " + number(figure.error) + ", \"own\": " + number(figure.own) +
-         ", \"common\": " + number(figure.common) + "}";
+  return "{\"error\": " + jsonNumber(figure.error) + ", \"own\": " + jsonNumber(figure.own) +
+         ", \"common\": " + jsonNumber(figure.common) + "}";
 }
 
 }  // namespace hammer_loads::accuracy

@@ -55,7 +55,7 @@ struct Judge {
       bool touches = false;
       for (int i = 0; i < kInMean; ++i, ++at) {
         right += Eigen::Vector3d(at->load.force_x, at->load.force_z, at->load.torque_y + at->drive_reaction_y);
-        touches = touches || at->tool_force != 0.0 || at->retainer_force != 0.0;
+        touches = touches || at->touches();
       }
       if (touches) continue;
       right /= kInMean;

@@ -3,19 +3,19 @@
 #include <cmath>
 
 namespace hammer_loads {
-namespace {
 
-/// Of the impulses, by the readings.
-void addOwn(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow, BlowErrors& errors) noexcept {
+BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow) noexcept {
+  BlowErrors errors;
+  errors.restitution.own = blow.restitution_deviation;
+  errors.energy.own = blow.energy_deviation;
   const auto add = [&](const CrankBlow& other) { addDoubt(blow, measuredBlow(model, other), errors); };
   CrankBlow faster = crank, rebound = crank, heavier = crank;
   faster.speed += crank.speed_deviation;
   rebound.factor += crank.factor_deviation;
   heavier.drive_inertia *= 1.0 + crank.inertia_deviation;
   add(faster), add(rebound), add(heavier);
+  return errors;
 }
-
-}  // namespace
 
 void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept {
   errors.tool_impulse_z.own = std::hypot(errors.tool_impulse_z.own, other.tool_impulse_z - blow.tool_impulse_z);
@@ -25,7 +25,7 @@ void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& error
 
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
                       const BlowColumns& columns, RockerBlow& blow) noexcept {
-  BlowErrors errors;
+  BlowErrors errors = ownErrors(model, crank, blow);
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {
     const Eigen::Index of_hammer = i - ConstantErrors::kTable;
     const bool is_hammers = of_hammer >= 0 && of_hammer < static_cast<Eigen::Index>(hammer.models().size());
@@ -42,9 +42,6 @@ BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const
     errors.tool_impulse_z.columns[i] = (there.tool_impulse_z - blow.tool_impulse_z) / step;
     errors.support_impulse_z.columns[i] = (there.support_impulse_z - blow.support_impulse_z) / step;
   }
-  errors.restitution.own = blow.restitution_deviation;
-  errors.energy.own = blow.energy_deviation;
-  addOwn(model, crank, blow, errors);
   blow.restitution_deviation = errors.restitution.deviation();
   blow.energy_deviation = errors.energy.deviation();
   return errors;

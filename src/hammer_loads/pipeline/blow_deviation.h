@@ -15,6 +15,9 @@ using BlowColumns = ByConstants<3, ConstantErrors::kSize>;
 BlowErrors blowErrors(const WrenchColumns& hammer, const HullModel& model, const CrankBlow& crank,
                       const BlowColumns& columns, RockerBlow& blow) noexcept;
 
+/// The part of these that readings make.
+BlowErrors ownErrors(const HullModel& model, const CrankBlow& crank, const RockerBlow& blow) noexcept;
+
 /// Of the impulses: what they are in another blow that cannot be ruled out, independent of all else.
 void addDoubt(const RockerBlow& blow, const RockerBlow& other, BlowErrors& errors) noexcept;
 

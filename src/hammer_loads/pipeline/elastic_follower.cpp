@@ -35,6 +35,11 @@ LinkMotion withRocker(LinkMotion rigid, double beside) noexcept {
   return rigid;
 }
 
+/// x'' [rad/s2]: of the rocker beside a rigid rod's at the crank's acceleration.
+double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
+  return a.rocker - links.rocker.u * a.crank - links.rocker.du * square(s.speed);
+}
+
 /// One that was never struck is contradicted long before.
 bool isOver(const RodFilter& rod) noexcept {
   const TwoBodyState& s = rod.motion().state;
@@ -124,8 +129,7 @@ ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const DriveRea
   const HullWrench w =
       hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), by.gravity);
   Loads loads;
-  loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank,
-      a.rocker - links.rocker.u * a.crank - links.rocker.du * square(m.state.speed);
+  loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank, besideRigidly(m.state, a, links);
   return loads;
 }
 
@@ -184,15 +188,19 @@ ElasticFollower::Beside ElasticFollower::beside(const DriveReaction& drive, doub
     gain_ = errors.col(kBesideRigid) / (errors(kBesideRigid, kBesideRigid) + expected);
   }
   const Loads variance = errors.diagonal() - gain_.cwiseProduct(errors.col(kBesideRigid));
-  mean -= gain_ * mean[kBesideRigid] + rigidLoads(filter().motion(), drive);
+  mean = besideRigid(filter().motion(), drive, mean);
   return {wrenchOf(mean.head<3>()), wrenchOf(variance.head<3>().cwiseMax(0.0).cwiseSqrt()), mean[kCrank]};
+}
+
+ElasticFollower::Loads ElasticFollower::besideRigid(const RodMotion& m, const DriveReaction& drive,
+                                                    Loads loads) const noexcept {
+  if (m.state.angle.side == Side::kAfterBlow) loads -= gain_ * loads[kBesideRigid];
+  return loads - rigidLoads(m, drive);
 }
 
 ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, const DriveReaction& drive,
                                                     const HullMotion& hull) const noexcept {
-  Loads beside = loads(there, drive);
-  if (there.state.angle.side == Side::kAfterBlow) beside -= gain_ * beside[kBesideRigid];
-  beside -= rigidLoads(there, drive);
+  const Loads beside = besideRigid(there, drive, loads(there, drive));
   Instant instant{crankOf(there), {}, there.state};
   instant.wrench = hullWrench(*model_, drive, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());
   instant.crank.acceleration += beside[kCrank];
@@ -201,8 +209,7 @@ ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, cons
 
 LoadImpulse ElasticFollower::momentum(const TwoBodyState& s, const DriveReaction& drive) const noexcept {
   const LinkMotion links = withRocker(filter().bodies().links(s.angle), s.beside);
-  const HullWrench minus =
-      hullWrenchOf(model_->mechanism(), links, filter().bodies().linkSpeeds(s, links), Gravity{0.0, 0.0});
+  const HullWrench minus = hullWrenchOf(model_->mechanism(), links, filter().bodies().linkSpeeds(s, links), Gravity{});
   const double drive_y = drive.by_crank * s.speed;
   return {-1.0 * minus + HullWrench{0.0, 0.0, drive_y}, drive_y};
 }
@@ -237,7 +244,7 @@ PinReactions ElasticFollower::pins(const HullMotion& hull, double near_blow, dou
   const TwoBodies& bodies = filter().bodies();
   const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
   TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), filter().drive(m), m.state, rigid);
-  const double beside = a.rocker - rigid.rocker.u * a.crank - rigid.rocker.du * square(m.state.speed);
+  const double beside = besideRigidly(m.state, a, rigid);
   a.crank -= gain_[kCrank] * beside;
   a.rocker -= (rigid.rocker.u * gain_[kCrank] + gain_[kBesideRigid]) * beside;
   const NearBlow near(near_blow, angle_deviation);
@@ -266,7 +273,9 @@ std::optional<CrankBlow> ElasticFollower::blow() const noexcept {
   return blow;
 }
 
-bool ElasticFollower::isInContact() const noexcept { return filter().sinceBlow() < kContact; }
+bool ElasticFollower::isBesideBlow() const noexcept {
+  return filter().hasStruck() ? filter().sinceBlow() < kContact : mayTouch(filter().motion());
+}
 
 bool ElasticFollower::isBesideBlowAt(double time) const noexcept {
   const RodMotion there = motionAt(time);

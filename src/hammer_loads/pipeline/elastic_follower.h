@@ -48,7 +48,7 @@ class ElasticFollower {
   /// feel them whose rod takes the rocker up at once.
   std::optional<CrankBlow> blow() const noexcept;
   /// Contact lasts, or may have begun or not.
-  bool isBesideBlow() const noexcept { return filter().hasStruck() ? isInContact() : mayTouch(filter().motion()); }
+  bool isBesideBlow() const noexcept;
 
   /// It runs, and has over the step to the crank's last sample: what follows is within that, times after its start [s].
   bool ranOverStep() const noexcept { return runs() && best_->hasMoved(); }
@@ -88,9 +88,10 @@ class ElasticFollower {
   RodMotion motionAt(double time) const noexcept { return time < length_ ? filter().between(time) : filter().motion(); }
   CrankEstimate crankOf(const RodMotion& motion) const noexcept;
   Instant instantOf(const RodMotion& motion, const DriveReaction& drive, const HullMotion& hull) const noexcept;
-  bool isInContact() const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
+  /// Of these, weighed, what is beside a rigid rod's.
+  Loads besideRigid(const RodMotion& motion, const DriveReaction& drive, Loads loads) const noexcept;
   Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;
   LoadCovariance covariance(const DriveReaction& drive, const Loads& here) const noexcept;

@@ -15,6 +15,16 @@ constexpr double kKnown = gate::kRare;  // deviations from the blow: no reading 
 
 }  // namespace
 
+/// The hull's channels at the sample that ends a step.
+struct LifeFollower::StepEnd {
+  explicit StepEnd(const SampleResult& result) noexcept {
+    wrenchValues(result.wrench, value.data());
+    wrenchValues(result.deviation.wrench, deviation.data());
+    wrenchValues(result.deviation.common, common.data());
+  }
+  std::array<double, kHullChannels> value, deviation, common;
+};
+
 LifeFollower::LifeFollower(const Pipeline& pipeline, const life::LifeSettings& settings)
     : pipeline_(&pipeline),
       boom_(pipeline.boom() ? &pipeline.boom()->boom() : nullptr),
@@ -70,12 +80,11 @@ void LifeFollower::count(const SampleResult& result) noexcept {
 }
 
 void LifeFollower::followStep(const SampleResult& result) noexcept {
+  if (pipeline_->elastic().ranOverStep()) return followRing(result);
   const CrankStep& step = pipeline_->crank().step();
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   const StepLoad load{pipeline_->model(), drive, result.hull.motion};
-  if (pipeline_->elastic().ranOverStep()) return followRing(result);
-  std::array<double, kHullChannels> end;
-  wrenchValues(result.wrench, end.data());
+  const StepEnd end(result);
   forEachStepExtreme(
       load, step,
       [&](StepPlace place, CrankEstimate crank) {
@@ -98,10 +107,8 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
   const CrankStep& step = pipeline_->crank().step();
   const ElasticFollower& rod = pipeline_->elastic();
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
-  std::array<double, kHullChannels> end, expected, end_deviation, end_common;
-  wrenchValues(result.wrench, end.data());
-  wrenchValues(result.deviation.wrench, end_deviation.data());
-  wrenchValues(result.deviation.common, end_common.data());
+  const StepEnd end(result);
+  std::array<double, kHullChannels> expected;
   wrenchValues(rod.expected(drive, result.hull.motion).wrench, expected.data());
   const auto count = static_cast<int>(std::ceil(step.length() / kRingStep));
   const CrankStep::Passage* passage = step.begin();
@@ -114,13 +121,12 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
     endTurnsUntil(time);
     if (rod.isBesideBlowAt(time)) continue;
     wrenchValues(rod.at(time, drive, result.hull.motion).wrench, between_.data());
-    for (std::size_t k = 0; k < end.size(); ++k) {
-      const double own = life::LoadError::at(k, deviations_.data(), common_.data()).own +
-                         life::LoadError::at(k, end_deviation.data(), end_common.data()).own;
-      if (!(std::abs(expected[k] - end[k]) <= own))
-        between_[k] = std::clamp(between_[k], std::min(values_[k], end[k]), std::max(values_[k], end[k]));
-      deviations_there_[k] = std::max(deviations_[k], end_deviation[k]);
-      common_there_[k] = std::max(common_[k], end_common[k]);
+    for (std::size_t k = 0; k < kHullChannels; ++k) {
+      const auto [least, greatest] = std::minmax(values_[k], end.value[k]);
+      if (!(std::abs(expected[k] - end.value[k]) <= ownOfBoth(k, end)))
+        between_[k] = std::clamp(between_[k], least, greatest);
+      deviations_there_[k] = std::max(deviations_[k], end.deviation[k]);
+      common_there_[k] = std::max(common_[k], end.common[k]);
     }
     countBetween(step.stampAt(time));
   }
@@ -145,36 +151,38 @@ bool LifeFollower::moveToKnown(StepPlace& place, CrankEstimate& crank) const noe
 /// published there, but for constants, which are off on both ways alike; else as far as both have it: where a sample
 /// corrects the path, what lies between is of neither.
 void LifeFollower::keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place, const CrankEstimate& crank,
-                                       const std::array<double, kHullChannels>& end) noexcept {
-  std::copy_n(deviations_.begin(), end.size(), deviations_there_.begin());
-  std::copy_n(common_.begin(), end.size(), common_there_.begin());
+                                       const StepEnd& end) noexcept {
+  std::copy_n(deviations_.begin(), kHullChannels, deviations_there_.begin());
+  std::copy_n(common_.begin(), kHullChannels, common_there_.begin());
   const auto isWithin = [&](std::size_t i) {
-    return between_[i] >= std::min(values_[i], end[i]) && between_[i] <= std::max(values_[i], end[i]);
+    return between_[i] >= std::min(values_[i], end.value[i]) && between_[i] <= std::max(values_[i], end.value[i]);
   };
   bool all_within = true;
-  for (std::size_t i = 0; i < end.size(); ++i) all_within = all_within && isWithin(i);
+  for (std::size_t i = 0; i < kHullChannels; ++i) all_within = all_within && isWithin(i);
   if (all_within) return;
   const CrankStep& step = pipeline_->crank().step();
   const HullDeviation there = pipeline_->stepDeviation(place.time, crank);
   wrenchValues(there.wrench, deviations_there_.data());
   wrenchValues(there.common, common_there_.data());
-  std::array<double, kHullChannels> forward, back, end_deviation, end_common;
-  wrenchValues(pipeline_->result().deviation.wrench, end_deviation.data());
-  wrenchValues(pipeline_->result().deviation.common, end_common.data());
+  std::array<double, kHullChannels> forward, back;
   const std::optional<CrankWays> ways = place.ways(step);
   if (ways) {
     wrenchValues(load.at(ways->forward), forward.data());
     wrenchValues(load.at(ways->back), back.data());
   }
-  for (std::size_t i = 0; i < end.size(); ++i) {
-    const double least = std::min(values_[i], end[i]), greatest = std::max(values_[i], end[i]);
-    const double own = life::LoadError::at(i, deviations_.data(), common_.data()).own +
-                       life::LoadError::at(i, end_deviation.data(), end_common.data()).own;
-    if (ways && std::abs(forward[i] - back[i]) <= own) continue;
+  for (std::size_t i = 0; i < kHullChannels; ++i) {
+    const auto [least, greatest] = std::minmax(values_[i], end.value[i]);
+    if (ways && std::abs(forward[i] - back[i]) <= ownOfBoth(i, end)) continue;
     const double above = ways ? std::max(0.0, std::min(forward[i], back[i]) - greatest) : 0.0;
     const double below = ways ? std::max(0.0, least - std::max(forward[i], back[i])) : 0.0;
     between_[i] = std::clamp(between_[i], least - below, greatest + above);
   }
+}
+
+/// Deviations of a channel at both ends of the step, but for constants.
+double LifeFollower::ownOfBoth(std::size_t i, const StepEnd& end) const noexcept {
+  return life::LoadError::at(i, deviations_.data(), common_.data()).own +
+         life::LoadError::at(i, end.deviation.data(), end.common.data()).own;
 }
 
 /// Whether it was a blow shows later.

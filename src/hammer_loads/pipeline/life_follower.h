@@ -45,13 +45,15 @@ class LifeFollower {
   std::optional<StampNs> since() const noexcept { return since_; }  ///< first sample counted
 
  private:
+  struct StepEnd;
   void count(const SampleResult& result) noexcept;
   void followStep(const SampleResult& result) noexcept;
   void followRing(const SampleResult& result) noexcept;
   void countBetween(StampNs stamp) noexcept;
   bool moveToKnown(StepPlace& place, CrankEstimate& crank) const noexcept;
   void keepWhatBothEndsSay(const StepLoad& load, const StepPlace& place, const CrankEstimate& crank,
-                           const std::array<double, kHullChannels>& end) noexcept;
+                           const StepEnd& end) noexcept;
+  double ownOfBoth(std::size_t channel, const StepEnd& end) const noexcept;
   void endTurn(StampNs stamp) noexcept;
   void confirmTurns(const SampleResult& result) noexcept;
 

@@ -217,8 +217,7 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
     CrankBlow rigid = measured;
     const double lacking = square(rod_->lackingSpeed());
     rigid.speed_deviation = std::sqrt(std::max(0.0, square(rigid.speed_deviation) - lacking));
-    RockerBlow of_rigid = measuredBlow(*model_, rigid);
-    errors.setRodBeyond(blowErrors(*columns_, *model_, rigid, pending_.columns(), of_rigid));
+    errors.setRodBeyond(ownErrors(*model_, rigid, measuredBlow(*model_, rigid)));
   }
   voidImpossible(model_->mechanism(), model_->level(), blow);
   if (blow.impossible) doubtImpossible(crank, !elastic && pending_.isEarly(), pending_end_);

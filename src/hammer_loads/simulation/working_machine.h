@@ -32,6 +32,8 @@ struct CrankTruth {
   double rod_force{};         ///< compression > 0 [N]
   double tool_force{};        ///< along +z BY the tool ON the rocker [N]
   double retainer_force{};    ///< along +z BY the hull's retainer ON the rocker [N]
+
+  bool touches() const { return tool_force != 0.0 || retainer_force != 0.0; }  ///< the rocker tool or retainer
 };
 
 /// One blow and the turn that it ended.

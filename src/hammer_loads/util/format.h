@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <string>
@@ -16,6 +17,9 @@ std::string format(const char* pattern, Args... args) {
   std::snprintf(text.data(), text.size() + 1, pattern, args...);
   return text;
 }
+
+/// Four digits; null where there is none.
+inline std::string jsonNumber(double value) { return std::isfinite(value) ? format("%.4g", value) : "null"; }
 
 /// With commas between them.
 inline std::string joined(const std::vector<std::string>& names) {
