@@ -81,11 +81,8 @@ TEST_F(SmoothBag, RunsOfARecordingAreSmoothedEachByItself) {
   EXPECT_EQ(whole.size(), parts.size() + second.size());
 }
 
-TEST_F(SmoothBag, WhatItWouldMixOrCannotSmoothIsRefused) {
+TEST_F(SmoothBag, WhatItWouldMixIsRefused) {
   EXPECT_EQ(run(kSession + " " + path("out.bag") + " --smooth --ledger " + path("machine.sqlite")).exit_code, 2);
-  const test::TemporaryFile flexible("shaft: flexible\n");
-  expectRefused(run(kSession + " " + path("out.bag") + " --smooth --params " + flexible.path()),
-                {"--smooth", "shaft", "rigid"});
   EXPECT_EQ(names(), std::vector<std::string>{});
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "hammer_loads/pipeline/pipeline.h"
@@ -94,10 +95,16 @@ void judgeForces(const MachineSettings& machine, const std::vector<Given>& given
   judged.inside /= count;
 }
 
-Judged judge(const MachineSettings& machine, const Session& session, const TrackerMaker& make,
-             Level level = Level::kLinkage) {
+/// What the pipeline is told of the machine.
+struct Told {
+  Level level{Level::kLinkage};
+  std::optional<Coupling> coupling;
+};
+
+Judged judge(const MachineSettings& machine, const Session& session, const TrackerMaker& make, const Told& told = {}) {
   Settings settings = *loadFiles(configDirectory(), {}).value;
-  settings.pipeline.level = level;
+  settings.pipeline.level = told.level;
+  settings.pipeline.coupling = told.coupling;
   Pipeline pipeline(test::mechanismOf(machine.hammer), settings.pipeline, {}, {}, make);
   Judged judged;
   std::vector<Given> given;
@@ -130,13 +137,13 @@ struct Both {
   Judged live, smoothed;
 };
 
-Both bothOf(const MachineSettings& machine, Level level = Level::kLinkage) {
+Both bothOf(const MachineSettings& machine, const Told& told = {}) {
   const Session session = simulation::recordSession(machine);
   SmoothedRuns runs;
-  Both both{judge(machine, session, runs.ahead(), level), {}};
+  Both both{judge(machine, session, runs.ahead(), told), {}};
   EXPECT_TRUE(runs.isReady());
   runs.end();
-  both.smoothed = judge(machine, session, runs.behind(), level);
+  both.smoothed = judge(machine, session, runs.behind(), told);
   const auto say = [](const std::string& name, const Judged& judged) {
     testing::Test::RecordProperty(name + "_rms", std::to_string(judged.rms));
     testing::Test::RecordProperty(name + "_inside", std::to_string(judged.inside));
@@ -182,10 +189,27 @@ TEST(SmoothedRuns, ARodThatGivesRingsAsLive) {
   machine.hammer = loadFiles(configDirectory(), {}).value->mechanism.parameters();
   machine.level = Level::kLinkage;
   machine.rod = {8e8, 0.3, 0.0};
-  const Both both = bothOf(machine, Level::kElastic);
+  const Both both = bothOf(machine, {Level::kElastic, {}});
   EXPECT_LT(both.smoothed.rms, 1.1 * both.live.rms);
   EXPECT_GT(both.smoothed.inside, 0.88);
   EXPECT_LT(3.0 * both.smoothed.rms, bothOf(machine).smoothed.rms);
+}
+
+/// The encoder sits on the motor, beyond a coupling whose frequency is a fifth off.
+TEST(SmoothedRuns, BeyondAFlexibleCouplingAsWell) {
+  std::uint64_t seed = 17;
+  for (const double frequency : {30.0, 50.0, 80.0}) {
+    for (const double rate : {1000.0, 200.0}) {
+      SCOPED_TRACE(testing::Message() << frequency << " Hz at " << rate << " Hz");
+      MachineSettings machine = machineOf(rate, ++seed);
+      machine.drive.coupling_frequency = frequency;
+      machine.drive.motor_share = 0.3;
+      machine.drive.coupling_damping = 0.02;
+      const Both both = bothOf(machine, {Level::kLinkage, Coupling{1.2 * frequency, 0.3, 0.02, 0.3, 0.03}});
+      expectCloser(both, 0.85);
+      EXPECT_LT(both.smoothed.restitution, 1.1 * both.live.restitution);
+    }
+  }
 }
 
 TEST(SmoothedRuns, StampsThatJitterWeighLess) {

@@ -20,12 +20,11 @@ constexpr double kTightFactor = 0.02;  // deviation at a dead centre where nothi
 // Guard: BeliefBounds.OfADeadCentreWhereNothingStrikes of kTightFactor
 
 /// drawn: the factor is another one than before.
-void extend(const ShaftTransition& f, bool drawn, ShaftMatrix* transition) noexcept {
+void extend(const ShaftTransition& f, bool drawn, FlexibleMatrix* transition) noexcept {
   if (transition == nullptr) return;
-  ShaftMatrix step = ShaftMatrix::Identity();
-  step.topRows<2>() = f;
-  if (drawn) step.col(CrankBelief::kFactor).setZero();
-  *transition = (step * *transition).eval();
+  auto total = transition->topLeftCorner<5, 5>();
+  if (drawn) total.row(CrankBelief::kFactor).setZero();
+  total.topRows<2>() = (f * total).eval();
 }
 
 /// The speed w changed by a part of that variance, `since` ago [s]; the instant may be any within dt [s].
@@ -63,8 +62,8 @@ void CrankBelief::widen(double by) noexcept {
 }
 
 int CrankBelief::predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
-                         double most_speed, double dt, ShaftMatrix* transition) noexcept {
-  if (motor) return predictFlexible(model, walks, drawn, contact, most_speed, dt, *this);
+                         double most_speed, double dt, FlexibleMatrix* transition) noexcept {
+  if (motor) return predictFlexible(model, walks, drawn, contact, most_speed, dt, *this, transition);
   ShaftLoad load = model(state.position.angle);
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
@@ -143,12 +142,12 @@ void CrankBelief::forgetAngle(double variance) noexcept {
   if (motor) forgetAngleFlexible(variance, *this);
 }
 
-void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, ShaftMatrix* transition) noexcept {
+void CrankBelief::passLate(const ShaftModel& model, const BlowPrior& drawn, FlexibleMatrix* transition) noexcept {
   const BlowPrior prior = priorOf(drawn);
   const bool draws = !tool_met && state.speed > 0.0;
   if (draws) drawFactor(prior);
   tool_met = false;
-  if (motor) return passLateFlexible(model, prior.mean, *this);
+  if (motor) return passLateFlexible(model, prior.mean, draws, *this, transition);
   ShaftTransition f = ShaftTransition::Identity();
   ShaftLoad load;
   passBlow(model, prior.mean, state, load, f);
@@ -170,6 +169,18 @@ bool CrankBelief::doubtBlow(Row row, double innovation, double total, double dt)
   struck_early = struck_early && square(factor - 1.0) > variance;  // else what was taken for the tool was noise
   doubtSpeedChange(variance, before, since, dt, *this);
   return true;
+}
+
+BlowFactor CrankBelief::blowFactor(const ShaftModel& model, double growth,
+                                   const ConstantErrors::Matrix& root) const noexcept {
+  const double of_factor = std::sqrt(growth * covariance(kFactor, kFactor)),
+               of_inertia = std::sqrt(growth * covariance(kInertia, kInertia));
+  ByConstants<2, ConstantErrors::kSize> by;
+  by << by_constant.row(kFactor), by_constant.row(kInertia);
+  ConstantErrors::toColumns(root, by);
+  const double struck = struckInertia(model), of_motor = 1.0 - struck / state.drive_inertia;
+  if (motor) by(1, ConstantErrors::kShare) += of_motor * root(ConstantErrors::kShare, ConstantErrors::kShare);
+  return {factor, of_factor, struck, of_inertia, struck_early, by};
 }
 
 bool CrankBelief::isSound(double most_speed) const noexcept {

@@ -51,9 +51,9 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   std::optional<MotorSide> motor;  ///< beyond a flexible coupling; the encoder then sits there
 
   /// By dt [s] > 0 with the walks of the meantime; how many blows were struck. Stops at most_speed [rad/s].
-  /// transition: multiplied by d(this after)/d(this before), rows as above, where it is wanted.
+  /// transition: multiplied by d(this after)/d(this before), rows as above and those of a motor, where it is wanted.
   int predict(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& prior, bool contact, double most_speed,
-              double dt, ShaftMatrix* transition = nullptr) noexcept;
+              double dt, FlexibleMatrix* transition = nullptr) noexcept;
   /// By a change of its variables. Slides the position; it may end beyond the blow.
   void move(const Vector& change) noexcept;
   /// Between a blow that stops the crank and one that drives it. Only once a sample has been taken as a whole: the
@@ -68,7 +68,7 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   /// Nothing is known of the angle beyond a variance [rad2] about the present one.
   void forgetAngle(double variance) noexcept;
   /// The position stands beyond the blow that it should have passed: passes it now.
-  void passLate(const ShaftModel& model, const BlowPrior& prior, ShaftMatrix* transition = nullptr) noexcept;
+  void passLate(const ShaftModel& model, const BlowPrior& prior, FlexibleMatrix* transition = nullptr) noexcept;
   /// The tool was met some time within the last dt [s]: the speed is in doubt by `deviation` of itself.
   void meetTool(double deviation, double dt) noexcept;
   /// Just after a blow, struck some time within the last dt [s]: its factor is in doubt by as much as explains an
@@ -100,16 +100,13 @@ struct CrankBelief : GaussianBelief<5, ConstantErrors::kSize> {
   ConstantErrors::Row encoderByError(Row row) const noexcept {
     return motor ? ConstantErrors::Row(motor->by_constant.row(row)) : ConstantErrors::Row(by_constant.row(row));
   }
-  /// Factor of the last blow and drive inertia. growth: what noise is to be multiplied with; root:
-  /// ConstantErrors::root().
-  BlowFactor blowFactor(double growth, const ConstantErrors::Matrix& root) const noexcept {
-    const double of_factor = std::sqrt(growth * covariance(kFactor, kFactor)),
-                 of_inertia = std::sqrt(growth * covariance(kInertia, kInertia));
-    ByConstants<2, ConstantErrors::kSize> by;
-    by << by_constant.row(kFactor), by_constant.row(kInertia);
-    ConstantErrors::toColumns(root, by);
-    return {factor, of_factor, state.drive_inertia, of_inertia, struck_early, by};
+  /// What the blow acts on: of a motor beyond a coupling nothing [kg m2].
+  double struckInertia(const ShaftModel& model) const noexcept {
+    return motor ? lawOf(*model.coupling(), state).crank_inertia : state.drive_inertia;
   }
+  /// Factor of the last blow and the inertia that it acts on. growth: what noise is to be multiplied with; root:
+  /// ConstantErrors::root().
+  BlowFactor blowFactor(const ShaftModel& model, double growth, const ConstantErrors::Matrix& root) const noexcept;
 };
 
 /// load: the model's at the belief's angle; growth, root: as in CrankBelief::blowFactor(); torque_part of the torque's

@@ -81,7 +81,7 @@ class CrankFilter final : public CrankTracker {
   bool readingShowsSide() const noexcept override { return read_side_.has_value(); }
   double angleResolution() const noexcept override { return encoder_.resolution(); }
   double driveInertia() const noexcept override { return now_.state.drive_inertia; }
-  double struckInertia() const noexcept override;
+  double struckInertia() const noexcept override { return now_.struckInertia(model_); }
 
   void setInterval(double interval) noexcept override { interval_ = interval; }
   double lostTime() const noexcept override { return lost_time_; }

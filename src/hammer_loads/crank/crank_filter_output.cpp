@@ -39,17 +39,7 @@ Innovation CrankFilter::withoutRod(double dt, Innovation innovation) const noexc
 }
 
 BlowFactor CrankFilter::blowFactor() const noexcept {
-  BlowFactor factor = now_.blowFactor(consistency_.doubt(), errors_.root());
-  if (!now_.motor) return factor;
-  const double share = 1.0 - struckInertia() / driveInertia();
-  factor.drive_inertia = struckInertia();
-  factor.by_constant(1, ConstantErrors::kShare) +=
-      share * errors_.root()(ConstantErrors::kShare, ConstantErrors::kShare);
-  return factor;
-}
-
-double CrankFilter::struckInertia() const noexcept {
-  return now_.motor ? lawOf(*model_.coupling(), now_.state).crank_inertia : driveInertia();
+  return now_.blowFactor(model_, consistency_.doubt(), errors_.root());
 }
 
 bool CrankFilter::isPlausible() const noexcept { return std::abs(now_.state.torque) <= mostTorque(); }

@@ -16,8 +16,8 @@ constexpr double kUnseenGrowth = 1.8;
 }  // namespace
 
 CrankTrack::CrankTrack(const Mechanism& mechanism, Level level, double drive_inertia,
-                       const CrankFilterSettings& settings)
-    : mechanism_(mechanism), model_(mechanism_, level), filter_(model_, drive_inertia, settings) {}
+                       const CrankFilterSettings& settings, const std::optional<Coupling>& coupling)
+    : mechanism_(mechanism), model_(mechanism_, level, coupling), filter_(model_, drive_inertia, settings) {}
 
 void CrankTrack::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <optional>
 
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/linkage/mechanism.h"
@@ -34,7 +35,8 @@ struct TrackedSample {
 /// is that of kWindow and kOverlap.
 class CrankTrack {
  public:
-  CrankTrack(const Mechanism& mechanism, Level level, double drive_inertia, const CrankFilterSettings& settings);
+  CrankTrack(const Mechanism& mechanism, Level level, double drive_inertia, const CrankFilterSettings& settings,
+             const std::optional<Coupling>& coupling = {});
   CrankTrack(const CrankTrack&) = delete;
   CrankTrack& operator=(const CrankTrack&) = delete;
 

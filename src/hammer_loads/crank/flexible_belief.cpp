@@ -11,29 +11,13 @@ namespace hammer_loads {
 namespace {
 
 using Belief = CrankBelief;
-using Joint = GaussianBelief<kFlexibleVariables, ConstantErrors::kSize>;
+using Joint = FlexibleVariables;
 
 constexpr double kMostStiffnessChange = 0.1;  // of a logarithm by one sample
 constexpr double kMostLogStiffness = 1.4;     // a factor of two of the frequency either way
 // Guard: FlexibleBounds.OfTheCouplingsStiffness of kMostStiffnessChange, kMostLogStiffness
 constexpr double kMostTwist = 1.0;  // [rad]: more is a diverged filter
 // Guard: FlexibleBounds.OfTheTwist of kMostTwist
-
-Joint joint(const Belief& b) noexcept {
-  Joint all;
-  all.covariance.topLeftCorner<5, 5>() = b.covariance;
-  all.covariance.rightCols<3>() = b.motor->covariance;
-  all.covariance.bottomLeftCorner<3, 5>() = b.motor->covariance.topRows<5>().transpose();
-  all.by_constant << b.by_constant, b.motor->by_constant;
-  return all;
-}
-
-void setJoint(const Joint& all, Belief& b) noexcept {
-  b.covariance = all.covariance.topLeftCorner<5, 5>();
-  b.motor->covariance = all.covariance.rightCols<3>();
-  b.by_constant = all.by_constant.topRows<5>();
-  b.motor->by_constant = all.by_constant.bottomRows<3>();
-}
 
 /// f: with a column for the odds, an error of which acts within the step.
 void apply(const FlexibleMatrix& f, Joint& all) noexcept {
@@ -102,7 +86,37 @@ AccelerationSlopes accelerationSlopes(const ShaftModel& model, const ShaftState&
   return s;
 }
 
+/// transition: null, or extended by f, in which a factor that is drawn anew has no past.
+void extend(const FlexibleMatrix& f, bool drawn, FlexibleMatrix* transition) noexcept {
+  if (transition == nullptr) return;
+  if (drawn) transition->row(Belief::kFactor).setZero();
+  *transition = (f * *transition).eval();
+}
+
 }  // namespace
+
+FlexibleVariables variablesOf(const CrankBelief& b) noexcept {
+  FlexibleVariables all;
+  all.covariance.topLeftCorner<5, 5>() = b.covariance;
+  all.covariance.rightCols<3>() = b.motor->covariance;
+  all.covariance.bottomLeftCorner<3, 5>() = b.motor->covariance.topRows<5>().transpose();
+  all.by_constant << b.by_constant, b.motor->by_constant;
+  return all;
+}
+
+void setVariables(const FlexibleVariables& all, CrankBelief& b) noexcept {
+  b.covariance = all.covariance.topLeftCorner<5, 5>();
+  b.motor->covariance = all.covariance.rightCols<3>();
+  b.by_constant = all.by_constant.topRows<5>();
+  b.motor->by_constant = all.by_constant.bottomRows<3>();
+}
+
+void moveFlexible(const FlexibleVariables::Vector& change, CrankBelief& b) noexcept {
+  b.move(change.head<5>());
+  b.state.twist += change[kMotorAngle] - change[Belief::kAngle];
+  b.state.motor_speed += change[kMotorSpeed];
+  b.state.log_stiffness = std::clamp(b.state.log_stiffness + change[kStiffness], -kMostLogStiffness, kMostLogStiffness);
+}
 
 void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) noexcept {
   const double stiffness_variance =
@@ -124,10 +138,10 @@ void beginMotor(const Coupling& coupling, double torque_deviation, Belief& b) no
 }
 
 int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const BlowPrior& drawn, bool contact,
-                    double most_speed, double dt, Belief& b) noexcept {
+                    double most_speed, double dt, Belief& b, FlexibleMatrix* transition) noexcept {
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / kNoiseStep)));
   const double h = dt / steps;
-  Joint all = joint(b);
+  Joint all = variablesOf(b);
   int blows = 0;
   for (int i = 0; i < steps && std::abs(b.state.speed) < most_speed; ++i) {
     const BlowPrior prior = b.priorOf(drawn);
@@ -137,64 +151,64 @@ int predictFlexible(const ShaftModel& model, const CrankWalks& walks, const Blow
                       b.near);
     FlexibleMatrix f = FlexibleMatrix::Identity();
     const bool struck = advanceFlexible(model, h, {prior.mean, contact}, b.state, &f) > 0;
+    const bool draws = struck && !b.tool_met;
     if (struck) {
-      if (!b.tool_met) {
+      if (draws) {
         b.drawFactor(prior);
         all.draw(Belief::kFactor, b.covariance(Belief::kFactor, Belief::kFactor), b.by_constant.row(Belief::kFactor));
       }
-      blows += !b.tool_met;
+      blows += draws;
       b.tool_met = false;
     }
     apply(f, all);
+    extend(f, draws, transition);
     if (columns) endColumns(model, b.state, h, struck, *columns, all);
     addNoise(walks, lawOf(*model.coupling(), b.state), h, all);
   }
-  setJoint(all, b);
+  setVariables(all, b);
   return blows;
 }
 
-void passLateFlexible(const ShaftModel& model, double factor, Belief& b) noexcept {
+void passLateFlexible(const ShaftModel& model, double factor, bool drawn, Belief& b,
+                      FlexibleMatrix* transition) noexcept {
   FlexibleMatrix f = FlexibleMatrix::Identity();
   passBlowFlexible(model, factor, b.state, &f);
-  Joint all = joint(b);
+  extend(f, drawn, transition);
+  Joint all = variablesOf(b);
   apply(f, all);
-  setJoint(all, b);
+  setVariables(all, b);
 }
 
 void correctFlexible(FlexibleRow row, double innovation, double variance, const ConstantErrors::Row& by_error,
                      const std::optional<ConstantErrors::Row>& of_constants, Belief& b) noexcept {
-  Joint all = joint(b);
-  const Joint::Vector change = all.correct(row, variance, by_error, of_constants) * innovation;
-  setJoint(all, b);
-  Belief::Vector crank = change.head<5>();
-  crank[Belief::kInertia] = std::clamp(crank[Belief::kInertia], -kMostInertiaChange, kMostInertiaChange);
-  b.move(crank);
-  b.state.twist += change[kMotorAngle] - change[Belief::kAngle];
-  b.state.motor_speed += change[kMotorSpeed];
-  b.state.log_stiffness += std::clamp(change[kStiffness], -kMostStiffnessChange, kMostStiffnessChange);
-  b.state.log_stiffness = std::clamp(b.state.log_stiffness, -kMostLogStiffness, kMostLogStiffness);
+  Joint all = variablesOf(b);
+  Joint::Vector change = all.correct(row, variance, by_error, of_constants) * innovation;
+  setVariables(all, b);
+  change[Belief::kInertia] = std::clamp(change[Belief::kInertia], -kMostInertiaChange, kMostInertiaChange);
+  change[kStiffness] = std::clamp(change[kStiffness], -kMostStiffnessChange, kMostStiffnessChange);
+  moveFlexible(change, b);
 }
 
 void widenFlexible(double factor, Belief& b) noexcept {
   Joint::Vector by = Joint::Vector::Constant(std::sqrt(factor));
   by[Belief::kInertia] = by[Belief::kFactor] = by[kStiffness] = 1.0;
-  Joint all = joint(b);
+  Joint all = variablesOf(b);
   all.widen(by);
-  setJoint(all, b);
+  setVariables(all, b);
 }
 
 void forgetAngleFlexible(double variance, Belief& b) noexcept {
-  Joint all = joint(b);
+  Joint all = variablesOf(b);
   all.forget(kMotorAngle, variance);
   all.covariance(Belief::kAngle, kMotorAngle) = all.covariance(kMotorAngle, Belief::kAngle) = variance;
-  setJoint(all, b);
+  setVariables(all, b);
 }
 
 void forgetCouplingsOf(Belief& b) noexcept {
-  Joint all = joint(b);
+  Joint all = variablesOf(b);
   all.decouple(Belief::kInertia);
   all.decouple(kStiffness);
-  setJoint(all, b);
+  setVariables(all, b);
 }
 
 void doubtStiffness(const Coupling& coupling, Belief& b) noexcept {
@@ -203,13 +217,13 @@ void doubtStiffness(const Coupling& coupling, Belief& b) noexcept {
 }
 
 bool isSoundFlexible(double most_speed, const Belief& b) noexcept {
-  return std::abs(b.state.motor_speed) < most_speed && std::abs(b.state.twist) < kMostTwist && joint(b).isSound();
+  return std::abs(b.state.motor_speed) < most_speed && std::abs(b.state.twist) < kMostTwist && variablesOf(b).isSound();
 }
 
 CrankUncertainty flexibleUncertainty(const ShaftModel& model, const Belief& b, double growth,
                                      const ConstantErrors::Matrix& root, double torque_part) noexcept {
   const AccelerationSlopes slopes = accelerationSlopes(model, b.state);
-  const Joint all = joint(b);
+  const Joint all = variablesOf(b);
   Eigen::Matrix<double, 4, kFlexibleVariables> jacobian = Eigen::Matrix<double, 4, kFlexibleVariables>::Zero();
   jacobian(0, Belief::kAngle) = jacobian(1, Belief::kSpeed) = jacobian(3, Belief::kInertia) = 1.0;
   jacobian.row(2) = (slopes.others + slopes.by_moment).head<kFlexibleVariables>();

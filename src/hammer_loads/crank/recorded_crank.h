@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "hammer_loads/crank/crank_track.h"
@@ -29,6 +30,7 @@ class RecordedCrank final : public CrankTracker {
 
   CrankEstimate estimate() const noexcept override { return filter_.estimate(); }
   CrankEstimate between(double dt) const noexcept override { return filter_.between(dt); }
+  std::optional<CrankWays> waysBetween(double dt) const noexcept override { return filter_.waysBetween(dt); }
   bool hasSpeed() const noexcept override { return filter_.hasSpeed(); }
   bool isPlausible() const noexcept override { return filter_.isPlausible(); }
   CrankUncertainty uncertaintyBetween(double dt, double torque_part) const noexcept override {
@@ -37,6 +39,7 @@ class RecordedCrank final : public CrankTracker {
   CrankUncertainty uncertainty(double torque_part) const noexcept override { return filter_.uncertainty(torque_part); }
   BlowFactor blowFactor() const noexcept override { return filter_.blowFactor(); }
   double driveInertia() const noexcept override { return filter_.driveInertia(); }
+  double struckInertia() const noexcept override { return filter_.struckInertia(); }
   bool isDoubtful() const noexcept override { return filter_.isDoubtful(); }
   double otherBranch() const noexcept override { return filter_.otherBranch(); }
   bool readingShowsSide() const noexcept override { return filter_.readingShowsSide(); }

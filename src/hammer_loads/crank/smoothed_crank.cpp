@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/crank/flexible_belief.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -56,7 +58,7 @@ void SmoothedCrank::considerRod(double angle, double speed) noexcept {
 
 CrankEstimate SmoothedCrank::estimate() const noexcept {
   const ShaftState& state = now_.belief.state;
-  return {state.position, state.speed, acceleration(model_(state.position.angle), state)};
+  return estimateOf(model_, model_(state.position.angle), state);
 }
 
 CrankEstimate SmoothedCrank::between(double dt) const noexcept {
@@ -92,10 +94,11 @@ CrankUncertainty SmoothedCrank::uncertainty(double torque_part) const noexcept {
 }
 
 CrankUncertainty SmoothedCrank::uncertaintyOf(const CrankBelief& belief, double torque_part) const noexcept {
-  const ShaftLoad load = model_(belief.state.position.angle);
-  return motionUncertainty(model_, load, belief, now_.growth, now_.root, kTorquePart * torque_part);
+  const double part = kTorquePart * torque_part;
+  if (belief.motor) return flexibleUncertainty(model_, belief, now_.growth, now_.root, part);
+  return motionUncertainty(model_, model_(belief.state.position.angle), belief, now_.growth, now_.root, part);
 }
 
-BlowFactor SmoothedCrank::blowFactor() const noexcept { return now_.belief.blowFactor(now_.growth, now_.root); }
+BlowFactor SmoothedCrank::blowFactor() const noexcept { return now_.belief.blowFactor(model_, now_.growth, now_.root); }
 
 }  // namespace hammer_loads

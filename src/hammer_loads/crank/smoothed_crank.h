@@ -29,6 +29,7 @@ class SmoothedCrank final : public CrankTracker {
   CrankUncertainty uncertainty(double torque_part) const noexcept override;
   BlowFactor blowFactor() const noexcept override;
   double driveInertia() const noexcept override { return now_.belief.state.drive_inertia; }
+  double struckInertia() const noexcept override { return now_.belief.struckInertia(model_); }
   bool isDoubtful() const noexcept override { return now_.is_doubtful; }
   bool readingShowsSide() const noexcept override { return now_.reading_shows_side; }
   bool isProven() const noexcept override { return now_.is_proven; }

@@ -8,7 +8,7 @@ namespace hammer_loads {
 TrackerMaker SmoothedRuns::ahead() {
   return [this](const Mechanism& mechanism, const PipelineSettings& settings) -> std::unique_ptr<CrankTracker> {
     tracks_.push_back(std::make_shared<CrankTrack>(mechanism, settings.level, mechanism.parameters().drive_inertia,
-                                                   filterSettings(mechanism, settings)));
+                                                   filterSettings(mechanism, settings), settings.coupling));
     return std::make_unique<RecordedCrank>(tracks_.back());
   };
 }
@@ -17,7 +17,7 @@ TrackerMaker SmoothedRuns::behind() {
   return [this](const Mechanism& mechanism, const PipelineSettings& settings) -> std::unique_ptr<CrankTracker> {
     if (behind_begun_) tracks_.pop_front();
     behind_begun_ = true;
-    const ShaftModel model(mechanism, settings.level);
+    const ShaftModel model(mechanism, settings.level, settings.coupling);
     return std::make_unique<SmoothedCrank>(
         model, CrankFilter(model, mechanism.parameters().drive_inertia, filterSettings(mechanism, settings)),
         tracks_.front());

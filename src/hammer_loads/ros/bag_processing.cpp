@@ -144,15 +144,11 @@ std::string typeProblem(const BagInputs& inputs, const Wanted& wanted) {
   return {};
 }
 
-/// What smoothing asks of the runs, and says in their run_info; why it cannot be done.
-std::vector<std::string> prepareSmoothing(std::vector<BagRun>& runs, std::vector<BagWarning>& warnings) {
+/// Says in each run's run_info that it is smoothed.
+void markSmoothed(std::vector<BagRun>& runs, std::vector<BagWarning>& warnings) {
   const std::string mark = "smooth: the crank is estimated by later samples as well; the live node gives other values";
-  for (BagRun& run : runs) {
-    if (run.settings.pipeline.coupling) return {"--smooth: shaft is flexible, must be rigid"};
-    run.settings.notes.push_back(mark);
-  }
+  for (BagRun& run : runs) run.settings.notes.push_back(mark);
   addOnce(warnings, {"smooth", mark});
-  return {};
 }
 
 /// Everything that one job works with once its inputs are known to be good.
@@ -253,10 +249,7 @@ std::vector<std::string> processBag(const BagJob& job, const std::function<void(
     for (const BagRun& run : *runs.value)
       work.hammer = work.hammer || inputs.value->has(run.settings.input_topics.crank);
     if (!work.hammer) report.notes = {}, report.warnings = {};
-    if (work.hammer && job.smooth) {
-      const std::vector<std::string> problems = prepareSmoothing(*runs.value, report.warnings);
-      if (!problems.empty()) return problems;
-    }
+    if (work.hammer && job.smooth) markSmoothed(*runs.value, report.warnings);
     if (job.grapple) work.slider_topic = first.joint_states;
     const bool hammer_required = !job.grapple || !job.tables.empty() || job.pieces != nullptr;
     const std::string& required = hammer_required ? first.crank : first.joint_states;
