@@ -58,6 +58,54 @@ TEST(Calibration, FindsAnEccentricEncoderThatTurnsTheOtherWay) {
   EXPECT_NEAR(find(c, "crank_eccentricity_1_phase_rad")->value, 0.8, 0.3);
 }
 
+/// The encoder sits on the motor: zero, drive and coupling are found together, from a coupling that is a tenth off.
+TEST(Calibration, FindsACouplingAndWhatIsBeyondIt) {
+  struct Machine {
+    double frequency, share, damping, given;
+  };
+  std::uint64_t seed = 60;
+  for (const Machine& of : {Machine{34.0, 0.3, 0.03, 38.0}, Machine{78.0, 0.2, 0.015, 85.0}}) {
+    SCOPED_TRACE(of.frequency);
+    simulation::MachineSettings s = atWork(10.0, 250.0);
+    s.seed = ++seed;
+    s.crank.zero = 1.5;
+    s.blow = {true, 0.0, 0.3, 0.0, 0.0, 50.0, 0.0};
+    s.drive.coupling_frequency = of.frequency;
+    s.drive.motor_share = of.share;
+    s.drive.coupling_damping = of.damping;
+    const Mechanism mechanism = mechanismOf(s, 1.2);
+    CalibrationBasis basis = basisOf(mechanism);
+    basis.coupling = Coupling{of.given, 1.05 * of.share, 0.02, 0.3, 0.03};
+    const Calibration c = calibrate(recorded(s), basis);
+    ASSERT_EQ(c.problem, "");
+    EXPECT_LT(std::abs(errorOf(c, "crank_zero_rad", s.crank.zero)), 0.12 * kDegree);
+    EXPECT_NEAR(find(c, "drive_inertia_kg_m2")->value, s.drive.inertia, 0.03 * s.drive.inertia);
+    EXPECT_NEAR(find(c, "coupling_frequency_Hz")->value, of.frequency, 0.02 * of.frequency);
+    for (const auto& [key, truth] : {std::pair{"crank_zero_rad", s.crank.zero},
+                                     {"coupling_frequency_Hz", of.frequency},
+                                     {"coupling_motor_share", of.share},
+                                     {"coupling_damping_ratio", of.damping}}) {
+      ASSERT_TRUE(find(c, key)->determined()) << key;
+      EXPECT_LT(std::abs(find(c, key)->value - truth), 3.0 * find(c, key)->deviation) << key;
+    }
+    // A shaft that is taken for rigid has another zero for certain.
+    basis.coupling.reset();
+    const Calibration rigid = calibrate(recorded(s), basis);
+    const Estimate* zero = find(rigid, "crank_zero_rad");
+    EXPECT_TRUE(!zero || !zero->determined() || std::abs(zero->value - s.crank.zero) > 0.12 * kDegree);
+  }
+}
+
+TEST(Calibration, ACouplingThatIsNoneIsRefusedByWhatFits) {
+  const simulation::MachineSettings s = atWork(6.0, 250.0);
+  const Mechanism mechanism = mechanismOf(s);
+  CalibrationBasis basis = basisOf(mechanism);
+  basis.coupling = Coupling{50.0, 0.2, 0.02, 0.3, 0.03};
+  const Calibration c = calibrate(recorded(s), basis);
+  EXPECT_NE(c.problem.find("shaft: rigid"), std::string::npos) << c.problem;
+  EXPECT_TRUE(c.estimates.empty());
+}
+
 /// Error of an eccentricity's amount and phase, as a distance.
 double eccentricityError(const Calibration& c, int n, const simulation::Eccentricity& truth) {
   const std::string key = "crank_eccentricity_" + std::to_string(n);

@@ -1,6 +1,7 @@
 /// Where the crank's sensor sits and what the drive weighs, from a recording at work.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct CalibrationBasis {
   double torque_walk{};                   ///< random walk of the net torque [N m/sqrt(s)]
   double torque_deviation{};              ///< of the net torque [N m]
   Globals in_force{Globals::Zero()};      ///< to compare with: zero and eccentricities of the parameters in force
+  std::optional<Coupling> coupling = {};  ///< the encoder sits on the motor beyond it
 };
 
 /// One key of the file that the other commands read.

@@ -22,7 +22,10 @@ constexpr const char* kNames[kGlobals] = {"zero",
                                           "cosine of the eccentricity twice a turn",
                                           "drive inertia",
                                           "stiffness of the oil",
-                                          "drag of the drive"};
+                                          "drag of the drive",
+                                          "stiffness of the coupling",
+                                          "the motor's share of the drive inertia",
+                                          "damping of the coupling"};
 
 /// A blow's information on shared parameters and constants, its own parameters eliminated.
 struct Information {
@@ -35,7 +38,7 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
   const auto count = static_cast<Eigen::Index>(columns.columns().size()), size = kGlobals + count;
   std::vector<std::vector<ShotPoint>> beside;
   for (const MachineColumn& column : columns.columns())
-    beside.push_back(fit.motion({column.mechanism, column.level}, joint.globals));
+    beside.push_back(fit.motion({column.mechanism, column.level, model.coupling}, joint.globals));
   const std::vector<ResidualRow> rows = fit.rows(model, joint.globals, joint.noise);
   const NormalEquations own = fit.equationsOf(rows, joint.noise);
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(kLocals, size);
@@ -47,7 +50,7 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
       const auto column = static_cast<std::size_t>(k);
       const ShotPoint& there = beside[column][row.point];
       by[kGlobals + k] =
-          (row.by_offset * (there.offset - row.at.offset) + row.by_crank_speed * (there.speed - row.at.speed)) /
+          (row.by_offset * (there.offset - row.at.offset) + row.by_speed * (there.speed - row.at.speed)) /
           columns.columns()[column].step;
     }
     const double weight = weightOf(row);
@@ -62,10 +65,11 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
   return all;
 }
 
-/// Of an eccentricity 0; of the others where the fit is: their priors are wide.
-Globals centreOf(const Globals& found) {
-  Globals centre = found;
+/// Of an eccentricity 0, of a coupling the fit's; of the others where the fit is: their priors are wide.
+Globals centreOf(const JointFit& fit) {
+  Globals centre = fit.globals;
   centre.segment<4>(kSine1).setZero();
+  centre.tail<kOfCoupling>() = fit.centre.tail<kOfCoupling>();
   return centre;
 }
 
@@ -83,18 +87,18 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
   constexpr int kSteps = 2;
   HammerPart part;
   part.globals = joint.globals, part.covariance = joint.plain_covariance;
-  part.prior = priorDeviations().cwiseAbs2().cwiseInverse();
+  part.prior = priorDeviations(model.coupling).cwiseAbs2().cwiseInverse();
   const auto columns = machineColumns(model.mechanism, model.level);
   if (!columns) return part;
   for (const MachineColumn& column : columns->columns()) part.names.push_back(column.name);
   const auto count = static_cast<Eigen::Index>(part.names.size()), size = kGlobals + count;
   part.errors = Eigen::VectorXd::Zero(count);
-  const Globals centre = centreOf(joint.globals);
+  const Globals centre = centreOf(joint);
   part.prior.conservativeResize(size);
   part.prior.tail(count).setOnes();
   std::optional<Mechanism> hammer = model.mechanism;
   for (int i = 0; i < kSteps && hammer; ++i) {
-    const SegmentModel here{*hammer, model.level};
+    const SegmentModel here{*hammer, model.level, model.coupling};
     const MachineColumns beside(*hammer, model.level);
     if (beside.columns().size() != part.names.size()) break;  // at the edge of what a hammer can be
     Information all{part.prior.asDiagonal(), Eigen::VectorXd(size)};
@@ -108,6 +112,7 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
     part.covariance = all.matrix.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
     clearHeld(free, part.covariance);
     const Eigen::VectorXd change = part.covariance * all.score;
+    if (!change.allFinite()) break;
     joint.globals += change.head<kGlobals>();
     part.errors += change.tail(count);
     hammer = columns->hammerOff(part.errors);

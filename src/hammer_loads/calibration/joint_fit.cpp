@@ -20,7 +20,7 @@ constexpr double kMostAngleNoise = 0.1;   // [rad]
 constexpr double kMostSpeedNoise = 30.0;  // [rad/s]
 
 Globals limitedGlobals(const Globals& step) {
-  static const Globals most = (Globals() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.3, 1e9, 1e9).finished();
+  static const Globals most = (Globals() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.3, 1e9, 1e9, 0.1, 0.3, 0.3).finished();
   double part = 1.0;
   for (Eigen::Index k = 0; k < kGlobals; ++k) {
     if (std::abs(step[k]) > most[k]) part = std::min(part, most[k] / std::abs(step[k]));
@@ -92,12 +92,12 @@ struct System {
   double cost{};
 };
 
-System linearised(const JointFit& joint, const SegmentModel& model, const Globals& start) {
+System linearised(const JointFit& joint, const SegmentModel& model) {
   System s;
-  const Globals weight = priorDeviations().cwiseAbs2().cwiseInverse();
+  const Globals weight = priorDeviations(model.coupling).cwiseAbs2().cwiseInverse();
   s.matrix = weight.asDiagonal();
-  s.score = weight.cwiseProduct(start - joint.globals);
-  s.cost = 0.5 * (start - joint.globals).cwiseAbs2().dot(weight);
+  s.score = weight.cwiseProduct(joint.centre - joint.globals);
+  s.cost = 0.5 * (joint.centre - joint.globals).cwiseAbs2().dot(weight);
   for (const SegmentFit& fit : joint.fits) {
     const NormalEquations e = fit.linearise(model, joint.globals, joint.noise);
     s.reduced.push_back(reduce(e));
@@ -108,14 +108,14 @@ System linearised(const JointFit& joint, const SegmentModel& model, const Global
   return s;
 }
 
-double costOf(const JointFit& joint, const SegmentModel& model, const Globals& start) {
-  double cost = 0.5 * (start - joint.globals).cwiseQuotient(priorDeviations()).squaredNorm();
+double costOf(const JointFit& joint, const SegmentModel& model) {
+  double cost = 0.5 * (joint.centre - joint.globals).cwiseQuotient(priorDeviations(model.coupling)).squaredNorm();
   for (const SegmentFit& fit : joint.fits) cost += fit.cost(model, joint.globals, joint.noise);
   return cost;
 }
 
 /// One step with backtracking; the largest change in deviations.
-double improve(JointFit& joint, const SegmentModel& model, const Globals& start, System& s, const Free& free) {
+double improve(JointFit& joint, const SegmentModel& model, System& s, const Free& free) {
   GlobalMatrix matrix = s.matrix;
   Globals score = s.score;
   hold(free, matrix, score);
@@ -129,7 +129,7 @@ double improve(JointFit& joint, const SegmentModel& model, const Globals& start,
       const Locals at = before.fits[i].locals();
       joint.fits[i].setLocals(at + limitedLocals(Locals(part * (r.own - r.by_global * whole)), at));
     }
-    if (costOf(joint, model, start) < s.cost + 1e-9 * std::abs(s.cost))
+    if (costOf(joint, model) < s.cost + 1e-9 * std::abs(s.cost))
       return (part * whole).cwiseQuotient(inverse.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
   }
   joint = before;
@@ -160,12 +160,11 @@ GlobalMatrix covarianceOf(const System& s, const GlobalMatrix& inverse, const Fr
 }
 
 /// Until nothing changes any more, at least this many times.
-void settle(JointFit& joint, const SegmentModel& model, const Globals& start, const Free& free, int least,
-            const Progress& progress) {
+void settle(JointFit& joint, const SegmentModel& model, const Free& free, int least, const Progress& progress) {
   for (int i = 0; i < kMostIterations && !joint.fits.empty(); ++i) {
     report(progress, std::min(1.0, static_cast<double>(i) / (least + kUsualExcess)));
-    System s = linearised(joint, model, start);
-    joint.converged = improve(joint, model, start, s, free) < kConverged;
+    System s = linearised(joint, model);
+    joint.converged = improve(joint, model, s, free) < kConverged;
     learnNoise(joint, model, s.reduced);
     if (i == kLeastIterations - 2) leaveOut(joint, model);
     if (joint.converged && i + 1 >= least) return;
@@ -173,9 +172,9 @@ void settle(JointFit& joint, const SegmentModel& model, const Globals& start, co
 }
 
 /// Covariances and the mean square of the residuals.
-void judge(JointFit& joint, const SegmentModel& model, const Globals& start, const Free& free) {
+void judge(JointFit& joint, const SegmentModel& model, const Free& free) {
   if (joint.fits.empty()) return;
-  System s = linearised(joint, model, start);
+  System s = linearised(joint, model);
   hold(free, s.matrix, s.score);
   joint.plain_covariance = s.matrix.ldlt().solve(GlobalMatrix::Identity());
   joint.covariance = covarianceOf(s, joint.plain_covariance, free);
@@ -190,27 +189,35 @@ void judge(JointFit& joint, const SegmentModel& model, const Globals& start, con
 
 }  // namespace
 
-Globals priorDeviations() { return (Globals() << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3).finished(); }
+Globals priorDeviations(const std::optional<Coupling>& coupling) {
+  Globals deviations;
+  deviations << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3, 1.0, 1.0, 0.7;
+  if (coupling && coupling->stiffness_deviation > 0.0) deviations[kLogCoupling] = coupling->stiffness_deviation;
+  if (coupling && coupling->share_deviation > 0.0) deviations[kLogOdds] = oddsDeviationOf(*coupling);
+  return deviations;
+}
 
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, const Free& free, const Progress& progress) {
   constexpr double kOwn = 0.3;  // of the time, for what each blow has of its own
   JointFit joint;
-  joint.globals = start;
+  joint.globals = joint.centre = start;
+  joint.centre.tail<kOfCoupling>().setZero();
   joint.noise = noise;
   for (const BlowSegment& segment : segments) {
     joint.fits.emplace_back(segment, start);
-    fitLocals(joint.fits.back(), model, start, noise);
+    fitLocals(joint.fits.back(), model, start, noise, (model.coupling ? 3 : 1) * kLocalIterations);
     report(progress, kOwn * static_cast<double>(joint.fits.size()) / static_cast<double>(segments.size()));
   }
   leaveOut(joint, model);
-  settle(joint, model, start, free, kLeastIterations, piece(progress, kOwn, 1.0));
-  judge(joint, model, start, free);
+  settle(joint, model, free, kLeastIterations, piece(progress, kOwn, 1.0));
+  judge(joint, model, free);
   return joint;
 }
 
 void settleNear(JointFit& joint, const SegmentModel& model, const Free& free, const Progress& progress) {
-  settle(joint, model, joint.globals, free, kNearIterations, progress);
+  joint.centre = joint.globals;
+  settle(joint, model, free, kNearIterations, progress);
 }
 
 }  // namespace hammer_loads::calibration

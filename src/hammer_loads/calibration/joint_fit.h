@@ -28,6 +28,7 @@ void hold(const Free& free, Matrix& matrix, Vector& score) {
 
 struct JointFit {
   Globals globals;
+  Globals centre;                 ///< of their prior
   GlobalMatrix covariance;        ///< of globals, by how much the blows differ from each other
   GlobalMatrix plain_covariance;  ///< as it were if nothing but the noise disturbed
   Noise noise;                    ///< as found
@@ -37,14 +38,16 @@ struct JointFit {
   bool converged{};
 };
 
-/// Before anything is known of them: deviations of zero [rad], both eccentricities' parts [rad], logarithm of inertia.
-Globals priorDeviations();
+/// Before anything is known of them: deviations of zero [rad], both eccentricities' parts [rad], logarithm of inertia,
+/// ...; those of a coupling are as given.
+Globals priorDeviations(const std::optional<Coupling>& coupling);
 
-/// From `start`, which is near: some steps of the same.
+/// From where it is, which is near, and is the prior's centre: some steps of the same.
 void settleNear(JointFit& joint, const SegmentModel& model, const Free& free, const Progress& progress);
 
 /// Gauss-Newton over the shared parameters, those of each blow eliminated (Schur); timing and speed noise from the
-/// residuals meanwhile. Parameters with `free` false stay. The covariance is the sandwich over blows with what
+/// residuals meanwhile. A coupling's prior is about what is given of it, that of the others, which is wide, about
+/// `start`. Parameters with `free` false stay. The covariance is the sandwich over blows with what
 /// neighbours have in common (Newey-West), at least the plain one.
 JointFit fitJointly(const std::vector<BlowSegment>& segments, const SegmentModel& model, const Globals& start,
                     const Noise& noise, const Free& free, const Progress& progress = {});

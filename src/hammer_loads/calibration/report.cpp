@@ -65,7 +65,8 @@ std::string yamlOf(const Calibration& c, const std::string& source) {
   for (const Correlation& r : c.correlations)
     text += format("# strong correlation %+.3f: %s and %s\n", r.value, r.first.c_str(), r.second.c_str());
   for (const Estimate& e : c.estimates) {
-    const std::string value = e.unit.empty() ? format("%.0f", e.value) : numberText(e.value);
+    const bool whole = e.unit.empty() && e.value == std::round(e.value);
+    const std::string value = whole ? format("%.0f", e.value) : numberText(e.value);
     const std::string comment =
         format("%s%s+- %.2g; %s", e.unit.empty() ? "" : ("[" + e.unit + "] ").c_str(),
                e.unit == "rad" ? format("%.4g deg ", e.value / kDegree).c_str() : "", e.deviation, e.meaning.c_str());

@@ -43,10 +43,18 @@ CrankFilterSettings settingsOf(const CrankTrack& track, const CalibrationBasis& 
   return s;
 }
 
+/// As the fit has it, known as well as the fit knows it.
+std::optional<Coupling> couplingOf(const CalibrationBasis& basis, const JointFit& fit) {
+  if (!basis.coupling) return std::nullopt;
+  Coupling coupling = calibration::couplingOf(*basis.coupling, fit.globals);
+  coupling.stiffness_deviation = std::sqrt(fit.covariance(kLogCoupling, kLogCoupling));
+  return coupling;
+}
+
 }  // namespace
 
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit) {
-  ShaftModel model(basis.mechanism, basis.level);
+  const ShaftModel model(basis.mechanism, basis.level, couplingOf(basis, fit));
   CrankFilter filter(model, std::exp(fit.globals[kLogInertia]), settingsOf(track, basis, fit));
   std::size_t piece = 0;
   for (std::size_t i = 0; i < track.points.size(); ++i) {
@@ -64,14 +72,14 @@ RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, 
   return filter.rodEvidence();
 }
 
-void refuseForRod(const RodEvidence& rod, Calibration& result) {
+void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
   if (!rod.gives()) return;
   const auto doubt = [&](const char* key, double by) {
     for (Estimate& e : result.estimates)
       if (e.key == key) e.deviation = std::hypot(e.deviation, by);
   };
   for (Estimate& e : result.estimates) {
-    if (e.key == "crank_zero_rad") e.deviation = std::hypot(e.deviation, kOfZero / kZeroLimit * e.limit);
+    if (e.key == "crank_zero_rad") e.deviation = std::hypot(e.deviation, kOfZero * std::abs(ratio));
     if (e.key == "drive_inertia_kg_m2") e.deviation = std::hypot(e.deviation, kOfInertia * e.value);
   }
   for (const char* n : {"1", "2"}) {

@@ -10,6 +10,7 @@ namespace hammer_loads::calibration {
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
 
 /// Keys that a rigid rod's fit would get wrong are not determined: how far they may be off, and what to do instead.
-void refuseForRod(const RodEvidence& rod, Calibration& result);
+/// ratio: encoder turns per crank turn.
+void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result);
 
 }  // namespace hammer_loads::calibration

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -12,12 +13,28 @@
 namespace hammer_loads::calibration {
 
 /// Parameters that all blows share. seen = zero + offset + sum over n of c_n sin(n offset) + s_n (cos(n offset) - 1):
-/// c_n + i s_n is the eccentricity a_n e^(i phase_n).
-constexpr int kGlobals = 8;
+/// c_n + i s_n is the eccentricity a_n e^(i phase_n). The last three are a coupling's: logarithms of its stiffness, of
+/// its motor's odds and of its damping, 0 as given.
+enum GlobalIndex : Eigen::Index {
+  kZero,
+  kSine1,
+  kCosine1,
+  kSine2,
+  kCosine2,
+  kLogInertia,
+  kStiffness,
+  kDrag,
+  kLogCoupling,
+  kLogOdds,
+  kLogDamping,
+  kGlobals
+};
 using Globals = Eigen::Matrix<double, kGlobals, 1>;
-enum GlobalIndex : Eigen::Index { kZero, kSine1, kCosine1, kSine2, kCosine2, kLogInertia, kStiffness, kDrag };
-/// Those from here on change the motion itself.
-constexpr int kShaping = kGlobals - kLogInertia;
+/// Those from kLogInertia on change the motion itself; the last ones only where there is a coupling.
+constexpr int kShaping = kGlobals - kLogInertia, kOfCoupling = kGlobals - kLogCoupling;
+
+/// What is given of a coupling, as the parameters have it.
+Coupling couplingOf(Coupling given, const Globals& globals);
 
 /// Deviations of what is measured, and of what the drive does.
 struct Noise {
@@ -32,6 +49,7 @@ struct Noise {
 struct SegmentModel {
   const Mechanism& mechanism;
   Level level;
+  std::optional<Coupling> coupling = {};  ///< the encoder sits on the motor beyond it
 };
 
 using LocalMatrix = Eigen::Matrix<double, kLocals, kLocals>;
@@ -58,7 +76,7 @@ struct Weighing {
 
 /// A reading's residual where the model stands.
 struct ResidualAt {
-  double offset{}, speed{};  ///< of the crank
+  double offset{}, speed{};  ///< of the encoder
   double angle{};            ///< seen less predicted [rad]
   double speed_error{};      ///< measured less predicted, less its share of the angle's [rad/s]; NaN: not measured
   Weighing deviation;
@@ -67,12 +85,12 @@ struct ResidualAt {
 /// A residual with its derivatives, negative: of what the model predicts.
 struct ResidualRow {
   std::size_t point{};  ///< of the segment
-  ShotPoint at;         ///< the crank there
+  ShotPoint at;         ///< the encoder there
   bool of_speed{};
   double residual{}, deviation{};
   Locals by_local;
   Globals by_global;
-  double by_offset{}, by_crank_speed{};  ///< of the crank's motion there
+  double by_offset{}, by_speed{};  ///< of the encoder's motion there
 };
 
 /// Of a row in the sum of squares: Huber's, over the variance.
@@ -94,7 +112,7 @@ class SegmentFit {
   /// rows: of this segment.
   NormalEquations equationsOf(const std::vector<ResidualRow>& rows, const Noise& noise) const;
   std::vector<ResidualRow> rows(const SegmentModel& model, const Globals& globals, const Noise& noise) const;
-  /// The crank at the segment's points by another hammer, all else the same.
+  /// The encoder at the segment's points by another hammer, all else the same.
   std::vector<ShotPoint> motion(const SegmentModel& model, const Globals& globals) const;
   /// The same motion seen once more, with other noise: at instants that are off their stamps.
   BlowSegment replica(const SegmentModel& model, const Globals& globals, const Noise& noise, double count,
@@ -113,7 +131,7 @@ class SegmentFit {
   using MotionSlope = Eigen::Matrix<double, 1, kLocals + kShaping>;  ///< of one of them
   void run(const SegmentModel& model, const Globals& globals, std::vector<ShotPoint>& points,
            std::vector<MotionSlopes>* slopes = nullptr) const;
-  Weighing weighing(const Noise& noise, double time, const ShotPoint& at) const;
+  Weighing weighing(const SegmentModel& model, const Noise& noise, double time, const ShotPoint& at) const;
   HalfShot halfOf(const Globals& globals, bool before) const;
   std::size_t beforeCount() const;
 

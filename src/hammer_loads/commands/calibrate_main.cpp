@@ -107,9 +107,8 @@ int fail(const std::vector<std::string>& problems) {
   return kExitFailure;
 }
 
-/// Of the last run in the recording, whose sensor is the one that will be used on. crank: it is calibrated.
-Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, bool crank,
-                             std::vector<BagWarning>& warnings) {
+/// Of the last run in the recording, whose sensor is the one that will be used on.
+Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, std::vector<BagWarning>& warnings) {
   Checked<Settings> result;
   Checked<std::vector<BagRun>> runs;
   try {
@@ -119,10 +118,6 @@ Checked<Settings> settingsOf(const BagInputs& inputs, const BagJob& job, bool cr
   }
   result.problems = std::move(runs.problems);
   if (!runs.value) return result;
-  if (crank && runs.value->back().settings.pipeline.coupling) {
-    result.problems.emplace_back("shaft: flexible, must be rigid for calibrate");
-    return result;
-  }
   result.notes = std::move(runs.notes);
   if (runs.value->size() > 1)
     result.notes.push_back(std::to_string(runs.value->size()) + " runs in it: the parameters of the last are used");
@@ -139,7 +134,8 @@ calibration::CalibrationBasis basisOf(const Settings& settings, double rocker_de
           rocker_deviation,
           pipeline.torque_walk * inertia,
           pipeline.initial_torque_deviation * inertia,
-          inForce(pipeline.crank_sensor)};
+          inForce(pipeline.crank_sensor),
+          pipeline.coupling};
 }
 
 /// Pieces of the recording, and more of them until no more are needed.
@@ -210,7 +206,7 @@ int run(int argc, const char* const* argv) {
   const Checked<BagInputs> recording = BagInputs::open(given.bags);
   if (!recording.value) return fail(recording.problems);
   std::vector<BagWarning> warnings;
-  const Checked<Settings> settings = settingsOf(*recording.value, job, !given.boom, warnings);
+  const Checked<Settings> settings = settingsOf(*recording.value, job, warnings);
   if (!settings.value) return fail(settings.problems);
   for (const std::string& note : settings.notes) std::cerr << "note: " << note << '\n';
   for (const std::string& warning : textsOf(warnings)) std::cerr << "warning: " << warning << '\n';

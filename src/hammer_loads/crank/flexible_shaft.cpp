@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/flexible_rates.h"
 #include "hammer_loads/crank/way_piece.h"
 
 namespace hammer_loads {
@@ -11,46 +12,72 @@ namespace {
 constexpr double kMaxStepPhase = 0.4;  // [rad] of the coupling's oscillation
 // Guard: FlexibleShaft.ItsLinearisationFollowsFiniteDifferences of kMaxStepPhase
 
-/// Crank angle from the blow, h = sqrt(Jk + J) w, twist and motor speed within one half turn: rates of these have no
-/// derivative of the links' inertia, so that their linearisation needs none of second order.
-using FlexiblePath = Eigen::Vector4d;
-enum : Eigen::Index { kOffset, kH, kTwist, kMotor };
-using FlexiblePathMatrix = Eigen::Matrix4d;
-/// Columns: torque, logarithm of drive inertia, the coupling's two logarithms.
-using InputMatrix = Eigen::Matrix4d;
-
-struct FlexibleShaft {
-  const ShaftModel& model;
-  CouplingLaw law;
-  Side side;
-  double torque;
-
-  FlexiblePath rate(const FlexiblePath& at, const ShaftLoad& load) const noexcept {
-    const double inv_root = 1.0 / std::sqrt(law.crank_inertia + load.inertia), speed = at[kH] * inv_root;
-    const double moment = law.moment(at[kTwist], at[kMotor], speed);
-    return {speed, (moment + load.weight_torque - law.crank_inertia * load.hull_acceleration) * inv_root,
-            at[kMotor] - speed, (torque - moment) / law.motor_inertia - load.hull_acceleration};
+/// Of one smooth piece: exponential of the mean of both ends' linearisations, to fourth order.
+FlexibleMatrix transition(const FlexibleShaft& s, double dt, const FlexiblePath& start, const ShaftLoad& load,
+                          const FlexiblePath& end, const ShaftLoad& load_end) noexcept {
+  const LinearisedFlexible p = linearised(s, start, load), q = linearised(s, end, load_end);
+  const FlexiblePathMatrix a = 0.5 * dt * (p.by_path + q.by_path), square = a * a;
+  const FlexiblePathMatrix mean = FlexiblePathMatrix::Identity() + 0.5 * a + square / 6.0 + square * a / 24.0;
+  FlexiblePathMatrix by_path = FlexiblePathMatrix::Identity() + a * mean;
+  InputMatrix by_input = mean * (0.5 * dt * (p.by_input + q.by_input));
+  // from h to the speed, at both ends
+  const double inertia = s.law.crank_inertia,
+               by_odds = -inertia * s.law.motor_inertia / (inertia + s.law.motor_inertia);
+  const double root = std::sqrt(inertia + load.inertia), root_end = std::sqrt(inertia + load_end.inertia);
+  const double speed = start[kPathH] / root, speed_end = end[kPathH] / root_end;
+  by_input.col(1) += 0.5 * speed * inertia / root * by_path.col(kPathH);
+  by_input.col(3) += 0.5 * speed * by_odds / root * by_path.col(kPathH);
+  by_path.col(kPathOffset) += speed * load.half_inertia_slope / root * by_path.col(kPathH);
+  by_path.col(kPathH) *= root;
+  const double by_angle = speed_end * load_end.half_inertia_slope / root_end;
+  by_input(kPathH, 1) -= 0.5 * speed_end * inertia / root_end;
+  by_input(kPathH, 3) -= 0.5 * speed_end * by_odds / root_end;
+  by_input.row(kPathH) = ((by_input.row(kPathH) - by_angle * by_input.row(kPathOffset)) / root_end).eval();
+  by_path.row(kPathH) = ((by_path.row(kPathH) - by_angle * by_path.row(kPathOffset)) / root_end).eval();
+  constexpr Eigen::Index rows[] = {0, 1, kMotorAngle, kMotorSpeed}, inputs[] = {2, 3, kStiffness, kOdds};
+  FlexibleMatrix f = FlexibleMatrix::Identity();
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) f(rows[i], rows[k]) = by_path(i, k);
+    for (int k = 0; k < 4; ++k) f(rows[i], inputs[k]) = by_input(i, k);
   }
-  /// first: the rate at the start.
-  FlexiblePath after(const FlexiblePath& start, const FlexiblePath& first, double dt) const noexcept {
-    const auto rate_at = [&](const FlexiblePath& at) { return rate(at, model.withoutSlopes({at[kOffset], side})); };
-    const FlexiblePath k2 = rate_at(start + 0.5 * dt * first);
-    const FlexiblePath k3 = rate_at(start + 0.5 * dt * k2);
-    const FlexiblePath k4 = rate_at(start + dt * k3);
-    return start + dt / 6.0 * (first + 2.0 * (k2 + k3) + k4);
-  }
-};
+  return f;
+}
 
-/// Derivatives of the rates of (angle, h, motor's angle, motor's speed) by these and by the inputs.
-struct LinearisedFlexible {
-  FlexiblePathMatrix by_path;
-  InputMatrix by_input;
-};
+/// One smooth piece of the way, ending at dt or at the blow.
+WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state,
+                      FlexibleMatrix* total) noexcept {
+  const FlexibleShaft shaft{model, lawOf(*model.coupling(), state), state.position.angle.side, state.torque};
+  const auto load_at = [&](const CrankAngle& angle) { return total ? model(angle) : model.withoutSlopes(angle); };
+  const ShaftLoad load = load_at(state.position.angle);
+  const FlexiblePath start{state.position.angle.offset, std::sqrt(shaft.law.crank_inertia + load.inertia) * state.speed,
+                           state.twist, state.motor_speed};
+  const FlexiblePath first = shaft.rate(start, load);
+  FlexiblePath end = shaft.after(start, first, dt);
+  const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
+  WayPiece piece{dt,
+                 (contact || !forward) && isBeyond(shaft.side, end[kPathOffset]) && !isBeyond(shaft.side, start[kPathOffset])};
+  if (piece.at_blow) {
+    piece.used =
+        timeToBlow([&](double t) { return shaft.after(start, first, t)[kPathOffset]; }, start[kPathOffset], end[kPathOffset], dt);
+    end = shaft.after(start, first, piece.used);
+    end[kPathOffset] = 0.0;
+  }
+  const ShaftLoad load_end = load_at({end[kPathOffset], shaft.side});
+  if (total != nullptr) *total = (transition(shaft, piece.used, start, load, end, load_end) * *total).eval();
+  state.position.angle.offset = end[kPathOffset];
+  state.position.renormalise();
+  state.speed = end[kPathH] / std::sqrt(shaft.law.crank_inertia + load_end.inertia);
+  state.twist = end[kPathTwist];
+  state.motor_speed = end[kPathMotor];
+  return piece;
+}
+
+}  // namespace
 
 LinearisedFlexible linearised(const FlexibleShaft& s, const FlexiblePath& at, const ShaftLoad& load) noexcept {
   const CouplingLaw& c = s.law;
-  const double inv = 1.0 / (c.crank_inertia + load.inertia), inv_root = std::sqrt(inv), speed = at[kH] * inv_root;
-  const double slip = c.damping * (at[kMotor] - speed), spring = c.stiffness * at[kTwist];
+  const double inv = 1.0 / (c.crank_inertia + load.inertia), inv_root = std::sqrt(inv), speed = at[kPathH] * inv_root;
+  const double slip = c.damping * (at[kPathMotor] - speed), spring = c.stiffness * at[kPathTwist];
   const double torque = spring + slip + load.weight_torque - c.crank_inertia * load.hull_acceleration;
   const double speed_by_angle = -speed * load.half_inertia_slope * inv;
   const double per_motor = 1.0 / c.motor_inertia, moment_by_angle = -c.stiffness - c.damping * speed_by_angle;
@@ -73,68 +100,6 @@ LinearisedFlexible linearised(const FlexibleShaft& s, const FlexiblePath& at, co
   d.by_input.col(3) = by(-odds, odds, (2.0 * on_crank - 1.0) * (spring + slip));
   return d;
 }
-
-/// Of one smooth piece: exponential of the mean of both ends' linearisations, to fourth order.
-FlexibleMatrix transition(const FlexibleShaft& s, double dt, const FlexiblePath& start, const ShaftLoad& load,
-                          const FlexiblePath& end, const ShaftLoad& load_end) noexcept {
-  const LinearisedFlexible p = linearised(s, start, load), q = linearised(s, end, load_end);
-  const FlexiblePathMatrix a = 0.5 * dt * (p.by_path + q.by_path), square = a * a;
-  const FlexiblePathMatrix mean = FlexiblePathMatrix::Identity() + 0.5 * a + square / 6.0 + square * a / 24.0;
-  FlexiblePathMatrix by_path = FlexiblePathMatrix::Identity() + a * mean;
-  InputMatrix by_input = mean * (0.5 * dt * (p.by_input + q.by_input));
-  // from h to the speed, at both ends
-  const double inertia = s.law.crank_inertia,
-               by_odds = -inertia * s.law.motor_inertia / (inertia + s.law.motor_inertia);
-  const double root = std::sqrt(inertia + load.inertia), root_end = std::sqrt(inertia + load_end.inertia);
-  const double speed = start[kH] / root, speed_end = end[kH] / root_end;
-  by_input.col(1) += 0.5 * speed * inertia / root * by_path.col(kH);
-  by_input.col(3) += 0.5 * speed * by_odds / root * by_path.col(kH);
-  by_path.col(kOffset) += speed * load.half_inertia_slope / root * by_path.col(kH);
-  by_path.col(kH) *= root;
-  const double by_angle = speed_end * load_end.half_inertia_slope / root_end;
-  by_input(kH, 1) -= 0.5 * speed_end * inertia / root_end;
-  by_input(kH, 3) -= 0.5 * speed_end * by_odds / root_end;
-  by_input.row(kH) = ((by_input.row(kH) - by_angle * by_input.row(kOffset)) / root_end).eval();
-  by_path.row(kH) = ((by_path.row(kH) - by_angle * by_path.row(kOffset)) / root_end).eval();
-  constexpr Eigen::Index rows[] = {0, 1, kMotorAngle, kMotorSpeed}, inputs[] = {2, 3, kStiffness, kOdds};
-  FlexibleMatrix f = FlexibleMatrix::Identity();
-  for (int i = 0; i < 4; ++i) {
-    for (int k = 0; k < 4; ++k) f(rows[i], rows[k]) = by_path(i, k);
-    for (int k = 0; k < 4; ++k) f(rows[i], inputs[k]) = by_input(i, k);
-  }
-  return f;
-}
-
-/// One smooth piece of the way, ending at dt or at the blow.
-WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftState& state,
-                      FlexibleMatrix* total) noexcept {
-  const FlexibleShaft shaft{model, lawOf(*model.coupling(), state), state.position.angle.side, state.torque};
-  const auto load_at = [&](const CrankAngle& angle) { return total ? model(angle) : model.withoutSlopes(angle); };
-  const ShaftLoad load = load_at(state.position.angle);
-  const FlexiblePath start{state.position.angle.offset, std::sqrt(shaft.law.crank_inertia + load.inertia) * state.speed,
-                           state.twist, state.motor_speed};
-  const FlexiblePath first = shaft.rate(start, load);
-  FlexiblePath end = shaft.after(start, first, dt);
-  const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
-  WayPiece piece{dt,
-                 (contact || !forward) && isBeyond(shaft.side, end[kOffset]) && !isBeyond(shaft.side, start[kOffset])};
-  if (piece.at_blow) {
-    piece.used =
-        timeToBlow([&](double t) { return shaft.after(start, first, t)[kOffset]; }, start[kOffset], end[kOffset], dt);
-    end = shaft.after(start, first, piece.used);
-    end[kOffset] = 0.0;
-  }
-  const ShaftLoad load_end = load_at({end[kOffset], shaft.side});
-  if (total != nullptr) *total = (transition(shaft, piece.used, start, load, end, load_end) * *total).eval();
-  state.position.angle.offset = end[kOffset];
-  state.position.renormalise();
-  state.speed = end[kH] / std::sqrt(shaft.law.crank_inertia + load_end.inertia);
-  state.twist = end[kTwist];
-  state.motor_speed = end[kMotor];
-  return piece;
-}
-
-}  // namespace
 
 CouplingLaw lawOf(const Coupling& coupling, const ShaftState& state) noexcept {
   return {coupling, state.drive_inertia, state.log_stiffness, state.log_odds};

@@ -1,0 +1,24 @@
+/// The keys that a fit gives, and what a user should know of them.
+#pragma once
+
+#include "hammer_loads/calibration/calibration.h"
+#include "hammer_loads/calibration/hammer_part.h"
+
+namespace hammer_loads::calibration {
+
+/// What was found.
+struct Found {
+  const JointFit& fit;           ///< with the hammer's constants
+  const GlobalMatrix& by_blows;  ///< covariance of the same, the constants as given
+  const HammerPart& hammer;
+  const CalibrationBasis& basis;
+  bool centred{};  ///< no eccentricity was asked for
+};
+
+/// Sensor's place, drive and coupling, and which of them hang together.
+void addEstimates(const Found& found, Calibration& result);
+
+/// curve_square: mean over the turn of the residuals' curve over its deviation, squared; 1 for noise.
+void addRemarks(const CalibrationBasis& basis, double curve_square, Calibration& result);
+
+}  // namespace hammer_loads::calibration
