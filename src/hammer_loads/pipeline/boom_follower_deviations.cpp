@@ -41,7 +41,7 @@ Eigen::Matrix3d BoomFollower::tipCovarianceAsGiven() const noexcept {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   const JointVector vibration = boom_.vibration().acceleration();
   const auto ofTip = [&](const JointVector& joints) {
-    const Vector6 tip = boom_.tipJacobian() * joints;
+    const Eigen::Matrix<double, 6, 1> tip = boom_.tipJacobian() * joints;
     return Eigen::Vector3d(tip[0], tip[2], tip[4]);
   };
   const auto ofRun = [&](int run) { return ofTip(spread_.accelerationDifference(run, vibration)); };
