@@ -53,11 +53,47 @@ TEST(ChooseLevel, ADrawingThatIsKnownWorseAllowsACheaperLevel) {
   EXPECT_GT(chooseLevel(test::mechanismOf(p), 1.0, 5.0, kG).difference[1], 1.5 * known);
 }
 
+HammerParameters drawingWithRod(const RodSpring& rod) {
+  HammerParameters p = drawing();
+  p.rod = rod;
+  return p;
+}
+
+TEST(ChooseLevel, ARodThatGivesNeedsElastic) {
+  const Mechanism mechanism = test::mechanismOf(drawingWithRod({8e8, 0.3, 0.0}));
+  const LevelChoice choice = chooseLevel(mechanism, 0.5, 5.0, kG);
+  EXPECT_EQ(choice.level, Level::kElastic);
+  EXPECT_GT(choice.difference[2], 1.0);
+  EXPECT_GT(choice.difference[1], choice.difference[2]);
+  EXPECT_EQ(chooseLevel(mechanism, 1.001 * choice.difference[2], 5.0, kG).level, Level::kLinkage);
+  // A rod that no source gives rings as a first guess does, unless it is said to be rigid.
+  HammerParameters unknown = drawingWithRod({});
+  EXPECT_EQ(chooseLevel(test::mechanismOf(unknown), 0.5, 5.0, kG).level, Level::kLinkage);
+  unknown.rod_deviation = usualDeviation(unknown.rod);
+  EXPECT_EQ(chooseLevel(test::mechanismOf(unknown), 0.5, 5.0, kG).level, Level::kElastic);
+}
+
+/// A boom below 30 Hz feels means; a rod as stiff as none has no part of its own.
+TEST(ChooseLevel, LongMeansAndStiffRodsNeedLess) {
+  const Mechanism mechanism = test::mechanismOf(drawingWithRod({8e8, 0.3, 0.0}));
+  double before = chooseLevel(mechanism, 0.5, 5.0, kG).difference[2];
+  for (const double interval : {1.0 / 60.0, 1.0 / 20.0, 1.0 / 5.0}) {
+    const double now = chooseLevel(mechanism, 0.5, 5.0, kG, interval).difference[2];
+    EXPECT_LT(now, 0.8 * before) << interval;
+    before = now;
+  }
+  const double stiff = chooseLevel(test::mechanismOf(drawingWithRod({1e15, 0.3, 0.0})), 0.5, 5.0, kG).difference[2];
+  EXPECT_LT(stiff, 0.2 * chooseLevel(mechanism, 0.5, 5.0, kG).difference[2]);
+}
+
 TEST(ChooseLevel, SaysWhichAndWhyWithTheFigures) {
-  const std::string line = describe({Level::kRocker, 0.5, {12.5, 0.123}});
+  const std::string line = describe({Level::kRocker, 0.5, false, {12.5, 0.123, 0.0}});
   EXPECT_NE(line.find("rocker is the cheapest"), std::string::npos) << line;
   EXPECT_NE(line.find("within 0.5 of"), std::string::npos) << line;
-  EXPECT_NE(line.find("pulse 12.5, rocker 0.123"), std::string::npos) << line;
+  EXPECT_NE(line.find("to linkage is"), std::string::npos) << line;
+  EXPECT_NE(line.find("pulse 12.5, rocker 0.123, linkage 0"), std::string::npos) << line;
+  const std::string elastic = describe({Level::kLinkage, 0.5, true, {12.5, 0.9, 0.4}});
+  EXPECT_NE(elastic.find("linkage is the cheapest whose difference to elastic"), std::string::npos) << elastic;
 }
 
 }  // namespace

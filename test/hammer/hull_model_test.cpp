@@ -10,7 +10,6 @@
 namespace hammer_loads {
 namespace {
 
-
 TEST(HullModel, GivesEachLevelItsOwnWrench) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   const CrankMotion crank{CrankAngle::fromAngle(5.9), 30.0, 200.0};

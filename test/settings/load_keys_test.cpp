@@ -93,12 +93,17 @@ TEST(Load, LevelAutoIsChosenAtStartAndTold) {
     return *loadFiles(configDirectory(), {file.path()}).value;
   };
   const Settings strict = loaded("{level: auto, tolerance: 1.0e-6}"), loose = loaded("{level: auto, tolerance: 5.0}");
-  EXPECT_EQ(strict.pipeline.level, Level::kLinkage);
+  EXPECT_EQ(strict.pipeline.level, Level::kElastic);
   EXPECT_EQ(loose.pipeline.level, Level::kRocker);
   ASSERT_EQ(loose.notes.size(), 1U);
-  EXPECT_EQ(loose.notes[0].find("level auto: rocker is the cheapest whose difference to linkage is within 5 of what"),
+  EXPECT_EQ(loose.notes[0].find("level auto: rocker is the cheapest whose difference to elastic is within 5 of what"),
             0U);
   EXPECT_TRUE(loaded("{level: rocker}").notes.empty());
+  const auto of_rod = [&](const std::string& output) {  // at level linkage
+    const std::string note = loaded("{level: auto" + output + "}").notes[0];
+    return std::stod(note.substr(note.find("linkage ") + 8));
+  };
+  EXPECT_LT(of_rod(", output: mean, output_rate_Hz: 60"), 0.8 * of_rod(""));
 }
 
 TEST(Load, CrankSensorsPlaceIsRead) {

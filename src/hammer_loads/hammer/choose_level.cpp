@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
+#include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/hammer/wrench_columns.h"
 #include "hammer_loads/linkage/shaft_load.h"
+#include "hammer_loads/linkage/two_bodies.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
@@ -14,26 +17,72 @@ namespace {
 constexpr int kPoints = 2000;        // of the turn; the pulse is some 200 of them long
 constexpr double kRounding = 1e-12;  // of a load: no difference
 
-/// A turn from blow to blow under constant torque, at level linkage and without weight.
-std::vector<CrankMotion> workingTurn(const Mechanism& mechanism, double turn_rate) {
+/// From blow to blow under constant torque, at level linkage and without weight.
+struct WorkingTurn {
+  std::vector<CrankMotion> points;
+  double speed_after{};  ///< at the blow [rad/s]
+  double torque{};       ///< [N m]
+};
+
+WorkingTurn workingTurn(const Mechanism& mechanism, double turn_rate) {
   const double drive = mechanism.parameters().drive_inertia;
   const auto load = [&](CrankAngle angle) { return shaftLoad(mechanism, Level::kLinkage, angle, {}); };
   const double after = drive + load({0.0, Side::kAfterBlow}).inertia;
   const double lost = load({0.0, Side::kBeforeBlow}).inertia - load({0.0, Side::kAfterBlow}).inertia;
-  std::vector<CrankMotion> turn;
-  double period = 0.0;  // at speed 1 at the blow
+  WorkingTurn turn{{}, 1.0, 0.5 * lost / kTwoPi};  // at first with speed 1 at the blow
+  double period = 0.0;
   for (int i = 0; i < kPoints; ++i) {
     const double part = (i + 0.5) / kPoints;
     const CrankAngle angle = CrankAngle::fromAngle(kTwoPi * part);
     const ShaftLoad at = load(angle);
     const double inertia = drive + at.inertia;
     const double speed = std::sqrt((after + lost * part) / inertia);  // kinetic energy grows in proportion to the angle
-    turn.push_back({angle, speed, (0.5 * lost / kTwoPi - at.half_inertia_slope * speed * speed) / inertia});
+    turn.points.push_back({angle, speed, (turn.torque - at.half_inertia_slope * speed * speed) / inertia});
     period += kTwoPi / kPoints / speed;
   }
   const double scale = period * turn_rate;
-  for (CrankMotion& point : turn) point.speed *= scale, point.acceleration *= scale * scale;
+  for (CrankMotion& point : turn.points) point.speed *= scale, point.acceleration *= scale * scale;
+  turn.speed_after = scale, turn.torque *= scale * scale;
   return turn;
+}
+
+/// Of the hull: what a rod adds that gives, beside a rigid one at the same place and speed of the crank.
+Eigen::Vector3d besideRigid(const Mechanism& mechanism, const TwoBodies& bodies, const RodSpring& rod,
+                            const TwoBodyDrive& drive, const TwoBodyState& at) {
+  const LinkMotion links = bodies.links(at.angle);
+  const TwoBodyAccelerations a = bodies.accelerations(rod, drive, at, links);
+  const CrankMotion rigid{at.angle, at.speed, bodies.rigidAcceleration(drive, at, links)};
+  return vectorOf(hullWrenchOf(mechanism, withRocker(links, at.beside), bodies.linkAccelerations(at, a, links),
+                               drive.gravity)) -
+         vectorOf(hullWrenchLinkage(mechanism, links, rigid, drive.gravity));
+}
+
+/// Its squares, sums over the points of the turn: of a blow that leaves the rocker at its tool, until the crank has
+/// turned by a quarter. Means over `interval` count. What comes in the first millisecond is of the blow itself: there a
+/// rod that hardly gives has all of it.
+Eigen::Vector3d ofRod(const Mechanism& mechanism, const WorkingTurn& turn, Gravity gravity, double interval) {
+  constexpr double kStep = 2e-5, kOfBlow = 1e-3;  // [s]
+  // Numerical: kStep, kOfBlow
+  const HammerParameters& p = mechanism.parameters();
+  const RodSpring rod = priorOf(p.rod, p.rod_deviation).rod;
+  const TwoBodies bodies(mechanism);
+  const TwoBodyDrive drive{p.drive_inertia, turn.torque, gravity};
+  TwoBodyState state{{0.0, Side::kAfterBlow}, turn.speed_after, 0.0, 0.0};
+  state.beside_speed = -bodies.links(state.angle).rocker.u * turn.speed_after;
+  const int steps = std::max(1, static_cast<int>(std::lround(interval / kStep)));
+  double time = 0.0;
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  const auto rings = [&] { return state.angle.offset < 0.25 * kTwoPi && state.speed > 0.0; };
+  while (rings()) {
+    const double from = state.angle.offset;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (int i = 0; i < steps && rings(); ++i, time += kStep) {
+      if (time > kOfBlow) mean += besideRigid(mechanism, bodies, rod, drive, state) / steps;
+      bodies.move(rod, drive, kStep, state);
+    }
+    squares += (state.angle.offset - from) / kTwoPi * kPoints * mean.cwiseAbs2();
+  }
+  return squares;
 }
 
 Eigen::Vector3d loadOf(const HullModel& model, const CrankMotion& point, Gravity gravity) {
@@ -53,39 +102,43 @@ Eigen::Vector3d openVariance(const HullModel& rich, const std::vector<CrankMotio
 
 }  // namespace
 
-LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double turn_rate, double g) {
-  const std::vector<CrankMotion> turn = workingTurn(mechanism, turn_rate);
+LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double turn_rate, double g, double interval) {
+  const WorkingTurn turn = workingTurn(mechanism, turn_rate);
   const HullModel rich(mechanism, Level::kLinkage);
   const Gravity gravity{0.0, -g};
-  const Eigen::Vector3d open = openVariance(rich, turn, HullMotion{gravity});
+  const Eigen::Vector3d open = openVariance(rich, turn.points, HullMotion{gravity});
   std::vector<Eigen::Vector3d> references;
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  for (const CrankMotion& point : turn) {
+  for (const CrankMotion& point : turn.points) {
     references.push_back(loadOf(rich, point, gravity));
     size += references.back().cwiseAbs2();
   }
-  LevelChoice choice{Level::kLinkage, tolerance, {}};
-  const std::array<Level, 2> poorer{Level::kPulse, Level::kRocker};
-  for (std::size_t i = poorer.size(); i-- > 0;) {
-    const HullModel model(mechanism, poorer[i]);
-    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
-    for (std::size_t p = 0; p < turn.size(); ++p)
-      squares += (loadOf(model, turn[p], gravity) - references[p]).cwiseAbs2();
+  const HammerParameters& p = mechanism.parameters();
+  const bool gives = priorOf(p.rod, p.rod_deviation).gives;
+  const Eigen::Vector3d of_rod = gives ? ofRod(mechanism, turn, gravity, interval) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  LevelChoice choice{gives ? Level::kElastic : Level::kLinkage, tolerance, gives, {}};
+  for (std::size_t i = choice.difference.size(); i-- > 0;) {
+    const HullModel model(mechanism, static_cast<Level>(i));
+    Eigen::Vector3d squares = of_rod;
+    for (std::size_t k = 0; k < references.size(); ++k)
+      squares += (loadOf(model, turn.points[k], gravity) - references[k]).cwiseAbs2();
     for (int k = 0; k < 3; ++k) {
       if (squares[k] <= kRounding * kRounding * size[k]) continue;
       choice.difference[i] = std::max(choice.difference[i], std::sqrt(squares[k] / open[k]));
     }
-    if (choice.difference[i] <= tolerance) choice.level = poorer[i];
+    if (choice.difference[i] <= tolerance) choice.level = static_cast<Level>(i);
   }
   return choice;
 }
 
 std::string describe(const LevelChoice& choice) {
-  const char* names[] = {"pulse", "rocker", "linkage"};
+  const char* names[] = {"pulse", "rocker", "linkage", "elastic"};
+  const auto name = [&](Level level) { return names[static_cast<std::size_t>(level)]; };
   return format(
-      "level auto: %s is the cheapest whose difference to linkage is within %.3g of what the hammer file leaves open; "
-      "over a working turn: pulse %.3g, rocker %.3g, linkage 0",
-      names[static_cast<std::size_t>(choice.level)], choice.tolerance, choice.difference[0], choice.difference[1]);
+      "level auto: %s is the cheapest whose difference to %s is within %.3g of what the hammer file leaves open; "
+      "over a working turn: pulse %.3g, rocker %.3g, linkage %.3g%s",
+      name(choice.level), name(choice.gives ? Level::kElastic : Level::kLinkage), choice.tolerance,
+      choice.difference[0], choice.difference[1], choice.difference[2], choice.gives ? ", elastic 0" : "");
 }
 
 }  // namespace hammer_loads

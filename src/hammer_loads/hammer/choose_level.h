@@ -8,21 +8,25 @@
 
 namespace hammer_loads {
 
-/// Difference of a level's wrench to that of level linkage over what the hammer's constants leave open of the latter
+/// Difference of a level's wrench to that of the richest over what the hammer's constants leave open of level linkage
 /// (WrenchColumns): root mean squares over a working turn, the largest of force x, force z and moment [-]. A hammer
-/// that is said to be exact leaves nothing open: then it is infinite, unless there is no difference.
+/// that is said to be exact leaves nothing open: then it is infinite, unless there is no difference. The richest is
+/// elastic, unless the rod is said to be rigid.
 struct LevelChoice {
   Level level{};  ///< the cheapest within tolerance
   double tolerance{};
-  std::array<double, 2> difference{};  ///< of pulse and of rocker
+  bool gives{};                        ///< the rod
+  std::array<double, 3> difference{};  ///< of pulse, rocker and linkage
 };
 
 /// Works one turn with the machine at level linkage: constant net drive torque that makes up for the blow, so that each
 /// turn is like the one before; the speed at the blow such that the turn takes 1/turn_rate [s]. Weight counts in the
-/// wrench, hull vertical; in the turn's motion it is neglected. tolerance, turn_rate, g [m/s2] > 0, g may be 0.
-/// The crank's acceleration is taken as known: what a poorer level does to the estimate of the drive inertia is not
-/// seen.
-LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double turn_rate, double g);
+/// wrench, hull vertical; in the turn's motion it is neglected. What a rod adds that gives as the file has it, or else
+/// as a first guess does (RodPrior), is that of one blow that leaves the rocker at its tool (TwoBodies), means over `interval` [s] > 0. tolerance,
+/// turn_rate, g [m/s2] > 0, g may be 0. The crank's acceleration is taken as known: what a poorer level does to the
+/// estimate of the drive inertia is not seen.
+LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double turn_rate, double g,
+                        double interval = 1e-3);
 
 /// One line for a person: which and why, with the figures.
 std::string describe(const LevelChoice& choice);

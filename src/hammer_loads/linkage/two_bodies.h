@@ -1,6 +1,7 @@
 /// Crank and rocker as two bodies, the rod between them a spring: how they move after a blow.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "hammer_loads/linkage/hull_motion.h"
@@ -17,6 +18,12 @@ struct TwoBodyState {
   double beside{};        ///< x = psi - psi of a rigid rod [rad]
   double beside_speed{};  ///< its rate [rad/s]
 };
+
+/// Rigid links with the rocker where it is: lively rock throws it back by a tenth of a radian.
+inline LinkMotion withRocker(LinkMotion rigid, double beside) noexcept {
+  rigid.psi = rigid.psi * Planar{std::cos(beside), std::sin(beside)};
+  return rigid;
+}
 
 /// The loads that drive them.
 struct TwoBodyDrive {

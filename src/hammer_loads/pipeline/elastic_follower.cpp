@@ -29,12 +29,6 @@ constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of like
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 // Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
 
-/// The rocker where it is: lively rock throws it back by a tenth of a radian.
-LinkMotion withRocker(LinkMotion rigid, double beside) noexcept {
-  rigid.psi = rigid.psi * Planar{std::cos(beside), std::sin(beside)};
-  return rigid;
-}
-
 /// x'' [rad/s2]: of the rocker beside a rigid rod's at the crank's acceleration.
 double besideRigidly(const TwoBodyState& s, const TwoBodyAccelerations& a, const LinkMotion& links) noexcept {
   return a.rocker - links.rocker.u * a.crank - links.rocker.du * square(s.speed);

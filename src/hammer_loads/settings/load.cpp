@@ -127,7 +127,10 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());
   if (!mechanism || !result.problems.empty()) return result;
   if (pipeline.choose_level) {
-    const LevelChoice choice = chooseLevel(*mechanism, pipeline.tolerance, pipeline.turn_rate, pipeline.gravity);
+    const bool means = pipeline.output == OutputKind::kMean && pipeline.output_rate > 0.0;
+    const double interval = means ? 1.0 / pipeline.output_rate : 1e-3;
+    const LevelChoice choice =
+        chooseLevel(*mechanism, pipeline.tolerance, pipeline.turn_rate, pipeline.gravity, interval);
     pipeline.level = choice.level;
     result.notes.push_back(describe(choice));
   }
