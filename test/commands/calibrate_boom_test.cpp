@@ -5,6 +5,7 @@
 
 #include "calibration/free_boom.h"
 #include "commands/bag_files.h"
+#include "hammer_loads/settings/load.h"
 
 namespace hammer_loads {
 namespace {

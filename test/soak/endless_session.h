@@ -6,8 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hammer_loads/util/stamp.h"
+#include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/simulation/session.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads::soak {
 
