@@ -75,7 +75,7 @@ TEST(Calibration, FindsACouplingAndWhatIsBeyondIt) {
     s.drive.coupling_damping = of.damping;
     const Mechanism mechanism = mechanismOf(s, 1.2);
     CalibrationBasis basis = basisOf(mechanism);
-    basis.coupling = Coupling{of.given, 1.05 * of.share, 0.02, 0.3, 0.03};
+    basis.coupling = Coupling{of.given, 1.05 * of.share, 0.02, 0.3, 0.03, 0.7};
     const Calibration c = calibrate(recorded(s), basis);
     ASSERT_EQ(c.problem, "");
     EXPECT_LT(std::abs(errorOf(c, "crank_zero_rad", s.crank.zero)), 0.12 * kDegree);
@@ -88,6 +88,7 @@ TEST(Calibration, FindsACouplingAndWhatIsBeyondIt) {
       ASSERT_TRUE(find(c, key)->determined()) << key;
       EXPECT_LT(std::abs(find(c, key)->value - truth), 3.0 * find(c, key)->deviation) << key;
     }
+    EXPECT_NEAR(find(c, "coupling_stiffness_deviation")->value, 0.03, 0.01);
     // A shaft that is taken for rigid has another zero for certain.
     basis.coupling.reset();
     const Calibration rigid = calibrate(recorded(s), basis);
@@ -100,7 +101,7 @@ TEST(Calibration, ACouplingThatIsNoneIsRefusedByWhatFits) {
   const simulation::MachineSettings s = atWork(6.0, 250.0);
   const Mechanism mechanism = mechanismOf(s);
   CalibrationBasis basis = basisOf(mechanism);
-  basis.coupling = Coupling{50.0, 0.2, 0.02, 0.3, 0.03};
+  basis.coupling = Coupling{50.0, 0.2, 0.02, 0.3, 0.03, 0.7};
   const Calibration c = calibrate(recorded(s), basis);
   EXPECT_NE(c.problem.find("shaft: rigid"), std::string::npos) << c.problem;
   EXPECT_TRUE(c.estimates.empty());

@@ -84,6 +84,24 @@ TEST(FlexibleShaftSession, AWrongShareIsWithinTheDeviations) {
   }
 }
 
+/// Without a deviation of its own a wrong damping is outside of all others; a right one is not.
+TEST(FlexibleShaftSession, AWrongDampingIsWithinTheDeviations) {
+  const auto coveredAt = [](double truth, double deviation) {
+    simulation::MachineSettings machine = machineWith(85.0, 0.3, 945);
+    machine.drive.coupling_damping = truth;
+    machine.crank.speed = false;
+    machine.crank.stamp_noise = 1e-4;
+    machine.blow.restitution_drawn = true;
+    machine.blow.restitution_high = 0.3;
+    return errorsOf(machine, Coupling{85.0, 0.3, 0.02, 0.03, 0.0, deviation}).covered_z;
+  };
+  EXPECT_GT(coveredAt(0.02, 0.0), 0.88);
+  for (const double truth : {0.01, 0.045}) {
+    EXPECT_LT(coveredAt(truth, 0.0), 0.75) << truth;
+    EXPECT_GT(coveredAt(truth, 0.7), 0.88) << truth;
+  }
+}
+
 TEST(FlexibleShaftSession, BlowsThatDifferAndStampsThatJitter) {
   simulation::MachineSettings machine = machineWith(50.0, 0.3, 950);
   machine.blow.restitution_drawn = true;

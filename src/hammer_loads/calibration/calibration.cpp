@@ -27,7 +27,7 @@ Free toFind(const CalibrationBasis& basis, bool centred) {
   if (centred) free.segment<4>(kSine1).setConstant(false);
   free[kLogCoupling] = basis.coupling && basis.coupling->stiffness_deviation > 0.0;
   free[kLogOdds] = basis.coupling && basis.coupling->share_deviation > 0.0;
-  free[kLogDamping] = basis.coupling && basis.coupling->damping > 0.0;
+  free[kLogDamping] = basis.coupling && basis.coupling->damping > 0.0 && basis.coupling->damping_deviation > 0.0;
   return free;
 }
 

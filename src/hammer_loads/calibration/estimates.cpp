@@ -18,10 +18,11 @@ constexpr double kStrong = 0.9;
 constexpr double kZeroLimit = 0.3 * kDegree;  // an encoder is usually mounted half a degree off
 constexpr double kEccentricity1Limit = 0.4 * kDegree;
 constexpr double kEccentricity2Limit = 0.2 * kDegree;
-constexpr double kInertiaLimit = 0.08;  // relative
-constexpr double kTimingLimit = 0.2;    // relative
-constexpr double kFrequencyLimit = 0.1, kShareLimit = 0.1,
-                 kDampingLimit = 0.5;  // relative; 20 % of the frequency are learned at work
+constexpr double kInertiaLimit = 0.08;                                           // relative
+constexpr double kTimingLimit = 0.2;                                             // relative
+constexpr double kFrequencyLimit = 0.1, kShareLimit = 0.1, kDampingLimit = 0.5;  // relative
+// Of the logarithms of stiffness and damping: a coupling of rubber is another one when it is warm. Estimates.
+constexpr double kStiffnessWarmth = 0.03, kDampingWarmth = 0.2;
 
 /// An eccentricity's amount and phase from its two parts.
 void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatrix& of_blows, int n, double limit) {
@@ -55,18 +56,31 @@ void addEccentricity(Calibration& result, const JointFit& fit, const GlobalMatri
 void addCoupling(Calibration& result, const JointFit& fit, const GlobalMatrix& of_blows, const Coupling& given) {
   const Coupling found = couplingOf(given, fit.globals);
   const double share = found.motor_share, frequency = found.frequency;
-  const auto add = [&](Eigen::Index k, const char* key, const char* unit, double value, double by, double limit,
-                       const char* meaning) {
-    if (fit.covariance(k, k) > 0.0)
-      result.estimates.push_back(
-          {key, unit, value, by * std::sqrt(fit.covariance(k, k)), limit, meaning, by * std::sqrt(of_blows(k, k))});
+  struct Key {
+    Eigen::Index row;  ///< a logarithm
+    const char *key, *unit;
+    double value, by_row, limit;
+    const char* meaning;
+    const char* deviation_key;
+    double deviation_by_row, least;  ///< least of the logarithm's
   };
-  add(kLogCoupling, "coupling_frequency_Hz", "Hz", frequency, 0.5 * frequency, kFrequencyLimit * frequency,
-      "of motor against crank, both free to turn");
-  add(kLogDamping, "coupling_damping_ratio", "", found.damping, found.damping, kDampingLimit * found.damping,
-      "of critical, of the same oscillation");
-  add(kLogOdds, "coupling_motor_share", "", share, share * (1.0 - share), kShareLimit * share,
-      "of the drive inertia, on the motor's side");
+  const double by_odds = share * (1.0 - share);
+  for (const Key& k :
+       {Key{kLogCoupling, "coupling_frequency_Hz", "Hz", frequency, 0.5 * frequency, kFrequencyLimit * frequency,
+            "of motor against crank, both free to turn", "coupling_stiffness_deviation", 1.0, kStiffnessWarmth},
+        Key{kLogDamping, "coupling_damping_ratio", "", found.damping, found.damping, kDampingLimit * found.damping,
+            "of critical, of the same oscillation", "coupling_damping_deviation", 1.0, kDampingWarmth},
+        Key{kLogOdds, "coupling_motor_share", "", share, by_odds, kShareLimit * share,
+            "of the drive inertia, on the motor's side", "coupling_share_deviation", by_odds, 0.0}}) {
+    const double deviation = std::sqrt(fit.covariance(k.row, k.row));
+    if (!(deviation > 0.0)) continue;
+    const Estimate value{
+        k.key, k.unit, k.value, k.by_row * deviation, k.limit, k.meaning, k.by_row * std::sqrt(of_blows(k.row, k.row))};
+    result.estimates.push_back(value);
+    if (value.determined())
+      result.estimates.push_back({k.deviation_key, "", k.deviation_by_row * std::max(deviation, k.least), 0.0, 1.0,
+                                  "with a first guess's the filter may settle on another coupling", 0.0});
+  }
 }
 
 void addCorrelations(Calibration& result, const HammerPart& hammer) {

@@ -191,9 +191,10 @@ void judge(JointFit& joint, const SegmentModel& model, const Free& free) {
 
 Globals priorDeviations(const std::optional<Coupling>& coupling) {
   Globals deviations;
-  deviations << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3, 1.0, 1.0, 0.7;
+  deviations << 10.0, 0.05, 0.05, 0.03, 0.03, 1.5, 30.0, 0.3, 1.0, 1.0, 1.0;
   if (coupling && coupling->stiffness_deviation > 0.0) deviations[kLogCoupling] = coupling->stiffness_deviation;
   if (coupling && coupling->share_deviation > 0.0) deviations[kLogOdds] = oddsDeviationOf(*coupling);
+  if (coupling && coupling->damping_deviation > 0.0) deviations[kLogDamping] = coupling->damping_deviation;
   return deviations;
 }
 

@@ -137,11 +137,7 @@ class FlexibleWay : public ShotWay {
     Slopes rate = sign() * d.by_path * slopes;
     addTorqueSlopes(sign() * by_torque[kPathMotor], time, offsetOf(path), path[kPathMotor], rate.row(kPathMotor));
     rate.col(kOwnLogInertia) += sign() * d.by_input.col(1);
-    rate.middleCols<2>(kOwnCoupling) += sign() * d.by_input.rightCols<2>();
-    const double inv_root = 1.0 / std::sqrt(law_.crank_inertia + t.load.inertia);
-    const double slip = sign() * law_.damping * (path[kPathMotor] - path[kPathH] * inv_root);
-    rate(kPathH, kOwnDamping) += slip * inv_root;
-    rate(kPathMotor, kOwnDamping) -= slip / law_.motor_inertia;
+    rate.middleCols<3>(kOwnCoupling) += sign() * d.by_input.rightCols<3>();
     return rate;
   }
 

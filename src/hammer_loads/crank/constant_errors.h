@@ -23,8 +23,9 @@ class ConstantErrors {
  public:
   static constexpr int kTable = kUnknowns.size(), kSize = kTable + kMachineColumns, kPlace = countSeen();
   static constexpr int kZero = indexOfUnknown("zero"), kSupply = indexOfUnknown("supply"),
-                       kShare = indexOfUnknown("share"), kLatency = indexOfUnknown("latency"),
-                       kSpeedLag = indexOfUnknown("speed lag"), kSpeedScale = indexOfUnknown("speed scale");
+                       kShare = indexOfUnknown("share"), kDamping = indexOfUnknown("damping"),
+                       kLatency = indexOfUnknown("latency"), kSpeedLag = indexOfUnknown("speed lag"),
+                       kSpeedScale = indexOfUnknown("speed scale");
   using Row = Eigen::Matrix<double, 1, kSize>;      ///< derivative of a number by b
   using Vector = Eigen::Matrix<double, kTable, 1>;  ///< of the table's alone
   using Matrix = Eigen::Matrix<double, kTable, kTable>;

@@ -15,6 +15,7 @@ struct Coupling {
   double damping{};              ///< of critical, of the same oscillation [-], >= 0
   double stiffness_deviation{};  ///< standard deviation of the stiffness, relative [-], >= 0; 0: it is not learned
   double share_deviation{};      ///< as above of the motor's share [-]
+  double damping_deviation{};    ///< standard deviation of the damping's logarithm [-], >= 0
 };
 
 /// Of the logarithm of the odds, motor's over crank's inertia; standard [-].

@@ -44,7 +44,7 @@ void CrankBelief::drawFactor(const BlowPrior& prior) noexcept {
   factor = prior.mean;
   struck_early = false;
   draw(kFactor, square(prior.deviation), prior.by_error);
-  by_constant(kFactor, ConstantErrors::kShare) = 0.0;
+  by_constant(kFactor, ConstantErrors::kShare) = by_constant(kFactor, ConstantErrors::kDamping) = 0.0;
   if (motor) motor->covariance.row(kFactor).setZero();
 }
 

@@ -25,10 +25,12 @@ constexpr double kRodMoves = 0.017;    // [rad] of a reading at most, there: wor
 
 }  // namespace
 
-/// Those of the settings; that of the motor's share is the coupling's.
+/// Those of the settings; those of the motor's share and of the damping are the coupling's.
 ConstantErrors::Vector CrankFilter::constantDeviations() const noexcept {
   ConstantErrors::Vector deviations = settings_.constant_deviations;
-  if (model_.coupling()) deviations[ConstantErrors::kShare] = oddsDeviationOf(*model_.coupling());
+  if (!model_.coupling()) return deviations;
+  deviations[ConstantErrors::kShare] = oddsDeviationOf(*model_.coupling());
+  deviations[ConstantErrors::kDamping] = model_.coupling()->damping_deviation;
   return deviations;
 }
 

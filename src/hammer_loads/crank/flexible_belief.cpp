@@ -19,10 +19,11 @@ constexpr double kMostLogStiffness = 1.4;     // a factor of two of the frequenc
 constexpr double kMostTwist = 1.0;  // [rad]: more is a diverged filter
 // Guard: FlexibleBounds.OfTheTwist of kMostTwist
 
-/// f: with a column for the odds, an error of which acts within the step.
+/// f: with columns for odds and damping, errors of which act within the step.
 void apply(const FlexibleMatrix& f, Joint& all) noexcept {
   Joint::Effect step = Joint::Effect::Zero();
   step.col(ConstantErrors::kShare) = f.col(kOdds).head<kFlexibleVariables>();
+  step.col(ConstantErrors::kDamping) = f.col(kDamping).head<kFlexibleVariables>();
   all.predict(f.topLeftCorner<kFlexibleVariables, kFlexibleVariables>(), step);
 }
 
@@ -57,7 +58,8 @@ void addNoise(const CrankWalks& walks, const CouplingLaw& law, double h, Joint& 
 
 /// Derivatives of the crank's acceleration: by the coupling's moment times those of the moment, and all others.
 struct AccelerationSlopes {
-  Eigen::Matrix<double, 1, 9> by_moment{Eigen::Matrix<double, 1, 9>::Zero()}, others{by_moment};
+  using Row = Eigen::Matrix<double, 1, FlexibleMatrix::ColsAtCompileTime>;
+  Row by_moment{Row::Zero()}, others{by_moment};
 };
 
 AccelerationSlopes accelerationSlopes(const ShaftModel& model, const ShaftState& state) noexcept {
@@ -83,6 +85,7 @@ AccelerationSlopes accelerationSlopes(const ShaftModel& model, const ShaftState&
   const double by_inertia = -law.crank_inertia * (e + load.hull_acceleration) * inv;
   s.others[Belief::kInertia] = moment * inv + by_inertia;
   s.others[kOdds] = (2.0 * on_crank - 1.0) * moment * inv - (1.0 - on_crank) * by_inertia;
+  s.others[kDamping] = slip * inv;
   return s;
 }
 
@@ -230,6 +233,7 @@ CrankUncertainty flexibleUncertainty(const ShaftModel& model, const Belief& b, d
   CrankUncertainty result;
   result.by_constant = jacobian * all.by_constant;
   result.by_constant(2, ConstantErrors::kShare) += slopes.others[kOdds];
+  result.by_constant(2, ConstantErrors::kDamping) += slopes.others[kDamping];
   ConstantErrors::toColumns(root, result.by_constant);
   const ShaftLoad load = model(b.state.position.angle);
   const double inv = 1.0 / (lawOf(*model.coupling(), b.state).crank_inertia + load.inertia);

@@ -13,8 +13,8 @@ namespace hammer_loads {
 using FlexiblePath = Eigen::Vector4d;
 enum FlexiblePathRow : Eigen::Index { kPathOffset, kPathH, kPathTwist, kPathMotor };
 using FlexiblePathMatrix = Eigen::Matrix4d;
-/// Columns: torque of the motor, logarithm of drive inertia, the coupling's two logarithms.
-using InputMatrix = Eigen::Matrix4d;
+/// Columns: torque of the motor, logarithms of drive inertia, of the coupling's stiffness, odds and damping.
+using InputMatrix = Eigen::Matrix<double, 4, 5>;
 
 /// On one side of the blow, with a torque.
 struct FlexibleShaft {

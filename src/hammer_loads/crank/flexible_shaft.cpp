@@ -34,11 +34,11 @@ FlexibleMatrix transition(const FlexibleShaft& s, double dt, const FlexiblePath&
   by_input(kPathH, 3) -= 0.5 * speed_end * by_odds / root_end;
   by_input.row(kPathH) = ((by_input.row(kPathH) - by_angle * by_input.row(kPathOffset)) / root_end).eval();
   by_path.row(kPathH) = ((by_path.row(kPathH) - by_angle * by_path.row(kPathOffset)) / root_end).eval();
-  constexpr Eigen::Index rows[] = {0, 1, kMotorAngle, kMotorSpeed}, inputs[] = {2, 3, kStiffness, kOdds};
+  constexpr Eigen::Index rows[] = {0, 1, kMotorAngle, kMotorSpeed}, inputs[] = {2, 3, kStiffness, kOdds, kDamping};
   FlexibleMatrix f = FlexibleMatrix::Identity();
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) f(rows[i], rows[k]) = by_path(i, k);
-    for (int k = 0; k < 4; ++k) f(rows[i], inputs[k]) = by_input(i, k);
+    for (int k = 0; k < 5; ++k) f(rows[i], inputs[k]) = by_input(i, k);
   }
   return f;
 }
@@ -54,11 +54,11 @@ WayPiece advancePiece(const ShaftModel& model, double dt, bool contact, ShaftSta
   const FlexiblePath first = shaft.rate(start, load);
   FlexiblePath end = shaft.after(start, first, dt);
   const bool forward = (shaft.side == Side::kBeforeBlow) == (dt > 0.0);  // not falling back onto the tool
-  WayPiece piece{dt,
-                 (contact || !forward) && isBeyond(shaft.side, end[kPathOffset]) && !isBeyond(shaft.side, start[kPathOffset])};
+  WayPiece piece{
+      dt, (contact || !forward) && isBeyond(shaft.side, end[kPathOffset]) && !isBeyond(shaft.side, start[kPathOffset])};
   if (piece.at_blow) {
-    piece.used =
-        timeToBlow([&](double t) { return shaft.after(start, first, t)[kPathOffset]; }, start[kPathOffset], end[kPathOffset], dt);
+    piece.used = timeToBlow([&](double t) { return shaft.after(start, first, t)[kPathOffset]; }, start[kPathOffset],
+                            end[kPathOffset], dt);
     end = shaft.after(start, first, piece.used);
     end[kPathOffset] = 0.0;
   }
@@ -98,6 +98,7 @@ LinearisedFlexible linearised(const FlexibleShaft& s, const FlexiblePath& at, co
   d.by_input.col(1) = by(c.crank_inertia, c.motor_inertia, spring + slip);
   d.by_input.col(2) = by(0.0, 0.0, spring + 0.5 * slip);
   d.by_input.col(3) = by(-odds, odds, (2.0 * on_crank - 1.0) * (spring + slip));
+  d.by_input.col(4) = by(0.0, 0.0, slip);
   return d;
 }
 

@@ -8,10 +8,11 @@
 
 namespace hammer_loads {
 
-/// Order of its variables: those of ShaftMatrix, then angle and speed of the motor, CouplingLaw's two logarithms.
-using FlexibleMatrix = Eigen::Matrix<double, 9, 9>;
-enum FlexibleRow : Eigen::Index { kMotorAngle = 5, kMotorSpeed, kStiffness, kOdds };
-constexpr int kFlexibleVariables = kOdds;  ///< a filter's: the odds are a constant
+/// Order of its variables: those of ShaftMatrix, then angle and speed of the motor, CouplingLaw's two logarithms and
+/// that of the coupling's damping.
+using FlexibleMatrix = Eigen::Matrix<double, 10, 10>;
+enum FlexibleRow : Eigen::Index { kMotorAngle = 5, kMotorSpeed, kStiffness, kOdds, kDamping };
+constexpr int kFlexibleVariables = kOdds;  ///< a filter's: odds and damping are constants
 
 CouplingLaw lawOf(const Coupling& coupling, const ShaftState& state) noexcept;
 /// w' = (moment of the coupling + weight - Jk r alpha - J'/2 w^2)/(Jk + J) [rad/s2], Jk the drive inertia on the

@@ -75,6 +75,7 @@ std::optional<Coupling> readCoupling(ParameterReader& reader) {
   coupling.damping = reader.number("coupling_damping_ratio", "", NumberRule::within(0.0, 0.5));
   coupling.stiffness_deviation = reader.number("coupling_stiffness_deviation", "", NumberRule::within(0.0, 1.0));
   coupling.share_deviation = reader.number("coupling_share_deviation", "", NumberRule::within(0.0, 0.5));
+  coupling.damping_deviation = reader.number("coupling_damping_deviation", "", NumberRule::within(0.0, 2.0));
   if (shaft == Shaft::kRigid) return {};
   return coupling;
 }
