@@ -35,7 +35,12 @@ std::vector<Kind> kinds() {
       s.drive.coupling_frequency = frequency, s.drive.motor_share = 0.2, s.drive.coupling_damping = 0.02;
     };
   };
-  const auto given = [](double frequency, double share) { return Coupling{frequency, share, 0.02, 0.3, 0.03}; };
+  const auto given = [](double frequency, double share) { return Coupling{frequency, share, 0.02, 0.3, 0.03, 0.7}; };
+  const auto typical_coupled = [coupled](MachineSettings& s) {
+    makeTypical(s);
+    coupled(50.0)(s);
+    s.drive.coupling_damping = 0.04;
+  };
   return {
       {"clean", {1000.0, 200.0, 100.0}, [](MachineSettings&) {}},
       {"typical", {1000.0, 200.0}, makeTypical, 1.3},
@@ -68,6 +73,14 @@ std::vector<Kind> kinds() {
       {"coupling of 50 Hz, given as 60", {1000.0, 100.0}, coupled(50.0), 1.0, false, 0.0, given(60.0, 0.2)},
       {"coupling of 80 Hz, given as 64", {1000.0, 100.0}, coupled(80.0), 1.0, false, 0.0, given(64.0, 0.2)},
       {"motor's share 0.2, given as 0.24", {1000.0, 100.0}, coupled(50.0), 1.0, false, 0.0, given(50.0, 0.24)},
+      {"typical, coupling of 50 Hz given as 45, damping 0.04 as 0.02",
+       {1000.0, 200.0},
+       typical_coupled,
+       1.3,
+       false,
+       0.0,
+       given(45.0, 0.2)},
+      {"the same after calibrate", {1000.0, 200.0}, typical_coupled, 1.3, true, 0.0, given(45.0, 0.2)},
       {"no speeds", {1000.0, 100.0}, [](MachineSettings& s) { s.crank.speed = false; }},
   };
 }
@@ -134,6 +147,7 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
   calibration::CalibrationBasis basis{mechanism, pipeline.level};
   basis.torque_walk = pipeline.torque_walk * hammer.rocker_inertia_about_pivot;
   basis.torque_deviation = pipeline.initial_torque_deviation * hammer.rocker_inertia_about_pivot;
+  basis.coupling = pipeline.coupling;
   CrankSensorPlace place;
   for (const calibration::Estimate& e : calibration::calibrate(samples, basis).estimates) {
     if (!e.determined()) continue;
@@ -145,6 +159,12 @@ void applyCalibration(const simulation::Session& session, const MachineSettings&
     if (e.key == "crank_eccentricity_2_phase_rad") place.eccentricity_phase[1] = e.value;
     if (e.key == "crank_timing_noise_s") pipeline.crank_timing_noise = e.value;
     if (e.key == "drive_inertia_kg_m2") hammer.drive_inertia = e.value;
+    if (e.key == "coupling_frequency_Hz") pipeline.coupling->frequency = e.value;
+    if (e.key == "coupling_stiffness_deviation") pipeline.coupling->stiffness_deviation = e.value;
+    if (e.key == "coupling_damping_ratio") pipeline.coupling->damping = e.value;
+    if (e.key == "coupling_damping_deviation") pipeline.coupling->damping_deviation = e.value;
+    if (e.key == "coupling_motor_share") pipeline.coupling->motor_share = e.value;
+    if (e.key == "coupling_share_deviation") pipeline.coupling->share_deviation = e.value;
   }
   pipeline.crank_sensor = *CrankSensor::make(place).value;
 }

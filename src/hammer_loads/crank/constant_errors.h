@@ -77,6 +77,8 @@ class ConstantErrors {
   double zeroSeen() const noexcept { return zero_is_seen_ ? zeroLooks() : 0.0; }
   /// The same, whether or not a clean machine may show as much: a rod that gives shows it.
   double zeroLooks() const noexcept { return std::abs(zero_looks_); }
+  /// How far the zero may be off all the same, where little shows it [rad].
+  double zeroLeftOpen() const noexcept { return deviation_[kZero] > 0.0 ? deviation_[kZero] : prior_[kZero]; }
   /// Second moment of b, as far as the innovations show it: what an uncorrected b adds to the uncertainty.
   const Matrix& moment() const noexcept { return moment_; }
   /// L with L L^T = moment(): its columns are errors that are independent of each other.

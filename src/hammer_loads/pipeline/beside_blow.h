@@ -10,12 +10,13 @@
 namespace hammer_loads {
 
 /// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong, or that a
-/// rod which gives lets the rocker strike later.
+/// rod which gives lets the rocker strike later. Through a coupling they say little of the zero: what they leave open.
 /// angle_deviation: its own [rad]; NaN: not known.
 inline double deviationFromBlow(const CrankTracker& tracker, double angle_deviation) noexcept {
   const CrankFilter* filter = tracker.filter();
   if (filter == nullptr) return angle_deviation;
   const ConstantErrors& errors = filter->constantErrors();
+  if (filter->belief().motor) return std::hypot(angle_deviation, errors.zeroLeftOpen());
   return std::hypot(angle_deviation, filter->rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
 }
 
