@@ -95,16 +95,17 @@ void judgeForces(const MachineSettings& machine, const std::vector<Given>& given
   judged.inside /= count;
 }
 
-/// What the pipeline is told of the machine.
-struct Told {
+/// What the pipeline takes the machine for.
+struct TakenFor {
   Level level{Level::kLinkage};
   std::optional<Coupling> coupling;
 };
 
-Judged judge(const MachineSettings& machine, const Session& session, const TrackerMaker& make, const Told& told = {}) {
+Judged judge(const MachineSettings& machine, const Session& session, const TrackerMaker& make,
+             const TakenFor& machine_is = {}) {
   Settings settings = *loadFiles(configDirectory(), {}).value;
-  settings.pipeline.level = told.level;
-  settings.pipeline.coupling = told.coupling;
+  settings.pipeline.level = machine_is.level;
+  settings.pipeline.coupling = machine_is.coupling;
   Pipeline pipeline(test::mechanismOf(machine.hammer), settings.pipeline, {}, {}, make);
   Judged judged;
   std::vector<Given> given;
@@ -137,13 +138,13 @@ struct Both {
   Judged live, smoothed;
 };
 
-Both bothOf(const MachineSettings& machine, const Told& told = {}) {
+Both bothOf(const MachineSettings& machine, const TakenFor& machine_is = {}) {
   const Session session = simulation::recordSession(machine);
   SmoothedRuns runs;
-  Both both{judge(machine, session, runs.ahead(), told), {}};
+  Both both{judge(machine, session, runs.ahead(), machine_is), {}};
   EXPECT_TRUE(runs.isReady());
   runs.end();
-  both.smoothed = judge(machine, session, runs.behind(), told);
+  both.smoothed = judge(machine, session, runs.behind(), machine_is);
   const auto say = [](const std::string& name, const Judged& judged) {
     testing::Test::RecordProperty(name + "_rms", std::to_string(judged.rms));
     testing::Test::RecordProperty(name + "_inside", std::to_string(judged.inside));
