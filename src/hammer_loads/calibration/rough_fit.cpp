@@ -12,7 +12,7 @@ namespace hammer_loads::calibration {
 namespace {
 
 constexpr std::size_t kFew = 8;     // blows
-constexpr double kApart = 0.05;     // of a frequency: another one
+constexpr double kApart = 0.1;      // of a stiffness's logarithm: another frequency
 constexpr double kMostWorse = 1.1;  // of the residuals' squares: by few blows it may be the better one
 
 /// Where a fit settled; the angles' squared residuals and their count.
@@ -49,7 +49,7 @@ std::vector<Globals> startsBeside(const Globals& guess, const std::vector<BlowSe
   std::vector<Globals> starts{found.front().fit.globals};
   for (const Settled& one : found) {
     const double apart = one.fit.globals[kLogCoupling] - starts.front()[kLogCoupling];
-    if (starts.size() == 1 && std::abs(apart) > 2.0 * kApart && one.mean() < kMostWorse * found.front().mean())
+    if (starts.size() == 1 && std::abs(apart) > kApart && one.mean() < kMostWorse * found.front().mean())
       starts.push_back(one.fit.globals);
   }
   return starts;

@@ -48,18 +48,16 @@ bool isWidened(const Variables<variables>& predicted, const Variables<variables>
   return (now.covariance.diagonal().array() > (1.0 + part) * predicted.covariance.diagonal().array()).any();
 }
 
-CrankBelief::Vector between(const CrankBelief& a, const CrankBelief& b) noexcept {
-  CrankBelief::Vector change;
-  change << difference(a.state.position, b.state.position), a.state.speed - b.state.speed,
-      a.state.torque - b.state.torque, std::log(a.state.drive_inertia / b.state.drive_inertia), a.factor - b.factor;
-  return change;
-}
-
 /// Of the crank alone.
 struct OfCrank {
   static constexpr int kVariables = 5;
   static const CrankBelief::Base& of(const CrankBelief& belief) noexcept { return belief; }
-  static CrankBelief::Vector change(const CrankBelief& a, const CrankBelief& b) noexcept { return between(a, b); }
+  static CrankBelief::Vector change(const CrankBelief& a, const CrankBelief& b) noexcept {
+    CrankBelief::Vector change;
+    change << difference(a.state.position, b.state.position), a.state.speed - b.state.speed,
+        a.state.torque - b.state.torque, std::log(a.state.drive_inertia / b.state.drive_inertia), a.factor - b.factor;
+    return change;
+  }
   static void move(const CrankBelief::Vector& change, CrankBelief& belief) noexcept { belief.move(change); }
   static void set(const CrankBelief::Base& all, CrankBelief& belief) noexcept {
     static_cast<CrankBelief::Base&>(belief) = all;
@@ -72,7 +70,7 @@ struct OfCrankAndMotor {
   static FlexibleVariables of(const CrankBelief& belief) noexcept { return variablesOf(belief); }
   static FlexibleVariables::Vector change(const CrankBelief& a, const CrankBelief& b) noexcept {
     FlexibleVariables::Vector change;
-    change << between(a, b), 0.0, a.state.motor_speed - b.state.motor_speed,
+    change << OfCrank::change(a, b), 0.0, a.state.motor_speed - b.state.motor_speed,
         a.state.log_stiffness - b.state.log_stiffness;
     change[kMotorAngle] = change[CrankBelief::kAngle] + a.state.twist - b.state.twist;
     return change;

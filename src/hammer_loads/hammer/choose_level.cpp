@@ -52,21 +52,19 @@ Eigen::Vector3d besideRigid(const Mechanism& mechanism, const TwoBodies& bodies,
   const LinkMotion links = bodies.links(at.angle);
   const TwoBodyAccelerations a = bodies.accelerations(rod, drive, at, links);
   const CrankMotion rigid{at.angle, at.speed, bodies.rigidAcceleration(drive, at, links)};
-  return vectorOf(hullWrenchOf(mechanism, withRocker(links, at.beside), bodies.linkAccelerations(at, a, links),
-                               drive.gravity)) -
+  return vectorOf(hullWrenchOf(mechanism, bodies, at, a, links, drive.gravity)) -
          vectorOf(hullWrenchLinkage(mechanism, links, rigid, drive.gravity));
 }
 
 /// Its squares, sums over the points of the turn: of a blow that leaves the rocker at its tool, until the crank has
 /// turned by a quarter. Means over `interval` count. What comes in the first millisecond is of the blow itself: there a
 /// rod that hardly gives has all of it.
-Eigen::Vector3d ofRod(const Mechanism& mechanism, const WorkingTurn& turn, Gravity gravity, double interval) {
+Eigen::Vector3d ofRod(const Mechanism& mechanism, const RodSpring& rod, const WorkingTurn& turn, Gravity gravity,
+                      double interval) {
   constexpr double kStep = 2e-5, kOfBlow = 1e-3;  // [s]
   // Numerical: kStep, kOfBlow
-  const HammerParameters& p = mechanism.parameters();
-  const RodSpring rod = priorOf(p.rod, p.rod_deviation).rod;
   const TwoBodies bodies(mechanism);
-  const TwoBodyDrive drive{p.drive_inertia, turn.torque, gravity};
+  const TwoBodyDrive drive{mechanism.parameters().drive_inertia, turn.torque, gravity};
   TwoBodyState state{{0.0, Side::kAfterBlow}, turn.speed_after, 0.0, 0.0};
   state.beside_speed = -bodies.links(state.angle).rocker.u * turn.speed_after;
   const int steps = std::max(1, static_cast<int>(std::lround(interval / kStep)));
@@ -114,9 +112,10 @@ LevelChoice chooseLevel(const Mechanism& mechanism, double tolerance, double tur
     size += references.back().cwiseAbs2();
   }
   const HammerParameters& p = mechanism.parameters();
-  const bool gives = priorOf(p.rod, p.rod_deviation).gives;
-  const Eigen::Vector3d of_rod = gives ? ofRod(mechanism, turn, gravity, interval) : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  LevelChoice choice{gives ? Level::kElastic : Level::kLinkage, tolerance, gives, {}};
+  const RodPrior rod = priorOf(p.rod, p.rod_deviation);
+  Eigen::Vector3d of_rod = Eigen::Vector3d::Zero();
+  if (rod.gives) of_rod = ofRod(mechanism, rod.rod, turn, gravity, interval);
+  LevelChoice choice{rod.gives ? Level::kElastic : Level::kLinkage, tolerance, rod.gives, {}};
   for (std::size_t i = choice.difference.size(); i-- > 0;) {
     const HullModel model(mechanism, static_cast<Level>(i));
     Eigen::Vector3d squares = of_rod;

@@ -11,6 +11,7 @@
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/motion.h"
+#include "hammer_loads/linkage/two_bodies.h"
 
 namespace hammer_loads {
 
@@ -185,6 +186,13 @@ inline LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, const 
 HAMMER_LOADS_INLINE LinkMomentum linkMomentum(const Mechanism& mechanism, Level level, CrankAngle angle,
                                               double speed) noexcept {
   return linkMomentum(mechanism, level, linkMotion(mechanism.linkage(), angle), speed);
+}
+
+/// Level elastic, of two bodies that move so. links: rigid ones at the crank's angle.
+inline HullWrench hullWrenchOf(const Mechanism& mechanism, const TwoBodies& bodies, const TwoBodyState& state,
+                               const TwoBodyAccelerations& a, const LinkMotion& links, Gravity gravity) noexcept {
+  const LinkMotion turned = withRocker(links, state.beside);
+  return hullWrenchOf(mechanism, turned, bodies.linkAccelerations(state, a, turned), gravity);
 }
 
 }  // namespace hammer_loads

@@ -117,11 +117,10 @@ CrankEstimate ElasticFollower::crankOf(const RodMotion& m) const noexcept {
 
 ElasticFollower::Loads ElasticFollower::loads(const RodMotion& m, const DriveReaction& drive) const noexcept {
   const TwoBodies& bodies = filter().bodies();
-  const LinkMotion rigid = bodies.links(m.state.angle), links = withRocker(rigid, m.state.beside);
+  const LinkMotion links = bodies.links(m.state.angle);
   const TwoBodyDrive by = filter().drive(m);
-  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, rigid);
-  const HullWrench w =
-      hullWrenchOf(model_->mechanism(), links, bodies.linkAccelerations(m.state, a, links), by.gravity);
+  const TwoBodyAccelerations a = bodies.accelerations(filter().rod(m), by, m.state, links);
+  const HullWrench w = hullWrenchOf(model_->mechanism(), bodies, m.state, a, links, by.gravity);
   Loads loads;
   loads << w.force_x, w.force_z, w.torque_y + drive.torque(a.crank, 0.0), a.crank, besideRigidly(m.state, a, links);
   return loads;
