@@ -16,8 +16,9 @@ COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank"
           "grapple": "#b08a1e"}
 SESSION = {"mechanism, linkage, smoothed": "smoothed"}  # crank rows by estimator; all others: mechanism
 MACHINE = {"mechanism, linkage, flexible shaft of 50 Hz": "coupling of 50 Hz, given as 60"}  # rows with machines of their own
+ELASTIC = {"elastic, a rod that gives": ("elastic average: 1e9 N/m, 0.2", "elastic")}  # likewise: machine, level
 EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage, AVX2"),
-           ("crank", "mechanism, linkage"), ("pipeline", "linkage")]
+           ("crank", "mechanism, linkage"), ("pipeline", "linkage"), ("pipeline", "elastic, a rod that gives")]
 SIDE_BY_SIDE = [("clean", "clean"), ("typical", "typical"), ("typical, after calibrate", "typical, after `calibrate`")]
 SESSION_HEAD = "rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow instant | energy |"
 
@@ -40,6 +41,8 @@ def picture_error(row, figures):
     if row["name"] in MACHINE:
         return next(m["rms_z"] for m in figures["machines"]
                     if m["machine"] == MACHINE[row["name"]] and m["rate_hz"] == 1000)
+    if row["name"] in ELASTIC:
+        return next(e["whole"]["rms"][1] for e in figures["elastic"] if (e["machine"], e["level"]) == ELASTIC[row["name"]])
     if row["group"] in ("crank", "pipeline"):
         estimator = SESSION.get(row["name"], "mechanism")
         return next(s["rms_z"] for s in figures["sessions"]

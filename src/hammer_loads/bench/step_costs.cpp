@@ -13,14 +13,16 @@ namespace {
 constexpr double kWorkBegins = 3.0, kWorkEnds = 8.0;  // [s]
 constexpr double kOnBoomEnds = 4.0;                   // [s], from rest
 constexpr double kDamping = 0.02;                     // of a coupling, of critical
+constexpr simulation::RodSettings kRod{1e9, 0.2, 0.0};
 
-/// Crank readings of a hammer at work at 1 kHz, links with the masses that the level knows; coupling_frequency [Hz]: of
-/// its shaft, 0: rigid.
+/// Crank readings of a hammer at work at 1 kHz, what the level knows being there: links with masses,
+/// a rod that gives. coupling_frequency [Hz]: of its shaft, 0: rigid.
 std::vector<simulation::CrankReading> workingReadings(const Settings& settings, Level level,
                                                       double coupling_frequency = 0.0) {
   simulation::MachineSettings machine = simulation::workingMo100();
   machine.hammer = settings.mechanism.parameters();
   machine.level = level;
+  if (level == Level::kElastic) machine.level = Level::kLinkage, machine.rod = kRod;
   machine.drive.coupling_frequency = coupling_frequency;
   machine.drive.coupling_damping = kDamping;
   machine.drive.stop_time = kWorkEnds + 1.0;
@@ -127,6 +129,7 @@ std::vector<CostRow> stepCosts(const Settings& settings) {
           smoothedCost(settings, "mechanism, linkage, smoothed", Level::kLinkage),
           pipelineCost(settings, "rocker", Level::kRocker),
           pipelineCost(settings, "linkage", Level::kLinkage),
+          pipelineCost(settings, "elastic, a rod that gives", Level::kElastic),
           countedCost(settings, "rocker, turn loads and cycles", Level::kRocker),
           countedCost(settings, "linkage, turn loads and cycles", Level::kLinkage),
           onBoomCost("rocker, boom by its model", on_boom, "{boom: compliant, hull_motion: model}", {}),

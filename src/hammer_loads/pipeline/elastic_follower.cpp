@@ -25,6 +25,8 @@ constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
 // Guard: ElasticNumbers.ARodThatWasReplacedIsForgottenWithinThreeBlows of kEvidenceGain
 // Guard: ElasticNumbers.OneClearBlowIsEnough of kGivenUp
+constexpr std::int64_t kOthersTurn = 4;  // [blows]
+// Numerical: kOthersTurn
 
 constexpr double kContactsShare = 0.01;  // of a restitution: what the duration of a contact makes of it
 // Guard: ElasticNumbers.ARestitutionIsKnownToAHundredth of kContactsShare
@@ -61,11 +63,19 @@ void ElasticFollower::rest() noexcept {
   for (RodFilter& filter : filters_) filter.abandon();
 }
 
+/// The other one goes along on each fourth blow: pins wear over months, and where the likelier one contradicts the
+/// readings both run.
+bool ElasticFollower::runsAlone(std::int64_t blow) const noexcept {
+  return best_ != nullptr && best_->isProven() && blow % kOthersTurn != 0;
+}
+
 void ElasticFollower::begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept {
   runs_ = true;
   blow_ = crank.estimate().position.blow;
   rigid_fit_ = 0.0;
-  for (RodFilter& rod : filters_) rod.begin(filter, gravity);
+  alone_ = runsAlone(blow_);
+  for (RodFilter& rod : filters_)
+    if (!alone_ || &rod == best_) rod.begin(filter, gravity);
 }
 
 void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexcept {
@@ -100,7 +110,8 @@ const RodFilter& ElasticFollower::likelier() const noexcept {
 /// then.
 void ElasticFollower::judge() noexcept {
   runs_ = false;
-  const RodFilter& rod = likelier();
+  if (alone_ && !best_->isProven()) return;  // the other one is asked at the next blow
+  const RodFilter& rod = alone_ ? *best_ : likelier();
   const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
   evidence_ += kEvidenceGain * (gain - evidence_);
   best_ = evidence_ > (best_ == nullptr ? odds::kLikely : 0.0) ? &rod : nullptr;

@@ -97,11 +97,13 @@ class ElasticFollower {
   LoadCovariance covariance(const DriveReaction& drive, const Loads& here) const noexcept;
   void begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept;
   const RodFilter& likelier() const noexcept;
+  bool runsAlone(std::int64_t blow) const noexcept;
   void judge() noexcept;
   bool mayBegin(const CrankFollower& crank, const CrankFilter& filter) const noexcept;
 
   const HullModel* model_;
   bool wanted_, runs_{};
+  bool alone_{};  ///< the likelier filter alone, at this blow
   std::array<RodFilter, 2> filters_;
   double evidence_{};          ///< mean over some blows of the rod's fit less that of the rigid mechanism
   double rigid_fit_{};         ///< of this blow
