@@ -4,28 +4,15 @@
 
 #include <cmath>
 
-#include "hammer_loads/bench/elastic_table.h"
 #include "hammer_loads/bench/figure_errors.h"
 #include "hammer_loads/bench/scene_table.h"
 #include "hammer_loads/bench/session_player.h"
-#include "hammer_loads/life/damage.h"
-#include "hammer_loads/life/exact_cycles.h"
-#include "hammer_loads/pipeline/life_follower.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/square.h"
 #include "pipeline/machine_with_rod.h"
-#include "support/counting_new.h"
 
 namespace hammer_loads {
 namespace {
-
-/// Stamps without jitter: a mean over whole steps ends at samples.
-simulation::MachineSettings machineOfOutputs(const simulation::RodSettings& rod, std::uint64_t seed) {
-  simulation::MachineSettings s = test::machineWithRod(rod, seed);
-  s.crank.jitter = 0.0;
-  s.crank.drop_outs.clear();
-  return s;
-}
 
 Eigen::Vector3d loadOf(const simulation::CrankTruth& t) {
   return {t.load.force_x, t.load.force_z, t.load.torque_y + t.drive_reaction_y};
@@ -37,7 +24,7 @@ TEST(ElasticOutputs, MeansHaveTheRing) {
   std::uint64_t seed = 810;
   for (const simulation::RodSettings& rod :
        {simulation::RodSettings{6e8, 0.35, 0.0}, {1.4e9, 0.25, 0.0}, {9e8, 1.5, 0.0}}) {
-    const accuracy::ElasticKind kind{"", machineOfOutputs(rod, ++seed)};
+    const accuracy::ElasticKind kind{"", test::machineOfOutputs(rod, ++seed)};
     SCOPED_TRACE(rod.stiffness);
     const accuracy::SceneRow elastic = accuracy::sceneRow(test::shippedDrawing(), kind, Level::kElastic);
     for (const auto& component : elastic.slow) {
@@ -77,7 +64,7 @@ SumOfMeans sumOfMeans(const simulation::Session& session, double rate) {
 
 /// From momentum to momentum, with the jump at the blow left out wherever an interval ends.
 TEST(ElasticOutputs, MeansLoseNoImpulseAtAnyRate) {
-  const simulation::Session session = simulation::recordSession(machineOfOutputs({8e8, 0.3, 0.0}, 821));
+  const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.3, 0.0}, 821));
   const SumOfMeans at_samples = sumOfMeans(session, 0.0);
   EXPECT_GT(at_samples.of_spring, 2000);
   EXPECT_NEAR(at_samples.time, 5.0, 1e-6);
@@ -90,7 +77,7 @@ TEST(ElasticOutputs, MeansLoseNoImpulseAtAnyRate) {
 
 /// Outputs at 2300 Hz on samples at 1000 Hz, up to 40 ms after a blow, tool and retainer not touched.
 TEST(ElasticOutputs, BetweenSamplesTheRodIsASpringToo) {
-  const simulation::MachineSettings machine = machineOfOutputs({8e8, 0.3, 0.0}, 831);
+  const simulation::MachineSettings machine = test::machineOfOutputs({8e8, 0.3, 0.0}, 831);
   const simulation::Session session = simulation::recordSession(machine);
   const auto ringErrors = [&](Level level) {
     PipelineSettings settings = test::shippedDrawing().pipeline;
@@ -129,7 +116,7 @@ TEST(ElasticOutputs, BetweenSamplesTheRodIsASpringToo) {
 /// The rod's force is its spring's, by the size of that in C, which the rod's own mass hardly changes: 6 to 40 ms after
 /// a blow, and before the blow from half a turn on.
 TEST(ElasticOutputs, PinForcesHaveTheRing) {
-  const simulation::MachineSettings machine = machineOfOutputs({8e8, 0.3, 0.0}, 851);
+  const simulation::MachineSettings machine = test::machineOfOutputs({8e8, 0.3, 0.0}, 851);
   const simulation::Session session = simulation::recordSession(machine);
   struct Errors {
     accuracy::FigureErrors ring, before;
@@ -164,7 +151,7 @@ TEST(ElasticOutputs, PinForcesHaveTheRing) {
 
 /// In the ring the rocker swings by radians a second beside a rigid linkage's.
 TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
-  const simulation::Session session = simulation::recordSession(machineOfOutputs({8e8, 0.3, 0.0}, 861));
+  const simulation::Session session = simulation::recordSession(test::machineOfOutputs({8e8, 0.3, 0.0}, 861));
   const auto errorOf = [&](Level level) {
     PipelineSettings settings = test::shippedDrawing().pipeline;
     settings.level = level;
@@ -186,7 +173,7 @@ TEST(ElasticOutputs, TheRockersSpeedIsItsOwn) {
 /// Rock that throws the rocker back lets the rod ring with more than the strike: the turn's peak is the ring's, by a
 /// half.
 TEST(ElasticOutputs, ThePeakOfATurnMayBeTheRings) {
-  simulation::MachineSettings machine = machineOfOutputs({9e8, 0.5, 0.0}, 871);
+  simulation::MachineSettings machine = test::machineOfOutputs({9e8, 0.5, 0.0}, 871);
   machine.strike.contact_stiffness = 1e8, machine.strike.rock_strength = 3e5;
   const simulation::Session session = simulation::recordSession(machine);
   for (const Level level : {Level::kElastic, Level::kLinkage}) {
@@ -213,53 +200,6 @@ TEST(ElasticOutputs, ThePeakOfATurnMayBeTheRings) {
       EXPECT_LT(peak.result().rms, 0.1);
     else
       EXPECT_LT(peak.bias(), -0.1);
-  }
-}
-
-/// Truth each 0.1 ms. At 200 Hz a ring of 150 to 250 Hz has all its peaks between samples: of the true loads the
-/// samples alone have ranges that are a tenth to a fifth too small.
-TEST(ElasticOutputs, ARingBetweenSparseSamplesIsCounted) {
-  std::uint64_t seed = 840;
-  for (const simulation::RodSettings& rod : {simulation::RodSettings{8e8, 0.2, 0.0}, {1.3e9, 0.25, 0.0}}) {
-    SCOPED_TRACE(rod.stiffness);
-    simulation::MachineSettings machine = machineOfOutputs(rod, ++seed);
-    machine.crank.rate = 200.0;
-    const simulation::Session session = simulation::recordSession(machine);
-    PipelineSettings settings = test::shippedDrawing().pipeline;
-    settings.level = Level::kElastic;
-    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
-    life::LifeSettings counted;
-    counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
-    counted.period = 1;
-    constexpr double kFrom = 4.0, kTo = 10.0;
-    std::size_t allocated = 0;
-    std::optional<LifeFollower> follower;  // from kFrom on: what was before would stay in the residue
-    player.playTo(kTo, [&](double time, const SampleResult&) {
-      if (time < kFrom) return;
-      if (!follower) follower.emplace(player.pipeline, counted);
-      const std::size_t so_far = test::allocations;
-      follower->follow();
-      allocated += test::allocations - so_far;
-    });
-    EXPECT_EQ(allocated, 0U);
-    const life::LifePiece piece = follower->take();
-    std::vector<double> times;
-    for (int i = 0; i < 60000; ++i) times.push_back(kFrom + i * 1e-4);
-    life::ExactCycles fine, sparse;
-    int step = 0;
-    for (const simulation::CrankTruth& truth : simulation::truthAt(machine, times)) {
-      if (truth.touches()) continue;
-      fine.add(truth.load.force_z);
-      if (step++ % 50 == 0) sparse.add(truth.load.force_z);
-    }
-    const life::RangeDeviation said = life::rangeDeviation(piece.counts[0]);
-    for (const double slope : {3.0, 5.0}) {
-      const double right = life::equivalentLoad(life::rangesAndMeans(fine), slope, 1.0, {}).value;
-      const life::Figure found = life::equivalentLoad(life::rangesAndMeans(piece.counts[0]), slope, 1.0, said);
-      EXPECT_NEAR(found.value, right, 0.06 * right) << slope;
-      EXPECT_NEAR(found.value, right, 2.0 * found.deviation) << slope;
-      EXPECT_LT(life::equivalentLoad(life::rangesAndMeans(sparse), slope, 1.0, {}).value, 0.92 * right) << slope;
-    }
   }
 }
 

@@ -24,4 +24,12 @@ inline simulation::MachineSettings machineWithRod(const simulation::RodSettings&
   return s;
 }
 
+/// Stamps without jitter: a mean over whole steps ends at samples.
+inline simulation::MachineSettings machineOfOutputs(const simulation::RodSettings& rod, std::uint64_t seed) {
+  simulation::MachineSettings s = machineWithRod(rod, seed);
+  s.crank.jitter = 0.0;
+  s.crank.drop_outs.clear();
+  return s;
+}
+
 }  // namespace hammer_loads::test

@@ -85,7 +85,7 @@ void BoomErrors::addSample(const simulation::OnBoomTruth& truth, const SampleRes
   force_z.add(result.wrench.force_z, truth.load.force_z);
   const auto said = life::LoadError::of;
   life_force_z.add(result.wrench.force_z, truth.load.force_z,
-                   said(result.deviation.wrench.force_z, result.deviation.common.force_z));
+                   said(result.ofExtreme().deviation.force_z, result.deviation.common.force_z));
   addWrench(truth, result);
   moment.add(result.wrench.torque_y, truth.load.torque_y + truth.drive_reaction_y);
   const BoomState& boom = *result.boom;

@@ -76,7 +76,7 @@ DrawingRow drawingRow(const Settings& settings, std::uint64_t seed, double off) 
     const std::array<double, 3> is{truth->load.force_x, truth->load.force_z,
                                    truth->load.torque_y + truth->drive_reaction_y};
     life.add(loads.wrench.force_z, is[1],
-             life::LoadError::of(loads.deviation.wrench.force_z, loads.deviation.common.force_z));
+             life::LoadError::of(loads.ofExtreme().deviation.force_z, loads.deviation.common.force_z));
     const Eigen::Vector3d found = vectorOf(loads.wrench), deviation = vectorOf(loads.deviation.wrench);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<Eigen::Index>(k);

@@ -9,7 +9,8 @@
 namespace hammer_loads::accuracy {
 namespace {
 
-double equivalentRange(const life::ExactCycles& cycles) {
+template <typename Cycles>
+double equivalentRange(const Cycles& cycles) {
   return life::equivalentLoad(life::rangesAndMeans(cycles), kLifeSlope, 1.0, {}).value;
 }
 
@@ -26,6 +27,12 @@ void LifeError::endTurn() {
 LifeFigure LifeError::figure() const {
   const double ratio = equivalentRange(estimated_) / equivalentRange(right_);
   return {ratio - 1.0, ratio * own_ / square_, ratio * common_ / square_};
+}
+
+LifeFigure figureOf(const life::CycleCount& counted, const life::ExactCycles& right) {
+  const double ratio = equivalentRange(counted) / equivalentRange(right);
+  const life::RangeDeviation said = life::rangeDeviation(counted);
+  return {ratio - 1.0, ratio * said.own, ratio * said.common};
 }
 
 std::string json(const LifeFigure& figure) {

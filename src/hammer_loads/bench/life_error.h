@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "hammer_loads/life/cycle_count.h"
 #include "hammer_loads/life/exact_cycles.h"
 #include "hammer_loads/life/load_error.h"
 
@@ -35,6 +36,9 @@ struct LifeError {
   life::TurnExtremes turn_;
   double square_{}, own_{}, common_{};
 };
+
+/// Of what a ledger has counted of a channel, its instants between samples among them, against the true load's cycles.
+LifeFigure figureOf(const life::CycleCount& counted, const life::ExactCycles& right);
 
 /// As a JSON object; what is not known is null.
 std::string json(const LifeFigure& figure);

@@ -63,8 +63,9 @@ void BudgetRecorder::Range::endTurn() noexcept {
 }
 
 void BudgetRecorder::sample(const SampleResult& result) noexcept {
-  const Eigen::Vector3d load = vectorOf(result.wrench), all = vectorOf(result.deviation.wrench),
-                        common = vectorOf(result.deviation.common), rod = vectorOf(result.rod_ring);
+  const SampleResult::OfExtreme extreme = result.ofExtreme();
+  const Eigen::Vector3d load = vectorOf(result.wrench), all = vectorOf(extreme.deviation),
+                        common = vectorOf(result.deviation.common), rod = vectorOf(extreme.ring);
   for (std::size_t i = 0; i < kHullChannels; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (!std::isfinite(all[row])) continue;

@@ -17,7 +17,7 @@ double* put(const Wrench& wrench, double* place) noexcept {
 void channelValues(const SampleResult& result, const Boom* boom, double* values, double* deviations,
                    double* common) noexcept {
   wrenchValues(result.wrench, values);
-  wrenchValues(result.deviation.wrench, deviations);
+  wrenchValues(result.ofExtreme().deviation, deviations);
   wrenchValues(result.deviation.common, common);
   if (boom == nullptr) return;
   double* value = values + kHullChannels;

@@ -202,9 +202,8 @@ ElasticFollower::Loads ElasticFollower::besideRigid(const RodMotion& m, const Dr
   return loads - rigidLoads(m, drive);
 }
 
-ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, const DriveReaction& drive,
-                                                    const HullMotion& hull) const noexcept {
-  const Loads beside = besideRigid(there, drive, loads(there, drive));
+ElasticFollower::Instant ElasticFollower::instantOf(const RodMotion& there, const Loads& beside,
+                                                    const DriveReaction& drive, const HullMotion& hull) const noexcept {
   Instant instant{crankOf(there), {}, there.state};
   instant.wrench = hullWrench(*model_, drive, motionOf(instant.crank), hull) + wrenchOf(beside.head<3>());
   instant.crank.acceleration += beside[kCrank];

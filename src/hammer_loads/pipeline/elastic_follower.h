@@ -60,11 +60,14 @@ class ElasticFollower {
     TwoBodyState bodies;
   };
   Instant at(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
-    return instantOf(motionAt(time), drive, hull);
+    const RodMotion there = motionAt(time);
+    return instantOf(there, besideRigid(there, drive, loads(there, drive)), drive, hull);
   }
-  /// At the step's end, as it was expected before the sample there.
-  Instant expected(const DriveReaction& drive, const HullMotion& hull) const noexcept {
-    return instantOf(filter().between(length_), drive, hull);
+  /// The same as the two bodies have it, not weighed, at the step's end as it was before the sample there: what the
+  /// moment of an impact leaves open of the force at a time it does not leave open of its extreme.
+  Instant onItsWay(double time, const DriveReaction& drive, const HullMotion& hull) const noexcept {
+    const RodMotion there = filter().between(time);
+    return instantOf(there, loads(there, drive) - rigidLoads(there, drive), drive, hull);
   }
   bool isBesideBlowAt(double time) const noexcept;
   /// Of links and drive, relative to the hull.
@@ -87,7 +90,8 @@ class ElasticFollower {
   enum : Eigen::Index { kCrank = 3, kBesideRigid = 4 };
   RodMotion motionAt(double time) const noexcept { return time < length_ ? filter().between(time) : filter().motion(); }
   CrankEstimate crankOf(const RodMotion& motion) const noexcept;
-  Instant instantOf(const RodMotion& motion, const DriveReaction& drive, const HullMotion& hull) const noexcept;
+  Instant instantOf(const RodMotion& motion, const Loads& beside, const DriveReaction& drive,
+                    const HullMotion& hull) const noexcept;
   bool mayTouch(const RodMotion& motion) const noexcept;
   Loads loads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   /// Of these, weighed, what is beside a rigid rod's.

@@ -109,7 +109,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
   const DriveReaction drive = driveReaction(pipeline_->model(), step.driveInertia());
   const StepEnd end(result);
   std::array<double, kHullChannels> expected;
-  wrenchValues(rod.expected(drive, result.hull.motion).wrench, expected.data());
+  wrenchValues(rod.onItsWay(step.length(), drive, result.hull.motion).wrench, expected.data());
   const auto count = static_cast<int>(std::ceil(step.length() / kRingStep));
   const CrankStep::Passage* passage = step.begin();
   const auto endTurnsUntil = [&](double time) {
@@ -120,7 +120,7 @@ void LifeFollower::followRing(const SampleResult& result) noexcept {
     const double time = step.length() * i / count;
     endTurnsUntil(time);
     if (rod.isBesideBlowAt(time)) continue;
-    wrenchValues(rod.at(time, drive, result.hull.motion).wrench, between_.data());
+    wrenchValues(rod.onItsWay(time, drive, result.hull.motion).wrench, between_.data());
     for (std::size_t k = 0; k < kHullChannels; ++k) {
       const auto [least, greatest] = std::minmax(values_[k], end.value[k]);
       if (!(std::abs(expected[k] - end.value[k]) <= ownOfBoth(k, end)))

@@ -182,6 +182,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
       gives ? elastic_.beside(drive, rod_.acceleration())
             : ElasticFollower::Beside{{}, rod_.deviation(links.here.links, result_.crank.speed)};
   result_.rod_ring = rod.deviation;
+  result_.rod_followed = gives;
   result_.contact_doubt = contactDoubt(links.here.links, drive);
   result_.rod_momentum = rockerWrench(mechanism_, links.here.links, rod_.speed());
   result_.deviation.wrench = wrenchOf((vectorOf(own).cwiseAbs2() + result_.squaresBeside()).cwiseSqrt());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -47,6 +48,17 @@ struct SampleResult {
     return vectorOf(rod_ring).cwiseAbs2() + vectorOf(contact_doubt).cwiseAbs2();
   }
 
+  /// deviation.wrench and rod_ring where the sample is to stand for a turn's extreme: of a ring whose phase is not
+  /// known that is the crest, the root of two times its root mean square.
+  struct OfExtreme {
+    HullWrench deviation, ring;
+  };
+  OfExtreme ofExtreme() const noexcept {
+    if (rod_followed) return {deviation.wrench, rod_ring};
+    const Eigen::Vector3d ring = vectorOf(rod_ring), all = vectorOf(deviation.wrench);
+    return {wrenchOf((all.cwiseAbs2() + ring.cwiseAbs2()).cwiseSqrt()), wrenchOf(std::sqrt(2.0) * ring)};
+  }
+
   StampNs stamp{};                 ///< instant of the sample: its header stamp, or that refitted by sequence
   StampNs sample_stamp{};          ///< its header stamp
   std::optional<Refusal> refusal;  ///< if set, all below but `ends` is void
@@ -59,6 +71,7 @@ struct SampleResult {
   HullWrench rod_momentum;  ///< that the rocker may have beside a rigid rod's, where no spring is followed [N s, N m s]
   HullWrench contact_doubt;  ///< as below, of where it is not known whether the tool was met
   HullWrench rod_ring;       ///< part of the deviation that the rod makes, whose spring the level leaves out
+  bool rod_followed{};       ///< else rod_ring is a root mean square over a phase that is not known
   HullDeviation deviation;   ///< at the sample, with what the hull's motion adds
   double consistency{};      ///< CrankTracker::consistency()
   bool inconsistent{};       ///< readings contradict the model, not yet so that samples are withheld

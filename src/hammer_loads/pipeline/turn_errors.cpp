@@ -17,10 +17,10 @@ void TurnErrors::begin(StampNs blow) noexcept {
   begin_ = blow;
 }
 
-void TurnErrors::sample(double force_z, const HullDeviation& deviation, double rod,
+void TurnErrors::sample(double force_z, double deviation, double common, double rod,
                         const LoadColumns& columns) noexcept {
   NumberError here;
-  here.own = std::sqrt(std::max(0.0, square(deviation.wrench.force_z) - square(deviation.common.force_z)));
+  here.own = std::sqrt(std::max(0.0, square(deviation) - square(common)));
   here.rod = rod;
   if (force_z + here.own > reach_) reach_ = force_z + here.own, highest_ = here;
   last_force_ = force_z;

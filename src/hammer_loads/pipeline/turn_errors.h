@@ -29,8 +29,8 @@ class TurnErrors {
   bool rises(double force_z) const noexcept { return last_force_ <= 0.0 && force_z > 0.0; }
   /// A lobe begins here. There the momentum along z stands still, so that the instant itself does not matter.
   void rose(StampNs stamp, const MomentumColumns& columns) noexcept { rise_ = {stamp, columns}; }
-  /// The load at a sample. rod: of its deviation what a rod makes that may give.
-  void sample(double force_z, const HullDeviation& deviation, double rod, const LoadColumns& columns) noexcept;
+  /// The load at a sample, its deviation as of an extreme. rod: of that what a rod makes that may give.
+  void sample(double force_z, double deviation, double common, double rod, const LoadColumns& columns) noexcept;
   /// At the blow that ends the turn. before_blow, at_end: how far the momentum there may be off, by samples and by
   /// constants [N s]; weight: what constants make of the links' weight [N].
   PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow, const MomentumColumns& at_end,

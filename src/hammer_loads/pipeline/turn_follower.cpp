@@ -39,7 +39,7 @@ TurnInstant TurnFollower::instant(double time, const CrankEstimate& crank) const
 /// Where the rod's spring is followed; origin: of the step's start [s].
 TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
   const DriveReaction drive = driveReaction(*model_, tracker_->driveInertia());
-  const ElasticFollower::Instant there = elastic_->at(time, drive, hull_);
+  const ElasticFollower::Instant there = elastic_->onItsWay(time, drive, hull_);
   const HullWrench momentum = elastic_->momentum(there.bodies, drive).all;
   const CrankMotion motion = motionOf(there.crank);
   const HullWrench added = frameWrench(*model_, step_->linksAt(motion.angle), motion.speed, hull_);
@@ -99,7 +99,9 @@ void TurnFollower::trackErrors(const SampleResult& result) noexcept {
   if (errors_.rises(result.wrench.force_z))
     errors_.rose(result.stamp, momentumColumns(*columns_, *model_, crank.position.angle, crank.speed,
                                                result.doubt.speedAtAngle(crank.acceleration / crank.speed)));
-  errors_.sample(result.wrench.force_z, result.deviation, result.rod_ring.force_z, result.load_columns);
+  const SampleResult::OfExtreme extreme = result.ofExtreme();
+  errors_.sample(result.wrench.force_z, extreme.deviation.force_z, result.deviation.common.force_z,
+                 extreme.ring.force_z, result.load_columns);
 }
 
 /// by_readings: of the crank's covariance, without a rod that may give.

@@ -1,0 +1,104 @@
+// Ranges that a ledger counts of machines whose rod gives. Their truth is integrated by equations of its own, each
+// 0.1 ms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/bench/elastic_table.h"
+#include "hammer_loads/bench/session_player.h"
+#include "hammer_loads/life/damage.h"
+#include "hammer_loads/life/exact_cycles.h"
+#include "hammer_loads/pipeline/life_follower.h"
+#include "pipeline/machine_with_rod.h"
+#include "support/counting_new.h"
+
+namespace hammer_loads {
+namespace {
+
+/// At 200 Hz a ring of 150 to 250 Hz has all its peaks between samples: of the true loads the
+/// samples alone have ranges that are a tenth to a fifth too small.
+TEST(ElasticRanges, ARingBetweenSparseSamplesIsCounted) {
+  std::uint64_t seed = 840;
+  for (const simulation::RodSettings& rod : {simulation::RodSettings{8e8, 0.2, 0.0}, {1.3e9, 0.25, 0.0}}) {
+    SCOPED_TRACE(rod.stiffness);
+    simulation::MachineSettings machine = test::machineOfOutputs(rod, ++seed);
+    machine.crank.rate = 200.0;
+    const simulation::Session session = simulation::recordSession(machine);
+    PipelineSettings settings = test::shippedDrawing().pipeline;
+    settings.level = Level::kElastic;
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    life::LifeSettings counted;
+    counted.channels = {{"hull_wrench/force_z_N", *life::LoadGrid::make(-2e5, 2e5, 4096).value}};
+    counted.period = 1;
+    constexpr double kFrom = 4.0, kTo = 10.0;
+    std::size_t allocated = 0;
+    std::optional<LifeFollower> follower;  // from kFrom on: what was before would stay in the residue
+    player.playTo(kTo, [&](double time, const SampleResult&) {
+      if (time < kFrom) return;
+      if (!follower) follower.emplace(player.pipeline, counted);
+      const std::size_t so_far = test::allocations;
+      follower->follow();
+      allocated += test::allocations - so_far;
+    });
+    EXPECT_EQ(allocated, 0U);
+    const life::LifePiece piece = follower->take();
+    std::vector<double> times;
+    for (int i = 0; i < 60000; ++i) times.push_back(kFrom + i * 1e-4);
+    life::ExactCycles fine, sparse;
+    int step = 0;
+    for (const simulation::CrankTruth& truth : simulation::truthAt(machine, times)) {
+      if (truth.touches()) continue;
+      fine.add(truth.load.force_z);
+      if (step++ % 50 == 0) sparse.add(truth.load.force_z);
+    }
+    const life::RangeDeviation said = life::rangeDeviation(piece.counts[0]);
+    for (const double slope : {3.0, 5.0}) {
+      const double right = life::equivalentLoad(life::rangesAndMeans(fine), slope, 1.0, {}).value;
+      const life::Figure found = life::equivalentLoad(life::rangesAndMeans(piece.counts[0]), slope, 1.0, said);
+      EXPECT_NEAR(found.value, right, 0.06 * right) << slope;
+      EXPECT_NEAR(found.value, right, 2.0 * found.deviation) << slope;
+      EXPECT_LT(life::equivalentLoad(life::rangesAndMeans(sparse), slope, 1.0, {}).value, 0.92 * right) << slope;
+    }
+  }
+}
+
+/// Where much damping lets worn pins meet hard, for 0.3 ms, the samples hardly show when, but the
+/// two bodies how hard.
+TEST(ElasticRanges, ImpactsInWornPinsAreCountedByTheirSizeNotByTheirMoment) {
+  constexpr std::uint64_t kSeeds[] = {881, 882, 883};
+  double mean = 0.0;
+  for (const std::uint64_t seed : kSeeds) {
+    SCOPED_TRACE(seed);
+    const accuracy::ElasticKind kind{"", test::machineOfOutputs({1e9, 3.0, 2e-4}, seed)};
+    const accuracy::LifeFigure life = accuracy::elasticErrors(test::shippedDrawing(), kind, Level::kElastic).life;
+    EXPECT_LT(std::abs(life.error), 2.0 * std::hypot(life.own, life.common));
+    mean += life.error / static_cast<double>(std::size(kSeeds));
+  }
+  EXPECT_LT(std::abs(mean), 0.15);
+}
+
+TEST(ElasticRanges, ARingOfUnknownPhaseHasItsCrestAtAnExtreme) {
+  SampleResult sample;
+  sample.deviation.wrench = {5.0, 50.0, 0.5};
+  sample.rod_ring = {3.0, 30.0, 0.4};
+  EXPECT_NEAR(sample.ofExtreme().ring.force_z, 30.0 * std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(sample.ofExtreme().deviation.force_z, std::hypot(40.0, 30.0 * std::sqrt(2.0)), 1e-12);
+  sample.rod_followed = true;
+  EXPECT_EQ(sample.ofExtreme().ring.force_z, 30.0);
+  EXPECT_EQ(sample.ofExtreme().deviation.force_z, 50.0);
+}
+
+/// Of a level without the spring an extreme is that of a ring whose phase is not known: its crest.
+TEST(ElasticRanges, ARigidLevelsRangesHaveTheCrestOfARingInTheirDeviation) {
+  for (const simulation::RodSettings& rod :
+       {simulation::RodSettings{8e8, 0.3, 0.0}, {8e8, 0.3, 2e-4}, {1e9, 0.3, 5e-4}}) {
+    SCOPED_TRACE(rod.play);
+    const accuracy::ElasticKind kind{"", test::machineOfOutputs(rod, 885)};
+    const accuracy::LifeFigure life = accuracy::elasticErrors(test::shippedDrawing(), kind, Level::kLinkage).life;
+    EXPECT_LT(life.error, -0.1);
+    EXPECT_LT(std::abs(life.error), 2.0 * std::hypot(life.own, life.common));
+  }
+}
+
+}  // namespace
+}  // namespace hammer_loads
