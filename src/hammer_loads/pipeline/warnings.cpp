@@ -139,19 +139,26 @@ std::string rodOf(const CrankFilter& filter) {
       rod.pickedUp(), rod.later(), filter.constantErrors().estimate()[0] / kDegree);
 }
 
+/// As it is now; where it comes and goes, that it did.
+std::string howMuchTheyDiffer(const CrankFilter& filter, bool is_lost) {
+  const double all = filter.consistency(), strike = filter.strikeConsistency();
+  if (is_lost || !std::isfinite(all)) return "crank: the estimate is lost before the blow, turn after turn: ";
+  const char* how = std::max(all, strike) > mismatch::kSeen
+                        ? "crank: readings differ from the model by %.2g times the expected variance, before the blow "
+                          "by %.2g: "
+                        : "crank: again and again readings differed from the model by more than the expected variance "
+                          "explains (now by %.2g times, before the blow by %.2g): ";
+  return format(how, all, strike);
+}
+
 /// What contradicts the model, by where in the turn it does. strike: before the blow as well.
 std::string contradictionOf(const Pipeline& pipeline, bool strike) {
   const CrankFilter& filter = *pipeline.crank().tracker().filter();
-  const std::string how_much = !pipeline.crankTrust().isLost() && std::isfinite(filter.consistency())
-                                   ? format(
-                                         "crank: readings differ from the model by %.2g times the expected "
-                                         "variance, before the blow by %.2g: ",
-                                         filter.consistency(), filter.strikeConsistency())
-                                   : "crank: the estimate is lost before the blow, turn after turn: ";
+  const std::string how_much = howMuchTheyDiffer(filter, pipeline.crankTrust().isLost());
   if (!strike)
     return how_much +
-           "what follows the blow is not in the model, a coupling that gives (shaft: flexible) or a tool that is met "
-           "again; the deviations there are too small";
+           "before the blow they agree, what follows it is not in the model, as where a shaft gives (shaft: flexible) "
+           "or the hull's retainer is struck; the deviations there are too small";
   if (const std::optional<double> behind = pipeline.crankTrust().zeroFarOff())
     return how_much + zeroFarOff(pipeline.settings().crank_sensor, *behind);
   const std::string rod =
