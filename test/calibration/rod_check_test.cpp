@@ -20,26 +20,29 @@ Calibration withRod(const simulation::RodSettings& rod, double zero, double rate
   return calibrate(test::recorded(s), test::basisOf(mechanism));
 }
 
-/// "Dead": damping ratio 3. What is not written leaves the loads as they were.
+/// "Dead": damping ratio 3. Nothing is written, with the reason, whether the fit settles or not: loads stay as they
+/// were.
 TEST(RodCheck, NothingIsWrittenThatARodMovesByMoreThanAFifthOfADegree) {
   std::mt19937_64 random(77);
   std::uniform_real_distribution<double> part(0.0, 1.0);
+  int settled = 0;
   for (std::uint64_t i = 0; i < 8; ++i) {
     const double zero = (2.0 * part(random) - 1.0) * kDegree;
     const simulation::RodSettings rod{2e8 * std::pow(50.0, static_cast<double>(i) / 7.0), i % 2 == 0 ? 3.0 : 0.4,
                                       i % 3 == 0 ? 0.0 : 5e-4 * part(random)};
     SCOPED_TRACE(testing::Message() << rod.stiffness << " N/m, " << rod.damping_ratio << ", " << rod.play << " m");
     const Calibration c = withRod(rod, zero, i % 4 == 1 ? 500.0 : 1000.0, 770 + i);
-    if (!c.problem.empty()) continue;
-    const Estimate* found = test::find(c, "crank_zero_rad");
-    EXPECT_TRUE(!found->determined() || std::abs(found->value - zero) < 0.2 * kDegree)
-        << found->value / kDegree << " for " << zero / kDegree << " deg";
-    if (found->determined()) continue;
-    EXPECT_EQ(yamlOf(c, "a.bag"), "");
-    EXPECT_NE(textOf(c).find("rod, pins and bearings give"), std::string::npos);
+    EXPECT_NE(textOf(c).find("rod, pins and bearings give"), std::string::npos) << textOf(c);
     EXPECT_NE(textOf(c).find("Turn the crank by hand"), std::string::npos);
-    EXPECT_NE(textOf(c).find("for every key: more such work does not help"), std::string::npos) << textOf(c);
+    EXPECT_NE(textOf(c).find("more such work does not help"), std::string::npos) << textOf(c);
+    EXPECT_EQ(yamlOf(c, "a.bag"), "");
+    if (!c.problem.empty()) continue;
+    ++settled;
+    const Estimate* found = test::find(c, "crank_zero_rad");
+    EXPECT_FALSE(found->determined()) << found->value / kDegree << " for " << zero / kDegree << " deg";
   }
+  EXPECT_GT(settled, 0);
+  EXPECT_LT(settled, 8);
 }
 
 TEST(RodCheck, ARigidRodIsNotSuspected) {
@@ -48,6 +51,17 @@ TEST(RodCheck, ARigidRodIsNotSuspected) {
     EXPECT_TRUE(test::find(c, "crank_zero_rad")->determined()) << zero;
     EXPECT_EQ(textOf(c).find("rod, pins"), std::string::npos) << zero;
   }
+}
+
+/// Blows of a hammer with other links look alike: no fit explains them either, and both are named.
+TEST(RodCheck, AnotherHammerIsNamedBesideIt) {
+  const simulation::MachineSettings s = test::atWork(12.0, 1000.0);
+  HammerParameters other = s.hammer;
+  other.lengths.crank *= 1.3;
+  other.lengths.rod = other.lengths.pivot_distance + other.lengths.rocker - other.lengths.crank;
+  const Mechanism of_other = *Mechanism::make(other).value;
+  const Calibration c = calibrate(test::recorded(s), test::basisOf(of_other));
+  EXPECT_NE(c.problem.find("lengths or masses of the hammer file are others"), std::string::npos) << c.problem;
 }
 
 }  // namespace

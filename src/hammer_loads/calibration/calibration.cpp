@@ -19,6 +19,7 @@ namespace hammer_loads::calibration {
 namespace {
 
 constexpr std::size_t kLeastBlows = 12;
+constexpr double kUsuallyNeeded = 60.0;  // blows
 constexpr int kCurveParts = 72;
 constexpr double kUnknownAngleNoise = 5e-4;  // [rad] of a sensor without counts, first guess
 
@@ -73,6 +74,20 @@ std::string whyNotOf(const Coupling& given, const JointFit& fit) {
       found.frequency, found.motor_share, found.damping, given.frequency, given.motor_share, given.damping);
 }
 
+/// Why, as far as the readings show it with the sensor as it was given.
+void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double log_inertia, JointFit fit,
+                  Calibration& result) {
+  result.problem = "its blows are not those of this mechanism: the fit does not settle";
+  if (2.0 * static_cast<double>(result.blows) >= kUsuallyNeeded)
+    result.more_blows = std::numeric_limits<double>::infinity();
+  fit.globals = basis.in_force;
+  fit.globals[kLogInertia] = log_inertia;
+  const RodEvidence rod = rodEvidence(track, basis, fit);
+  if (!rod.gives()) return;
+  result.problem += "; " + whatARodDoes(rod, false);
+  result.more_blows = std::numeric_limits<double>::infinity();
+}
+
 /// Without the gaps.
 double secondsOf(const CrankTrack& track) {
   double seconds = 0.0;
@@ -108,7 +123,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   const CrankTrack track = trackOf(samples, basis.ratio);
   result.facts = track.facts;
   result.direction = track.direction;
-  result.more_blows = 60.0;
+  result.more_blows = kUsuallyNeeded;
   result.seconds = secondsOf(track);
   const SegmentModel model{basis.mechanism, basis.level, basis.coupling};
   const std::optional<FirstGuess> guess = firstGuess(track, model, basis.mechanism.parameters().drive_inertia);
@@ -149,10 +164,10 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   result.held_out = meanSquareOf(last, model, part.globals, part.noise, piece(progress, 0.45, 0.48));
 
   JointFit fit = fitJointly(segments, model, part.globals, part.noise, free, piece(progress, 0.48, 0.65));
-  const std::string unsettled = "its blows are not those of this mechanism: the fit does not settle";
   if (basis.coupling) result.problem = whyNotOf(*basis.coupling, fit);
   if (!result.problem.empty()) result.more_blows = std::numeric_limits<double>::infinity();
-  if (result.problem.empty() && (!fit.converged || fit.fits.size() < kLeastBlows)) result.problem = unsettled;
+  if (result.problem.empty() && (!fit.converged || fit.fits.size() < kLeastBlows))
+    sayUnsettled(track, basis, start[kLogInertia], rough.fit, result);
   if (!result.problem.empty()) return result;
   result.left_out = fit.left_out;
   result.noise = fit.noise;
@@ -164,7 +179,7 @@ Calibration calibrate(const std::vector<RecordedSample>& samples, const Calibrat
   hammer.widen(fit);
   removeBias(fit, hammer, model, free, gain * track.facts.count, piece(progress, 0.65, 0.88));
   if (!(hammer.covariance.diagonal().minCoeff() >= 0.0)) {
-    result.problem = unsettled;
+    sayUnsettled(track, basis, start[kLogInertia], rough.fit, result);
     return result;
   }
   Globals in_force = basis.in_force;

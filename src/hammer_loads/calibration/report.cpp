@@ -34,7 +34,9 @@ bool anyDetermined(const Calibration& c) {
 }  // namespace
 
 std::string textOf(const Calibration& c) {
-  if (!c.problem.empty()) return c.problem + "; needed are " + needOf(c) + "\n";
+  if (!c.problem.empty())
+    return c.problem + (std::isfinite(c.more_blows) ? "; needed are " + needOf(c) : "; more such work does not help") +
+           "\n";
   std::string text = format("%.1f s, %zu blows, %zu left out; %.3g samples a second%s\n", c.seconds, c.blows,
                             c.left_out, 1.0 / c.facts.period, c.facts.retimed ? ", re-timed" : "");
   for (const Estimate& e : c.estimates) {

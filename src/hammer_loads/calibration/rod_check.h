@@ -1,6 +1,8 @@
 /// Whether a recording is of a machine whose rod gives: what a rigid one explains is then no zero.
 #pragma once
 
+#include <string>
+
 #include "hammer_loads/calibration/calibration.h"
 #include "hammer_loads/crank/rod_evidence.h"
 
@@ -8,6 +10,9 @@ namespace hammer_loads::calibration {
 
 /// What the crank's filter finds with the sensor and the drive of a fit.
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
+
+/// That it gives, and what to do. settled: a fit by the hammer file's links did; else they may be other ones.
+std::string whatARodDoes(const RodEvidence& rod, bool settled);
 
 /// Keys that a rigid rod's fit would get wrong are not determined: how far they may be off, and what to do instead.
 /// ratio: encoder turns per crank turn.
