@@ -203,5 +203,38 @@ TEST(ElasticOutputs, ThePeakOfATurnMayBeTheRings) {
   }
 }
 
+/// The hull's retainer, 5 mm below the tool's place and soft, throws the rocker back with half its speed: a rigid crank
+/// takes that for a usual blow. What two bodies on a tool do not explain has any restitution; after three such blows
+/// they do.
+TEST(ElasticOutputs, ABlowThatNothingExplainsHasAnyRestitution) {
+  for (const std::uint64_t seed : {891, 892}) {
+    SCOPED_TRACE(seed);
+    simulation::MachineSettings machine = test::machineOfOutputs({1e9, 0.3, 0.0}, seed);
+    machine.strike.retainer_stiffness = 5e7, machine.strike.retainer_damping = 0.1;
+    machine.strike.no_tool_from = 5.0, machine.strike.no_tool_to = 9.0;
+    const simulation::Session session = simulation::recordSession(machine);
+    PipelineSettings settings = test::shippedDrawing().pipeline;
+    settings.level = Level::kElastic;
+    accuracy::SessionPlayer player(test::shippedDrawing().mechanism, settings, {}, session);
+    accuracy::FigureErrors restitution, impulse;
+    player.playTo(12.0, [&](double time, const SampleResult& result) {
+      for (std::size_t i = 0; i < result.turn_ends && time > 5.2; ++i) {
+        const TurnEnd& end = result.ends[i];
+        const double stamp = seconds(end.stamp - machine.start_stamp);
+        for (const simulation::BlowTruth& blow : session.blows) {
+          if (std::abs(blow.time - stamp) > 0.02 || !(blow.retainer_impulse > 50.0)) continue;
+          const double right = -blow.strike.rocker_speed_after / blow.strike.rocker_speed_before;
+          restitution.add(end.blow.restitution - right, end.blow.restitution_deviation);
+          impulse.add(end.blow.tool_impulse_z - blow.retainer_impulse, end.blow_errors.tool_impulse_z.deviation());
+        }
+      }
+    });
+    EXPECT_GT(restitution.count(), 12.0);
+    EXPECT_LT(restitution.result().rms, 0.2);
+    EXPECT_GT(restitution.result().covered, 0.88);
+    EXPECT_GT(impulse.result().covered, 0.88);
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -13,6 +13,8 @@ namespace {
 constexpr double kFirstRestitution = 0.16, kRestitutionDeviation = 0.1;
 constexpr double kPlaceDeviation = 5e-3;  // [rad]: a millimetre
 // Guard: RodFilterStart.KnowsToolAndRodAsFarAsTheyAreGiven of kFirstRestitution, kRestitutionDeviation, kPlaceDeviation
+constexpr double kOtherPlace = 2e-2;  // [rad] after a blow that this one does not explain: a retainer is 5 mm away
+// Guard: RodFilterStart.ABlowOnSomethingElseMayBeElsewhere of kOtherPlace
 constexpr double kWalks[] = {0.005, 0.01, 5e-6, 0.02, 3e-3};  // of the learned rows from blow to blow
 // Guard: RodFilterStart.WhatItLearnsWandersFromBlowToBlow of kWalks
 constexpr double kLeastLog[] = {17.7, -3.9}, kMostLog[] = {25.4, 3.0};  // 5e7 to 1e11 N/m, 0.02 to 20
@@ -197,6 +199,7 @@ void RodFilter::learn() noexcept {
   learned_ = proven_ ? motion_ : first_;
   learned_covariance_ =
       proven_ ? Learned(belief_.covariance.bottomRightCorner<kLearned, kLearned>()) : first_covariance_;
+  if (!proven_ && hasStruck()) learned_covariance_(kLearned - 1, kLearned - 1) = square(kOtherPlace);
 }
 
 }  // namespace hammer_loads

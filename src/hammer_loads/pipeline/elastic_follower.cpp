@@ -110,7 +110,8 @@ const RodFilter& ElasticFollower::likelier() const noexcept {
 /// then.
 void ElasticFollower::judge() noexcept {
   runs_ = false;
-  if (alone_ && !best_->isProven()) return;  // the other one is asked at the next blow
+  lost_ = alone_ ? !best_->isProven() : !filters_[0].isProven() && !filters_[1].isProven();
+  if (alone_ && lost_) return;  // the other one is asked at the next blow
   const RodFilter& rod = alone_ ? *best_ : likelier();
   const double gain = rod.isProven() ? std::clamp(rod.fit() - rigid_fit_, -kGivenUp, kGivenUp) : -kGivenUp;
   evidence_ += kEvidenceGain * (gain - evidence_);

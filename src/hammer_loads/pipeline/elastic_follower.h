@@ -26,6 +26,9 @@ class ElasticFollower {
   void rest() noexcept;
   /// Over the step to the crank's last sample, which continued.
   void follow(const CrankFollower& crank, Gravity gravity) noexcept;
+  /// The last blow was none of two bodies on a tool near the dead centre, however the rod may be: nothing explains what
+  /// it did to the crank.
+  bool isLost() const noexcept { return lost_; }
   bool runs() const noexcept { return best_ != nullptr && best_->isRunning() && best_->isProven(); }
 
   /// While it runs: the crank as the two bodies have it, its acceleration as if its rod were rigid.
@@ -107,6 +110,7 @@ class ElasticFollower {
 
   const HullModel* model_;
   bool wanted_, runs_{};
+  bool lost_{};
   bool alone_{};  ///< the likelier filter alone, at this blow
   std::array<RodFilter, 2> filters_;
   double evidence_{};          ///< mean over some blows of the rod's fit less that of the rigid mechanism

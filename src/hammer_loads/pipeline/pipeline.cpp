@@ -131,7 +131,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
     passBlows();
     followHull();
     rod_.follow(crank_.step(), crank_.tracker());
-    rod_.take(crank_.tracker().filter());
+    rod_.take(crank_.tracker().filter(), elastic_.isLost());
     elastic_.follow(crank_, hull_.motion().motion.gravity);
     if (elastic_.runs())
       crank_.considerRod(elastic_.filter().motion().state.angle, elastic_.filter().motion().state.speed);

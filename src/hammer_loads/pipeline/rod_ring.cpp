@@ -18,8 +18,8 @@ constexpr double kLongest = 1e-3;           // [s] in which the lever counts as 
 constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a measured restitution: 0.03 to 0.08,
                                             // with worn pins to 0.14
 // Guard: RodRing.RestitutionIsCovered of kRestitutionDoubt
-constexpr double kAnyRestitution = 0.29;  // standard deviation of one that may be anything from 0 to 1
-// Guard: RodRing.OfLivelyRockARigidLevelKnowsNoRestitution of kAnyRestitution
+constexpr double kMeanRestitution = 0.5, kAnyRestitution = 0.29;  // of one that may be anything from 0 to 1
+// Guard: RodRing.OfLivelyRockARigidLevelKnowsNoRestitution of kMeanRestitution, kAnyRestitution
 constexpr double kRungOut = 90.0 * kDegree, kApproach = 30.0 * kDegree;  // behind the blow, before it
 constexpr double kPart = 1e-2;                                           // [rad], as kLongest
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
@@ -78,7 +78,7 @@ RodRing::RodRing(const HullModel& model) noexcept : model_(&model) {
   const RodPrior prior = priorOf(p.rod, p.rod_deviation);
   gives_ = prior.gives;
   rods_ = rodsOf(prior);
-  take(nullptr);
+  take(nullptr, false);
 }
 
 void RodRing::begin(double beside_speed) noexcept {
@@ -94,7 +94,7 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
   const double restitution = std::clamp(at.restitution(blow.mean), 0.0, 1.0);
   const double rocker = -restitution * at.u_before * speed_before;  // as it leaves the tool
   const double measured = std::isfinite(blow.deviation) ? at.restitutionPerFactor() * blow.deviation : 0.0;
-  const double doubt = std::hypot(measured, doubt_) * at.u_before * speed_before;
+  const double doubt = std::hypot(measured, doubtOf(restitution)) * at.u_before * speed_before;
   const double missing = rocker - at.u_after * blow.mean * speed_before;
   struck_ = std::hypot(missing, doubt);
   begin(std::copysign(struck_, missing));
@@ -199,17 +199,23 @@ void RodRing::follow(const CrankStep& step, const CrankTracker& tracker) noexcep
   drive(step, crank);
 }
 
-void RodRing::take(const CrankFilter* filter) noexcept {
-  share_ = let_go_ = 1.0, doubt_ = kRestitutionDoubt;
+void RodRing::take(const CrankFilter* filter, bool lost) noexcept {
+  share_ = let_go_ = 1.0, lost_ = lost;
   if (filter != nullptr) {
     const RodEvidence& evidence = filter->rodEvidence();
     share_ = std::sqrt(evidence.share(filter->readingDeviation()));
     let_go_ = std::sqrt(evidence.letGoShare(filter->readingDeviation()));
-    if (evidence.isLost()) doubt_ = kAnyRestitution;
+    lost_ = lost || evidence.isLost();
   }
 }
 
-double RodRing::restitutionDoubt() const noexcept { return gives_ ? std::max(share_, let_go_) * doubt_ : 0.0; }
+double RodRing::doubtOf(double restitution) const noexcept {
+  return lost_ ? std::hypot(kAnyRestitution, restitution - kMeanRestitution) : kRestitutionDoubt;
+}
+
+double RodRing::restitutionDoubt(double restitution) const noexcept {
+  return gives_ ? std::max(share_, let_go_) * doubtOf(restitution) : 0.0;
+}
 
 double RodRing::speed() const noexcept {
   double sum = 0.0;

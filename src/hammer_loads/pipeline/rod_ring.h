@@ -36,15 +36,16 @@ class RodRing {
   void restart(const CrankTracker& tracker) noexcept;
   /// Over the step to the crank's last sample; the tracker has followed it.
   void follow(const CrankStep& step, const CrankTracker& tracker) noexcept;
-  /// The filter that has followed the readings, if any: they may show that no rod rings.
-  void take(const CrankFilter* filter) noexcept;
+  /// The filter that has followed the readings, if any: they may show that no rod rings. lost:
+  /// ElasticFollower::isLost().
+  void take(const CrankFilter* filter, bool lost) noexcept;
   /// Standard deviation of a rigid level's wrench by acceleration() and speed(), whose square pulls along the rocker.
   /// crank: speed [rad/s].
   HullWrench deviation(const LinkMotion& links, double crank) const noexcept;
   /// Of the rocker's angular acceleration beside the rigid links', root mean square over its phase [rad/s2].
   double acceleration() const noexcept { return moves_ ? share_ * acceleration_ : 0.0; }
   /// How far a restitution may be off that was read off a crank as if the rod were rigid, standard [-].
-  double restitutionDoubt() const noexcept;
+  double restitutionDoubt(double restitution) const noexcept;
   /// How far the crank's speed at the last blow may be above that which drives a rigid mechanism's rocker as fast as
   /// this one struck, standard [rad/s]. A rocker at the side of its play is slower than the linkage has it, by the more
   /// the nearer the dead centre; nothing brakes it within the play: it strikes with the most it was driven at.
@@ -63,6 +64,7 @@ class RodRing {
   void pass(const CrankStep::Passage& passage, const BlowFactor& blow) noexcept;
   void approach(const CrankAngle& at) noexcept;
   void drive(const CrankStep& step, const CrankEstimate& crank) noexcept;
+  double doubtOf(double restitution) const noexcept;
   void letGo(const CrankStep::Passage& passage) noexcept;
 
   const HullModel* model_;
@@ -76,7 +78,7 @@ class RodRing {
   double acceleration_{}, struck_{}, share_{}, let_go_{};
   double driven_{};   ///< the most of this stroke, in pins as worn as the file leaves possible [rad/s]
   double lacking_{};  ///< at the last blow, of the crank's speed [rad/s]
-  double doubt_{};    ///< of a restitution, where readings leave a whole share
+  bool lost_{};       ///< nothing explains what blows did to the crank
 };
 
 /// What the rocker's angular acceleration [rad/s2] is on the hull; of a speed [rad/s] the momentum [N s, N m s].

@@ -200,7 +200,8 @@ void TurnFollower::finishBlow(SampleResult& result) noexcept {
   if (!elastic) {
     const BlowInertia inertia = blowInertia(model_->mechanism(), model_->level(), crank.drive_inertia);
     crank.factor_deviation =
-        std::hypot(crank.factor_deviation, rod_->restitutionDoubt() / inertia.restitutionPerFactor(),
+        std::hypot(crank.factor_deviation,
+                   rod_->restitutionDoubt(inertia.restitution(crank.factor)) / inertia.restitutionPerFactor(),
                    crank.factor * rod_->lackingSpeed() / crank.speed);
   }
   const double taken_up = model_->mechanism().rockerFirstMoment() * rod_->struck();
