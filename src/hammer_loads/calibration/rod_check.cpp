@@ -90,19 +90,15 @@ void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
 }
 
 std::string whatARodDoes(const RodEvidence& rod, bool settled) {
-  return format(
-             "just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of "
-             "a "
-             "turn later by %.2g: ",
-             rod.pickedUp(), rod.later()) +
-         (settled ? "" : "lengths or masses of the hammer file are others, or ") +
+  const std::string found = format(
+      "just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of a turn "
+      "later by %.2g: ",
+      rod.pickedUp(), rod.later());
+  return found + (settled ? "" : "lengths or masses of the hammer file are others, or ") +
          "rod, pins and bearings give. A rigid rod's fit takes that for a zero up to 3 deg too small and for an "
-         "eccentric "
-         "encoder, so neither is written. Turn the crank by hand, or let it creep without blows, to where the rocker "
-         "rests "
-         "on its tool and crank and rod are in line: the reading there is crank_zero_rad. With it level: elastic "
-         "learns "
-         "rod and drive at work";
+         "eccentric encoder, so neither is written. Turn the crank by hand, or let it creep without blows, to "
+         "where the rocker rests on its tool and crank and rod are in line: the reading there is crank_zero_rad. "
+         "With it level: elastic learns rod and drive at work";
 }
 
 }  // namespace hammer_loads::calibration
