@@ -83,9 +83,9 @@ void sayUnsettled(const CrankTrack& track, const CalibrationBasis& basis, double
   fit.globals = basis.in_force;
   fit.globals[kLogInertia] = log_inertia;
   const RodEvidence rod = rodEvidence(track, basis, fit);
-  if (!rod.gives()) return;
-  result.problem += "; " + whatARodDoes(rod, false);
-  result.more_blows = std::numeric_limits<double>::infinity();
+  if (std::isfinite(rod.later()))
+    result.problem += "; " + (rod.gives() ? whatARodDoes(rod, false) : whereReadingsDiffer(rod));
+  if (rod.gives()) result.more_blows = std::numeric_limits<double>::infinity();
 }
 
 /// Without the gaps.

@@ -89,12 +89,15 @@ void refuseForRod(const RodEvidence& rod, double ratio, Calibration& result) {
   result.remarks.push_back(whatARodDoes(rod, true));
 }
 
-std::string whatARodDoes(const RodEvidence& rod, bool settled) {
-  const std::string found = format(
+std::string whereReadingsDiffer(const RodEvidence& rod) {
+  return format(
       "just after the blow readings differ from a rigid rod's by %.2g times the expected variance, a quarter of a turn "
-      "later by %.2g: ",
+      "later by %.2g",
       rod.pickedUp(), rod.later());
-  return found + (settled ? "" : "lengths or masses of the hammer file are others, or ") +
+}
+
+std::string whatARodDoes(const RodEvidence& rod, bool settled) {
+  return whereReadingsDiffer(rod) + ": " + (settled ? "" : "lengths or masses of the hammer file are others, or ") +
          "rod, pins and bearings give. A rigid rod's fit takes that for a zero up to 3 deg too small and for an "
          "eccentric encoder, so neither is written. Turn the crank by hand, or let it creep without blows, to "
          "where the rocker rests on its tool and crank and rod are in line: the reading there is crank_zero_rad. "

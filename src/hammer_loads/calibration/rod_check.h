@@ -11,6 +11,9 @@ namespace hammer_loads::calibration {
 /// What the crank's filter finds with the sensor and the drive of a fit.
 RodEvidence rodEvidence(const CrankTrack& track, const CalibrationBasis& basis, const JointFit& fit);
 
+/// By how much, just after the blow and later.
+std::string whereReadingsDiffer(const RodEvidence& rod);
+
 /// That it gives, and what to do. settled: a fit by the hammer file's links did; else they may be other ones.
 std::string whatARodDoes(const RodEvidence& rod, bool settled);
 
