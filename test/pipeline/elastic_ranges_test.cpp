@@ -15,8 +15,8 @@
 namespace hammer_loads {
 namespace {
 
-/// At 200 Hz a ring of 150 to 250 Hz has all its peaks between samples: of the true loads the
-/// samples alone have ranges that are a tenth to a fifth too small.
+/// At 200 Hz a ring of 150 to 250 Hz has all its peaks between samples: of the true loads the samples alone have ranges
+/// that are a tenth to a fifth too small.
 TEST(ElasticRanges, ARingBetweenSparseSamplesIsCounted) {
   std::uint64_t seed = 840;
   for (const simulation::RodSettings& rod : {simulation::RodSettings{8e8, 0.2, 0.0}, {1.3e9, 0.25, 0.0}}) {
@@ -62,8 +62,8 @@ TEST(ElasticRanges, ARingBetweenSparseSamplesIsCounted) {
   }
 }
 
-/// Where much damping lets worn pins meet hard, for 0.3 ms, the samples hardly show when, but the
-/// two bodies how hard.
+/// Where much damping lets worn pins meet hard, for 0.3 ms, the samples hardly show when, but the two bodies how
+/// hard.
 TEST(ElasticRanges, ImpactsInWornPinsAreCountedByTheirSizeNotByTheirMoment) {
   constexpr std::uint64_t kSeeds[] = {881, 882, 883};
   double mean = 0.0;

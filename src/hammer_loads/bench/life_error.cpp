@@ -14,6 +14,12 @@ double equivalentRange(const Cycles& cycles) {
   return life::equivalentLoad(life::rangesAndMeans(cycles), kLifeSlope, 1.0, {}).value;
 }
 
+/// own, common: of the counted range [-].
+LifeFigure figureBy(double counted, double right, double own, double common) {
+  const double ratio = counted / right;
+  return {ratio - 1.0, ratio * own, ratio * common};
+}
+
 }  // namespace
 
 void LifeError::endTurn() {
@@ -25,14 +31,12 @@ void LifeError::endTurn() {
 }
 
 LifeFigure LifeError::figure() const {
-  const double ratio = equivalentRange(estimated_) / equivalentRange(right_);
-  return {ratio - 1.0, ratio * own_ / square_, ratio * common_ / square_};
+  return figureBy(equivalentRange(estimated_), equivalentRange(right_), own_ / square_, common_ / square_);
 }
 
 LifeFigure figureOf(const life::CycleCount& counted, const life::ExactCycles& right) {
-  const double ratio = equivalentRange(counted) / equivalentRange(right);
   const life::RangeDeviation said = life::rangeDeviation(counted);
-  return {ratio - 1.0, ratio * said.own, ratio * said.common};
+  return figureBy(equivalentRange(counted), equivalentRange(right), said.own, said.common);
 }
 
 std::string json(const LifeFigure& figure) {

@@ -51,8 +51,8 @@ TurnInstant TurnFollower::ringing(double origin, double time) const noexcept {
 }
 
 /// Between points of the turn [s]; pins with play meet for a few tenths of a millisecond.
-double TurnFollower::partOfStep() const noexcept {
-  if (!elastic_->ranOverStep()) return kPulseStep;
+double TurnFollower::partOfStep(bool rings) const noexcept {
+  if (!rings) return kPulseStep;
   return elastic_->filter().motion().play > 0.0 ? kRingStep : kRingPart;
 }
 
@@ -61,7 +61,7 @@ void TurnFollower::recordTo(double from, double to) noexcept {
   if (!turn_.recording() || !(to > from)) return;
   const double origin = seconds(step_->start() - epoch_);
   const bool rings = elastic_->ranOverStep();
-  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / partOfStep())));
+  const int count = std::max(1, static_cast<int>(std::ceil((to - from) / partOfStep(rings))));
   for (int i = 1; i <= count; ++i) {
     const double time = i == count ? to : from + (to - from) * i / count;
     const TurnInstant point = rings ? ringing(origin, time) : instant(origin + time, step_->at(time));

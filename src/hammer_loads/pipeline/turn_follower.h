@@ -63,7 +63,7 @@ class TurnFollower {
   void doubtImpossible(CrankBlow crank, bool early, TurnEnd& end) const noexcept;
   void takeUpLater(const CrankBlow& crank, LinkMomentum& after, RockerBlow& blow) const noexcept;
   void countBackward(const CrankStep::Passage& passage) noexcept;
-  double partOfStep() const noexcept;
+  double partOfStep(bool rings) const noexcept;
   void recordTo(double from, double to) noexcept;
   void endTurn(const CrankStep::Passage& passage) noexcept;
   void endPulse(const TurnInstant& at, const CrankEstimate& before, const CrankUncertainty& doubt,
