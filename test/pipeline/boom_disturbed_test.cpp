@@ -153,13 +153,16 @@ TEST(MistakenSensors, PressuresThatLagAreNamedAndNotUsed) {
       const char* keys = imu ? kHullByImu : kBoomIdentified;
       const BoomErrors right = errorsOf(sessionOn(rock), keys, {imu, true}, 3.5, 5.0);
       EXPECT_LT(right.worstTorque(), 0.03) << rock << imu;
-      EXPECT_FALSE(right.warned_of_pressure_stamps) << rock << imu;
+      EXPECT_FALSE(right.warnedOfPressures()) << rock << imu;
       Session session = sessionOn(rock);
       for (simulation::PressureReading& r : session.pressures) r.stamp += 10'000'000;
       const BoomErrors without = errorsOf(sessionOn(rock), keys, {imu, false}, 3.5, 5.0);
       const BoomErrors late = errorsOf(session, keys, {imu, true}, 3.5, 5.0);
       // On rock the oil is not known yet in these 5 s where no IMU helps.
-      EXPECT_TRUE(late.warned_of_pressure_stamps || (rock && !imu)) << rock << imu;
+      EXPECT_EQ(late.warned_of_pressure_stamps, imu) << rock;
+      if (!imu && !rock) {
+        EXPECT_TRUE(late.warned_of_pressure_fit) << "how late does not show";
+      }
       if (imu) {
         EXPECT_LT(late.worstTorque(), without.worstTorque() + 0.15) << rock;
       }
@@ -201,6 +204,7 @@ TEST(MistakenSensors, PressuresThatAreLateAreNamedAndAllowedFor) {
         EXPECT_LT(e.worstTorque(), imu ? 0.03 : 0.02 + 25.0 * late) << late << rock << imu;
         EXPECT_GT(e.covered(), 0.85) << late << rock << imu;
         EXPECT_EQ(e.warned_of_pressure_stamps, late > 0.0) << late << rock << imu;
+        EXPECT_EQ(e.warnedOfPressures(), late > 0.0) << late << rock << imu;
         EXPECT_FALSE(e.warned_of_imu_stamps) << late << rock << imu;
       }
     }

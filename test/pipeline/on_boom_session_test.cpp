@@ -104,7 +104,7 @@ TEST(OnBoomSession, AZeroThatIsOffIsNoDelayOfTheSensors) {
       EXPECT_LT(e.worstTorque(), 0.025) << zero << sensors.imu << sensors.pressures;
       EXPECT_GT(e.covered(), 0.85) << zero << sensors.imu << sensors.pressures;
       EXPECT_GT(e.sectionsCovered(), 0.85) << zero << sensors.imu << sensors.pressures;
-      EXPECT_FALSE(e.warned_of_imu_stamps || e.warned_of_pressure_stamps) << zero;
+      EXPECT_FALSE(e.warned_of_imu_stamps || e.warnedOfPressures()) << zero;
     }
   }
 }

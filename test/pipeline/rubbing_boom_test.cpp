@@ -45,7 +45,7 @@ TEST(RubbingBoom, IsNotTakenForStampsThatAreLate) {
     const simulation::Session session = rubbingSession(friction);
     for (const bool imu : {false, true}) {
       const BoomErrors e = errorsOf("seals", session, "boom_stiffness: identified\n", {imu, true});
-      EXPECT_FALSE(e.warned_of_pressure_stamps || e.warned_of_imu_stamps || e.warned_of_rock) << friction << imu;
+      EXPECT_FALSE(e.warnedOfPressures() || e.warned_of_imu_stamps || e.warned_of_rock) << friction << imu;
       EXPECT_EQ(e.warned_of_damping, friction == 0.08 && imu) << friction << imu;
       EXPECT_GT(e.covered(), 0.85) << friction << imu;
     }

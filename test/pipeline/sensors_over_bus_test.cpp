@@ -44,7 +44,7 @@ TEST(SensorsOverBus, JitterOfStampsIsLearned) {
   const accuracy::BoomErrors e = over({0.0, 1.5e-3, {-0.45, 1.00, -0.50}, 1.2, 0.0}, 500.0, 0.0);
   EXPECT_LT(e.worstTorque(), 0.03);
   EXPECT_GT(e.covered(), 0.9);
-  EXPECT_FALSE(e.warned_of_pressure_stamps);
+  EXPECT_FALSE(e.warnedOfPressures());
 }
 
 /// Two of an IMU's readings that waited for one bus may be stamped as one right after the other: no hull turned between

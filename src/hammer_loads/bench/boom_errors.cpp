@@ -125,6 +125,7 @@ BoomErrors boomErrors(const simulation::Session& session, const Mechanism& mecha
   for (const Warning& warning : warningsOf(player.pipeline)) {
     errors.warned_of_rock |= std::string(warning.key) == "rock";
     errors.warned_of_pressure_stamps |= std::string(warning.key) == "pressure stamps";
+    errors.warned_of_pressure_fit |= std::string(warning.key) == "pressure fit";
     errors.warned_of_damping |= std::string(warning.key) == "boom damping";
     errors.warned_of_imu_stamps |= std::string(warning.key) == "imu stamps";
   }

@@ -23,11 +23,13 @@ struct BoomErrors {
   double torque_said[3]{};                ///< squares of the torques' deviations [N2 m2]
   std::size_t sections_within{};          ///< bending moments within two deviations
   std::size_t lost_as_shown{};            ///< the flag of a press force that is lost is right
-  bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_imu_stamps{}, warned_of_damping{};
+  bool warned_of_rock{}, warned_of_pressure_stamps{}, warned_of_pressure_fit{}, warned_of_imu_stamps{},
+      warned_of_damping{};
   std::size_t unknown{};  ///< the rock's force is said not to be known
   double energy_sum{};    ///< of the blows, relative
   double frequency{};     ///< of the lowest mode at the end [Hz]
 
+  bool warnedOfPressures() const { return warned_of_pressure_stamps || warned_of_pressure_fit; }
   double worstTorque() const { return std::max({torque[0].rms(), torque[1].rms(), torque[2].rms()}); }
   double worstSection() const {
     return std::max({section[0].rmsOfRange(), section[1].rmsOfRange(), section[2].rmsOfRange()});

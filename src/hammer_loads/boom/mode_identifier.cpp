@@ -15,9 +15,8 @@ constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that
 constexpr double kDampingWalk = 0.01;  // of log damping in a second
 // Guard: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk
 constexpr double kForcePart = 0.05;   // deviation of the modal force over its root mean square
-constexpr double kForceTime = 0.01;   // for which a force stays wrong the same way [s]
 constexpr double kForceMemory = 2.0;  // of the mean square [s]
-// Guard: IdentifierNumbers.OfAForceThatLasts of kForcePart, kForceTime, kForceMemory
+// Guard: IdentifierNumbers.OfAForceThatLasts of kForcePart, kForceMemory
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
 // Guard: IdentifierNumbers.OfAMotionThatIsNotKnown of kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]

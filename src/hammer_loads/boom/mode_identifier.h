@@ -147,6 +147,8 @@ class ModeIdentifier {
  private:
   static constexpr double kDelayDeviation = 2e-3;  ///< of a delay that is not known, standard [s]
   // Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kDelayDeviation
+  static constexpr double kForceTime = 0.01;  ///< for which a force stays wrong the same way [s]
+  // Guard: IdentifierNumbers.OfAForceThatLasts of kForceTime
   static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
   static_assert(kMaxStates <= kMostStates);
@@ -217,10 +219,12 @@ class ModeIdentifier {
   struct Seen;
   using SeenModes = std::array<Seen, kMaxJoints>;
   void take(const VibrationReading* readings, std::size_t count) noexcept;
+  void excuseNoMoreThanRead(const VibrationReading& reading, double difference, State& row) const noexcept;
   void correct(const VibrationReading& reading, const State& row, double difference, const Kept& kept) noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
   void takeBack(const Kept& kept, double moved, double S, const State& gain_S) noexcept;
   void takeAsLate(Clock clock) noexcept;
+  void takeAsBearing(double step) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
   static bool counts(const VibrationReading& reading) noexcept;

@@ -1,6 +1,7 @@
 // Readings: what a sensor shows of the modes, and what that says of their oil.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hammer_loads/boom/mode_identifier.h"
 #include "hammer_loads/estimation/gates.h"
@@ -131,7 +132,7 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
 void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
   if (!moving_known_ || count == 0) return;
   const Clock clock = readings->clock;
-  if (clock == Clock::kImu) imu_age_ = 0.0;
+  const double since_imu = std::exchange(imu_age_, clock == Clock::kImu ? 0.0 : imu_age_);
   if (clock != Clock::kCrank) followDelay(clock);
   for (std::size_t r = 0; r < count; ++r)  // all of them first: a new one makes the block of what is in use larger
     if (counts(readings[r])) useChannel(readings[r]);
@@ -142,14 +143,39 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
     take(readings + first, std::min(together, count - first));
   }
   if (clock != Clock::kCrank) takeAsLate(clock);
+  if (clock == Clock::kImu) takeAsBearing(since_imu);
   if (learns_ && !explains_) forgetOil();
   if (!state_.segment(begin(), states()).allFinite()) return startAnew();
   if (learns_) useOil();
   if (clock != Clock::kCrank) crank_lead_ = findCrankLead();
 }
 
+/// Rock bears and never pulls. Where it seems to for longer than a force is wrong and by more than it is unsure, that
+/// is of offsets and of where the boom stands; of pressures later than clocks are, it is what a hose has left of the
+/// swing.
+void ModeIdentifier::takeAsBearing(double step) noexcept {
+  const double pulls = -contactDeviation() - state_[kContact];
+  if (!follows_contact_ || !(pulls > 0.0) || delayByCrank(Clock::kPressures) > kDelayDeviation) return;
+  const double part = std::min(1.0, step / kForceTime);
+  State moved = part * pulls / covariance_(kContact, kContact) * covariance_.col(kContact);
+  moved.segment<2>(kDelays).setZero();
+  for (int k = 0; k < count_; ++k) moved[at(k, kOil)] = moved[at(k, kDamping)] = 0.0;
+  state_ += moved;
+}
+
 bool ModeIdentifier::counts(const VibrationReading& reading) noexcept {
   return reading.channel >= 0 && reading.channel < kMaxChannels && std::isfinite(reading.value);
+}
+
+/// A stiffness that is not known makes as much of a torque doubtful as there is of it. Where readings do not correct
+/// it, a motion that an IMU led astray would excuse itself by the large torque that it predicts: there it is that which
+/// was read.
+void ModeIdentifier::excuseNoMoreThanRead(const VibrationReading& reading, double difference,
+                                          State& row) const noexcept {
+  if (!reading.of_oil || !keeps_oil_ || !imuSpeaks() || !exceeds(difference, square(reading.noise), kFarOff)) return;
+  const double read = reading.value - state_[offsetAt(reading.channel)], predicted = read - difference;
+  const double part = std::clamp(read / predicted, 0.0, 1.0);
+  for (int i = 0; i < count_; ++i) row[at(i, kOil)] *= part;
 }
 
 /// Rows about one state, then one reading after the other.
@@ -175,8 +201,11 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
   }
   std::array<State, kTogether> row;
   std::array<double, kTogether> difference;  // of the value from what is predicted
-  for (std::size_t r = 0; r < count; ++r)
-    if (counts(readings[r])) difference[r] = readings[r].value - findRow(readings[r], seen, row[r]);
+  for (std::size_t r = 0; r < count; ++r) {
+    if (!counts(readings[r])) continue;
+    difference[r] = readings[r].value - findRow(readings[r], seen, row[r]);
+    excuseNoMoreThanRead(readings[r], difference[r], row[r]);
+  }
   const Kept kept = keptStates();
   const State before = state_;
   for (std::size_t r = 0; r < count; ++r)

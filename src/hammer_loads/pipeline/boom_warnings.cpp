@@ -68,6 +68,16 @@ void warnOfImuClock(const ModeIdentifier& identifier, std::vector<Warning>& warn
                       true});
 }
 
+/// What is known of the pressures' stamps where they do not fit the motion.
+std::string delayText(const ModeIdentifier& identifier) {
+  if (!identifier.knowsLag())
+    return "without hull_imu it does not show how late their stamps are, 5 ms are a third of the vibration's torque";
+  return format(
+      "their stamps are %.1f +- %.1f ms late, which is allowed for: it is the boom that moves as neither boom "
+      "file nor description has it",
+      1e3 * identifier.delay(Clock::kPressures), 1e3 * identifier.delayDeviation(Clock::kPressures));
+}
+
 /// explained: by what damps the boom they seem late by this [s].
 void warnOfPressures(const ModeIdentifier& identifier, double explained, std::vector<Warning>& warnings) {
   const double surprise = identifier.oilSurprise();
@@ -79,11 +89,10 @@ void warnOfPressures(const ModeIdentifier& identifier, double explained, std::ve
              "to 2 ms",
          true});
   } else if (surprise > MeasuredTorques::kSurprised) {
-    warnings.push_back({"pressure stamps",
+    warnings.push_back({"pressure fit",
                         format("cylinder_pressures: they do not fit the boom's motion, errors are %.2g times the "
-                               "expected variance, as where stamps lag (5 ms are a third of the vibration's torque) "
-                               "or a hull bounces on rock between readings; deviations are widened",
-                               surprise),
+                               "expected variance; %s; deviations are widened",
+                               surprise, delayText(identifier).c_str()),
                         true});
   }
 }
