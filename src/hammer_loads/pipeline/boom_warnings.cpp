@@ -82,12 +82,12 @@ std::string delayText(const ModeIdentifier& identifier) {
 void warnOfPressures(const ModeIdentifier& identifier, double explained, std::vector<Warning>& warnings) {
   const double surprise = identifier.oilSurprise();
   if (isOff(identifier, Clock::kPressures, explained)) {
-    warnings.push_back(
-        {"pressure stamps",
-         "cylinder_pressures: their stamps are about " + laterOrEarlier(identifier.delay(Clock::kPressures)) +
-             " than the crank's, or those of hull_imu the other way; the boom's loads allow for that, up "
-             "to 2 ms",
-         true});
+    warnings.push_back({"pressure stamps",
+                        "cylinder_pressures: their stamps are about " +
+                            laterOrEarlier(identifier.delay(Clock::kPressures)) + " than the crank's" +
+                            (identifier.knowsLag() ? ", or those of hull_imu the other way" : "") +
+                            "; the boom's loads allow for that, up to 2 ms",
+                        true});
   } else if (surprise > MeasuredTorques::kSurprised) {
     warnings.push_back({"pressure fit",
                         format("cylinder_pressures: they do not fit the boom's motion, errors are %.2g times the "
