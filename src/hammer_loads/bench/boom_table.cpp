@@ -16,20 +16,44 @@ constexpr unsigned kPoses = 8;
 constexpr double kAway = 0.06;                         // [rad]
 constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  // [s]
 
+using Change = void (*)(simulation::MachineSettings&);
 struct BoomKind {
   const char* name;
   double oil;          // over the boom file's
   double press_force;  // on rock [N]; 0: the hull hangs
   double drive;        // of the operator [rad/s]
-  bool typical;        // crank sensor and blows as makeTypical()
+  Change change;       // of a machine with clean sensors and a boom without flaws; null: none
 };
-constexpr BoomKind kBoomKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0, false},
-                                   {"bulk modulus 30 % lower", 0.7, 0.0, 0.0, false},
-                                   {"bulk modulus 40 % higher", 1.4, 0.0, 0.0, false},
-                                   {"bulk modulus 40 % higher, crank typical", 1.4, 0.0, 0.0, true},
-                                   {"boom driven with 0.15 rad/s", 1.0, 0.0, 0.15, false},
-                                   {"hull pressed on rock with 4 kN", 1.0, 4000.0, 0.0, false},
-                                   {"pressed on rock, crank typical", 1.0, 4000.0, 0.0, true}};
+
+void rub(simulation::MachineSettings& m) { m.on_boom.seals.friction = 0.01; }
+
+void wear(simulation::MachineSettings& m) {
+  rub(m);
+  m.on_boom.bending_frequency = 30.0;
+  m.on_boom.air = 0.008;
+  m.on_boom.pin_play = 1.2e-4;
+  m.on_boom.leak = 1e-13;
+}
+
+void waitForBus(simulation::MachineSettings& m) {
+  m.on_boom.pressures.hose_lag = 5e-3, m.on_boom.pressures.rate = 100.0, m.on_boom.pressures.count = 39e3;
+  m.on_boom.bus_delay = 1e-3;
+  m.joint_rate = 100.0, m.joint_count = kTwoPi / 4096.0;
+}
+
+constexpr BoomKind kBoomKinds[] = {{"oil as in the file", 1.0, 0.0, 0.0, nullptr},
+                                   {"bulk modulus 30 % lower", 0.7, 0.0, 0.0, nullptr},
+                                   {"bulk modulus 40 % higher", 1.4, 0.0, 0.0, nullptr},
+                                   {"bulk modulus 40 % higher, crank typical", 1.4, 0.0, 0.0, makeTypical},
+                                   {"boom driven with 0.15 rad/s", 1.0, 0.0, 0.15, nullptr},
+                                   {"hull pressed on rock with 4 kN", 1.0, 4000.0, 0.0, nullptr},
+                                   {"pressed on rock, crank typical", 1.0, 4000.0, 0.0, makeTypical},
+                                   {"seals that rub", 1.0, 0.0, 0.0, rub},
+                                   {"seals that rub, pressed on rock", 1.0, 4000.0, 0.0, rub},
+                                   {"worn boom", 1.0, 0.0, 0.0, wear},
+                                   {"worn boom, pressed on rock", 1.0, 4000.0, 0.0, wear},
+                                   {"sensors over a bus", 1.0, 0.0, 0.0, waitForBus},
+                                   {"sensors over a bus, pressed on rock", 1.0, 4000.0, 0.0, waitForBus}};
 
 struct Way {
   const char* name;
@@ -47,7 +71,7 @@ simulation::MachineSettings machineOf(const BoomKind& kind, unsigned pose, const
   simulation::MachineSettings m = machineOnBoom(kJudgedTo);
   m.seed = 40 + pose;
   m.on_boom.oil_stiffness = kind.oil;
-  if (kind.typical) makeTypical(m);
+  if (kind.change != nullptr) kind.change(m);
   if (kind.press_force > 0.0) m.on_boom.rock = {3e7, 3.0, kind.press_force};
   std::mt19937 random(pose);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
