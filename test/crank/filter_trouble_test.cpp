@@ -48,6 +48,28 @@ class FilterTrouble : public testing::Test {
   double angle_{};
 };
 
+/// By two stamps of a hull's unit that were one nanosecond apart; the speeds' noise that it left made every later
+/// sample a beginning.
+TEST_F(FilterTrouble, AShockOfTheHullDoesNotMakeEverySampleABeginning) {
+  for (const int before : {2, 5, 20}) {
+    CrankFilter f = filterOf(kTwoPi / 4096.0);
+    angle_ = 1.0;
+    f.start({angle_, 0.0});
+    const auto rest = [&](int samples) {
+      int beginnings = 0;
+      for (int i = 0; i < samples; ++i) beginnings += f.update(1e-3, {angle_, 0.05 * (i % 2)}) == Tracking::kRestarted;
+      return beginnings;
+    };
+    rest(before);
+    f.setHullMotion({{}, 0.0, 6e6});
+    rest(2);
+    f.setHullMotion({});
+    rest(10);
+    EXPECT_EQ(rest(100), 0) << before;
+    EXPECT_LT(std::abs(f.state().speed), 1.0) << before;
+  }
+}
+
 TEST_F(FilterTrouble, AFilterThatBeginsAnewFiveTimesIsLostForAWhile) {
   constexpr double kStep = 2e-5;
   CrankFilter f = turning(kStep);

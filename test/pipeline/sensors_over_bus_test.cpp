@@ -56,5 +56,24 @@ TEST(SensorsOverBus, ReadingsThatCameTogetherTurnNoHull) {
   EXPECT_GT(e.covered(), 0.9);
 }
 
+/// Nor do the first ones of a unit: one of these machines had its crank thrown away by 1e7 rad/s2, and as its speed was
+/// in doubt from then on, it began anew with each sample.
+TEST(SensorsOverBus, NorDoTheFirstThatCame) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    simulation::MachineSettings machine = test::machineOnBoom(1.0, 100.0);
+    machine.duration = 0.05;
+    machine.seed = seed;
+    machine.on_boom.bus_delay = 1.9e-3;
+    const simulation::Session session = simulation::recordSession(machine);
+    test::Player player(test::settingsWith("boom: compliant\nhull_motion: imu\n"), true, session);
+    double greatest = 0.0;
+    player.playTo(machine.duration, [&](double, const SampleResult& result) {
+      greatest = std::max(greatest, std::abs(result.crank.acceleration));
+    });
+    EXPECT_GT(greatest, 0.0) << seed;
+    EXPECT_LT(greatest, 1e4) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace hammer_loads

@@ -245,6 +245,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (has_speed_ && !(deviation < kDoubtfulAngle)) {
     if (!now_.isSound(mostSpeed())) now_ = last;
+    if (!(std::sqrt(speed_variance_) * dt < kDoubtfulAngle)) sample.speed.reset();  // the next would begin anew too
     return begin(sample);
   }
   witness_.reset();

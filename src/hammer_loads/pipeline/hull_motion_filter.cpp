@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/pipeline/together.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -138,6 +139,7 @@ void HullMotionFilter::beginAnew() noexcept {
 
 void HullMotionFilter::take(const Reading& next) noexcept {
   const double step = seconds(next.stamp - last_.stamp);
+  if (readings_ > 0 && step > 0.0 && cameTogether(last_.stamp, next.stamp)) return;
   if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();
   const WrenchPath::Instant now = path_.at(next.stamp);
   if (readings_ > 0) {
