@@ -13,8 +13,8 @@ using simulation::MachineSettings;
 MachineSettings rubbingMachine(unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-  const double boom = between(-0.8, -0.1), arm = between(0.7, 1.7), lean = between(-0.3, 0.3);
-  MachineSettings m = test::machineOnBoom(between(0.75, 1.3), 50.0, {boom, arm, lean - boom - arm});
+  const test::Pose pose = test::drawnPose(between);
+  MachineSettings m = test::machineOnBoom(between(0.75, 1.3), 50.0, pose);
   m.seed = 900 + seed;
   m.on_boom.seals.friction = between(0.005, 0.02);
   if (seed % 2 == 0) m.on_boom.rock = {between(1e7, 6e7), 3.0, between(3e3, 6e3)};

@@ -18,6 +18,13 @@ constexpr double kJudgedFrom = 6.0, kJudgedTo = 10.0;  ///< [s]: the machine wor
 using Pose = std::array<double, 3>;
 constexpr Pose kUsualPose{-0.45, 1.00, -0.50};
 
+/// Within the reach of all three cylinders, the hull near upright. between: a number from one to another.
+template <typename Between>
+Pose drawnPose(const Between& between) {
+  const double boom = between(-0.8, -0.1), arm = between(0.7, 1.7), lean = between(-0.3, 0.3);
+  return {boom, arm, lean - boom - arm};
+}
+
 inline simulation::MachineSettings machineOnBoom(double oil, double joint_rate, const Pose& pose = kUsualPose) {
   simulation::MachineSettings m = accuracy::machineOnBoom(kJudgedTo);
   m.seed = 41;

@@ -14,8 +14,8 @@ constexpr char kByBoth[] = "hull_motion: imu\nboom_stiffness: identified\n";
 simulation::MachineSettings drawnOnRock(unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-  const double boom = between(-0.8, -0.1), arm = between(0.7, 1.7), lean = between(-0.3, 0.3);
-  simulation::MachineSettings m = test::machineOnBoom(between(0.75, 1.3), 50.0, {boom, arm, lean - boom - arm});
+  const test::Pose pose = test::drawnPose(between);
+  simulation::MachineSettings m = test::machineOnBoom(between(0.75, 1.3), 50.0, pose);
   m.seed = 300 + seed;
   m.on_boom.rock = {between(1e7, 6e7), 3.0, between(3e3, 6e3)};
   return m;

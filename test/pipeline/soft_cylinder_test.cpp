@@ -12,12 +12,12 @@ using accuracy::SensorsOnBoom;
 
 constexpr char kImu[] = "boom: compliant\nhull_motion: imu\nboom_stiffness: identified\n";
 
-/// A pose within the reach of all three cylinders, and how the oil of each differs from the file's.
+/// A pose, and how the oil of each differs from the file's.
 simulation::MachineSettings drawnMachine(unsigned seed, std::array<double, 3> oil) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-  const double boom = between(-0.8, -0.1), arm = between(0.7, 1.7), lean = between(-0.3, 0.3);
-  simulation::MachineSettings m = test::machineOnBoom(between(0.8, 1.25), 50.0, {boom, arm, lean - boom - arm});
+  const test::Pose pose = test::drawnPose(between);
+  simulation::MachineSettings m = test::machineOnBoom(between(0.8, 1.25), 50.0, pose);
   m.seed = 700 + seed;
   m.on_boom.cylinder_oil = oil;
   return m;

@@ -223,6 +223,10 @@ class ModeIdentifier {
   void correct(const VibrationReading& reading, const State& row, double difference, const Kept& kept) noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
   void takeBack(const Kept& kept, double moved, double S, const State& gain_S) noexcept;
+  /// Of all states, where one of them is so much more than it was taken for.
+  State movedWith(int state, double by) const noexcept {
+    return by / covariance_(state, state) * covariance_.col(state);
+  }
   void takeAsLate(Clock clock) noexcept;
   void takeAsBearing(double step) noexcept;
   void transform(const JointMatrix& T) noexcept;

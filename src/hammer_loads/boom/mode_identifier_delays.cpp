@@ -76,7 +76,7 @@ void ModeIdentifier::takeAsLate(Clock clock) noexcept {
   std::optional<double>& least = least_delay_[static_cast<std::size_t>(d - kDelays)];
   if (!bears_ && variance < square(kDelayKnown)) least = std::min(0.0, state_[d] - 2.0 * delayDeviation(clock));
   const double bound = least.value_or(0.0);
-  if (bears_ && state_[d] < bound) state_ += (bound - state_[d]) / variance * covariance_.col(d).eval();
+  if (bears_ && state_[d] < bound) state_ += movedWith(d, bound - state_[d]);
 }
 
 double ModeIdentifier::delay(Clock clock) const noexcept {

@@ -1,7 +1,6 @@
 // Readings: what a sensor shows of the modes, and what that says of their oil.
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "hammer_loads/boom/mode_identifier.h"
 #include "hammer_loads/estimation/gates.h"
@@ -132,7 +131,8 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
 void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
   if (!moving_known_ || count == 0) return;
   const Clock clock = readings->clock;
-  const double since_imu = std::exchange(imu_age_, clock == Clock::kImu ? 0.0 : imu_age_);
+  const double since_imu = imu_age_;
+  if (clock == Clock::kImu) imu_age_ = 0.0;
   if (clock != Clock::kCrank) followDelay(clock);
   for (std::size_t r = 0; r < count; ++r)  // all of them first: a new one makes the block of what is in use larger
     if (counts(readings[r])) useChannel(readings[r]);
@@ -154,10 +154,10 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
 /// is of offsets and of where the boom stands; of pressures later than clocks are, it is what a hose has left of the
 /// swing.
 void ModeIdentifier::takeAsBearing(double step) noexcept {
+  if (!follows_contact_ || delayByCrank(Clock::kPressures) > kDelayDeviation) return;
   const double pulls = -contactDeviation() - state_[kContact];
-  if (!follows_contact_ || !(pulls > 0.0) || delayByCrank(Clock::kPressures) > kDelayDeviation) return;
-  const double part = std::min(1.0, step / kForceTime);
-  State moved = part * pulls / covariance_(kContact, kContact) * covariance_.col(kContact);
+  if (!(pulls > 0.0)) return;
+  State moved = movedWith(kContact, std::min(1.0, step / kForceTime) * pulls);
   moved.segment<2>(kDelays).setZero();
   for (int k = 0; k < count_; ++k) moved[at(k, kOil)] = moved[at(k, kDamping)] = 0.0;
   state_ += moved;
