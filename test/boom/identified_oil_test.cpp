@@ -105,13 +105,13 @@ TEST_F(IdentifiedOil, ADelayThatIsFoundIsKnownByAPart) {
     run(found, 1e-3, Clock::kImu);
     ModeIdentifier on_rock = found;
     on_rock.bear(true);
-    const double part = 0.1 * std::abs(found.delay(Clock::kImu)), free = found.delayDeviation(Clock::kImu);
+    const double part = 0.05 * std::abs(found.delay(Clock::kImu)), free = found.delayDeviation(Clock::kImu);
     if (own == 0.0 && free > 0.0 && on_rock.delayDeviation(Clock::kImu) == free)
       own = std::sqrt(square(free) - square(part));
   }
   EXPECT_NEAR(found.delay(Clock::kImu), 3e-3, 3e-4);
   expectAround(own, 2e-4);
-  expectAround(found.delayDeviation(Clock::kImu), 0.1 * 3e-3);
+  expectAround(found.delayDeviation(Clock::kImu), 0.05 * 3e-3);
   wait(found, 0.2);
   expectAround(found.delayDeviation(Clock::kImu), 0.3 * 3e-3);
 }

@@ -105,6 +105,9 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   for (int i = begin(); i < end(); ++i) apply(covariance_.data() + i, kMaxStates);
   force_.head(count_) = (T * force_.head(count_)).eval();
   force_rate_.head(count_) = (T * force_rate_.head(count_)).eval();
+  if (!behind_hose_) return;
+  for (ModeVector* each : {&behind_hose_->torque, &behind_hose_->rate})
+    each->head(count_) = (T * each->head(count_)).eval();
 }
 
 void ModeIdentifier::forget(int state, double deviation) noexcept {
@@ -124,6 +127,7 @@ void ModeIdentifier::leaveContact() noexcept {
 void ModeIdentifier::forgetMotion(const JointVector& swing) noexcept {
   moving_known_ = count_ > 0;
   history_.clear();
+  behind_hose_.reset();
   force_.setZero(), force_rate_.setZero();
   forget(kContact, kUnknownContact);
   for (int k = 0; k < kMaxJoints; ++k) {
@@ -182,6 +186,7 @@ void ModeIdentifier::advanceModes(double step, const TorqueStep& modal) noexcept
     state_[at(k, kX)] = next.x, state_[at(k, kV)] = next.v;
     history_.set(k, before, next, modal.from[k], modal.to[k]);
   }
+  followHose(step, now, then);
   advanceCovariance(step, steps, now, then);
 }
 

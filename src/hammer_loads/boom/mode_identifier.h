@@ -181,9 +181,14 @@ class ModeIdentifier {
   struct Lag {
     double held{}, left{1.0};
   };
-  Lag lagOf(Clock clock, int mode) const noexcept;
-  double accelerationNow(int mode) const noexcept;
   using States = std::array<ModeState, kMaxJoints>;
+  Lag lagOf(Clock clock, int mode) const noexcept;
+  double torqueOf(int mode, const ModeState& of) const noexcept;
+  double behindHose(int mode, double ahead) const noexcept;
+  double torqueRead(const Lag& lag, int mode, double ahead) const noexcept;
+  void followHose(double step, const States& now, const States& next) noexcept;
+  void correctHose(const State& by) noexcept;
+  double accelerationNow(int mode) const noexcept;
   States statesNow() const noexcept;
   LogOil oilTorques(const States& of) const noexcept;
   ModeVector forceOfSeals(const States& of) const noexcept;
@@ -261,7 +266,12 @@ class ModeIdentifier {
   CrankLead expected_lead_;
   double crank_lead_{};
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
-  bool moving_known_{};        ///< displacement and velocity belong to modes_
+  /// Modal torque of the oil as it is behind the hoses of the pressures' sensors, and how that changed of late [1/s].
+  struct BehindHose {
+    ModeVector torque = ModeVector::Zero(), rate = torque;
+  };
+  std::optional<BehindHose> behind_hose_;  ///< where it is followed
+  bool moving_known_{};                    ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
   std::array<Seals, kMaxJoints> seals_;

@@ -15,7 +15,7 @@ constexpr double kOilWithDelay = 0.1;  // deviation of log stiffness, beside wha
 // Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kDelayBegins, kOilWithDelay
 constexpr double kImuSpeaks = 0.1;  // [s]
 // Guard: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kImuSpeaks
-constexpr double kWrongPart = 0.1;         // of a delay that is found
+constexpr double kWrongPart = 0.05;        // of a delay that is found
 constexpr double kWrongByPressures = 0.3;  // by them alone
 constexpr double kWrongOnRock = 0.6;       // where it has not been seen on a free hull: another's may be early
 // Guard: IdentifiedOil.ADelayThatIsFoundOnRockMayBeAnothers of kWrongOnRock
@@ -103,6 +103,44 @@ ModeIdentifier::Lag ModeIdentifier::lagOf(Clock clock, int mode) const noexcept 
   if (covariance_(delayAt(clock), delayAt(clock)) > square(kDelayKnown)) return {late, 1.0};  // a hose is bent by it
   const double omega = modeAt(mode).omega, turned = omega * late;
   return {std::atan(turned) / omega, 1.0 / std::sqrt(1.0 + square(turned))};
+}
+
+/// A lag of first order, by a line over the step; a shorter one is seen well enough as that of each mode.
+void ModeIdentifier::followHose(double step, const States& now, const States& next) noexcept {
+  const double late = delayByCrank(Clock::kPressures);
+  if (!(late > step && lagOf(Clock::kPressures, 0).left < 1.0)) return behind_hose_.reset();
+  if (!behind_hose_) {
+    BehindHose begins;
+    for (int k = 0; k < count_; ++k) begins.torque[k] = torqueRead(lagOf(Clock::kPressures, k), k, 0.0);
+    behind_hose_ = begins;
+  }
+  const double kept = std::exp(-step / late);
+  for (int k = 0; k < count_; ++k) {
+    const auto mode = static_cast<std::size_t>(k);
+    const double from = torqueOf(k, now[mode]), to = torqueOf(k, next[mode]), behind = late * (to - from) / step;
+    double& torque = behind_hose_->torque[k];
+    const double before = torque;
+    torque = to - behind + kept * (torque - from + behind);
+    behind_hose_->rate[k] = (torque - before) / step;
+  }
+}
+
+/// What readings have shown of the motion was so for as long as the hose takes.
+void ModeIdentifier::correctHose(const State& by) noexcept {
+  if (!behind_hose_) return;
+  for (int k = 0; k < count_; ++k) {
+    const Lag lag = lagOf(Clock::kPressures, k);
+    const double omega = modeAt(k).omega, turned = omega * lag.held, x = by[at(k, kX)], v = by[at(k, kV)];
+    const double cosine = std::cos(turned), sine = std::sin(turned);
+    behind_hose_->torque[k] += lag.left * torqueOf(k, {cosine * x - sine / omega * v, cosine * v + omega * sine * x});
+  }
+}
+
+double ModeIdentifier::behindHose(int mode, double ahead) const noexcept {
+  const double torque = behind_hose_->torque[mode];
+  if (ahead < 0.0) return torque + ahead * behind_hose_->rate[mode];
+  const double reached = 1.0 - std::exp(-ahead / delayByCrank(Clock::kPressures));
+  return torque + reached * (torqueOf(mode, stateOf(mode)) - torque);
 }
 
 double ModeIdentifier::delayDeviation(Clock clock) const noexcept {

@@ -58,12 +58,20 @@ ModeHistory::Moment ModeIdentifier::momentAt(int mode, double ahead) const noexc
   return {{now.x + ahead * now.v, now.v + ahead * accelerationNow(mode)}, force_[mode] + ahead * rate, rate};
 }
 
-double ModeIdentifier::oilTorqueRead(int mode, double ahead) const noexcept {
-  const Lag lag = lagOf(Clock::kPressures, mode);
+double ModeIdentifier::torqueOf(int mode, const ModeState& of) const noexcept {
   const Mode m = modeAt(mode);
+  return m.omega * (m.omega * of.x + 2.0 * m.zeta * of.v);
+}
+
+double ModeIdentifier::oilTorqueRead(int mode, double ahead) const noexcept {
+  return torqueRead(lagOf(Clock::kPressures, mode), mode, ahead);
+}
+
+/// By pressures whose stamp is this time after the present.
+double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead) const noexcept {
+  if (behind_hose_ && lag.left < 1.0) return behindHose(mode, ahead);
   const ModeHistory::Moment then = momentAt(mode, ahead - lag.held);
-  const double force = then.force + rockOn(mode) * state_[kContact];
-  const double torque = m.omega * m.omega * then.state.x + 2.0 * m.zeta * m.omega * then.state.v;
+  const double force = then.force + rockOn(mode) * state_[kContact], torque = torqueOf(mode, then.state);
   return force + lag.left * (torque - force);
 }
 
@@ -74,6 +82,7 @@ struct ModeIdentifier::Seen {
   std::array<double, kMaxJoints> by_oil;
   double acceleration, stiff, damped, rock;
   double cosine, sine;           ///< of what was then: how displacement and velocity of now show in it
+  double read{};                 ///< of the oil's torque
   double left{1.0}, fades_by{};  ///< of a swing behind a hose, and the part of that which a second more of it takes
 };
 
@@ -109,12 +118,14 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
     }
     const Seen& seen = modes[static_cast<std::size_t>(k)];
     const ModeState& then = seen.then.state;
-    const double lost = by_oil * (1.0 - seen.left);  // of what swings about the forces; they themselves are not lost
+    const double whole = by_oil,
+                 lost = by_oil * (1.0 - seen.left);  // of what swings about the forces; they themselves are not lost
     by_oil *= seen.left;
     const double held = by_oil - by_a, damped = seen.damped * then.v, stiff = seen.stiff * then.x;
     const double of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
     const double torque = stiff + damped, force = torque + seen.acceleration;
-    predicted += by_x * then.x + by_v * then.v + by_a * seen.acceleration + by_oil * torque + lost * force;
+    predicted += by_x * then.x + by_v * then.v + by_a * seen.acceleration;
+    if (reading.of_oil) predicted += whole * seen.read;
     late += square(seen.left) * (of_x * then.v + of_v * seen.acceleration) + by_a * seen.then.force_rate +
             seen.fades_by * by_oil * (torque - force);
     row[kContact] += (by_a + lost) * seen.rock;
@@ -136,12 +147,14 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
   if (clock != Clock::kCrank) followDelay(clock);
   for (std::size_t r = 0; r < count; ++r)  // all of them first: a new one makes the block of what is in use larger
     if (counts(readings[r])) useChannel(readings[r]);
+  const State known = state_;
   // An oil torque is a product of stiffness and displacement: three of them about one state cost a tenth of accuracy.
   const std::size_t together = clock == Clock::kPressures ? 1 : kTogether;
   for (std::size_t first = 0; first < count; first += together) {
     if (first > 0 && learns_) useOil();  // what the one before has shown
     take(readings + first, std::min(together, count - first));
   }
+  correctHose(state_ - known);
   if (clock != Clock::kCrank) takeAsLate(clock);
   if (clock == Clock::kImu) takeAsBearing(since_imu);
   if (learns_ && !explains_) forgetOil();
@@ -187,6 +200,7 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
     const Lag lag = lagOf(readings->clock, k);
     seen[mode] = see(k, readings->ahead - lag.held);
     seen[mode].left = lag.left;
+    if (readings->of_oil) seen[mode].read = torqueRead(lag, k, readings->ahead);
     if (lag.left < 1.0) seen[mode].fades_by = delayByCrank(readings->clock) * seen[mode].stiff * square(lag.left);
     then[mode] = seen[mode].then.state;
   }
