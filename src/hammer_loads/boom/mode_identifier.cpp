@@ -103,11 +103,9 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   apply(state_.data(), 1);
   for (int i = begin(); i < end(); ++i) apply(column(i), 1);
   for (int i = begin(); i < end(); ++i) apply(covariance_.data() + i, kMaxStates);
-  force_.head(count_) = (T * force_.head(count_)).eval();
-  force_rate_.head(count_) = (T * force_rate_.head(count_)).eval();
-  if (!behind_hose_) return;
-  for (ModeVector* each : {&behind_hose_->torque, &behind_hose_->rate})
-    each->head(count_) = (T * each->head(count_)).eval();
+  const auto turn = [&](ModeVector& modal) { modal.head(count_) = (T * modal.head(count_)).eval(); };
+  turn(force_), turn(force_rate_);
+  if (behind_hose_) turn(behind_hose_->torque), turn(behind_hose_->rate);
 }
 
 void ModeIdentifier::forget(int state, double deviation) noexcept {

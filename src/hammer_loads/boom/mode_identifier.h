@@ -185,7 +185,7 @@ class ModeIdentifier {
   Lag lagOf(Clock clock, int mode) const noexcept;
   double torqueOf(int mode, const ModeState& of) const noexcept;
   double behindHose(int mode, double ahead) const noexcept;
-  double torqueRead(const Lag& lag, int mode, double ahead) const noexcept;
+  double torqueRead(const Lag& lag, int mode, double ahead, const ModeHistory::Moment& then) const noexcept;
   void followHose(double step, const States& now, const States& next) noexcept;
   void correctHose(const State& by) noexcept;
   double accelerationNow(int mode) const noexcept;
@@ -266,7 +266,7 @@ class ModeIdentifier {
   CrankLead expected_lead_;
   double crank_lead_{};
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
-  /// Modal torque of the oil as it is behind the hoses of the pressures' sensors, and how that changed of late [1/s].
+  /// Of the oil, modal, as it is behind the hoses of the pressures' sensors; and by the second, over the last step.
   struct BehindHose {
     ModeVector torque = ModeVector::Zero(), rate = torque;
   };

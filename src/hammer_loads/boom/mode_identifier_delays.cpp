@@ -111,7 +111,7 @@ void ModeIdentifier::followHose(double step, const States& now, const States& ne
   if (!(late > step && lagOf(Clock::kPressures, 0).left < 1.0)) return behind_hose_.reset();
   if (!behind_hose_) {
     BehindHose begins;
-    for (int k = 0; k < count_; ++k) begins.torque[k] = torqueRead(lagOf(Clock::kPressures, k), k, 0.0);
+    for (int k = 0; k < count_; ++k) begins.torque[k] = oilTorqueRead(k, 0.0);
     behind_hose_ = begins;
   }
   const double kept = std::exp(-step / late);
@@ -125,14 +125,13 @@ void ModeIdentifier::followHose(double step, const States& now, const States& ne
   }
 }
 
-/// What readings have shown of the motion was so for as long as the hose takes.
+/// What readings have shown of the motion was so, as a free swing, for as long as the hose takes.
 void ModeIdentifier::correctHose(const State& by) noexcept {
   if (!behind_hose_) return;
+  const double late = delayByCrank(Clock::kPressures);
   for (int k = 0; k < count_; ++k) {
-    const Lag lag = lagOf(Clock::kPressures, k);
-    const double omega = modeAt(k).omega, turned = omega * lag.held, x = by[at(k, kX)], v = by[at(k, kV)];
-    const double cosine = std::cos(turned), sine = std::sin(turned);
-    behind_hose_->torque[k] += lag.left * torqueOf(k, {cosine * x - sine / omega * v, cosine * v + omega * sine * x});
+    const double omega = modeAt(k).omega, x = by[at(k, kX)], v = by[at(k, kV)];
+    behind_hose_->torque[k] += torqueOf(k, {x - late * v, v + square(omega) * late * x}) / (1.0 + square(omega * late));
   }
 }
 

@@ -64,13 +64,14 @@ double ModeIdentifier::torqueOf(int mode, const ModeState& of) const noexcept {
 }
 
 double ModeIdentifier::oilTorqueRead(int mode, double ahead) const noexcept {
-  return torqueRead(lagOf(Clock::kPressures, mode), mode, ahead);
+  const Lag lag = lagOf(Clock::kPressures, mode);
+  return torqueRead(lag, mode, ahead, momentAt(mode, ahead - lag.held));
 }
 
-/// By pressures whose stamp is this time after the present.
-double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead) const noexcept {
+/// By pressures whose stamp is this time after the present. then: what the mode did when its swing was what they show.
+double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead,
+                                  const ModeHistory::Moment& then) const noexcept {
   if (behind_hose_ && lag.left < 1.0) return behindHose(mode, ahead);
-  const ModeHistory::Moment then = momentAt(mode, ahead - lag.held);
   const double force = then.force + rockOn(mode) * state_[kContact], torque = torqueOf(mode, then.state);
   return force + lag.left * (torque - force);
 }
@@ -124,8 +125,7 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
     const double held = by_oil - by_a, damped = seen.damped * then.v, stiff = seen.stiff * then.x;
     const double of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
     const double torque = stiff + damped, force = torque + seen.acceleration;
-    predicted += by_x * then.x + by_v * then.v + by_a * seen.acceleration;
-    if (reading.of_oil) predicted += whole * seen.read;
+    predicted += by_x * then.x + by_v * then.v + by_a * seen.acceleration + whole * seen.read;
     late += square(seen.left) * (of_x * then.v + of_v * seen.acceleration) + by_a * seen.then.force_rate +
             seen.fades_by * by_oil * (torque - force);
     row[kContact] += (by_a + lost) * seen.rock;
@@ -200,7 +200,7 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
     const Lag lag = lagOf(readings->clock, k);
     seen[mode] = see(k, readings->ahead - lag.held);
     seen[mode].left = lag.left;
-    if (readings->of_oil) seen[mode].read = torqueRead(lag, k, readings->ahead);
+    if (readings->of_oil) seen[mode].read = torqueRead(lag, k, readings->ahead, seen[mode].then);
     if (lag.left < 1.0) seen[mode].fades_by = delayByCrank(readings->clock) * seen[mode].stiff * square(lag.left);
     then[mode] = seen[mode].then.state;
   }
