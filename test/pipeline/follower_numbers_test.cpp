@@ -26,10 +26,10 @@ void expectRoughly(double value, double said) {
 
 TEST(FollowerNumbers, PressuresThatWereLateAreTriedAgainAfterAMinute) {
   PressureTrust trust;
-  for (int i = 0; i < 200; ++i) trust.followDelay(0.02, kFollowStep);
+  for (int i = 0; i < 200; ++i) trust.followDelay(0.02, 100.0, kFollowStep);
   EXPECT_TRUE(trust.isLate());
   double time = 0.0;
-  for (; trust.isLate() && time < 200.0; time += 0.1) trust.followDelay(0.0, 0.1);
+  for (; trust.isLate() && time < 200.0; time += 0.1) trust.followDelay(0.0, 0.0, 0.1);
   expectRoughly(time, 60.0);
 }
 
@@ -199,8 +199,9 @@ class StillHull {
   KnownHullMotion after(int samples, double load, double noise) {
     for (int i = 0; i < samples; ++i) {
       stamp_ += 1000000;
-      filter.add(stamp_, {{noise * normal_(random_), 0.0, 9.8 + noise * normal_(random_)},
-                          {0.0, noise / 30.0 * normal_(random_), 0.0}});
+      filter.add({stamp_,
+                  {{noise * normal_(random_), 0.0, 9.8 + noise * normal_(random_)},
+                   {0.0, noise / 30.0 * normal_(random_), 0.0}}});
       const double to = load * std::cos(0.7 * ++count_);
       WrenchHistory step;
       step.count = 1;

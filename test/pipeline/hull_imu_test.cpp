@@ -31,7 +31,7 @@ void expectRefused(const ImuReading& bad, StampNs stamp, ImuRefusal why) {
   EXPECT_FALSE(imu.update(kMs, kUpright));
   ASSERT_TRUE(imu.at(kMs));
   EXPECT_EQ(imu.update(stamp, bad), why);
-  EXPECT_EQ(imu.last(), kMs);
+  EXPECT_EQ(imu.newest().stamp, kMs);
   EXPECT_EQ(imu.at(kMs)->gravity.z, -9.80665);
   EXPECT_FALSE(imu.update(3 * kMs, kUpright));
   EXPECT_TRUE(imu.at(3 * kMs));

@@ -92,7 +92,7 @@ TEST_F(ObservedBoom, OneRateIsBelievedAsFarAsItsOffsetIsKnown) {
     variance += square(about_y.dot(jointsOf(modes, modal)));
   }
   ImuReading reading{-boom_.gravityAtTip(), {0.0, 0.01, 0.0}};
-  observer_.imu(boom_, held_, reading);
+  observer_.imu(boom_, held_, 0, 1e-3, {0, reading});
   const double gain = about_y.dot(found().velocity()) / 0.01,
                said = variance / (variance + square(0.02) + square(0.005));
   EXPECT_GT(1.0 - gain, 0.8 * (1.0 - said));
@@ -115,7 +115,7 @@ TEST_F(ObservedBoom, OneAccelerationIsBelievedAsFarAsOffsetAndLinksAreKnown) {
   const Eigen::Matrix2d before = by_mode * found().accelerationCovariance() * by_mode.transpose();
   const double variance = square(0.3) + square(0.3) + square(1.0);
   const Eigen::Vector2d read(0.0, 1.0);
-  observer_.imu(boom_, held_, {Eigen::Vector3d(0.0, 0.0, 1.0) - g_T, here});
+  observer_.imu(boom_, held_, 0, 1e-3, {0, {Eigen::Vector3d(0.0, 0.0, 1.0) - g_T, here}});
   const Eigen::Vector2d left = read - by_mode * foundAccelerations(),
                         said = variance * (before + variance * Eigen::Matrix2d::Identity()).inverse() * read;
   EXPECT_NEAR(left[1] / said[1], 1.0, 0.07);

@@ -28,6 +28,15 @@ struct TwoOf {
   }
 };
 
+/// Some of the states.
+struct StateList {
+  std::array<int, kMostStates> states;  ///< the first of them
+  int count{};
+  void add(int state) noexcept { states[static_cast<std::size_t>(count++)] = state; }
+  const int* begin() const noexcept { return states.data(); }
+  const int* end() const noexcept { return states.data() + count; }
+};
+
 /// P <- F P F^T, where F makes the states `first` and the one after it. P stays symmetric to the last bit.
 void replaceTwo(CovarianceBlock P, int first, const TwoOf& of) noexcept;
 

@@ -12,6 +12,13 @@ void ModeHistory::begin(double step) noexcept {
   steps_[newest_].duration = step;
 }
 
+bool ModeHistory::reaches(double ago) const noexcept {
+  if (count_ == 0) return true;
+  double left = ago - steps_[newest_].duration;
+  for (std::size_t newer = 0; newer < count_ && left > 0.0; ++newer) left -= stepWith(newer).duration;
+  return !(left > 0.0);
+}
+
 bool ModeHistory::find(double ago, Place& place) const noexcept {
   double since = -ago;
   for (std::size_t newer = 0; newer < count_; ++newer) {
@@ -46,6 +53,19 @@ ModeHistory::Moment ModeHistory::at(const Place& place, int mode, double omega, 
     t += its.duration;
   }
   return then;
+}
+
+Driven ModeHistory::drivenAt(double ago) const noexcept {
+  Driven driven;
+  double since = -ago;
+  for (std::size_t newer = 0; newer < count_; ++newer) {
+    const Step& step = stepWith(newer);
+    driven.jump -= step.jump;
+    since += step.duration;
+    driven.force = step.force_from + std::max(0.0, since / step.duration) * (step.force_to - step.force_from);
+    if (since >= 0.0) break;
+  }
+  return driven;
 }
 
 }  // namespace hammer_loads

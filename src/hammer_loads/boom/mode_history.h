@@ -12,6 +12,12 @@ namespace hammer_loads {
 /// One entry a mode; zero for unused modes.
 using ModeVector = Eigen::Matrix<double, kMaxJoints, 1>;
 
+/// Forces of the hammer at an instant, modal, and what blows from the present to there make of the velocities: less
+/// than nothing where they have been [m sqrt(kg)/s].
+struct Driven {
+  ModeVector force = ModeVector::Zero(), jump = force;
+};
+
 /// The last steps of all modes, each from its begin to its end: between two of them blows and readings change what is
 /// known. No allocation.
 class ModeHistory {
@@ -28,6 +34,12 @@ class ModeHistory {
   }
   /// A blow at the end of the last step [m sqrt(kg)/s].
   void strike(int mode, double jump) noexcept { steps_[newest_].jump[mode] += jump; }
+
+  /// This long before the present [s] >= 0; of what is too long ago the oldest.
+  Driven drivenAt(double ago) const noexcept;
+
+  /// Whether it, or its line over one more step, goes back for so long [s].
+  bool reaches(double ago) const noexcept;
 
   struct Place {
     std::size_t newer{};  ///< this many steps are newer than its own

@@ -14,9 +14,8 @@ constexpr double kCommonDeviation = 0.3;  // of log stiffness, of all cylinders 
 constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that warms up, a pose that changes
 constexpr double kDampingWalk = 0.01;  // of log damping in a second
 // Guard: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk
-constexpr double kForcePart = 0.05;   // deviation of the modal force over its root mean square
 constexpr double kForceMemory = 2.0;  // of the mean square [s]
-// Guard: IdentifierNumbers.OfAForceThatLasts of kForcePart, kForceMemory
+// Guard: IdentifierNumbers.OfAForceThatLasts of kForceMemory
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
 // Guard: IdentifierNumbers.OfAMotionThatIsNotKnown of kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]
@@ -105,7 +104,11 @@ void ModeIdentifier::transform(const JointMatrix& T) noexcept {
   for (int i = begin(); i < end(); ++i) apply(covariance_.data() + i, kMaxStates);
   const auto turn = [&](ModeVector& modal) { modal.head(count_) = (T * modal.head(count_)).eval(); };
   turn(force_), turn(force_rate_);
+  if (struck_) turn(*struck_);
   if (behind_hose_) turn(behind_hose_->torque), turn(behind_hose_->rate);
+  held_.forEach([&](HeldForces::Piece& piece) {
+    for (ModeVector* each : {&piece.from, &piece.to, &piece.mean, &piece.jump}) turn(*each);
+  });
 }
 
 void ModeIdentifier::forget(int state, double deviation) noexcept {
@@ -125,7 +128,10 @@ void ModeIdentifier::leaveContact() noexcept {
 void ModeIdentifier::forgetMotion(const JointVector& swing) noexcept {
   moving_known_ = count_ > 0;
   history_.clear();
+  held_.clear();
   behind_hose_.reset();
+  waiting_ = 0.0;
+  struck_.reset();
   force_.setZero(), force_rate_.setZero();
   forget(kContact, kUnknownContact);
   for (int k = 0; k < kMaxJoints; ++k) {
@@ -155,10 +161,8 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
     double& power = force_power_[static_cast<std::size_t>(k)];
     power += share * (square(modal.mean[k]) - power);
   }
-  advanceModes(step, modal);
-  for (int k = 0; k < count_; ++k) walk(k, step);
-  force_.head(count_) = modal.to;
-  force_rate_.head(count_) = (modal.to - modal.from) / step;
+  held_.push(step, modal);
+  takeForces(step);
   for (double& age : age_) age += step;
   imu_age_ += step;
   free_for_ = follows_contact_ && !bears_ ? free_for_ + step : 0.0;
@@ -168,7 +172,8 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!finite()) startAnew();
 }
 
-void ModeIdentifier::advanceModes(double step, const TorqueStep& modal) noexcept {
+void ModeIdentifier::advanceModes(const HeldForces::Piece& piece) noexcept {
+  const double step = piece.duration;
   history_.begin(step);
   std::array<ModeStep, kMaxJoints> steps;
   const States now = statesNow();
@@ -179,13 +184,16 @@ void ModeIdentifier::advanceModes(double step, const TorqueStep& modal) noexcept
     const ModeStep& its = steps[mode] = stepOf(modeAt(k), step);
     const double beside = rockOn(k) * state_[kContact] + rubbed[k];
     const ModeState& before = now[mode];
-    ModeState& next = then[mode] = advanced(its, before, pathOf({modal.from[k], modal.to[k], modal.mean[k]}, step));
+    ModeState& next = then[mode] = advanced(its, before, pathOf({piece.from[k], piece.to[k], piece.mean[k]}, step));
     next.x += its.r.step * beside, next.v += its.r.impulse * beside;
     state_[at(k, kX)] = next.x, state_[at(k, kV)] = next.v;
-    history_.set(k, before, next, modal.from[k], modal.to[k]);
+    history_.set(k, before, next, piece.from[k], piece.to[k]);
   }
   followHose(step, now, then);
+  force_ = piece.to;
+  force_rate_ = (piece.to - piece.from) / step;
   advanceCovariance(step, steps, now, then);
+  for (int k = 0; k < count_; ++k) walk(k, step);
 }
 
 /// P <- F P F^T. Stiffness and damping act as forces that are linear over the step: their derivatives are off by 3 % at
@@ -219,11 +227,13 @@ void ModeIdentifier::advanceCovariance(double step, const std::array<ModeStep, k
     const ModeState of_damping = by(-damped_now, -damped_next);
     of.add(x + kDamping, of_damping.x, of_damping.v);
     of.add(kContact - first, r.step * rockOn(k), r.impulse * rockOn(k));
+    if (isDelayFollowed(Clock::kImu))
+      of.add(delayAt(Clock::kImu) - first, -force_rate_[k] * r.step, -force_rate_[k] * r.impulse);
     replaceTwo(block(), x, of);
   }
 }
 
-/// P <- P + Q: forces that are wrong, oil that warms up.
+/// P <- P + Q: forces that are wrong, oil that warms up; where readings do not fit, what was found may be wrong.
 void ModeIdentifier::walk(int mode, double step) noexcept {
   const int x = at(mode, kX);
   const double v_walk = square(kForcePart) * force_power_[static_cast<std::size_t>(mode)] * 2.0 * kForceTime * step;
@@ -231,7 +241,7 @@ void ModeIdentifier::walk(int mode, double step) noexcept {
   covariance_(x + kX, x + kX) += v_walk * step * step / 3.0;
   if (!learns_) return;
   const auto wander = [&](int i, double per_second, double most) {
-    if (covariance_(i, i) < most * most) covariance_(i, i) += square(per_second) * step;
+    if (covariance_(i, i) < most * most) covariance_(i, i) += misfit() * square(per_second) * step;
   };
   wander(x + kOil, kOilWalk, kCommonDeviation);
   wander(x + kDamping, kDampingWalk, kDampingDeviation);
@@ -251,16 +261,6 @@ void ModeIdentifier::walkContact(double step) noexcept {
       covariance_(x, at(l, kV)) += both * step / 8.0, covariance_(at(l, kV), x) += both * step / 8.0;
       covariance_(x, at(l, kX)) += both * square(step) / 20.0;
     }
-  }
-}
-
-void ModeIdentifier::strike(const JointVector& impulse) noexcept {
-  if (!moving_known_) return;
-  const JointVector jump = modalForce(modes_, impulse);
-  for (int k = 0; k < count_; ++k) {
-    state_[at(k, kV)] += jump[k];
-    history_.strike(k, jump[k]);
-    covariance_(at(k, kV), at(k, kV)) += square(kForcePart * jump[k]);
   }
 }
 

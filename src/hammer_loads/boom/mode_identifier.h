@@ -1,12 +1,14 @@
 /// Stiffness of each cylinder's oil and damping of the boom's modes, followed from what sensors see of its vibration.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "hammer_loads/boom/boom_modes.h"
 #include "hammer_loads/boom/covariance_kernels.h"
+#include "hammer_loads/boom/held_forces.h"
 #include "hammer_loads/boom/mode.h"
 #include "hammer_loads/boom/mode_history.h"
 #include "hammer_loads/boom/seals.h"
@@ -28,25 +30,18 @@ struct CrankLead {
 /// First guesses: stiffnesses wrong by 30 % together and each beside by its own deviation, damping by a factor 1.6.
 /// Forces on the boom are taken as wrong by 5 % of their root mean square over some 10 ms, independently.
 ///
-/// At rest nothing is to be learned (keepOil()): no known force shakes the boom then, and noise and the walk of the
-/// rock's force would be taken for a soft oil, by a factor e of frequency in half a minute.
-///
 /// A hull that bounces on rock moves as no hammer and no oil move it: while accelerations are twice as far off as they
 /// should be, stiffnesses and damping are those given. Where no oil has explained them yet it is sought once more from
 /// those given before that is said, with modes that follow it at once (seeks()): one cylinder that is much softer makes
 /// other shapes. At first they wait until frequencies are known, since stamps that are late would lead them far away.
 ///
-/// Stamps of sensors with a clock of their own may be late: by one delay for all readings of a clock, a random walk.
-/// From 0.2 s on after the frequencies are known it is followed, and frequencies and damping count as less known again.
-/// Above the modes' frequencies accelerations are those of the hammer's force whatever the oil, so that one is not
-/// taken for the other. A reading is judged by what the modes did when it was taken. What stamps jitter about their
-/// delay, as behind a bus, is learned from what it leaves.
-///
-/// The hammer's force and the rock's act alike: on rock only the difference of two clocks' delays shows, and of
-/// pressures alone none.
-///
-/// A crank whose angle leads, as by a zero that is off, makes all sensors look late alike. As much of that as its model
-/// expects (expectCrankLead()) is taken for the crank's, and the motion is then given in the sensors' time.
+/// Stamps of sensors with a clock of their own may be late, each clock's by one time, a random walk. The filter lives
+/// in the IMU's time: the hammer's forces and blows act later by its delay, which is what shows it; pressures are late
+/// beside it by another. From 0.2 s on after the frequencies are known delays are followed, and for a second
+/// frequencies and damping count as less known again. What stamps jitter about that, as behind a bus, is learned from
+/// what it leaves. A crank whose angle leads, as by a zero that is off, makes all sensors look late alike: as much of
+/// that as its model expects (expectCrankLead()) is taken for the crank's, and the motion is given in the sensors'
+/// time.
 ///
 /// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
 /// 6 ms, in 1 ms where an IMU shows it. Pressures show the displacements; the force is what these need.
@@ -88,7 +83,8 @@ class ModeIdentifier {
   /// No more: the hull counts as free.
   void leaveContact() noexcept;
   /// Whether frequencies and damping stay as they are, whatever the next readings show; the motion is followed all the
-  /// same. For a hammer at rest: what shakes the boom then is not known.
+  /// same. For a hammer at rest: no known force shakes the boom then, and noise and the walk of the rock's force would
+  /// be taken for a soft oil, by a factor e of frequency in half a minute.
   void keepOil(bool keep) noexcept { keeps_oil_ = keep; }
   /// By how much time the crank's angle leads as far as its own model knows [s].
   void expectCrankLead(const CrankLead& lead) noexcept { expected_lead_ = lead, crank_lead_ = findCrankLead(); }
@@ -100,6 +96,9 @@ class ModeIdentifier {
   void observe(const VibrationReading* readings, std::size_t count) noexcept;
   /// Accelerations are as hammer, oil and, where it is followed, the rock's force make them, or may yet turn out to be.
   bool explains() const noexcept { return explains_ || (learns_ && !seeks_ && explained_for_ <= kProven); }
+  bool imuStampsJitter() const noexcept { return jitterVariance(Clock::kImu, 0) > 0.0; }  ///< beyond its delay
+  /// By which the readings of an IMU are to be given later: its stamps are early [s].
+  double waiting() const noexcept { return waiting_; }
   /// What was found of the oil does not hold: give modes of the oil as given.
   bool forgets() const noexcept { return !explains_; }
   /// Give modes of the oil as it is found, known or not.
@@ -124,6 +123,8 @@ class ModeIdentifier {
   /// Every mode's frequency is known to 3 %: better than most stiffnesses that are given.
   bool identified() const noexcept;
   bool learns() const noexcept { return learns_; }
+  /// Frequencies and damping are yet to be found with the delay of an IMU that speaks.
+  bool waitsForDelay() const noexcept { return unlearns_for_ > 0.0 || (imuSpeaks() && !isDelayFollowed(Clock::kImu)); }
   /// What damps a cylinder's joint beyond the damping given: no oil does, so that its pressures do not show it; root
   /// mean square over a swing [N m].
   double dampingBesideOil(std::size_t cylinder) const noexcept;
@@ -147,8 +148,9 @@ class ModeIdentifier {
  private:
   static constexpr double kDelayDeviation = 2e-3;  ///< of a delay that is not known, standard [s]
   // Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kDelayDeviation
+  static constexpr double kForcePart = 0.05;  ///< deviation of the modal force over its root mean square
   static constexpr double kForceTime = 0.01;  ///< for which a force stays wrong the same way [s]
-  // Guard: IdentifierNumbers.OfAForceThatLasts of kForceTime
+  // Guard: IdentifierNumbers.OfAForceThatLasts of kForcePart, kForceTime
   static constexpr int kDelays = kMaxChannels, kContact = kDelays + 2, kModes = kContact + 2;  // of even places
   static constexpr int kMaxStates = kModes + 4 * kMaxJoints;
   static_assert(kMaxStates <= kMostStates);
@@ -174,10 +176,14 @@ class ModeIdentifier {
   bool isDelayFollowed(Clock clock) const noexcept {
     return clock != Clock::kCrank && covariance_(delayAt(clock), delayAt(clock)) > 0.0;
   }
-  double delayByCrank(Clock clock) const noexcept { return clock == Clock::kCrank ? 0.0 : state_[delayAt(clock)]; }
-  /// What a delay makes of a mode in a clock's readings: how long it is held up [s], by the crank's time, and the part
-  /// of its swing that is left. Pressures that are late beside an IMU are so behind a hose, a lag of first order: it
-  /// holds up a swing by less than its time, and takes some of it.
+  double imuDelay() const noexcept { return state_[delayAt(Clock::kImu)]; }
+  double pressureLag() const noexcept { return state_[delayAt(Clock::kPressures)]; }  ///< behind the IMU
+  double delayByCrank(Clock clock) const noexcept {
+    return clock == Clock::kCrank ? 0.0 : imuDelay() + (clock == Clock::kPressures ? pressureLag() : 0.0);
+  }
+  double delayVariance(Clock clock) const noexcept;
+  /// How long a mode's swing is held up in a clock's readings [s], by the sensors' time, and the part that is left.
+  /// Pressures that are late beside an IMU are so behind a hose: it holds up by less than its time, and takes some.
   struct Lag {
     double held{}, left{1.0};
   };
@@ -188,7 +194,6 @@ class ModeIdentifier {
   double torqueRead(const Lag& lag, int mode, double ahead, const ModeHistory::Moment& then) const noexcept;
   void followHose(double step, const States& now, const States& next) noexcept;
   void correctHose(const State& by) noexcept;
-  double accelerationNow(int mode) const noexcept;
   States statesNow() const noexcept;
   LogOil oilTorques(const States& of) const noexcept;
   ModeVector forceOfSeals(const States& of) const noexcept;
@@ -199,48 +204,54 @@ class ModeIdentifier {
   void forgetOil() noexcept;
   void forget(int state, double deviation) noexcept;
   double rockOn(int mode) const noexcept { return follows_contact_ ? contact_[mode] : 0.0; }
-  void advanceModes(double step, const TorqueStep& modal) noexcept;
+  void takeForces(double step) noexcept;
+  void advanceModes(const HeldForces::Piece& piece) noexcept;
+  void takeBlow(const ModeVector& jump) noexcept;
+  void addBlowToDelay(const ModeVector& force) noexcept;
   void walk(int mode, double step) noexcept;
   void walkContact(double step) noexcept;
   void advanceDelays(double step) noexcept;
   double findCrankLead() const noexcept;
   bool imuSpeaks() const noexcept;
-  bool waitsForDelay() const noexcept;
+  bool mayYetExplain() const noexcept;
   bool isExplained() const noexcept;
   /// [s]: of agreement with the oil, which does not change from one second to the next; of frequencies that were lost;
   /// of a hull without rock, whose mean force has no longer memory.
   static constexpr double kProven = 1.0;
   // Guard: IdentifiedOil.PressuresShowTheirDelayAfterASecondWithoutRock of kProven
+  double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< of the pressures, variance over its own
   double byDelay(Clock clock, const State& row) const noexcept;
   bool delayShows(Clock clock) const noexcept;
-  struct Kept {
-    std::array<int, 2 * kMaxJoints + 2> states;  ///< the first of them
-    int count{};
-    void add(int state) noexcept { states[static_cast<std::size_t>(count++)] = state; }
-    const int* begin() const noexcept { return states.data(); }
-    const int* end() const noexcept { return states.data() + count; }
-  };
-  Kept keptStates() const noexcept;
+  StateList keptStates() const noexcept;
   struct Seen;
   using SeenModes = std::array<Seen, kMaxJoints>;
+  /// A reading; by the second; what its instant's deviation makes of it beside that.
+  struct Predicted {
+    double value{}, rate{}, bend{};
+  };
   void take(const VibrationReading* readings, std::size_t count) noexcept;
   void excuseNoMoreThanRead(const VibrationReading& reading, double difference, State& row) const noexcept;
-  void correct(const VibrationReading& reading, const State& row, double difference, const Kept& kept) noexcept;
+  void correct(const VibrationReading& reading, const State& row, double difference, const Predicted& predicted,
+               const StateList& kept) noexcept;
   double weigh(const VibrationReading& reading, double predicted, double difference) noexcept;
-  void takeBack(const Kept& kept, double moved, double S, const State& gain_S) noexcept;
+  void takeBack(const StateList& kept, double moved, double S, const State& gain_S) noexcept;
   /// Of all states, where one of them is so much more than it was taken for.
   State movedWith(int state, double by) const noexcept {
     return by / covariance_(state, state) * covariance_.col(state);
   }
-  void takeAsLate(Clock clock) noexcept;
   void takeAsBearing(double step) noexcept;
   void transform(const JointMatrix& T) noexcept;
   void followDelay(Clock clock) noexcept;
+  void unlearn(double part) noexcept;
   static bool counts(const VibrationReading& reading) noexcept;
   void useChannel(const VibrationReading& reading) noexcept;
   ModeHistory::Moment momentAt(int mode, double ahead) const noexcept;
+  ModeHistory::Moment momentAhead(int mode, double ahead) const noexcept;
   Seen see(int mode, double ahead) const noexcept;
-  double findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept;
+  Predicted findRow(const VibrationReading& reading, const SeenModes& modes, const std::optional<DrivenAround>& around,
+                    State& row) const noexcept;
+  double imuStampDeviation() const noexcept;
+  double jitterVariance(Clock clock, int own) const noexcept;
   bool finite() const noexcept;
   void startAnew() noexcept;
   void useOil() noexcept;
@@ -259,18 +270,21 @@ class ModeIdentifier {
   ModeHistory history_;
   int count_{};
   bool follows_contact_{};
-  ModeVector contact_ = ModeVector::Zero();           ///< modal force of the rock per newton
-  bool bears_{};                                      ///< the rock bears on the hull
-  std::array<std::optional<double>, 2> least_delay_;  ///< of each clock, as a free hull showed it [s]
-  double free_for_{};                                 ///< time for which it has not, while pressures came [s]
+  ModeVector contact_ = ModeVector::Zero();  ///< modal force of the rock per newton
+  bool bears_{};                             ///< the rock bears on the hull
+  double free_for_{};                        ///< time for which it has not, while pressures came [s]
   CrankLead expected_lead_;
   double crank_lead_{};
+  double unlearns_for_{};      ///< time for which what was found still counts as less known [s]
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
+  HeldForces held_;
   /// Of the oil, modal, as it is behind the hoses of the pressures' sensors; and by the second, over the last step.
   struct BehindHose {
     ModeVector torque = ModeVector::Zero(), rate = torque;
   };
   std::optional<BehindHose> behind_hose_;  ///< where it is followed
+  double waiting_{};                       ///< by which the sensors' time is behind the crank's stamps [s]
+  std::optional<ModeVector> struck_;       ///< by a blow that has just been: of the velocities
   bool moving_known_{};                    ///< displacement and velocity belong to modes_
   State state_ = State::Zero();
   alignas(64) Covariance covariance_ = Covariance::Zero();  ///< of the cache's lines: a tenth of the time of a reading
@@ -286,7 +300,8 @@ class ModeIdentifier {
   int channels_{};                                                       ///< in use
   std::array<int, kMaxChannels> slot_{};          ///< state of each channel's offset; -1: not in use
   std::array<double, kMaxChannels> age_{};        ///< since the channel's last reading [s]
-  std::array<TimingNoise, kMaxChannels> jitter_;  ///< of the channel's stamps
+  std::array<Clock, kMaxChannels> clock_{};       ///< whose stamps it has
+  std::array<TimingNoise, kMaxChannels> jitter_;  ///< of these, as the channel shows it
 };
 
 }  // namespace hammer_loads

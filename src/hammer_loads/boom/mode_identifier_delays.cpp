@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -17,10 +18,7 @@ constexpr double kImuSpeaks = 0.1;  // [s]
 // Guard: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kImuSpeaks
 constexpr double kWrongPart = 0.05;        // of a delay that is found
 constexpr double kWrongByPressures = 0.3;  // by them alone
-constexpr double kWrongOnRock = 0.6;       // where it has not been seen on a free hull: another's may be early
-// Guard: IdentifiedOil.ADelayThatIsFoundOnRockMayBeAnothers of kWrongOnRock
-constexpr double kDelayKnown = 2e-4;  // deviation [s]
-// Guard: IdentifiedOil.ADelayThatIsFoundIsKnownByAPart of kWrongPart, kWrongByPressures, kDelayKnown
+// Guard: IdentifiedOil.ADelayThatIsFoundIsKnownByAPart of kWrongPart, kWrongByPressures
 constexpr double kDoubt = 0.6;      // deviations of an expected lead: they are large, see ConstantErrors
 constexpr double kWrongLead = 0.3;  // of what is taken for the crank's: it may be a sensor's
 // Guard: IdentifiedOil.WhatAllClocksHaveInCommonMayBeTheCranks of kDoubt, kWrongLead
@@ -37,18 +35,25 @@ double lesserOf(double a, double b) noexcept {
 void ModeIdentifier::followDelay(Clock clock) noexcept {
   if (!learns_ || isDelayFollowed(clock) || known_for_ < kDelayBegins || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
-  if (clock == Clock::kImu) surprise_ = 1.0;  // what was not explained may be by this
+  if (clock == Clock::kPressures) return unlearn(1.0);
+  surprise_ = 1.0;  // what was not explained may be by this
+  unlearns_for_ = kProven;
+}
+
+/// Of what oil and damping were taken for without a delay.
+void ModeIdentifier::unlearn(double part) noexcept {
   for (int k = 0; k < count_; ++k) {
-    covariance_(at(k, kOil), at(k, kOil)) += square(kOilWithDelay);
-    covariance_(at(k, kDamping), at(k, kDamping)) += square(kDampingDeviation);
+    covariance_(at(k, kOil), at(k, kOil)) += part * square(kOilWithDelay);
+    covariance_(at(k, kDamping), at(k, kDamping)) += part * square(kDampingDeviation);
   }
 }
 
 void ModeIdentifier::advanceDelays(double step) noexcept {
+  if (unlearns_for_ > 0.0) unlearn(step / kProven), unlearns_for_ -= step;
   bool follows = false;
   for (int i : {kDelays, kDelays + 1}) {
     double& variance = covariance_(i, i);
-    if (variance > 0.0) variance += square(kDelayWalk) * step, follows = true;
+    if (variance > 0.0) variance += misfit() * square(kDelayWalk) * step, follows = true;
   }
   if (!follows) {
     known_for_ = identified() ? known_for_ + step : 0.0;
@@ -67,16 +72,10 @@ bool ModeIdentifier::delayShows(Clock clock) const noexcept {
   return clock == Clock::kImu || free_for_ > kProven || imuSpeaks();
 }
 
-/// On rock only the difference of two delays shows, for the rock's force is whatever both need. No stamps are early
-/// then, but those that were when the hull was free.
-void ModeIdentifier::takeAsLate(Clock clock) noexcept {
-  const int d = delayAt(clock);
-  const double variance = covariance_(d, d);
-  if (!(variance > 0.0)) return;
-  std::optional<double>& least = least_delay_[static_cast<std::size_t>(d - kDelays)];
-  if (!bears_ && variance < square(kDelayKnown)) least = std::min(0.0, state_[d] - 2.0 * delayDeviation(clock));
-  const double bound = least.value_or(0.0);
-  if (bears_ && state_[d] < bound) state_ += movedWith(d, bound - state_[d]);
+/// By the crank's time.
+double ModeIdentifier::delayVariance(Clock clock) const noexcept {
+  const auto& P = covariance_.block<2, 2>(kDelays, kDelays);
+  return clock == Clock::kImu ? P(0, 0) : P.sum();
 }
 
 double ModeIdentifier::delay(Clock clock) const noexcept {
@@ -98,16 +97,18 @@ double ModeIdentifier::findCrankLead() const noexcept {
 }
 
 ModeIdentifier::Lag ModeIdentifier::lagOf(Clock clock, int mode) const noexcept {
-  const double late = delayByCrank(clock);
-  if (clock != Clock::kPressures || !imuSpeaks() || !(late > 0.0)) return {late, 1.0};
-  if (covariance_(delayAt(clock), delayAt(clock)) > square(kDelayKnown)) return {late, 1.0};  // a hose is bent by it
+  if (clock != Clock::kPressures) return {clock == Clock::kCrank ? -imuDelay() : 0.0, 1.0};
+  const double late = pressureLag();
+  if (!imuSpeaks() || !(late > 0.0)) return {late, 1.0};
+  const double doubt = std::sqrt(covariance_(delayAt(clock), delayAt(clock)));
+  if (!(late > gate::kVeryRare * doubt)) return {late, 1.0};  // a hose is bent by it
   const double omega = modeAt(mode).omega, turned = omega * late;
   return {std::atan(turned) / omega, 1.0 / std::sqrt(1.0 + square(turned))};
 }
 
 /// A lag of first order, by a line over the step; a shorter one is seen well enough as that of each mode.
 void ModeIdentifier::followHose(double step, const States& now, const States& next) noexcept {
-  const double late = delayByCrank(Clock::kPressures);
+  const double late = pressureLag();
   if (!(late > step && lagOf(Clock::kPressures, 0).left < 1.0)) return behind_hose_.reset();
   if (!behind_hose_) {
     BehindHose begins;
@@ -128,7 +129,7 @@ void ModeIdentifier::followHose(double step, const States& now, const States& ne
 /// What readings have shown of the motion was so, as a free swing, for as long as the hose takes.
 void ModeIdentifier::correctHose(const State& by) noexcept {
   if (!behind_hose_) return;
-  const double late = delayByCrank(Clock::kPressures);
+  const double late = pressureLag();
   for (int k = 0; k < count_; ++k) {
     const double omega = modeAt(k).omega, x = by[at(k, kX)], v = by[at(k, kV)];
     behind_hose_->torque[k] += torqueOf(k, {x - late * v, v + square(omega) * late * x}) / (1.0 + square(omega * late));
@@ -136,22 +137,43 @@ void ModeIdentifier::correctHose(const State& by) noexcept {
 }
 
 double ModeIdentifier::behindHose(int mode, double ahead) const noexcept {
-  const double torque = behind_hose_->torque[mode];
-  if (ahead < 0.0) return torque + ahead * behind_hose_->rate[mode];
-  const double reached = 1.0 - std::exp(-ahead / delayByCrank(Clock::kPressures));
+  const double torque = behind_hose_->torque[mode], since = ahead + waiting_;
+  if (since < 0.0) return torque + since * behind_hose_->rate[mode];
+  const double reached = 1.0 - std::exp(-since / pressureLag());
   return torque + reached * (torqueOf(mode, stateOf(mode)) - torque);
 }
 
 double ModeIdentifier::delayDeviation(Clock clock) const noexcept {
   if (clock == Clock::kCrank) return 0.0;
-  const int d = delayAt(clock);
-  const bool known_free = least_delay_[static_cast<std::size_t>(d - kDelays)].has_value();
-  const double wrong = !known_free && bears_ ? kWrongOnRock : imuSpeaks() ? kWrongPart : kWrongByPressures;
+  const double wrong = imuSpeaks() ? kWrongPart : kWrongByPressures;
   const double lead = crankLead();
   double largest = 0.0;  // what is the one's may be the other's
   for (Clock each : {Clock::kImu, Clock::kPressures})
     if (isDelayFollowed(each)) largest = std::max(largest, std::abs(delayByCrank(each) - lead));
-  return std::sqrt(covariance_(d, d) + square(wrong * largest) + square(kWrongLead * lead));
+  return std::sqrt(delayVariance(clock) + square(wrong * largest) + square(kWrongLead * lead));
+}
+
+/// Variance of what is predicted by a delay that is not followed yet: noise, so that the oil is not made what would
+/// have such stamps. Without an IMU pressures hardly show their delay, and it may never be followed.
+double ModeIdentifier::byDelay(Clock clock, const State& row) const noexcept {
+  if (!learns_ || clock == Clock::kCrank || !imuSpeaks() || isDelayFollowed(clock)) return 0.0;
+  return square(kDelayDeviation * row[delayAt(clock)]);
+}
+
+/// How far the instant of one of its readings is known [s].
+double ModeIdentifier::imuStampDeviation() const noexcept {
+  const double unknown = learns_ ? square(kDelayDeviation) : 0.0;
+  return std::sqrt((isDelayFollowed(Clock::kImu) ? delayVariance(Clock::kImu) : unknown) +
+                   jitterVariance(Clock::kImu, 0));
+}
+
+/// Of stamps, as a channel shows it: of the IMU's, which are one clock's, that which shows most.
+double ModeIdentifier::jitterVariance(Clock clock, int own) const noexcept {
+  if (clock != Clock::kImu) return jitter_[static_cast<std::size_t>(own)].variance();
+  double variance = 0.0;
+  for (std::size_t i = 0; i < jitter_.size(); ++i)
+    if (clock_[i] == clock) variance = std::max(variance, jitter_[i].variance());
+  return variance;
 }
 
 }  // namespace hammer_loads

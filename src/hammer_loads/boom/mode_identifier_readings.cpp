@@ -32,30 +32,7 @@ void ModeIdentifier::useChannel(const VibrationReading& reading) noexcept {
     variance = std::min(variance + walk * age_[i], std::max(variance, first + walk));
   }
   age_[i] = 0.0;
-}
-
-/// By the hammer, seals and, where it is followed, the rock.
-double ModeIdentifier::accelerationNow(int mode) const noexcept {
-  return acceleration(modeAt(mode), stateOf(mode),
-                      force_[mode] + forceOfSeals(statesNow())[mode] + rockOn(mode) * state_[kContact]);
-}
-
-/// By a short line back: some 1e-4 of it for 0.5 ms of the fastest mode.
-ModeState ModeIdentifier::motion(int mode) const noexcept {
-  const Mode m = modeAt(mode);
-  const ModeState now = stateOf(mode);
-  const double back = crankLead(), a = accelerationNow(mode);
-  const double jerk = force_rate_[mode] - 2.0 * m.zeta * m.omega * a - square(m.omega) * now.v;
-  return {now.x - back * (now.v - 0.5 * back * a), now.v - back * (a - 0.5 * back * jerk)};
-}
-
-/// By the crank's time.
-ModeHistory::Moment ModeIdentifier::momentAt(int mode, double ahead) const noexcept {
-  const ModeState now = stateOf(mode);
-  ModeHistory::Place place;
-  if (ahead < 0.0 && history_.find(-ahead, place)) return history_.at(place, mode, modeAt(mode).omega, now);
-  const double rate = force_rate_[mode];
-  return {{now.x + ahead * now.v, now.v + ahead * accelerationNow(mode)}, force_[mode] + ahead * rate, rate};
+  clock_[i] = reading.clock;
 }
 
 double ModeIdentifier::torqueOf(int mode, const ModeState& of) const noexcept {
@@ -65,7 +42,7 @@ double ModeIdentifier::torqueOf(int mode, const ModeState& of) const noexcept {
 
 double ModeIdentifier::oilTorqueRead(int mode, double ahead) const noexcept {
   const Lag lag = lagOf(Clock::kPressures, mode);
-  return torqueRead(lag, mode, ahead, momentAt(mode, ahead - lag.held));
+  return torqueRead(lag, mode, ahead, momentAt(mode, ahead + waiting_ - lag.held));
 }
 
 /// By pressures whose stamp is this time after the present. then: what the mode did when its swing was what they show.
@@ -100,10 +77,12 @@ ModeIdentifier::Seen ModeIdentifier::see(int mode, double ahead) const noexcept 
 }
 
 /// What is predicted of the reading.
-double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes& modes, State& row) const noexcept {
+ModeIdentifier::Predicted ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes& modes,
+                                                  const std::optional<DrivenAround>& around,
+                                                  State& row) const noexcept {
   row.setZero();
   const int offset = offsetAt(reading.channel);
-  double predicted = state_[offset], late = 0.0;
+  double predicted = state_[offset], late = 0.0, of_force = 0.0, bend = 0.0;
   for (int k = 0; k < count_; ++k) {
     double by_x = 0.0, by_v = 0.0, by_a = 0.0, by_oil = 0.0;  // per modal displacement, velocity, acceleration
     for (int i = 0; i < count_; ++i) {
@@ -126,7 +105,11 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
     const double of_x = by_x + held * seen.stiff, of_v = by_v + held * seen.damped;
     const double torque = stiff + damped, force = torque + seen.acceleration;
     predicted += by_x * then.x + by_v * then.v + by_a * seen.acceleration + whole * seen.read;
-    late += square(seen.left) * (of_x * then.v + of_v * seen.acceleration) + by_a * seen.then.force_rate +
+    const double driven =
+        around ? by_a * around->force_rate[k] + of_v * around->velocity_rate[k] : by_a * seen.then.force_rate;
+    if (around) bend += by_a * around->force_bend[k] + of_v * around->velocity_bend[k];
+    of_force += driven;
+    late += square(seen.left) * (of_x * then.v + of_v * seen.acceleration) + driven +
             seen.fades_by * by_oil * (torque - force);
     row[kContact] += (by_a + lost) * seen.rock;
     row[at(k, kX)] = seen.cosine * of_x - seen.stiff * seen.sine * of_v;
@@ -135,12 +118,14 @@ double ModeIdentifier::findRow(const VibrationReading& reading, const SeenModes&
     row[at(k, kDamping)] = held * damped;
   }
   row[offset] = 1.0;
-  if (reading.clock != Clock::kCrank) row[delayAt(reading.clock)] = -late;
-  return predicted;
+  if (reading.clock == Clock::kPressures) row[delayAt(Clock::kPressures)] = -late;
+  if (reading.clock == Clock::kImu) row[delayAt(Clock::kImu)] = -of_force;
+  if (reading.clock == Clock::kCrank) row[delayAt(Clock::kImu)] = late;
+  return {predicted, late, bend};
 }
 
 void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count) noexcept {
-  if (!moving_known_ || count == 0) return;
+  if (!moving_known_ || count == 0 || !history_.reaches(-readings->ahead - waiting_)) return;
   const Clock clock = readings->clock;
   const double since_imu = imu_age_;
   if (clock == Clock::kImu) imu_age_ = 0.0;
@@ -155,7 +140,6 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
     take(readings + first, std::min(together, count - first));
   }
   correctHose(state_ - known);
-  if (clock != Clock::kCrank) takeAsLate(clock);
   if (clock == Clock::kImu) takeAsBearing(since_imu);
   if (learns_ && !explains_) forgetOil();
   if (!state_.segment(begin(), states()).allFinite()) return startAnew();
@@ -167,7 +151,7 @@ void ModeIdentifier::observe(const VibrationReading* readings, std::size_t count
 /// is of offsets and of where the boom stands; of pressures later than clocks are, it is what a hose has left of the
 /// swing.
 void ModeIdentifier::takeAsBearing(double step) noexcept {
-  if (!follows_contact_ || delayByCrank(Clock::kPressures) > kDelayDeviation) return;
+  if (!follows_contact_ || pressureLag() > kDelayDeviation) return;
   const double pulls = -contactDeviation() - state_[kContact];
   if (!(pulls > 0.0)) return;
   State moved = movedWith(kContact, std::min(1.0, step / kForceTime) * pulls);
@@ -198,12 +182,15 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
   for (int k = 0; k < count_; ++k) {
     const auto mode = static_cast<std::size_t>(k);
     const Lag lag = lagOf(readings->clock, k);
-    seen[mode] = see(k, readings->ahead - lag.held);
+    seen[mode] = see(k, readings->ahead + waiting_ - lag.held);
     seen[mode].left = lag.left;
     if (readings->of_oil) seen[mode].read = torqueRead(lag, k, readings->ahead, seen[mode].then);
-    if (lag.left < 1.0) seen[mode].fades_by = delayByCrank(readings->clock) * seen[mode].stiff * square(lag.left);
+    if (lag.left < 1.0) seen[mode].fades_by = pressureLag() * seen[mode].stiff * square(lag.left);
     then[mode] = seen[mode].then.state;
   }
+  std::optional<DrivenAround> around;
+  if (readings->clock == Clock::kImu)
+    around = drivenAround(history_, held_, force_, readings->ahead + waiting_, imuStampDeviation());
   const LogOil torque = oilTorques(then);
   const ModeVector rubbed = forceOfSeals(then);
   for (int k = 0; k < count_; ++k) {
@@ -215,32 +202,29 @@ void ModeIdentifier::take(const VibrationReading* readings, std::size_t count) n
   }
   std::array<State, kTogether> row;
   std::array<double, kTogether> difference;  // of the value from what is predicted
+  std::array<Predicted, kTogether> predicted;
   for (std::size_t r = 0; r < count; ++r) {
     if (!counts(readings[r])) continue;
-    difference[r] = readings[r].value - findRow(readings[r], seen, row[r]);
+    predicted[r] = findRow(readings[r], seen, around, row[r]);
+    difference[r] = readings[r].value - predicted[r].value;
     excuseNoMoreThanRead(readings[r], difference[r], row[r]);
   }
-  const Kept kept = keptStates();
+  const StateList kept = keptStates();
   const State before = state_;
   for (std::size_t r = 0; r < count; ++r)
     if (counts(readings[r]))
-      correct(readings[r], row[r], difference[r] - inUse(row[r]).dot(inUse(state_) - inUse(before)), kept);
-}
-
-/// Variance of what is predicted by a delay that is not followed yet: noise, so that the oil is not made what would
-/// have such stamps. Without an IMU pressures hardly show their delay, and it may never be followed.
-double ModeIdentifier::byDelay(Clock clock, const State& row) const noexcept {
-  if (!learns_ || clock == Clock::kCrank || !imuSpeaks() || isDelayFollowed(clock)) return 0.0;
-  return square(kDelayDeviation * row[delayAt(clock)]);
+      correct(readings[r], row[r], difference[r] - inUse(row[r]).dot(inUse(state_) - inUse(before)), predicted[r],
+              kept);
 }
 
 void ModeIdentifier::correct(const VibrationReading& reading, const State& row, double difference,
-                             const Kept& kept) noexcept {
+                             const Predicted& predicted, const StateList& kept) noexcept {
+  const double rate = predicted.rate;
   State gain_S;
   gain_S.segment(begin(), states()).noalias() = block() * inUse(row);
   TimingNoise& jitter = jitter_[static_cast<std::size_t>(reading.channel)];
-  const double rate = reading.clock != Clock::kCrank ? row[delayAt(reading.clock)] : 0.0;
-  const double by_stamp = byDelay(reading.clock, row) + square(rate) * jitter.variance();
+  const double by_stamp = byDelay(reading.clock, row) + square(rate) * jitterVariance(reading.clock, reading.channel) +
+                          2.0 * square(predicted.bend);
   const double S = weigh(reading, inUse(row).dot(inUse(gain_S)) + by_stamp, difference);
   if (isDelayFollowed(reading.clock) && S > 0.0) jitter.learn(difference, S, rate);
   if (!(S > 0.0)) return;
@@ -250,7 +234,7 @@ void ModeIdentifier::correct(const VibrationReading& reading, const State& row, 
 }
 
 /// Accelerations may be off as those of an oil not yet found, or of stamps that are late.
-bool ModeIdentifier::waitsForDelay() const noexcept {
+bool ModeIdentifier::mayYetExplain() const noexcept {
   return learns_ && !(identified() && (isDelayFollowed(Clock::kImu) || explained_for_ > kProven));
 }
 
@@ -263,7 +247,7 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
     if (explains_) {
-      explains_ = surprise_ < kSurprised || waitsForDelay();
+      explains_ = surprise_ < kSurprised || mayYetExplain();
     } else if (surprise_ < kCalm) {
       explains_ = true, seeks_ = false;
     }
@@ -277,8 +261,8 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
 }
 
 /// States that readings are not to change.
-ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
-  Kept kept;
+StateList ModeIdentifier::keptStates() const noexcept {
+  StateList kept;
   if (!learns_) return kept;
   for (int k = 0; keeps_oil_ && k < count_; ++k) kept.add(at(k, kOil)), kept.add(at(k, kDamping));
   if (keeps_oil_) kept.add(delayAt(Clock::kImu));
@@ -287,7 +271,7 @@ ModeIdentifier::Kept ModeIdentifier::keptStates() const noexcept {
 }
 
 /// What a reading has shown of these. The rest counts it as with them not known better (Schmidt-Kalman filter).
-void ModeIdentifier::takeBack(const Kept& kept, double moved, double S, const State& gain_S) noexcept {
+void ModeIdentifier::takeBack(const StateList& kept, double moved, double S, const State& gain_S) noexcept {
   for (int i : kept) {
     state_[i] -= moved * gain_S[i];
     for (int j : kept) covariance_(i, j) += gain_S[i] * gain_S[j] / S;

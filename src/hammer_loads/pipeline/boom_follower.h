@@ -33,11 +33,11 @@ struct BoomSample {
   WrenchSpread spread{};     ///< errors of motion_wrench; none: not known
   /// Errors of constants, the same in all samples, as constantErrors() and hammerErrors(); zero: exact.
   Eigen::Matrix3d constants = Eigen::Matrix3d::Zero(), of_hammer = Eigen::Matrix3d::Zero();
-  std::optional<ImuReading> imu{};  ///< a new reading at the sample, in the hull's axes
-  bool imu_lost{};                  ///< earlier readings cannot be trusted
-  HullWrench displaced_links{};     ///< DisplacedLinks, at the sample; counts for a boom that vibrates
-  double stamp_noise{};             ///< standard deviation of the stamp, from sample to sample [s]
-  double unseen_peak{};             ///< of Fz of a hammer that is at work, should it not have been followed before [N]
+  std::optional<StampedImuReading> imu{};  ///< a new reading, in the hull's axes
+  bool imu_lost{};                         ///< earlier readings cannot be trusted
+  HullWrench displaced_links{};            ///< DisplacedLinks, at the sample; counts for a boom that vibrates
+  double stamp_noise{};                    ///< standard deviation of the stamp, from sample to sample [s]
+  double unseen_peak{};  ///< of Fz of a hammer that is at work, should it not have been followed before [N]
 };
 
 /// Why the boom is taken as rigid or compliant.
@@ -133,6 +133,10 @@ class BoomFollower {
   }
   const JointBuffer& joints() const noexcept { return joints_; }
   const CylinderPressures& pressures() const noexcept { return pressures_; }
+  bool imuStampsJitter() const noexcept {
+    const std::optional<ModeIdentifier>& identifier = boom_.vibration().identifier();
+    return identifier && identifier->imuStampsJitter();
+  }
   const PressureTrust& pressureTrust() const noexcept { return trust_; }
   std::uint64_t faults() const noexcept { return faults_; }  ///< crank samples whose joints were not known
   /// How often the vibration was more than anything makes it and began anew; its loads are withheld after that until

@@ -35,14 +35,16 @@ void BoomFollower::followContact(StampNs stamp) noexcept {
 /// Motion, frequencies and damping as sensors show them.
 void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
-  if (trust_.isLate()) trust_.followDelay(0.0, step);
+  if (trust_.isLate()) trust_.followDelay(0.0, 0.0, step);
   boom_.vibration().keepOil(!last_blow_ || seconds(sample.stamp - *last_blow_) > kStillBeats);
+  if (sample.imu) observer_.imu(boom_, held_, sample.stamp, step, *sample.imu);
   // The reading may be of before the blow.
-  if (sample.imu && !state_.at_blow) observer_.imu(boom_, held_, *sample.imu), weighUnexplained(*sample.imu, step);
+  if (sample.imu && !state_.at_blow) weighUnexplained(sample.imu->reading, step);
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (!pressuresCount()) return;
   observer_.pressures(boom_, held_, sample.stamp, pressures_);
-  trust_.followDelay(boom_.vibration().identifier()->delay(Clock::kPressures), step);
+  const ModeIdentifier& found = *boom_.vibration().identifier();
+  trust_.followDelay(found.delay(Clock::kPressures), found.oilSurprise(), step);
 }
 
 /// A measured force holds what acts on its joint, whatever the model says; the difference is the rock's.

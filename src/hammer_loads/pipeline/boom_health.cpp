@@ -20,7 +20,8 @@ int modeOfOddDamping(const Boom& boom) noexcept {
 std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept {
   const BoomState& state = follower.state();
   const Vibration& vibration = follower.boom().vibration();
-  if (!follower.known() || !state.identified || state.dead_centre || !vibration.identifier()->explains())
+  if (!follower.known() || !state.identified || state.dead_centre || !vibration.identifier()->explains() ||
+      vibration.identifier()->waitsForDelay())
     return std::nullopt;
   BoomHealth health;
   health.count = vibration.modes().count;

@@ -31,8 +31,8 @@ struct BoomHealth {
 /// makes it. -1: none.
 int modeOfOddDamping(const Boom& boom) noexcept;
 
-/// Nothing where sensors do not show it: before its frequencies are known, while the hull bounces on rock as no oil
-/// makes it, at a dead centre, with joints that are not known.
+/// Nothing where sensors do not show it: before its frequencies are known with their delay, while the hull bounces on
+/// rock as no oil makes it, at a dead centre, with joints that are not known.
 std::optional<BoomHealth> boomHealth(const BoomFollower& follower) noexcept;
 
 }  // namespace hammer_loads

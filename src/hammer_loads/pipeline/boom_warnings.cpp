@@ -84,9 +84,8 @@ void warnOfPressures(const ModeIdentifier& identifier, double explained, std::ve
   if (isOff(identifier, Clock::kPressures, explained)) {
     warnings.push_back({"pressure stamps",
                         "cylinder_pressures: their stamps are about " +
-                            laterOrEarlier(identifier.delay(Clock::kPressures)) + " than the crank's" +
-                            (identifier.knowsLag() ? ", or those of hull_imu the other way" : "") +
-                            "; the boom's loads allow for that, up to 2 ms",
+                            laterOrEarlier(identifier.delay(Clock::kPressures)) +
+                            " than the crank's; the boom's loads allow for that, up to 2 ms",
                         true});
   } else if (surprise > MeasuredTorques::kSurprised) {
     warnings.push_back({"pressure fit",

@@ -22,6 +22,11 @@ struct ImuReading {
   Eigen::Vector3d rate;            ///< turning rate [rad/s]
 };
 
+struct StampedImuReading {
+  StampNs stamp{};
+  ImuReading reading;
+};
+
 /// Why a reading was not taken.
 enum class ImuRefusal : std::size_t { kNotFinite, kImplausible, kOutOfOrder, kJump, kCount };
 
@@ -56,9 +61,8 @@ class HullImu {
   double overdue(StampNs stamp) const noexcept {
     return hammer_loads::overdue(seconds(stamp - now_.stamp), std::max(0.0, seconds(now_.stamp - before_.stamp)));
   }
-  StampNs last() const noexcept { return now_.stamp; }  ///< stamp of the last reading taken [ns]
   /// The last reading taken, in axes of hammer_hull.
-  ImuReading newest() const noexcept { return {now_.force, now_.rate}; }
+  StampedImuReading newest() const noexcept { return {now_.stamp, {now_.force, now_.rate}}; }
 
  private:
   bool blowBetween(StampNs from, StampNs to) const noexcept { return blow_ && from < *blow_ && *blow_ <= to; }

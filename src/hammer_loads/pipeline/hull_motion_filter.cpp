@@ -54,16 +54,6 @@ DrivenSignal::Settings turningSignal(const HammerParameters& p) {
 HullMotionFilter::HullMotionFilter(const HullImuSettings& imu, const HammerParameters& hammer)
     : settings_(imu), x_(forceSignal(hammer)), z_(forceSignal(hammer)), turning_(turningSignal(hammer)) {}
 
-void HullMotionFilter::add(StampNs stamp, const ImuReading& reading) noexcept {
-  if (waits_ == kWaiting) std::move(waiting_.begin() + 1, waiting_.end(), waiting_.begin()), --waits_;
-  waiting_[waits_++] = {stamp, reading};
-}
-
-std::ptrdiff_t HullMotionFilter::waiting(StampNs stamp) const noexcept {
-  return std::count_if(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waits_),
-                       [stamp](const Reading& reading) { return reading.stamp <= stamp; });
-}
-
 void HullMotionFilter::expect(const HullMobility::Mobility& mobility) noexcept {
   mobility_ = mobility;
   int row = 0;
@@ -87,14 +77,9 @@ void HullMotionFilter::follow(StampNs sample, const WrenchHistory& step, const H
   }
   beside_ = beside;
   if (step.length() > 0.0) load_square_.add(path_.at(sample).load.cwiseAbs2(), step.length());
-  std::size_t taken = 0;
-  while (taken < waits_ && waiting_[taken].stamp <= sample) {
-    if (path_.covers(waiting_[taken].stamp)) take(waiting_[taken]);
-    ++taken;
-  }
-  std::move(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
-            waiting_.begin() + static_cast<std::ptrdiff_t>(waits_), waiting_.begin());
-  waits_ -= taken;
+  waiting_.takeUpTo(sample, [this](const StampedImuReading& reading) {
+    if (path_.covers(reading.stamp)) take(reading);
+  });
 }
 
 HullMotionCovariance HullMotionFilter::unread() const noexcept {
@@ -137,7 +122,7 @@ void HullMotionFilter::beginAnew() noexcept {
   forgetMotion();
 }
 
-void HullMotionFilter::take(const Reading& next) noexcept {
+void HullMotionFilter::take(const StampedImuReading& next) noexcept {
   const double step = seconds(next.stamp - last_.stamp);
   if (readings_ > 0 && step > 0.0 && cameTogether(last_.stamp, next.stamp)) return;
   if (readings_ > 0 && !(step > 0.0 && step <= settings_.max_age)) forgetMotion();

@@ -12,6 +12,7 @@
 #include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/hull_mobility.h"
 #include "hammer_loads/pipeline/trust_times.h"
+#include "hammer_loads/pipeline/waiting_readings.h"
 #include "hammer_loads/pipeline/wrench_path.h"
 
 namespace hammer_loads {
@@ -36,14 +37,14 @@ class HullMotionFilter {
   /// What a robot description says of how the hull yields.
   void expect(const HullMobility::Mobility& mobility) noexcept;
   /// A reading that was taken, axes of hammer_hull.
-  void add(StampNs stamp, const ImuReading& reading) noexcept;
+  void add(const StampedImuReading& reading) noexcept { waiting_.add(reading); }
   /// A crank sample and the load of the step that it ends; beside: what acts on the hull beside that at the sample. A
   /// step without pieces: what is known of motion is forgotten.
   void follow(StampNs sample, const WrenchHistory& step, const HullWrench& beside) noexcept;
   /// Known from the second reading with a known load on, until the last one is max_age old.
   std::optional<KnownHullMotion> at(StampNs stamp) const noexcept;
-  /// Readings up to a stamp that no crank sample has followed yet. Stamps that wait for a bus may be later.
-  std::ptrdiff_t waiting(StampNs stamp) const noexcept;
+  /// Readings up to a stamp that no crank sample has followed yet.
+  std::ptrdiff_t waiting(StampNs stamp) const noexcept { return waiting_.upTo(stamp); }
   /// Of a hull whose motion is not read, about its weight: twice what the load of the last 2 s does to it at once, as
   /// far as its mass is known. What it turns at is next to nothing.
   HullMotionCovariance unread() const noexcept;
@@ -51,15 +52,9 @@ class HullMotionFilter {
   StampNs last() const noexcept { return last_.stamp; }
 
  private:
-  struct Reading {
-    StampNs stamp{};
-    ImuReading reading;
-  };
-  static constexpr std::size_t kWaiting = 64;
-
   template <typename Signals, typename Each>
   void forEachStep(StampNs to, const Signals& signals, const Each& each) const noexcept;
-  void take(const Reading& reading) noexcept;
+  void take(const StampedImuReading& reading) noexcept;
   void forgetMotion() noexcept;
   void beginAnew() noexcept;
   bool works(const Eigen::Vector3d& load) noexcept;
@@ -68,9 +63,8 @@ class HullMotionFilter {
   DrivenSignal x_, z_, turning_;
   std::optional<HullMobility::Mobility> mobility_;  ///< as described last
   WrenchPath path_;
-  std::array<Reading, kWaiting> waiting_;
-  std::size_t waits_{};
-  Reading last_;
+  WaitingReadings waiting_;
+  StampedImuReading last_;
   WrenchPath::Instant at_last_;
   HullWrench beside_;
   RunningMean<Eigen::Vector3d> load_square_{trust::kMemory, Eigen::Vector3d::Zero()};  ///< of the samples

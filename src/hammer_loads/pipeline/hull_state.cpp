@@ -46,12 +46,12 @@ bool HullState::joints(const std::vector<std::string>& names, const std::vector<
 }
 
 std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& reading) noexcept {
-  const StampNs last = imu_.last();
+  const StampNs last = imu_.newest().stamp;
   const std::optional<ImuRefusal> refusal = imu_.update(stamp, reading);
   if (!refusal) {
-    const ImuReading taken = imu_.newest();
-    imu_trust_.follow(taken.specific_force, taken.rate, seconds(stamp - last));
-    if (followsLoad()) filter_.add(stamp, taken);
+    const StampedImuReading taken = imu_.newest();
+    imu_trust_.follow(taken.reading.specific_force, taken.reading.rate, seconds(stamp - last));
+    if (followsLoad()) filter_.add(taken);
     if (weight_.pitch().known()) imu_trust_.judge(weight_.gravity());
   }
   ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
@@ -119,10 +119,12 @@ void HullState::follow(StampNs sample, const WrenchHistory& step, const HullWren
   find(sample);
 }
 
-std::optional<ImuReading> HullState::newImuReading(StampNs stamp) noexcept {
+std::optional<StampedImuReading> HullState::newImuReading(StampNs sample, bool stamps_jitter) noexcept {
   if (imu_counts_.accepted == imu_taken_ || imu_trust_.isLost()) return std::nullopt;
   imu_taken_ = imu_counts_.accepted;
-  return imu_.reading(stamp);
+  if (stamps_jitter) return imu_.newest();
+  const std::optional<ImuReading> reading = imu_.reading(sample);
+  return reading ? std::make_optional(StampedImuReading{sample, *reading}) : std::nullopt;
 }
 
 void HullState::vibrates(const BoomFollower* boom) noexcept {

@@ -52,8 +52,9 @@ class HullState {
   std::optional<TipVelocity> speedAtBlow() const noexcept {
     return imu_trust_.isLost() ? std::nullopt : imu_.speedAtBlow();
   }
-  /// The IMU's reading at the sample in the hull's axes, if a reading has come since the last call.
-  std::optional<ImuReading> newImuReading(StampNs stamp) noexcept;
+  /// The IMU's reading at the sample in the hull's axes, if one has come since the last call; where its stamps jitter,
+  /// which bends the line through two of them, the last as it is.
+  std::optional<StampedImuReading> newImuReading(StampNs sample, bool stamps_jitter) noexcept;
   /// After it: the vibration of the boom at the sample; null: not known.
   void vibrates(const BoomFollower* boom) noexcept;
   /// Coming samples are not continuous with those before: the boom is at rest.

@@ -31,8 +31,16 @@ void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexce
 
 }  // namespace
 
-void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& reading) noexcept {
-  if (held.isDriven()) return;
+void ModeObserver::imu(Boom& boom, const HeldPose& held, StampNs sample, double step,
+                       const StampedImuReading& reading) noexcept {
+  imu_.add(reading);
+  const double waiting = boom.vibration().identifier()->waiting() - 0.5 * step;
+  imu_.takeUpTo(sample - std::llround(waiting / kSecondsPerNs), [&](const StampedImuReading& next) {
+    if (!held.isDriven()) take(boom, held, seconds(next.stamp - sample), next.reading);
+  });
+}
+
+void ModeObserver::take(Boom& boom, const HeldPose& held, double ahead, const ImuReading& reading) const noexcept {
   const Jacobian& J = boom.tipJacobian();
   const Eigen::Vector3d g_T = boom.gravityAtTip(), slow_rate = J.bottomRows<3>() * held.slowRate();
   const auto along = [&](const Eigen::Vector3d& n_T) {
@@ -45,6 +53,7 @@ void ModeObserver::imu(Boom& boom, const HeldPose& held, const ImuReading& readi
     VibrationReading& one = seen[static_cast<std::size_t>(i)];
     const bool turns = i == 2;
     one.channel = i;
+    one.ahead = ahead;
     one.clock = Clock::kImu;
     one.neglected = turns ? 0.0 : kLinksInHull;
     setDoubt(turns ? kRate : kAcceleration, 1.0, one);

@@ -7,8 +7,8 @@
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/pipeline/held_pose.h"
-#include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/joint_buffer.h"
+#include "hammer_loads/pipeline/waiting_readings.h"
 
 namespace hammer_loads {
 
@@ -21,8 +21,8 @@ class ModeObserver {
   /// imu_position: from D, axes of hammer_hull [m].
   explicit ModeObserver(const Eigen::Vector3d& imu_position) : imu_position_(imu_position) {}
 
-  /// The unit's reading at the sample in the hull's axes, if a new one has come.
-  void imu(Boom& boom, const HeldPose& held, const ImuReading& reading) noexcept;
+  /// A new reading, in the hull's axes. It waits until the sensors' time has come to its stamp.
+  void imu(Boom& boom, const HeldPose& held, StampNs sample, double step, const StampedImuReading& reading) noexcept;
   void joints(Boom& boom, const HeldPose& held, StampNs sample, double step, const JointBuffer& joints) noexcept;
   void pressures(Boom& boom, const HeldPose& held, StampNs sample, const CylinderPressures& pressures) noexcept;
 
@@ -33,7 +33,10 @@ class ModeObserver {
   };
   static constexpr int kImuChannels = 3;
 
+  void take(Boom& boom, const HeldPose& held, double ahead, const ImuReading& reading) const noexcept;
+
   Eigen::Vector3d imu_position_;
+  WaitingReadings imu_;
   std::array<JointTrack, kMaxJoints> joints_;
   std::array<std::uint64_t, kMaxJoints> pressures_{};  ///< CylinderPressures::count() at the last sample
 };

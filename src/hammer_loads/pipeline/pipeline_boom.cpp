@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kAtWork = 0.3;  // of the nominal speed: blows are struck
 // Guard: ToldCrank.ABoomIsNotKnownToRestUnderAMachineAtWork of kAtWork
-constexpr double kLeadOfZero = 0.8;  // of the time that the crank needs at the blow: what a zero makes of the vibration
+constexpr double kLeadOfZero = 0.6;  // of the time that the crank needs at the blow: what a zero makes of the vibration
 // Guard: CrankLead.IsThatOfTheZeroAndNoMore of kLeadOfZero
 
 }  // namespace
@@ -39,10 +39,11 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
       wrenchSpread(model_, drive, result_.crank, links, result_.doubt.own, result_.load_columns);
   const bool at_work = std::abs(crank.speed) > kAtWork * kTwoPi * settings_.turn_rate;
   const bool imu_lost = at_work && hull_.imuTrust().isLost();  // a hull at rest may show the same again and again
-  result_.boom = &boom_->sample(
-      {result_.stamp, motion, spread, constantErrors(result_.load_columns), hammerErrors(result_.load_columns),
-       hull_.newImuReading(result_.stamp), imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
-      step);
+  result_.boom =
+      &boom_->sample({result_.stamp, motion, spread, constantErrors(result_.load_columns),
+                      hammerErrors(result_.load_columns), hull_.newImuReading(result_.stamp, boom_->imuStampsJitter()),
+                      imu_lost, displaced, stampNoise(), at_work ? nominal_force_ : 0.0},
+                     step);
   boom_follows_ = true;
   for (std::size_t i = 0; i < result_.turn_ends; ++i) {
     boom_->turnEnded(result_.ends[i].pulse, result_.ends[i].mean_press_force);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/boom/wrench.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/latch.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/pipeline/trust_times.h"
@@ -16,7 +17,7 @@ namespace hammer_loads {
 /// on the tip in its plane: across the tool, and about the tool's axis, there must be next to none in the mean of 2 s.
 /// Pressures in bar, chambers or cylinders that are exchanged show 13 to 220 % of the weight there, right ones 4 %;
 /// what a lag of their stamps makes has no mean and is not seen there. A delay that the boom's vibration shows is
-/// allowed for up to some ms; beyond that what is found of it strays, and nothing is used of them for a while.
+/// allowed for as behind a hose; where they are later than any and do not fit one, nothing is used of them for a while.
 class PressureTrust {
  public:
   /// Loads on the tip, axes of the tip: measured beyond the model's, and of the weight; arm: from D to the tool [m];
@@ -30,10 +31,10 @@ class PressureTrust {
     const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
     lost_.follow(off);
   }
-  /// delay: of their stamps, as the boom's vibration shows it [s].
-  void followDelay(double delay, double step) noexcept {
+  /// delay: of their stamps, as the boom's vibration shows it [s]; misfit: ModeIdentifier::oilSurprise().
+  void followDelay(double delay, double misfit, double step) noexcept {
     late_left_ -= step;
-    beyond_for_ = std::abs(delay) > kMostDelay ? beyond_for_ + step : 0.0;
+    beyond_for_ = delay > kLongestHose && misfit > mismatch::kContradicts ? beyond_for_ + step : 0.0;
     if (beyond_for_ > kDelayShown) late_by_ = delay, late_left_ = kUntilTriedAgain;
   }
   bool isLate() const noexcept { return late_left_ > 0.0; }
@@ -53,10 +54,9 @@ class PressureTrust {
   // Guard: SensorBounds.OfPressuresMean of kTurning
   static constexpr double kBack = 0.5;  // of that: trusted again
   // Guard: SensorBounds.OfPressuresTimes of kAcross, kBack
-  /// [s]: a hose of 8 ms behind a bus has 10; seals that rub with 5 % look like 5 ms.
-  static constexpr double kMostDelay = 1.15e-2;
+  static constexpr double kLongestHose = 8e-3;                         ///< time constant [s]
   static constexpr double kDelayShown = 0.1, kUntilTriedAgain = 60.0;  ///< [s]
-  // Guard: MistakenSensors.PressuresThatLagAreNamedAndNotUsed of kMostDelay, kDelayShown
+  // Guard: MistakenSensors.PressuresThatLagAreNamedAndNotUsed of kLongestHose, kDelayShown
   // Guard: FollowerNumbers.PressuresThatWereLateAreTriedAgainAfterAMinute of kUntilTriedAgain
 
   double turning() const noexcept { return mean_.mean()[2]; }
