@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "hammer_loads/boom/behind_hose.h"
 #include "hammer_loads/boom/boom_modes.h"
 #include "hammer_loads/boom/covariance_kernels.h"
 #include "hammer_loads/boom/held_forces.h"
@@ -39,9 +40,8 @@ struct CrankLead {
 /// in the IMU's time: the hammer's forces and blows act later by its delay, which is what shows it; pressures are late
 /// beside it by another. From 0.2 s on after the frequencies are known delays are followed, and for a second
 /// frequencies and damping count as less known again. What stamps jitter about that, as behind a bus, is learned from
-/// what it leaves. A crank whose angle leads, as by a zero that is off, makes all sensors look late alike: as much of
-/// that as its model expects (expectCrankLead()) is taken for the crank's, and the motion is given in the sensors'
-/// time.
+/// what it leaves. A crank whose angle leads, as by a zero that is off, makes all sensors look late alike: what its
+/// model expects of that (expectCrankLead()) is taken for the crank's, and the motion given in the sensors' time.
 ///
 /// Where the rock's force may be followed its force is one more state, a random walk that a landing needs: by 10 kN in
 /// 6 ms, in 1 ms where an IMU shows it. Pressures show the displacements; the force is what these need.
@@ -62,8 +62,7 @@ class ModeIdentifier {
                           const LogOil& own_deviation = LogOil::Constant(CylinderParameters::kStiffnessDeviation));
 
   /// Modes by the given stiffness at the present pose; call when Vibration finds new ones. Displacements and velocities
-  /// of the joints carry over. stiffer: logarithms of their oil's stiffness over that of the last ones; what is found
-  /// stays.
+  /// of the joints carry over, and what is found. stiffer: logarithms of their oil's stiffness over the last ones'.
   void setModes(const BoomModes& given, const LogOil& stiffer = LogOil::Zero()) noexcept;
   /// Logarithms of each cylinder's stiffness over that of the modes given [-].
   LogOil oil() const noexcept;
@@ -125,8 +124,7 @@ class ModeIdentifier {
   bool learns() const noexcept { return learns_; }
   /// Frequencies and damping are yet to be found with the delay of an IMU that speaks.
   bool waitsForDelay() const noexcept { return unlearns_for_ > 0.0 || (imuSpeaks() && !isDelayFollowed(Clock::kImu)); }
-  /// What damps a cylinder's joint beyond the damping given: no oil does, so that its pressures do not show it; root
-  /// mean square over a swing [N m].
+  /// What damps a cylinder's joint beyond the damping given, root mean square of a swing [N m]: no pressures show it.
   double dampingBesideOil(std::size_t cylinder) const noexcept;
   ModeState motion(int mode) const noexcept;  ///< as estimated
   /// Modal torque of the oil as pressures show it whose stamp is this time [s] after the present, or before it.
@@ -190,7 +188,6 @@ class ModeIdentifier {
   using States = std::array<ModeState, kMaxJoints>;
   Lag lagOf(Clock clock, int mode) const noexcept;
   double torqueOf(int mode, const ModeState& of) const noexcept;
-  double behindHose(int mode, double ahead) const noexcept;
   double torqueRead(const Lag& lag, int mode, double ahead, const ModeHistory::Moment& then) const noexcept;
   void followHose(double step, const States& now, const States& next) noexcept;
   void correctHose(const State& by) noexcept;
@@ -215,8 +212,8 @@ class ModeIdentifier {
   bool imuSpeaks() const noexcept;
   bool mayYetExplain() const noexcept;
   bool isExplained() const noexcept;
-  /// [s]: of agreement with the oil, which does not change from one second to the next; of frequencies that were lost;
-  /// of a hull without rock, whose mean force has no longer memory.
+  /// [s]: of agreement with the oil, which does not change from one second to the next; of frequencies that were lost,
+  /// or are unlearned; of a hull without rock, whose mean force has no longer memory.
   static constexpr double kProven = 1.0;
   // Guard: IdentifiedOil.PressuresShowTheirDelayAfterASecondWithoutRock of kProven
   double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< of the pressures, variance over its own
@@ -278,10 +275,6 @@ class ModeIdentifier {
   double unlearns_for_{};      ///< time for which what was found still counts as less known [s]
   double imu_age_{kInfinity};  ///< since the last reading of an IMU [s]
   HeldForces held_;
-  /// Of the oil, modal, as it is behind the hoses of the pressures' sensors; and by the second, over the last step.
-  struct BehindHose {
-    ModeVector torque = ModeVector::Zero(), rate = torque;
-  };
   std::optional<BehindHose> behind_hose_;  ///< where it is followed
   double waiting_{};                       ///< by which the sensors' time is behind the crank's stamps [s]
   std::optional<ModeVector> struck_;       ///< by a blow that has just been: of the velocities

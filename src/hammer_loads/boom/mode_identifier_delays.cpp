@@ -115,14 +115,9 @@ void ModeIdentifier::followHose(double step, const States& now, const States& ne
     for (int k = 0; k < count_; ++k) begins.torque[k] = oilTorqueRead(k, 0.0);
     behind_hose_ = begins;
   }
-  const double kept = std::exp(-step / late);
   for (int k = 0; k < count_; ++k) {
     const auto mode = static_cast<std::size_t>(k);
-    const double from = torqueOf(k, now[mode]), to = torqueOf(k, next[mode]), behind = late * (to - from) / step;
-    double& torque = behind_hose_->torque[k];
-    const double before = torque;
-    torque = to - behind + kept * (torque - from + behind);
-    behind_hose_->rate[k] = (torque - before) / step;
+    behind_hose_->follow(k, step, late, torqueOf(k, now[mode]), torqueOf(k, next[mode]));
   }
 }
 
@@ -134,13 +129,6 @@ void ModeIdentifier::correctHose(const State& by) noexcept {
     const double omega = modeAt(k).omega, x = by[at(k, kX)], v = by[at(k, kV)];
     behind_hose_->torque[k] += torqueOf(k, {x - late * v, v + square(omega) * late * x}) / (1.0 + square(omega * late));
   }
-}
-
-double ModeIdentifier::behindHose(int mode, double ahead) const noexcept {
-  const double torque = behind_hose_->torque[mode], since = ahead + waiting_;
-  if (since < 0.0) return torque + since * behind_hose_->rate[mode];
-  const double reached = 1.0 - std::exp(-since / pressureLag());
-  return torque + reached * (torqueOf(mode, stateOf(mode)) - torque);
 }
 
 double ModeIdentifier::delayDeviation(Clock clock) const noexcept {

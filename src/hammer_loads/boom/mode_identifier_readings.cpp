@@ -48,7 +48,8 @@ double ModeIdentifier::oilTorqueRead(int mode, double ahead) const noexcept {
 /// By pressures whose stamp is this time after the present. then: what the mode did when its swing was what they show.
 double ModeIdentifier::torqueRead(const Lag& lag, int mode, double ahead,
                                   const ModeHistory::Moment& then) const noexcept {
-  if (behind_hose_ && lag.left < 1.0) return behindHose(mode, ahead);
+  if (behind_hose_ && lag.left < 1.0)
+    return behind_hose_->at(mode, ahead + waiting_, pressureLag(), torqueOf(mode, stateOf(mode)));
   const double force = then.force + rockOn(mode) * state_[kContact], torque = torqueOf(mode, then.state);
   return force + lag.left * (torque - force);
 }

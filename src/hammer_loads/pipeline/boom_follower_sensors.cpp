@@ -37,9 +37,10 @@ void BoomFollower::observe(const BoomSample& sample, double step) noexcept {
   if (!boom_.vibration().identifier()) return;
   if (trust_.isLate()) trust_.followDelay(0.0, 0.0, step);
   boom_.vibration().keepOil(!last_blow_ || seconds(sample.stamp - *last_blow_) > kStillBeats);
-  if (sample.imu) observer_.imu(boom_, held_, sample.stamp, step, *sample.imu);
-  // The reading may be of before the blow.
-  if (sample.imu && !state_.at_blow) weighUnexplained(sample.imu->reading, step);
+  if (sample.imu) {
+    observer_.imu(boom_, held_, sample.stamp, step, *sample.imu);
+    if (!state_.at_blow) weighUnexplained(sample.imu->reading, step);  // which may be of before the blow
+  }
   observer_.joints(boom_, held_, sample.stamp, step, joints_);
   if (!pressuresCount()) return;
   observer_.pressures(boom_, held_, sample.stamp, pressures_);
