@@ -130,9 +130,14 @@ struct VectorErrors {
   double rms{}, worst{}, covered[3]{};
 };
 
+/// What the hull's file says of the unit's place [m].
+struct PlaceByFile {
+  double off_x{}, off_z{}, deviation{};
+};
+
 /// Of published wrenches; the crank's side of the blow is judged elsewhere.
 VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise, double x, double z, double from,
-                          double to) {
+                          double to, const PlaceByFile& file = {}) {
   simulation::MachineSettings m = accuracy::machineOnBoom(to);
   m.seed = seed;
   m.on_boom.imu = {rate, x, z, 0.0, acceleration_noise, 0.03 * acceleration_noise};
@@ -141,8 +146,10 @@ VectorErrors vectorErrors(unsigned seed, double rate, double acceleration_noise,
   m.boom[1].mean = between(-0.8, 0.05), m.boom[2].mean = between(0.6, 1.8);
   m.boom[3].mean = between(-0.4, 0.4) - m.boom[1].mean - m.boom[2].mean;
   const simulation::Session session = simulation::recordSession(m);
-  const Settings settings = test::withExactHammer(
-      accuracy::shippedBoom(format("{boom: rigid, hull_motion: imu, imu_x_m: %g, imu_z_m: %g}", x, z)));
+  const Settings settings =
+      test::withExactHammer(accuracy::shippedBoom(format("{boom: rigid, hull_motion: imu, imu_x_m: %g, imu_z_m: %g, "
+                                                         "imu_position_deviation_m: %g}",
+                                                         x + file.off_x, z + file.off_z, file.deviation)));
   accuracy::SessionPlayer player(settings.mechanism, settings.pipeline, settings.boom, session);
   VectorErrors e;
   double peak = 0.0;
@@ -188,6 +195,22 @@ TEST(HullMotionFilter, GivesTheForcesVectorRightAfterBlowsTooAndHonestDeviations
     }
   }
   EXPECT_LT(all, 0.99);
+}
+
+/// Its turning moves a unit that is not where the file has it otherwise than said; no reading shows that.
+TEST(HullMotionFilter, APlaceThatIsOffIsInTheDeviation) {
+  const auto meanCover = [](double deviation) {
+    double mean = 0.0;
+    for (const unsigned seed : {240U, 304U, 309U}) {
+      const PlaceByFile file{seed == 304U ? -0.03 : 0.03, seed == 309U ? -0.03 : 0.02, deviation};
+      const VectorErrors e = vectorErrors(seed, 1000.0, 0.1, 0.2, 0.3, 4.0, 6.0, file);
+      mean += (e.covered[0] + e.covered[1]) / 6.0;
+    }
+    return mean;
+  };
+  EXPECT_LT(meanCover(0.0), 0.75);
+  EXPECT_LT(meanCover(0.008), 0.9) << "three to five deviations off";
+  EXPECT_GT(meanCover(0.03), 0.95) << "one";
 }
 
 /// Until a blow has shown how the hull yields: learned from a run-up alone it is half of what it is, 4.7 to 5.9 % of

@@ -44,6 +44,7 @@ void readHullMotion(ParameterReader& reader, PipelineSettings& s) {
     reader.addProblem("hull_motion: model, must be fixed or imu with a boom that is none or rigid");
   const double x = reader.number("imu_x_m", "m", kPlace), y = reader.number("imu_y_m", "m", kPlace);
   s.imu.position = {x, y, reader.number("imu_z_m", "m", kPlace)};
+  s.imu.position_deviation = reader.number("imu_position_deviation_m", "m", NumberRule::within(0.0, 10.0));
   const double roll = reader.number("imu_roll_rad", "rad", kTurned),
                pitch = reader.number("imu_pitch_rad", "rad", kTurned);
   s.imu.rotation = rotationOf(roll, pitch, reader.number("imu_yaw_rad", "rad", kTurned));
