@@ -20,8 +20,9 @@ constexpr double kLeastContact = 1.0;  // [N]
 Settings shippedBoom(const std::string& keys) {
   const std::string shipped = configDirectory();
   std::vector<std::string> problems;
-  ParameterMap given = *parameterMap(YAML::Load(keys), "", problems);
+  ParameterMap given;
   addFiles({shipped + "/boom_eo2621.yaml"}, given, problems);
+  merge(*parameterMap(YAML::Load(keys), "", problems), given);
   std::ostringstream urdf;
   urdf << std::ifstream(shipped + "/../urdf/eo2621_mo100.urdf").rdbuf();
   Checked<Settings> settings = load(shipped, given, urdf.str());

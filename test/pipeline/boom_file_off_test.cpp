@@ -1,0 +1,54 @@
+// Boom files whose bores, closed lengths, hoses and IMU's place are not the machine's: no readings show them apart from
+// oil and sensors, and deviations of these hold them.
+#include <random>
+
+#include "hammer_loads/boom/boom.h"
+#include "hammer_loads/util/format.h"
+#include "pipeline/on_boom_session.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr char kBoth[] = "boom_stiffness: identified\nhull_motion: imu\n";
+
+/// A file as from a drawing and a tape measure: 0.3 % of a bore, 1 cm of a closed length, a quarter of a hose, 2 cm of
+/// the IMU's place.
+std::string drawnFile(std::mt19937& random) {
+  std::normal_distribution<> off;
+  const Settings shipped = test::settingsWith(kBoth);
+  std::string keys = format("imu_x_m: %.4f\nimu_z_m: %.4f\n", 0.02 * off(random), 0.02 * off(random));
+  for (const CylinderParameters& c : shipped.boom->parameters().cylinders) {
+    const char* name = c.name.c_str();
+    keys += format("%s_bore_m: %.6f\n", name, c.bore * (1.0 + 0.003 * off(random)));
+    // A rod that is longer by what the tube is shorter reaches the same poses.
+    const double shorter = 0.01 * std::abs(off(random));
+    keys += format("%s_closed_length_m: %.4f\n%s_stroke_m: %.4f\n", name, c.closed_length - shorter, name,
+                   c.stroke + shorter);
+    keys += format("%s_bore_hose_volume_m3: %.6f\n", name, c.bore_hose_volume * std::exp(0.25 * off(random)));
+    keys += format("%s_rod_hose_volume_m3: %.6f\n", name, c.rod_hose_volume * std::exp(0.25 * off(random)));
+  }
+  return keys;
+}
+
+TEST(BoomFileThatIsOff, IsWithinTheDeviationsOfOilAndSensors) {
+  std::mt19937 random(97);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  double worst = 0.0, as_given = 0.0;
+  for (const bool on_rock : {false, true, false, true}) {
+    simulation::MachineSettings machine = test::machineOnBoom(between(0.8, 1.25), 50.0, test::drawnPose(between));
+    if (on_rock) machine.on_boom.rock = {3e7, 3.0, between(2500.0, 6000.0)};
+    const simulation::Session session = simulation::recordSession(machine);
+    const accuracy::BoomErrors off = test::errorsOf("file off", session, kBoth + drawnFile(random), {true, true});
+    EXPECT_LT(off.worstTorque(), 0.05);
+    EXPECT_GT(off.covered(), 0.85);
+    EXPECT_GT(off.leastWrenchCovered(), 0.85);
+    EXPECT_FALSE(off.warnedOfPressures());
+    EXPECT_FALSE(off.warned_of_rock);
+    worst = std::max(worst, off.worstTorque());
+    as_given = std::max(as_given, test::errorsOf("as it is", session, kBoth, {true, true}).worstTorque());
+  }
+  EXPECT_GT(worst, 1.3 * as_given) << "what is off is seen at all";
+}
+
+}  // namespace
+}  // namespace hammer_loads
