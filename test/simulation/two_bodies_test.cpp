@@ -57,7 +57,7 @@ TEST(TwoBodies, AccelerationsAndWrenchAreThoseOfFreeLinks) {
     const double scale = std::abs(expected[0]) + std::abs(expected[1]);
     EXPECT_NEAR(a.crank, expected[0], 1e-3 * scale) << offset;  // x^2 and x times the speeds are left out
     EXPECT_NEAR(a.rocker, expected[1], 1e-3 * scale) << offset;
-    const simulation::Load load = links.load(view, angles[1], expected, kWeight, 0.0);
+    const simulation::Load load = links.load(view, expected, kWeight, 0.0);
     const HullWrench wrench = hullWrenchOf(mechanism, l, bodies.linkAccelerations(s, a, l), kWeight);
     const double force = std::abs(load.force_x) + std::abs(load.force_z);
     EXPECT_NEAR(wrench.force_x, load.force_x, 2e-3 * force) << offset;

@@ -44,7 +44,10 @@ ElasticLinks::ElasticLinks(const HammerParameters& parameters, Level level)
       sin_a_(std::sin(p_.rocker_com_angle)) {}
 
 RodStretch ElasticLinks::rod(const TwoBodies& angle) const noexcept {
-  const Place b = onCircle(p_.lengths.crank, angle[0]), c = onCircle(p_.lengths.rocker, angle[1]);
+  return rodBetween(onCircle(p_.lengths.crank, angle[0]), onCircle(p_.lengths.rocker, angle[1]));
+}
+
+RodStretch ElasticLinks::rodBetween(Place b, Place c) const noexcept {
   const Place along = c + p_.lengths.pivot_distance - b;
   const double length = std::abs(along);
   return {length - p_.lengths.rod, {-dot(along, kTurned * b) / length, dot(along, kTurned * c) / length}};
@@ -52,7 +55,10 @@ RodStretch ElasticLinks::rod(const TwoBodies& angle) const noexcept {
 
 ElasticLinks::View ElasticLinks::at(const TwoBodies& angle, const TwoBodies& speed) const noexcept {
   View view;
-  view.rod = rod(angle);
+  const Place out = onCircle(1.0, angle[0]), b = p_.lengths.crank * out;
+  view.rocker = onCircle(1.0, angle[1]);
+  const Place c = p_.lengths.rocker * view.rocker;
+  view.rod = rodBetween(b, c);
   const double ww = speed[0] * speed[0], vv = speed[1] * speed[1], ls = p_.rocker_com_distance;
   const Place s = onCircle(ls, angle[1] + p_.rocker_com_angle);
   Body& rocker = view.body[view.count++];
@@ -66,12 +72,11 @@ ElasticLinks::View ElasticLinks::at(const TwoBodies& angle, const TwoBodies& spe
   rocker.slope[1] = kTurned * s, rocker.turn[1] = 1.0;
   if (level_ == Level::kRocker) return view;
 
-  const Place out = onCircle(1.0, angle[0]), com = Place(p_.crank_com_along, p_.crank_com_across) * out;
+  const Place com = Place(p_.crank_com_along, p_.crank_com_across) * out;
   Body& crank = view.body[view.count++];
   crank = {p_.crank_mass, p_.crank_inertia_about_com, com, {}, {}, -ww * com, 0.0};
   crank.slope[0] = kTurned * com, crank.turn[0] = 1.0;
 
-  const Place b = p_.lengths.crank * out, c = onCircle(p_.lengths.rocker, angle[1]);
   const Place share = Place(p_.rod_com_along, p_.rod_com_across) / p_.lengths.rod;  // of the way from B to C
   const Place along = c + p_.lengths.pivot_distance - b, by_crank = -kTurned * b, by_rocker = kTurned * c;
   const Place moving = speed[0] * by_crank + speed[1] * by_rocker, bending = ww * b - vv * c;
@@ -120,11 +125,11 @@ TwoBodies ElasticLinks::inertiaOfSpeeds(const View& view) const noexcept {
   return torque;
 }
 
-Load ElasticLinks::load(const View& view, double rocker_angle, const TwoBodies& acceleration, Gravity gravity,
+Load ElasticLinks::load(const View& view, const TwoBodies& acceleration, Gravity gravity,
                         double tool_force) const noexcept {
   const Place g = inMechanism(gravity);
   Place force;
-  double torque = tool_force * p_.striking_distance * std::cos(rocker_angle);
+  double torque = tool_force * p_.striking_distance * view.rocker.real();
   for (int i = 0; i < view.count; ++i) {
     const Body& b = view.body[i];
     const Place a = b.by_speeds + acceleration[0] * b.slope[0] + acceleration[1] * b.slope[1];
@@ -137,13 +142,8 @@ Load ElasticLinks::load(const View& view, double rocker_angle, const TwoBodies& 
           torque};
 }
 
-double ElasticLinks::depth(double rocker_angle) const noexcept {
-  return -p_.striking_distance * std::sin(rocker_angle);
-}
-
-double ElasticLinks::depthSlope(double rocker_angle) const noexcept {
-  return -p_.striking_distance * std::cos(rocker_angle);
-}
+double ElasticLinks::depth(double rocker_angle) const noexcept { return depth(onCircle(1.0, rocker_angle)); }
+double ElasticLinks::depthSlope(double rocker_angle) const noexcept { return depthSlope(onCircle(1.0, rocker_angle)); }
 
 double ElasticLinks::rockerAngle(double crank_angle) const noexcept {
   const Place to_b = onCircle(p_.lengths.crank, crank_angle) - p_.lengths.pivot_distance;

@@ -55,6 +55,7 @@ class ElasticLinks {
     Body body[3];
     int count{};
     RodStretch rod;
+    std::complex<double> rocker;  ///< cosine and sine of its angle
   };
 
   ElasticLinks(const HammerParameters& parameters, Level level);
@@ -68,15 +69,18 @@ class ElasticLinks {
   /// On crank and rocker by the inertia of what moves at constant speeds [N m].
   TwoBodies inertiaOfSpeeds(const View& view) const noexcept;
   /// Momentum theorem; tool_force [N]: along +z at the striking point, from outside of hammer and hull.
-  Load load(const View& view, double rocker_angle, const TwoBodies& acceleration, Gravity gravity,
-            double tool_force) const noexcept;
+  Load load(const View& view, const TwoBodies& acceleration, Gravity gravity, double tool_force) const noexcept;
   /// Depth of the striking point below its place at the dead centre [m] and what the rocker's angle does to it.
+  double depth(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.imag(); }
+  double depthSlope(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.real(); }
   double depth(double rocker_angle) const noexcept;
   double depthSlope(double rocker_angle) const noexcept;
   /// Of a rod that is as long as drawn, on the branch of the working turn, crank angle in [0, 2 pi] [rad].
   double rockerAngle(double crank_angle) const noexcept;
 
  private:
+  /// Of pins at these places from A and from D.
+  RodStretch rodBetween(std::complex<double> b, std::complex<double> c) const noexcept;
   std::complex<double> inMechanism(Gravity gravity) const noexcept;
   HammerParameters p_;
   Level level_;

@@ -56,18 +56,19 @@ ElasticMachine::Acting ElasticMachine::acting(const State& y, double time) const
   const double rate = view.rod.rate(w);
   a.rod = rod_.tension(view.rod.stretch, rate);
   a.rod_loss = (a.rod - rod_.tension(view.rod.stretch, 0.0)) * rate;
-  a.struck = struck_.answer(striker(y), tool(y), -g.z);
+  const double depth_slope = links_.depthSlope(view.rocker);
+  a.struck = struck_.answer({links_.depth(view.rocker), depth_slope * y[kRockerSpeed]}, tool(y), -g.z);
   a.net_torque = netTorque(settings_.drive, y[kPressure], w[0]);
   const TwoBodies weight = links_.weight(view, g), speeds = links_.inertiaOfSpeeds(view);
   const double up = a.struck.tool + a.struck.retainer;
   const double on_crank = a.net_torque + weight[0] + speeds[0] - a.rod * view.rod.slope[0];
-  const double on_rocker = weight[1] + speeds[1] - a.rod * view.rod.slope[1] - up * links_.depthSlope(y[kRocker]);
+  const double on_rocker = weight[1] + speeds[1] - a.rod * view.rod.slope[1] - up * depth_slope;
   std::array<double, 3> M = links_.inertia(view);
   M[0] += settings_.drive.inertia;
   const double determinant = M[0] * M[2] - M[1] * M[1];
   a.acceleration = {(M[2] * on_crank - M[1] * on_rocker) / determinant,
                     (M[0] * on_rocker - M[1] * on_crank) / determinant};
-  a.load = links_.load(view, y[kRocker], a.acceleration, g, a.struck.tool);
+  a.load = links_.load(view, a.acceleration, g, a.struck.tool);
   a.weight = weight[0] * w[0] + weight[1] * w[1];
   if (struck_.isThere()) a.weight += settings_.strike.tool_mass * -g.z * y[kToolSpeed];
   return a;

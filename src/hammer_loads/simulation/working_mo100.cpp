@@ -47,10 +47,12 @@ DriveSettings drive() {
 }  // namespace
 
 double positionOf(const JointMotion& motion, double time) noexcept {
+  if (motion.amplitude == 0.0) return motion.mean;
   return motion.mean + motion.amplitude * std::sin(2.0 * kPi * time / motion.period + motion.phase);
 }
 
 double velocityOf(const JointMotion& motion, double time) noexcept {
+  if (motion.amplitude == 0.0) return 0.0;
   const double rate = 2.0 * kPi / motion.period;
   return motion.amplitude * rate * std::cos(rate * time + motion.phase);
 }
