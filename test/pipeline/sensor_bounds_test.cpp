@@ -90,14 +90,14 @@ class ImuOfAHull {
     for (int i = 0; i < std::lround(time / kReadingStep); ++i) {
       const double change = (even_ = !even_) ? 1e-3 : -1e-3;
       trust_.follow({0.0, 0.0, 10.0 - off + change}, {0.0, rate, 0.0}, kReadingStep);
-      trust_.judge({0.0, -10.0});
+      trust_.judge({0.0, -10.0}, kReadingStep);
     }
   }
   /// One reading again and again.
   void stand(double step, int count) {
     for (int i = 0; i <= count; ++i) {
       trust_.follow({0.0, 0.0, 10.0}, {0.0, 0.0, 0.0}, step);
-      trust_.judge({0.0, -10.0});
+      trust_.judge({0.0, -10.0}, step);
     }
   }
   bool isLost() const { return trust_.isLost(); }
@@ -120,21 +120,21 @@ TEST(SensorBounds, OfAnImusMean) {
 }
 
 TEST(SensorBounds, OfAnImusTimes) {
-  ImuOfAHull wrong;  // judged after 0.5 s, and not believed for 0.3 s
-  wrong.run(0.75, 8.0);
+  ImuOfAHull wrong;  // judged after 0.5 s
+  wrong.run(0.45, 8.0);
   EXPECT_FALSE(wrong.isLost());
   wrong.run(0.10, 8.0);
   EXPECT_TRUE(wrong.isLost());
   ImuOfAHull later;  // 8 (1 - e^(-t/2)) = 5 m/s2 after 1.96 s
   later.run(10.0, 0.0);
-  later.run(2.0, 8.0);
+  later.run(1.8, 8.0);
   EXPECT_FALSE(later.isLost());
-  later.run(0.5, 8.0);
+  later.run(0.3, 8.0);
   EXPECT_TRUE(later.isLost());
-  later.run(20.0, 8.0);  // 8 e^(-t/2) = 4 m/s2 after 1.39 s
-  later.run(1.2, 0.0);
+  later.run(20.0, 8.0);  // 8 e^(-t/2) = 2.5 m/s2 after 2.33 s
+  later.run(2.2, 0.0);
   EXPECT_TRUE(later.isLost());
-  later.run(0.4, 0.0);
+  later.run(0.3, 0.0);
   EXPECT_FALSE(later.isLost());
 }
 

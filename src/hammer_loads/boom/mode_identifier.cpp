@@ -14,8 +14,6 @@ constexpr double kCommonDeviation = 0.3;  // of log stiffness, of all cylinders 
 constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that warms up, a pose that changes
 constexpr double kDampingWalk = 0.01;  // of log damping in a second
 // Guard: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk
-constexpr double kForceMemory = 2.0;  // of the mean square [s]
-// Guard: IdentifierNumbers.OfAForceThatLasts of kForceMemory
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
 // Guard: IdentifierNumbers.OfAMotionThatIsNotKnown of kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]
@@ -156,7 +154,7 @@ void ModeIdentifier::advance(double step, const TorqueStep& modal) noexcept {
   if (!moving_known_ || !(step > 0.0)) return;
   if (isExplained()) explained_for_ += step;
   if (learns_ && !explains_ && !seeks_ && explained_for_ < kProven) seeks_ = explains_ = true, surprise_ = 1.0;
-  const double share = std::min(1.0, step / kForceMemory);
+  const double share = std::min(1.0, step / look_back::kTenTurns);
   for (int k = 0; k < count_; ++k) {
     double& power = force_power_[static_cast<std::size_t>(k)];
     power += share * (square(modal.mean[k]) - power);

@@ -14,6 +14,7 @@
 #include "hammer_loads/boom/mode_history.h"
 #include "hammer_loads/boom/seals.h"
 #include "hammer_loads/boom/vibration_reading.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/timing_noise.h"
 
 namespace hammer_loads {
@@ -214,8 +215,7 @@ class ModeIdentifier {
   bool isExplained() const noexcept;
   /// [s]: of agreement with the oil, which does not change from one second to the next; of frequencies that were lost,
   /// or are unlearned; of a hull without rock, whose mean force has no longer memory.
-  static constexpr double kProven = 1.0;
-  // Guard: IdentifiedOil.PressuresShowTheirDelayAfterASecondWithoutRock of kProven
+  static constexpr double kProven = look_back::kFiveTurns;
   double misfit() const noexcept { return std::max(1.0, oil_surprise_); }  ///< of the pressures, variance over its own
   double byDelay(Clock clock, const State& row) const noexcept;
   bool delayShows(Clock clock) const noexcept;

@@ -4,18 +4,16 @@
 
 #include "hammer_loads/boom/mode_identifier.h"
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kDelayBegins = 0.2;  // after the frequencies are known [s]
-constexpr double kDelayWalk = 2e-5;   // of a delay in a second [s]: clocks drift by some 20 ppm
+constexpr double kDelayWalk = 2e-5;  // of a delay in a second [s]: clocks drift by some 20 ppm
 // Guard: IdentifiedOil.AClocksDelayWanders of kDelayWalk
 constexpr double kOilWithDelay = 0.1;  // deviation of log stiffness, beside what was known without a delay
-// Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kDelayBegins, kOilWithDelay
-constexpr double kImuSpeaks = 0.1;  // [s]
-// Guard: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kImuSpeaks
+// Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kOilWithDelay
 constexpr double kWrongPart = 0.05;        // of a delay that is found
 constexpr double kWrongByPressures = 0.3;  // by them alone
 // Guard: IdentifiedOil.ADelayThatIsFoundIsKnownByAPart of kWrongPart, kWrongByPressures
@@ -33,7 +31,7 @@ double lesserOf(double a, double b) noexcept {
 /// Once frequencies have been known for a while: before, a delay would make up for whatever else is wrong. What they
 /// were taken for without it may be wrong.
 void ModeIdentifier::followDelay(Clock clock) noexcept {
-  if (!learns_ || isDelayFollowed(clock) || known_for_ < kDelayBegins || !delayShows(clock)) return;
+  if (!learns_ || isDelayFollowed(clock) || known_for_ < look_back::kTurn || !delayShows(clock)) return;
   covariance_(delayAt(clock), delayAt(clock)) = square(kDelayDeviation);
   if (clock == Clock::kPressures) return unlearn(1.0);
   surprise_ = 1.0;  // what was not explained may be by this
@@ -64,7 +62,7 @@ void ModeIdentifier::advanceDelays(double step) noexcept {
   if (lost_for_ > kProven) forgetOil();
 }
 
-bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < kImuSpeaks; }
+bool ModeIdentifier::imuSpeaks() const noexcept { return imu_age_ < look_back::kHalfTurn; }
 
 /// On rock, and until it is clear that there is none, pressures alone do not show their delay: whatever force they lack
 /// may be the rock's.

@@ -9,8 +9,6 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kContactMemory = 0.5;  // of the rock's mean force: some turns [s]
-// Guard: VibrationNumbers.OfTheRocksMeanForce of kContactMemory
 constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
 // Guard: VibrationNumbers.OfADisplacementAhead of kShort
 // Guard: VibrationNumbers.OfADisplacementThatIsNone of kSmall
@@ -108,7 +106,8 @@ void Vibration::advance(double step, const TorqueStep& torque) noexcept {
   torque_ = torque.to;
   force_ = modal.to;
   if (follows_readings_) takeMotion();
-  if (identifier_) mean_contact_ += std::min(1.0, step / kContactMemory) * (identifier_->contact() - mean_contact_);
+  if (identifier_)
+    mean_contact_ += std::min(1.0, step / look_back::kSomeTurns) * (identifier_->contact() - mean_contact_);
   restIfNotFinite();
   followSwing(step);
 }

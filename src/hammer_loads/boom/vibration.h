@@ -8,6 +8,7 @@
 #include "hammer_loads/boom/boom_modes.h"
 #include "hammer_loads/boom/mode.h"
 #include "hammer_loads/boom/mode_identifier.h"
+#include "hammer_loads/estimation/look_back.h"
 
 namespace hammer_loads {
 
@@ -23,8 +24,7 @@ struct VibrationSettings {
 /// The load must be the part that comes from motion relative to the hull, the links' mass being in the hull's already.
 class Vibration {
  public:
-  static constexpr double kSwingTime = 1.0;  ///< over which swings are followed [s]
-  // Guard: VibrationNumbers.OfTheUsualSwing of kSwingTime
+  static constexpr double kSwingTime = look_back::kFiveTurns;  ///< over which swings are followed [s]
 
   Vibration(const Chain& chain, std::vector<Cylinder> cylinders, const VibrationSettings& settings);
 

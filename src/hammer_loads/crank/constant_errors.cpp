@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hammer_loads/estimation/covariance_root.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -14,8 +15,6 @@ constexpr int kFirstTurns = 4;  // the drive inertia is learned first
 // Guard: ConstantErrors.WhatTheFirstFourTurnsShowIsForgotten of kFirstTurns
 constexpr int kTurnsToKnow = 6;  // nothing is concluded before
 // Guard: Unknowns.OfTheSensorsPlaceDoWhatTheFilterSays of kTurnsToKnow
-constexpr double kMemoryTurns = 300.0;  // turns: a minute at work
-// Guard: ConstantErrors.AreThoseOfThreeHundredTurns of kMemoryTurns
 constexpr double kUnmodelledCounts =
     0.5;  // what a clean machine shows, by an encoder's coarseness: 1024 counts look like 0.2 to 0.4 deg
 constexpr double kUnmodelledDeviations = 2.5;  // as above, where it is seen less well, before a warning
@@ -95,8 +94,8 @@ void ConstantErrors::endTurn(double growth, double count) noexcept {
   moment_(kZero, kZero) += stepped_;
   considerPriors();
   root_ = covarianceRoot(moment_);
-  fit_.fade(1.0 - 1.0 / kMemoryTurns);
-  beside_ *= 1.0 - 1.0 / kMemoryTurns;
+  fit_.fade(1.0 - 1.0 / look_back::kManyTurns);
+  beside_ *= 1.0 - 1.0 / look_back::kManyTurns;
 }
 
 }  // namespace hammer_loads

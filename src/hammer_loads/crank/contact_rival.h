@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hammer_loads/crank/weighed_sample.h"
+#include "hammer_loads/estimation/look_back.h"
 
 namespace hammer_loads {
 
@@ -44,13 +45,13 @@ class ContactRival {
   bool choose(CrankBelief& estimate, bool& mirrored) noexcept;
 
  private:
-  static constexpr double kTurnsWith = 300.0, kTurnsWithout = 0.5;  // before any was seen
-  // Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kTurnsWith, kTurnsWithout
+  static constexpr double kTurnsWithout = 0.5;  // before any was seen
+  // Guard: Rival.OneSampleOfAnyKindLeavesNoDoubt of kTurnsWithout
 
   std::optional<CrankBelief> belief_;
-  double evidence_{};                                             ///< logarithm of its odds against the estimate
-  bool aside_{};                                                  ///< it was far less likely since it began
-  double turns_with_{kTurnsWith}, turns_without_{kTurnsWithout};  ///< contact, so far
+  double evidence_{};  ///< logarithm of its odds against the estimate
+  bool aside_{};       ///< it was far less likely since it began
+  double turns_with_{look_back::kManyTurns}, turns_without_{kTurnsWithout};  ///< contact, so far
 };
 
 }  // namespace hammer_loads

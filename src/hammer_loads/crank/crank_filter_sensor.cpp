@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -10,9 +11,9 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kSpeedNoiseGain = 0.005;  // per sample: the noise of measured speeds is learned within some 200
-constexpr double kLeastSpeedNoise = 0.3;   // of the first guess
-// Guard: FilterAtWork.LearnsTheNoiseOfSpeedsWithinTwoHundredSamples of kSpeedNoiseGain, kLeastSpeedNoise
+constexpr double kSpeedNoiseGain = 1.0 / look_back::kReadings;
+constexpr double kLeastSpeedNoise = 0.3;  // of the first guess
+// Guard: FilterAtWork.LearnsTheNoiseOfSpeedsWithinTwoHundredSamples of kLeastSpeedNoise
 constexpr double kLagTakenOff = 1e-3;  // [s]: an encoder that is eccentric by 0.4 deg looks like half of it
 // Guard: SensorColumns.AnEccentricEncoderIsNoLagToTakeOff of kLagTakenOff
 constexpr double kNotSlip = 0.04;  // [rad] from the blow: there the tool stops and throws the crank

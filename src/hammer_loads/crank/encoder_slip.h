@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 
 namespace hammer_loads {
 
@@ -36,14 +37,14 @@ class EncoderSlip {
       return Step::kNone;
     const bool undoes = isFresh() && std::abs(innovation + last_) < kSame * std::abs(last_);
     const int quiet = std::exchange(quiet_turns_, 0);
-    if ((quiet < kTurnsToTell && !undoes) || std::abs(innovation) > kMost) return Step::kNone;
+    if ((quiet < look_back::kTurnsToKnow && !undoes) || std::abs(innovation) > kMost) return Step::kNone;
     if (std::abs(longer) > kOfClock * std::abs(innovation)) return Step::kNone;
     seen_ = innovation;
     return Step::kPerhaps;
   }
   void endTurn() noexcept { ++quiet_turns_, ++turns_since_; }
   /// The last one is some turns old at most: a step back belongs to it, and a restart says that it was none.
-  bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < kTurnsToTell; }
+  bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < look_back::kTurnsToKnow; }
   /// The last one was none.
   void takeBack() noexcept {
     --count_;
@@ -58,10 +59,8 @@ class EncoderSlip {
   // Guard: EncoderSlip.NorIsASensorThatIsSomewhereElse of kMost
   static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
-  static constexpr int kTurnsToTell = 5;   // as many as a supply takes to be known
   // Guard: EncoderSlip.IsAboutTheSameInTheNextReading of kSame
   // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kOfClock
-  // Guard: EncoderSlip.AStepBackIsOneAtOnce of kTurnsToTell
   double before_{};  ///< innovation of the sample before [rad]
   double seen_{};    ///< the same where it may be a slip; else 0
   double last_{}, deviation_{};

@@ -14,10 +14,8 @@ constexpr double kSpeedTurns = 30.0;  // of lag and scale: some 6 s at work
 constexpr double kMostScale = 0.5;
 constexpr double kNotableLag = 5e-4;    // [s]: less shifts a speed at work by no more than its noise, 0.3 rad/s
 constexpr double kNotableScale = 0.01;  // likewise
-constexpr double kReleased = 0.5;       // of these and of the deviations: where what was seen is given up
-// Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kReleased
-constexpr double kLeastSquare = 1e-4;  // of a residual, over that expected: no reading is a hundred times better
-constexpr double kLeastTurns = 1.5;    // more than one: how far they scatter
+constexpr double kLeastSquare = 1e-4;   // of a residual, over that expected: no reading is a hundred times better
+constexpr double kLeastTurns = 1.5;     // more than one: how far they scatter
 // Guard: SpeedTrust.KnowsAfterFiveTurns of kLeastTurns
 constexpr double kMostOfOne = 0.999;  // of a correlation
 // Guard: SpeedTrust.AnEvenSpeedWithoutNoiseSaysNothing of kLeastSquare
@@ -27,9 +25,9 @@ constexpr double kMostOfOne = 0.999;  // of a correlation
 // Guard: SpeedTrust.NamesAScaleFromAHundredthOn of kNotableScale
 // Numerical: kMostOfOne
 
-bool isSeen(double amount, double notable, double deviation, bool before) noexcept {
-  const double part = before ? kReleased : 1.0;
-  return std::abs(amount) > part * std::max(notable, gate::kVeryRare * deviation);
+/// Over what is seen.
+double shown(double amount, double notable, double deviation) noexcept {
+  return std::abs(amount) / std::max(notable, gate::kVeryRare * deviation);
 }
 
 }  // namespace
@@ -101,8 +99,8 @@ void SpeedTrust::endTurn() noexcept {
   // Rows are linear about what lag and scale were then.
   if (std::abs(change[0]) > gate::kRare * deviation_[0] || std::abs(change[1]) > gate::kRare * deviation_[1])
     information_.setZero(), score_.setZero(), scatter_ = seen_turns_ = 0.0;
-  lags_ = isSeen(lag_, kNotableLag, deviation_[0], lags_);
-  out_of_scale_ = isSeen(scale_, kNotableScale, deviation_[1], out_of_scale_);
+  lags_.follow(shown(lag_, kNotableLag, deviation_[0]));
+  out_of_scale_.follow(shown(scale_, kNotableScale, deviation_[1]));
   are_good_ = isTrusted() && gate::kUsual * deviation_[0] < kNotableLag && gate::kUsual * deviation_[1] < kNotableScale;
 }
 

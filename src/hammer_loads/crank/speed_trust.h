@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "hammer_loads/crank/unknowns.h"
+#include "hammer_loads/estimation/latch.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -44,11 +46,11 @@ class SpeedTrust {
 
   /// They may be taken up.
   bool isTrusted() const noexcept { return !lags() && !isOutOfScale(); }
-  bool knows() const noexcept { return turns_ >= kTurnsToKnow; }  ///< lag and scale
+  bool knows() const noexcept { return turns_ >= look_back::kTurnsToKnow; }  ///< lag and scale
   /// Both are known to be less than matters.
   bool areGood() const noexcept { return knows() && are_good_; }
-  bool lags() const noexcept { return knows() && lags_; }
-  bool isOutOfScale() const noexcept { return knows() && out_of_scale_; }
+  bool lags() const noexcept { return knows() && lags_.isEngaged(); }
+  bool isOutOfScale() const noexcept { return knows() && out_of_scale_.isEngaged(); }
   double lag() const noexcept { return lag_; }                      ///< > 0: late [s]
   double lagDeviation() const noexcept { return deviation_[0]; }    ///< [s]
   double scale() const noexcept { return scale_; }                  ///< measured over true speed, less 1 [-]
@@ -57,8 +59,6 @@ class SpeedTrust {
  private:
   static constexpr double kLag = kUnknowns[indexOfUnknown("speed lag")].prior;  ///< [s]
   static constexpr double kScale = kUnknowns[indexOfUnknown("speed scale")].prior;
-  static constexpr int kTurnsToKnow = 5;  // some 1 s at work
-  // Guard: SpeedTrust.KnowsAfterFiveTurns of kTurnsToKnow
 
   /// Of a speed, over the deviation expected of it: what is not explained, and its derivatives by lag and scale.
   using Row = Eigen::Vector3d;
@@ -72,7 +72,8 @@ class SpeedTrust {
       seen_turns_{};  ///< mean squares of the turns' own fits over those expected, summed; number of turns
   Eigen::Vector2d deviation_{Eigen::Vector2d::Zero()};
   double lag_{}, scale_{};
-  bool begun_{}, lags_{}, out_of_scale_{}, are_good_{};
+  Latch lags_{1.0}, out_of_scale_{1.0};
+  bool begun_{}, are_good_{};
   double behind_{}, by_lag_{};  ///< at the last sample: speed - y [rad/s], and its derivative by the lag
   double late_{};               ///< lateBy() at the last sample [rad/s2]
   double acceleration_{};       ///< likewise

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/estimation/look_back.h"
+
 namespace hammer_loads {
 namespace {
 
-constexpr double kOfLate = 1000.0;  // samples over which irregular stamps are counted
-constexpr double kMany = 5.0;       // of them: not a single late message
-// Guard: StampSequence.IsRefittedWhereMoreThanFiveOfAThousandChangePlaces of kOfLate, kMany
+constexpr double kMany = 5.0;  // irregular stamps of a thousand: not a single late message
+// Guard: StampSequence.IsRefittedWhereMoreThanFiveOfAThousandChangePlaces of kMany
 constexpr double kSingle = 1.5;  // likewise
 // Guard: StampSequence.OneStampThatRepeatsIsNoBurstYet of kSingle
 constexpr std::int64_t kLeastStep = 1000;  // [ns] between instants where stamps repeat and no interval is known
@@ -66,7 +67,7 @@ StampSequence::Place StampSequence::next(std::int64_t header) noexcept {
   const std::int64_t fitted = fit_.add(header);
   const bool irregular = header <= newest_;
   irregular_ += irregular;
-  irregularity_ += (irregular ? 1.0 : 0.0) - irregularity_ / kOfLate;
+  irregularity_ += (irregular ? 1.0 : 0.0) - irregularity_ / look_back::kManyReadings;
   header_ = header;
   newest_ = std::max(newest_, header);
   if (mode_ == CrankStamps::kAuto && irregularity_ > kMany && fit_.explains()) steady_ = true;

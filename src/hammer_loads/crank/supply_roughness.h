@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 
 namespace hammer_loads {
 
@@ -27,9 +28,10 @@ class SupplyRoughness {
   double deviationFactor() const noexcept { return 1.0 / std::sqrt(std::sqrt(std::min(1.0, factor_))); }
 
  private:
-  static constexpr double kGain = 0.005, kFading = 0.85;  // some 7 samples are looked at, some 300 learned from
-  static constexpr double kLeast = 0.25, kMost = 3.0;     // a sudden supply is still followed within some samples
-  // Guard: LearnedNumbers.TheSupplysWalk of kGain, kFading, kLeast, kMost
+  static constexpr double kGain = 1.0 / look_back::kReadings;
+  static constexpr double kFading = 0.85;              // some 7 samples are looked at
+  static constexpr double kLeast = 0.25, kMost = 3.0;  // a sudden supply is still followed within some samples
+  // Guard: LearnedNumbers.TheSupplysWalk of kFading, kLeast, kMost
   double factor_{1.0}, sum_{};
 };
 

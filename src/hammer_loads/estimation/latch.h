@@ -6,6 +6,10 @@ namespace hammer_loads {
 /// A value that hovers about one level does not make it flicker. Where the level is no number it is released.
 class Latch {
  public:
+  static constexpr double kReleased = 0.5;  ///< of the level at which it engages
+  // Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kReleased
+
+  explicit constexpr Latch(double engages) noexcept : Latch(engages, kReleased * engages) {}
   /// releases <= engages.
   constexpr Latch(double engages, double releases) noexcept : engages_(engages), releases_(releases) {}
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -43,14 +44,14 @@ class TimingNoise {
   double deviation() const noexcept { return std::sqrt(variance()); }  ///< [s]
 
  private:
-  static constexpr double kGain = 0.005;
+  static constexpr double kGain = 1.0 / look_back::kReadings;
   static constexpr int kLearning =
       60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
   // Guard: LearnedNumbers.TheFirstSixtySamplesShowLittleJitter of kLearning
   static constexpr double kVisible = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
   // Guard: LearnedNumbers.SlowCranksShowNoJitter of kVisible
   static constexpr double kLargest = 0.02;  // [s]: more is no jitter
-  // Guard: LearnedNumbers.TheStampsJitterWithinTwoHundredSamples of kGain, kLargest
+  // Guard: LearnedNumbers.TheStampsJitterWithinTwoHundredSamples of kLargest
   double variance_;
   double last_{};  ///< innovation [rad]
   double information_{};

@@ -7,6 +7,7 @@
 
 #include "hammer_loads/crank/crank_sensor.h"
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/pipeline/refusal.h"
@@ -83,12 +84,12 @@ class CrankTrust {
   // Guard: PoseAndTrust.TwoStrokesInARowThatAreNotBelieved of kUnbelieved
   static constexpr double kRunUp = 1.0;  ///< [rad]: noise of readings is less, a blow's way more
   // Guard: PoseAndTrust.ACrankHasRunUpAfterARadian of kRunUp
-  static constexpr double kTurns = 5.0;  ///< over which it is looked where the crank is slow
+  static constexpr double kTurns = look_back::kTurnsToKnow;  ///< over which it is looked where the crank is slow
   /// [rad] after the blow, once five turns are like each other: 0.79 to 0.89 (medians) on the machines of the
   /// recordings that their drive keeps at work, whatever their rod, rock and boom, 0.75 to 0.93 on 58 drawn ones, half
   /// of them with a rod that gives.
   static constexpr double kSlowest = 0.83;
-  // Guard: PoseAndTrust.ACrankIsSlowWhereSuchAreWithinFiveTurns of kTurns, kSlowest
+  // Guard: PoseAndTrust.ACrankIsSlowWhereSuchAreWithinFiveTurns of kSlowest
   static constexpr double kLeastSwing = 0.03;  ///< of the mean speed: a tenth of what such machines have
   // Guard: PoseAndTrust.ACrankThatTurnsEvenlyIsSlowNowhere of kLeastSwing
   static constexpr double kWindow = 0.3;  ///< [rad] over which a speed is taken: jitter of stamps counts little

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/inline.h"
 #include "hammer_loads/util/square.h"
 
@@ -16,13 +17,8 @@ enum Part { kIntegral, kSmooth, kSlope, kCompliance, kBending = 6, kDamping = 9 
 constexpr double kWalks[] = {1e-3, 1e-1, 1e1, 1e3};
 constexpr double kWalksOfIntegral[] = {1e-5, 1e-3, 1e-1, 1e1};
 // Numerical: kWalks, kWalksOfIntegral
-constexpr double kSteadyBegin = 0.2, kSteadyMemory = 2.0;  // [s]: a turn or less; of the signal's mean, which is weight
-// Guard: DrivenSignal.JumpsWithTheLoadAndSaysHowFarItIsOff of kSteadyMemory
-// Guard: FollowerNumbers.ASignalsWeightIsItsMeanFromTheFirstTurnOn of kSteadyBegin
 constexpr double kBlowPart = 0.3;  // of a blow's impulse, which is known when the crank has turned on
 // Guard: FollowerNumbers.ABlowsImpulseIsDoubtedByAThird of kBlowPart
-constexpr double kMemoryOfReadings = 1000.0;  // readings
-// Guard: FollowerNumbers.ASignalsNoiseIsThatOfAThousandReadings of kMemoryOfReadings
 constexpr double kNoisiest = 3.0;  // times the first guess: a unit whose noise at rest was not seen
 // Guard: FollowerNumbers.WhatReadingsMissAtWorkIsMotionBeyondTheirNoise of kNoisiest
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
@@ -119,7 +115,7 @@ void DrivenSignal::begin(double reading, const Eigen::Vector3d& load) noexcept {
     c.P(kIntegral, kIntegral) = 1.0, c.P(kSmooth, kSmooth) = smooth;
     c.P(kSlope, kSlope) = smooth * square(kUnknownSlope);
   }
-  if (itself && steady_time_ == 0.0) steady_ = reading, steady_time_ = kSteadyBegin;
+  if (itself && steady_time_ == 0.0) steady_ = reading, steady_time_ = look_back::kTurn;
   begun_ = true;
 }
 
@@ -152,10 +148,10 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
   c.P -= gain.lazyProduct(gain.transpose());
   const double size = square(off) / S;
   if (!counts) {
-    c.quiet += (std::min(size, kFarOff * c.quiet) - c.quiet) / kMemoryOfReadings;
+    c.quiet += (std::min(size, kFarOff * c.quiet) - c.quiet) / look_back::kManyReadings;
     return;
   }
-  const double share = 1.0 / std::min(counted_ + 10.0, kMemoryOfReadings);
+  const double share = 1.0 / std::min(counted_ + 10.0, look_back::kManyReadings);
   c.variance = std::max(c.variance + share * (std::min(size, kFarOff * c.variance) - c.variance),
                         square(kLeastNoise * settings_.noise));
   c.log_spread += share * (std::log(S) - c.log_spread);
@@ -182,7 +178,7 @@ void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load
   for (Candidate& c : candidates_) update(reading, load, doubt, counts, c);
   if (settings_.reads == Reads::kItself)
     steady_ += std::min(1.0, step / steady_time_) * (readOf(best().x, load) - steady_);
-  steady_time_ = std::min(steady_time_ + step, kSteadyMemory);
+  steady_time_ = std::min(steady_time_ + step, look_back::kTenTurns);
   if (!counts) return;
   counted_ += 1.0;
   const auto lower = [](const Candidate& a, const Candidate& b) { return a.score() < b.score(); };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/pipeline/hull_speed.h"
 #include "hammer_loads/util/known_count.h"
 #include "hammer_loads/util/square.h"
@@ -10,14 +11,14 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kMemory = 0.5, kLost = 0.5;  // of each filter [s]; of an angle that winds or came back [rad]
-constexpr double kStill = 0.03;               // [rad]: after a gap, of a boom that vibrates where it was to be
-// Guard: PoseAndTrust.AJointThatWindsBeginsAnew of kMemory, kLost, kStill
-constexpr double kFast = 0.05, kRest = 2.0;  // [rad/s]: its acceleration hides the vibration; [s] to wait then
-// Guard: PoseAndTrust.AJointIsDrivenAboveARateAndForSomeTimeAfterIt of kFast, kRest
-constexpr double kStart = 1.0;    // [s] until a boom that is driven at the start is seen to be
+constexpr double kMemory = look_back::kSomeTurns;  // of each filter
+constexpr double kLost = 0.5;                      // of an angle that winds or came back [rad]
+constexpr double kStill = 0.03;                    // [rad]: after a gap, of a boom that vibrates where it was to be
+// Guard: PoseAndTrust.AJointThatWindsBeginsAnew of kLost, kStill
+constexpr double kFast = 0.05;  // [rad/s]: its acceleration hides the vibration
+// Guard: PoseAndTrust.AJointIsDrivenAboveARateAndForSomeTimeAfterIt of kFast
 constexpr double kSettles = 2.5;  // [s]: this long what was no slow motion is seen as an acceleration
-// Guard: PoseAndTrust.AJointCountsAsDrivenAtTheStart of kStart, kSettles
+// Guard: PoseAndTrust.AJointCountsAsDrivenAtTheStart of kSettles
 
 }  // namespace
 
@@ -30,7 +31,7 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
   const bool lost = is_first || !((measured.position - first_).cwiseAbs().maxCoeff() < (gap ? kStill : kLost));
   if (lost) {
     first_ = slow_ = slowest_ = last_ = measured.position;
-    unrest_ = kStart;
+    unrest_ = look_back::kFiveTurns;
     at_blow_.resize(0), of_turn_.resize(0), of_turn_before_.resize(0);
     return;
   }
@@ -43,7 +44,7 @@ void HeldPose::follow(const JointMotion& measured, double step) noexcept {
       last_[j] += part * (slowest_[j] - last_[j]);
     }
   });
-  unrest_ = slowRate().cwiseAbs().maxCoeff() > kFast ? kRest : std::max(0.0, unrest_ - step);
+  unrest_ = slowRate().cwiseAbs().maxCoeff() > kFast ? look_back::kTenTurns : std::max(0.0, unrest_ - step);
   settling_ = gap || isDriven() ? kSettles : std::max(0.0, settling_ - step);
   if (isDriven()) return;
   motion_.position = 3.0 * (first_ - slow_) + slowest_;

@@ -6,12 +6,12 @@
 #include <cstddef>
 #include <optional>
 
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/driven_signal.h"
 #include "hammer_loads/pipeline/hull_imu.h"
 #include "hammer_loads/pipeline/hull_mobility.h"
-#include "hammer_loads/pipeline/trust_times.h"
 #include "hammer_loads/pipeline/waiting_readings.h"
 #include "hammer_loads/pipeline/wrench_path.h"
 
@@ -67,7 +67,7 @@ class HullMotionFilter {
   StampedImuReading last_;
   WrenchPath::Instant at_last_;
   HullWrench beside_;
-  RunningMean<Eigen::Vector3d> load_square_{trust::kMemory, Eigen::Vector3d::Zero()};  ///< of the samples
+  RunningMean<Eigen::Vector3d> load_square_{look_back::kTenTurns, Eigen::Vector3d::Zero()};  ///< of the samples
   int readings_{};
   double greatest_load_{};
 };

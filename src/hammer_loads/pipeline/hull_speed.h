@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <optional>
 
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/pipeline/tip_velocity.h"
 #include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 
-constexpr double kLongestTurn = 1.0;  ///< from blow to blow [s]: over a longer one the hull's velocity has a mean
-// Guard: SensorBounds.OfTheHullsSpeedAtABlow of kLongestTurn
+/// From blow to blow [s]: over a longer one the hull's velocity has a mean.
+constexpr double kLongestTurn = look_back::kFiveTurns;
 
 /// The hull comes back each turn: from blow to blow its velocity has no trend, and no mean. That takes weight, offsets
 /// and the jump at the blow out of the integral of the unit's readings; what is left at both ends is the velocity at

@@ -50,9 +50,10 @@ std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& readin
   const std::optional<ImuRefusal> refusal = imu_.update(stamp, reading);
   if (!refusal) {
     const StampedImuReading taken = imu_.newest();
-    imu_trust_.follow(taken.reading.specific_force, taken.reading.rate, seconds(stamp - last));
+    const double step = seconds(stamp - last);
+    imu_trust_.follow(taken.reading.specific_force, taken.reading.rate, step);
     if (followsLoad()) filter_.add(taken);
-    if (weight_.pitch().known()) imu_trust_.judge(weight_.gravity());
+    if (weight_.pitch().known()) imu_trust_.judge(weight_.gravity(), step);
   }
   ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
   return refusal;

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/latch.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/together.h"
-#include "hammer_loads/pipeline/trust_times.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -25,22 +26,22 @@ class ImuTrust {
     varies_ = varies_ || (!same && mean_.count() > 0.0);
     force_ = force, rate_ = rate;
     if (!(step > 0.0)) return;
-    const double lasts = std::min(step, trust::kLongest);
+    const double lasts = std::min(step, look_back::kLongestReading);
     same_for_ = same ? std::min(same_for_ + lasts, kFrozen) : 0.0;
     mean_.add(force, lasts);
     const Eigen::Vector3d off = force - mean();
     power_.add(Eigen::Vector3d(square(off.x()), square(off.z()), square(rate.y())), lasts);
     if (step >= kSameInstant) turning_.add(square((rate.y() - last_rate_) / step), lasts), last_rate_ = rate.y();
     rate_square_.add(rate.squaredNorm(), lasts);
-    off_for_ = is_off_ ? std::min(off_for_ + lasts, kOffFor) : 0.0;
   }
-  /// weight: by the joint angles, in the plane of the hull.
-  void judge(const Gravity& weight) noexcept {
-    if (!isKnown()) return;
-    const double off_square = square(mean().x() + weight.x) + square(mean().z() + weight.z);
-    const double limit = (is_lost_ ? kBack : 1.0) * kMostPart;
-    is_off_ = off_square > square(limit) * (square(weight.x) + square(weight.z)) || turnsTooFast();
-    is_lost_ = isFrozen() || (is_off_ && off_for_ == kOffFor);
+  /// After it; weight: by the joint angles, in the plane of the hull. One damaged angle is no more than a part of the
+  /// mean.
+  void judge(const Gravity& weight, double step) noexcept {
+    if (step > 0.0)
+      off_.add({force_.x() + weight.x, force_.z() + weight.z}, std::min(step, look_back::kLongestReading));
+    if (off_.count() < look_back::kSomeTurns) return;
+    off_weight_.follow(off_.mean().norm() / std::hypot(weight.x, weight.z));
+    is_lost_ = isFrozen() || turnsTooFast() || off_weight_.isEngaged();
   }
   /// Mean squares of what the hull has beside such a weight, its plane's, and of what it turns: along x and z [m2/s4],
   /// rate [rad2/s2], its derivative [rad2/s4].
@@ -49,7 +50,9 @@ class ImuTrust {
     return {power.x() + square(mean().x() + weight.x), power.y() + square(mean().z() + weight.z), power.z(),
             turning_.mean()};
   }
-  bool isKnown() const noexcept { return mean_.count() >= trust::kLeastTime; }  ///< readings have come for long enough
+  bool isKnown() const noexcept {
+    return mean_.count() >= look_back::kSomeTurns;
+  }  ///< readings have come for long enough
   bool isLost() const noexcept { return is_lost_; }
   bool turnsTooFast() const noexcept { return rate_square_.mean() > square(kMostRate); }
   bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
@@ -57,20 +60,19 @@ class ImuTrust {
   double rate() const noexcept { return std::sqrt(rate_square_.mean()); }     ///< root mean square [rad/s]
 
  private:
-  static constexpr double kMostPart = 0.5, kBack = 0.8;  // of the weight; of that: trusted again
-  static constexpr double kMostRate = 3.0;               // [rad/s]
-  // Guard: SensorBounds.OfAnImusMean of kMostRate
-  static constexpr double kOffFor = 0.3;  // [s]: not because of one damaged joint angle
-  // Guard: SensorBounds.OfAnImusTimes of kMostPart, kBack, kOffFor
-  static constexpr double kFrozen = 0.2;  // of one reading again and again [s]
-  // Guard: SensorBounds.OfAFrozenImu of kFrozen
+  static constexpr double kMostPart = 0.5;  // of the weight
+  static constexpr double kMostRate = 3.0;  // [rad/s]
+  // Guard: SensorBounds.OfAnImusMean of kMostPart, kMostRate
+  static constexpr double kFrozen = look_back::kTurn;  // of one reading again and again
 
-  RunningMean<Eigen::Vector3d> mean_{trust::kMemory, Eigen::Vector3d::Zero()},
-      power_{trust::kMemory, Eigen::Vector3d::Zero()};
-  RunningMean<> rate_square_{trust::kMemory}, turning_{trust::kMemory};
-  double off_for_{}, same_for_{}, last_rate_{};
+  RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()},
+      power_{look_back::kTenTurns, Eigen::Vector3d::Zero()};
+  RunningMean<> rate_square_{look_back::kTenTurns}, turning_{look_back::kTenTurns};
+  RunningMean<Eigen::Vector2d> off_{look_back::kTenTurns, Eigen::Vector2d::Zero()};  ///< from the weight
+  Latch off_weight_{kMostPart};
+  double same_for_{}, last_rate_{};
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), rate_ = force_;  ///< of the last reading
-  bool varies_{}, is_off_{}, is_lost_{};
+  bool varies_{}, is_lost_{};
 };
 
 }  // namespace hammer_loads

@@ -13,10 +13,8 @@ namespace {
 
 constexpr double kLongestLine = 0.02;  // beyond a reading [s]
 constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
-constexpr double kGap = 0.1;           // between crank samples [s]: over it nothing was said that could be judged
 // Guard: MeasuredBoom.ALineGoesOnForTwentyMilliseconds of kLongestLine
 // Guard: MeasuredBoom.ReadingsThatDoNotFitMakeTheSwingDoubtful of kLag
-// Guard: MeasuredBoom.OverATenthOfASecondNothingWasForetold of kGap
 
 /// What seals take between oil and joint, as part of the load's torque on the joint [N m].
 struct Rubbing {
@@ -91,7 +89,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   const bool lag_known = identifier && identifier->knowsLag();
   const double lag = !lag_known && surprise > kSurprised ? square(kLag) * surprise : 0.0;
   const double no_lag = lag_known && surprise > kSurprised ? 1.0 : 0.0;
-  const bool gap = seconds(sample - sample_) > kGap;
+  const bool gap = seconds(sample - sample_) > look_back::kHalfTurn;  // nothing was said that could be judged
   StampNs oil_at{};
   JointVector oil_then;  // at that stamp; of most cylinders it is the same
   for (std::size_t i = 0; i < boom.cylinders().size(); ++i) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hammer_loads/boom/boom.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/pipeline/cylinder_pressures.h"
 #include "hammer_loads/util/constants.h"
@@ -42,8 +43,6 @@ class MeasuredTorques {
   const std::optional<Torque>& of(std::size_t cylinder) const noexcept { return torque_[cylinder]; }
 
  private:
-  static constexpr double kMostJudged = 200.0;  ///< readings
-  // Guard: MeasuredBoom.TwoHundredReadingsSayHowFarOneIsOff of kMostJudged
   static constexpr double kSwingTime = Vibration::kSwingTime;
   /// Mean over some 1 s, and mean square about it [N m, N2 m2].
   struct Swing {
@@ -65,12 +64,12 @@ class MeasuredTorques {
     double model{};                   ///< of weight, motion and oil then, by the vibration that has taken it [N m]
     double rest{}, last{}, before{};  ///< reading less model: as followed, of the last and the one before [N m]
     double gain{1.0};                 ///< of the last reading in it
-    RunningMean<> one_square{kMostJudged},
-        two_square{kMostJudged};  ///< mean squares of its change over one reading and over two [N2 m2]
-    double slope{};               ///< of the line through the last two [N m/s]
-    Swing swing, unexplained;     ///< of the torque; of reading less model
-    RunningMean<> oil_square{kMostJudged},
-        line_square{kMostJudged};  ///< mean of the squares by which each way was off at a reading [N2 m2]
+    RunningMean<> one_square{look_back::kReadings},
+        two_square{look_back::kReadings};  ///< mean squares of its change over one reading and over two [N2 m2]
+    double slope{};                        ///< of the line through the last two [N m/s]
+    Swing swing, unexplained;              ///< of the torque; of reading less model
+    RunningMean<> oil_square{look_back::kReadings},
+        line_square{look_back::kReadings};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
   static void followRest(Track& track, double rest) noexcept;

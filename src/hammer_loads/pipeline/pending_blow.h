@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/pipeline/blow_deviation.h"
 
@@ -58,7 +59,7 @@ class PendingBlow {
   bool isWithheld() const noexcept { return withheld_ > published_; }
   /// The crank has gone on far enough, or long enough.
   bool isMeasured(double time, const CrankPosition& now) const noexcept {
-    return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > kLongEnough);
+    return waiting_ && (difference(now, position_) > kFarEnough || time - time_ > look_back::kTurn);
   }
   /// The hull's own velocity at the striking point along z, at the blow [m/s].
   void setHullSpeed(double speed) noexcept { hull_speed_ = speed; }
@@ -75,9 +76,8 @@ class PendingBlow {
   }
 
  private:
-  static constexpr double kFarEnough = 1.0;   // [rad]: some 50 ms
-  static constexpr double kLongEnough = 0.2;  // [s]
-  // Guard: SensorBounds.OfABlowThatIsMeasured of kFarEnough, kLongEnough
+  static constexpr double kFarEnough = 1.0;  // [rad]: some 50 ms
+  // Guard: SensorBounds.OfABlowThatIsMeasured of kFarEnough
   bool waiting_{};
   double time_{};
   CrankPosition position_;

@@ -7,8 +7,8 @@
 #include "hammer_loads/boom/wrench.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/latch.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
-#include "hammer_loads/pipeline/trust_times.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -25,8 +25,8 @@ class PressureTrust {
   void follow(const Wrench& beyond, const Wrench& weight, double arm, double step) noexcept {
     if (!(step > 0.0) || !std::isfinite(beyond.force.x() + beyond.force.z() + beyond.torque.y())) return;
     mean_.add({beyond.force.x(), beyond.force.z(), beyond.torque.y() - arm * beyond.force.z()},
-              std::min(step, trust::kLongest));
-    if (mean_.count() < trust::kLeastTime) return;
+              std::min(step, look_back::kLongestReading));
+    if (mean_.count() < look_back::kSomeTurns) return;
     const double size = std::abs(along()) + std::sqrt(square(weight.force.x()) + square(weight.force.z()));
     const double off = std::max(std::abs(across()) / kAcross, std::abs(turning()) / (kTurning * arm)) / size;
     lost_.follow(off);
@@ -35,7 +35,7 @@ class PressureTrust {
   void followDelay(double delay, double misfit, double step) noexcept {
     late_left_ -= step;
     beyond_for_ = delay > kLongestHose && misfit > mismatch::kContradicts ? beyond_for_ + step : 0.0;
-    if (beyond_for_ > kDelayShown) late_by_ = delay, late_left_ = kUntilTriedAgain;
+    if (beyond_for_ > look_back::kHalfTurn) late_by_ = delay, late_left_ = kUntilTriedAgain;
   }
   bool isLate() const noexcept { return late_left_ > 0.0; }
   double lateBy() const noexcept { return late_by_; }  ///< as it was when it showed [s]
@@ -52,17 +52,16 @@ class PressureTrust {
  private:
   static constexpr double kAcross = 0.1, kTurning = 0.3;  // of the load along the tool and the weight; with its arm
   // Guard: SensorBounds.OfPressuresMean of kTurning
-  static constexpr double kBack = 0.5;  // of that: trusted again
-  // Guard: SensorBounds.OfPressuresTimes of kAcross, kBack
-  static constexpr double kLongestHose = 8e-3;                         ///< time constant [s]
-  static constexpr double kDelayShown = 0.1, kUntilTriedAgain = 60.0;  ///< [s]
-  // Guard: MistakenSensors.PressuresThatLagAreNamedAndNotUsed of kLongestHose, kDelayShown
+  // Guard: SensorBounds.OfPressuresTimes of kAcross
+  static constexpr double kLongestHose = 8e-3;      ///< time constant [s]
+  static constexpr double kUntilTriedAgain = 60.0;  ///< [s]
+  // Guard: MistakenSensors.PressuresThatLagAreNamedAndNotUsed of kLongestHose
   // Guard: FollowerNumbers.PressuresThatWereLateAreTriedAgainAfterAMinute of kUntilTriedAgain
 
   double turning() const noexcept { return mean_.mean()[2]; }
 
-  RunningMean<Eigen::Vector3d> mean_{trust::kMemory, Eigen::Vector3d::Zero()};
-  Latch lost_{1.0, kBack};
+  RunningMean<Eigen::Vector3d> mean_{look_back::kTenTurns, Eigen::Vector3d::Zero()};
+  Latch lost_{1.0};
   double beyond_for_{}, late_left_{}, late_by_{};  ///< [s]
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/estimation/look_back.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -16,12 +18,10 @@ constexpr double kStretch = 1.0;       // [rad]: shorter than a turn, so that mo
 constexpr double kLongestStep = 0.25;  // [s]
 constexpr double kRepeats = 0.2;       // relative change between steps that repeat each other
 // Guard: FollowerNumbers.StepsOfDegreesRepeatThemselves of kRepeats
-constexpr double kMoves = 1.0;     // [rad/s]: a slower angle says nothing of its unit
-constexpr double kSlowTime = 2.0;  // [s] of motion within the bound that calms who was too fast
-// Guard: FollowerNumbers.AUnitIsRightAgainAfterTwoSecondsOfMotion of kMoves, kSlowTime
-constexpr double kLeastTime = 0.2;  // [s] of suspicion: some bad samples are no unit
-constexpr int kEnough = 8;          // votes more for another unit than against
-// Guard: SensorBounds.OfUnits of kTolerance, kStretch, kLongestStep, kLeastTime, kEnough
+constexpr double kMoves = 1.0;  // [rad/s]: a slower angle says nothing of its unit
+// Guard: FollowerNumbers.AUnitIsRightAgainAfterTwoSecondsOfMotion of kMoves
+constexpr int kEnough = 8;  // votes more for another unit than against
+// Guard: SensorBounds.OfUnits of kTolerance, kStretch, kLongestStep, kEnough
 
 /// The closest one within the tolerance; ratio: turned over predicted.
 CrankUnit unitOf(double ratio) noexcept {
@@ -81,7 +81,7 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
   const bool too_fast = std::abs(rate) > max_speed_;
   if (too_fast && std::abs(rate) > kDegrees * max_speed_) return;  // no crank in degrees either
   slow_time_ = too_fast ? 0.0 : slow_time_ + dt;
-  if (looksWrong() && !too_fast && slow_time_ < kSlowTime) return;  // a hammer that stops is slow, too
+  if (looksWrong() && !too_fast && slow_time_ < look_back::kTenTurns) return;  // a hammer that stops is slow, too
   vote(bound_votes_, too_fast ? CrankUnit::kDegrees : CrankUnit::kRadians);
 }
 
@@ -89,7 +89,7 @@ void UnitCheck::compareWithBound(double dt, double rate) noexcept {
 void UnitCheck::vote(int& votes, CrankUnit unit) noexcept {
   const bool wrong = unit != CrankUnit::kRadians;
   votes = std::clamp(votes + (wrong ? 1 : -1), 0, kEnough);
-  if (wrong && votes == kEnough && suspected_for_ >= kLeastTime) recognised_ = unit;
+  if (wrong && votes == kEnough && suspected_for_ >= look_back::kTurn) recognised_ = unit;
   if (speed_votes_ == 0 && bound_votes_ == 0) recognised_ = CrankUnit::kRadians;
 }
 

@@ -1,0 +1,32 @@
+/// Over which time and how many readings an estimate looks back: one vocabulary.
+#pragma once
+
+namespace hammer_loads::look_back {
+
+// Turns of a hammer at work, which strikes some five times a second.
+constexpr double kHalfTurn = 0.1;  ///< [s]: a sensor that speaks has said something
+// Guard: MeasuredBoom.OverATenthOfASecondNothingWasForetold of kHalfTurn
+constexpr double kTurn = 0.2;  ///< [s]: all that a turn holds was there
+// Guard: SensorBounds.OfAFrozenImu of kTurn
+constexpr double kSomeTurns = 0.5;  ///< [s]: the least for a mean
+// Guard: VibrationNumbers.OfTheRocksMeanForce of kSomeTurns
+constexpr double kFiveTurns = 1.0;  ///< [s]: what was there in each of them is no accident
+// Guard: VibrationNumbers.OfTheUsualSwing of kFiveTurns
+constexpr double kTenTurns = 2.0;  ///< [s]: a mean in which one turn more or less does not show
+// Guard: SensorBounds.OfPressuresTimes of kSomeTurns, kTenTurns
+
+constexpr double kLongestReading = 0.05;  ///< [s]: that one counts for, over a gap as well
+// Guard: SensorBounds.OfPressuresTimes of kLongestReading
+
+// A variance by n values is known to sqrt(2/n).
+constexpr double kReadings = 200.0;  ///< to a tenth
+// Guard: MeasuredBoom.TwoHundredReadingsSayHowFarOneIsOff of kReadings
+constexpr double kManyReadings = 1000.0;  ///< to a twentieth
+// Guard: FollowerNumbers.ASignalsNoiseIsThatOfAThousandReadings of kManyReadings
+
+constexpr int kTurnsToKnow = 5;  ///< nothing is concluded before
+// Guard: SpeedTrust.KnowsAfterFiveTurns of kTurnsToKnow
+constexpr double kManyTurns = 300.0;  ///< a minute at work
+// Guard: ConstantErrors.AreThoseOfThreeHundredTurns of kManyTurns
+
+}  // namespace hammer_loads::look_back
