@@ -9,6 +9,13 @@
 
 namespace hammer_loads {
 
+/// Standard deviations of the logarithms of every mode's frequency (half of the bulk modulus's) and damping.
+struct OilDeviation {
+  double frequency{0.15};  ///< bulk modulus +-30 %: what a file can know of oil with air in it [-]
+  double damping{0.5};     ///< [-]
+  // Guard: BoomBounds.DeviationsWhereAFileGivesNone of frequency, damping
+};
+
 struct Mode {
   double omega{};  ///< natural frequency [rad/s], >= 0
   double zeta{};   ///< damping ratio [-], in [0, 1)

@@ -9,12 +9,9 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kFarOff = gate::kRare;          // standard deviations beyond which a reading counts less
-constexpr double kSurpriseShare = 3e-4;          // of one acceleration in the mean of squares: 1.7 s at 1 kHz
-constexpr double kSurprised = 5.0, kCalm = 1.8;  // of that mean, over what it should be
-// Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kSurpriseShare, kSurprised, kCalm
-constexpr double kOilSurpriseShare = 5e-4;  // of one oil torque: 1.3 s of three at 500 Hz
-// Guard: IdentifierNumbers.OfTheSurpriseByOilTorques of kOilSurpriseShare
+constexpr double kFarOff = gate::kRare;  // standard deviations beyond which a reading counts less
+constexpr double kSurpriseShare = 3e-4;  // of one reading in the mean of squares: 1.7 s at 1 kHz
+// Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kSurpriseShare
 constexpr double kWorstSurprise = square(gate::kImpossible);  // what one can add at most
 constexpr std::size_t kTogether = 3;                          // readings that are linear about one state
 
@@ -240,7 +237,9 @@ bool ModeIdentifier::mayYetExplain() const noexcept {
 }
 
 /// By the oil that was found.
-bool ModeIdentifier::isExplained() const noexcept { return explains_ && surprise_ < kCalm && learns_ && identified(); }
+bool ModeIdentifier::isExplained() const noexcept {
+  return explains_ && surprise_ < mismatch::kSeen && learns_ && identified();
+}
 
 /// S of a reading, by the variance of what is predicted; 0: it does not count.
 double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
@@ -248,15 +247,15 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
     if (explains_) {
-      explains_ = surprise_ < kSurprised || mayYetExplain();
-    } else if (surprise_ < kCalm) {
+      explains_ = surprise_ < mismatch::kContradicts || mayYetExplain();
+    } else if (surprise_ < mismatch::kSeen) {
       explains_ = true, seeks_ = false;
     }
     surprise_ +=
         kSurpriseShare * (std::min(kWorstSurprise, square(difference) / (S - square(reading.neglected))) - surprise_);
   }
   if (reading.of_oil)
-    oil_surprise_ += kOilSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - oil_surprise_);
+    oil_surprise_ += kSurpriseShare * (std::min(kWorstSurprise, square(difference) / S) - oil_surprise_);
   if (!(square(difference) > square(kFarOff) * S)) return S;
   return S * std::abs(difference) / (kFarOff * std::sqrt(S));
 }

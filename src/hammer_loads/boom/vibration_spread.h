@@ -4,16 +4,10 @@
 #include <algorithm>
 #include <array>
 
+#include "hammer_loads/boom/mode.h"
 #include "hammer_loads/boom/vibration.h"
 
 namespace hammer_loads {
-
-/// Standard deviations of the logarithms of every mode's frequency (half of the bulk modulus's) and damping.
-struct OilDeviation {
-  double frequency{0.15};  ///< bulk modulus +-30 %: what a file can know of oil with air in it [-]
-  double damping{0.5};     ///< [-]
-  // Guard: BoomBounds.DeviationsWhereAFileGivesNone of frequency, damping
-};
 
 /// Errors of the hammer's load that are independent of each other, one standard deviation each; they last, as that of
 /// an encoder's zero does. Columns: joint torques of each [N m].

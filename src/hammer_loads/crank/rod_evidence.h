@@ -55,10 +55,8 @@ class RodEvidence {
   static double shareOf(const RunningMean<>& place, double reading) noexcept {
     if (!(reading < kCoarsest) || !(place.count() > kEnough)) return 1.0;
     const double doubt = gate::kUsual * std::sqrt(2.0 / place.count());
-    return std::clamp((place.mean() - 1.0 + doubt) / kLeastExcess, 0.0, 1.0);
+    return std::clamp((place.mean() - 1.0 + doubt) / mismatch::kUnexplained, 0.0, 1.0);
   }
-  static constexpr double kLeastExcess = 3.0;  ///< above 1, of any rod whose ring readings show
-  // Guard: RodEvidence.ReadingsWithoutExcessLeaveARingLittleRoom of kLeastExcess
   static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;  ///< beside the blow
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
   static constexpr double kShare = 5.0;
