@@ -15,6 +15,7 @@ struct OilDeviation {
   double damping{0.5};     ///< [-]
   // Guard: BoomBounds.DeviationsWhereAFileGivesNone of frequency, damping
 };
+constexpr OilDeviation kUsualOil{};
 
 struct Mode {
   double omega{};  ///< natural frequency [rad/s], >= 0
