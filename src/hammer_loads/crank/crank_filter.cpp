@@ -12,8 +12,6 @@ namespace {
 
 using Belief = CrankBelief;
 
-constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
-// Guard: FilterTrouble.OfAPredictionThatIsWorthNothing of kDoubtfulAngle
 constexpr double kKick = 0.35;  // of the speed: what no torque changes between two samples
 // Guard: CrankFilterTest.AKickThatNoTorqueGivesIsAnOutlierHoweverSmall of kKick
 constexpr double kLeastInertia = 0.1;    // of the first guess: no drawing is further off
@@ -32,10 +30,7 @@ constexpr double kManySurprises = 2.5;    // of them: more than a supply's jolts
 // Guard: FilterTrouble.SurprisesAreForgottenWithinFiftySamples of kSurpriseLength, kManySurprises
 constexpr double kSlip = 3e-3;  // [s]: stamps that are off by so much, again and again alike
 // Guard: CrankFilterTest.ASpeedThatSaysNothingDoesNoHarm of kSlip
-constexpr double kForgetRestarts = 2.0;  // [s]
-// Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kOneSided, kForgetRestarts
-constexpr double kForgetDoubts = 30.0;  // [s]
-// Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kForgetDoubts
+// Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kOneSided
 
 }  // namespace
 
@@ -55,6 +50,10 @@ CrankFilter::CrankFilter(const ShaftModel& model, double drive_inertia, const Cr
   now_.most_inertia = kMostInertia * drive_inertia;
   now_.factor = settings.blow_factor;
   now_.covariance(Belief::kInertia, Belief::kInertia) = square(settings.initial_inertia_deviation);
+}
+
+void CrankFilter::countSurprise(bool surprised) noexcept {
+  surprises_ += (surprised ? 1.0 : 0.0) - surprises_ / kSurpriseLength;
 }
 
 double CrankFilter::mostSpeed() const noexcept { return kSoundSpeeds * settings_.max_speed; }
@@ -114,7 +113,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
   const double squared = square(innovation.value);
   const int side = innovation.exceeds(gate::kImpossible) ? (innovation.value > 0.0 ? 1 : -1) : 0;
   if (side != 0) unexplained_ = side * unexplained_ < 0 ? side : unexplained_ + side;
-  surprises_ += (side != 0 ? 1.0 : 0.0) - surprises_ / kSurpriseLength;
+  countSurprise(side != 0);
   const bool one_sided = std::abs(unexplained_) >= (isLost() ? kOneSidedLost : kOneSided);
   if (side != 0 && !one_sided && (surprises_ > kManySurprises || isLost())) {
     innovation.variance = squared / square(gate::kImpossible);  // with many like it on both sides: the stamps
@@ -167,7 +166,7 @@ Tracking CrankFilter::ignore(const CrankBelief& last, const Innovation& innovati
 std::optional<Tracking> CrankFilter::contradict(const CrankBelief& last, double dt, const Innovation& innovation,
                                                 const WeighedSample& sample) noexcept {
   const double most = kKick * std::abs(now_.state.speed) * dt + kKick * std::abs(outlier_);
-  surprises_ += 1.0 - surprises_ / kSurpriseLength;
+  countSurprise(true);
   const bool agrees = std::abs(CrankAngle::wrapToPi(innovation.value - outlier_)) < most;
   const bool confirmed = outlier_ != 0.0 && (agrees || surprises_ < kManySurprises);
   if (!confirmed) return ignore(last, innovation);
@@ -207,92 +206,6 @@ bool CrankFilter::correct(const CrankBelief& last, double dt, bool struck, const
   }
   doubtContact();
   return rival_.isThere() && rival_.choose(now_, mirrored_);
-}
-
-/// Steps (1) to (10) are those of model.md 6.
-Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
-  CrankBelief& last = earlier_[1 - before_];
-  last = now_;
-  lost_time_ = 0.0;
-  restart_load_ *= std::max(0.0, 1.0 - dt / kForgetRestarts);
-  doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
-  step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
-  bool struck = predict(dt, true, now_) > 0;  // (1)
-
-  WeighedSample sample = weighed(reading);  // (2)
-  const double read = sample.angle;
-  const bool begins = findLag();
-  double behind = takeOffLag(last, dt, struck, read, sample);
-  if (begins) return begin(sample);
-  Innovation innovation = sample.ofAngle(now_);
-  if (has_speed_) lost_time_ = timeLost(dt, innovation);
-  if (lost_time_ != 0.0) {
-    now_ = last;
-    dt += lost_time_;
-    struck = predict(dt, true, now_) > 0;
-    behind = takeOffLag(last, dt, struck, read, sample);
-    innovation = sample.ofAngle(now_);
-  }
-  if (has_speed_) {
-    const EncoderSlip::Step step = followSlip(dt, innovation, sample);
-    if (step == EncoderSlip::Step::kPerhaps) {  // else an outlier as any other
-      surprises_ += 1.0 - surprises_ / kSurpriseLength;
-      return ignore(last, innovation);
-    }
-    if (step == EncoderSlip::Step::kSlipped) innovation = sample.ofAngle(now_);
-  }
-  const double ratio = innovation.ratio();
-  const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
-  if (has_speed_ && !(deviation < kDoubtfulAngle)) {
-    if (!now_.isSound(mostSpeed())) now_ = last;
-    if (!(std::sqrt(speed_variance_) * dt < kDoubtfulAngle)) sample.speed.reset();  // the next would begin anew too
-    return begin(sample);
-  }
-  witness_.reset();
-  if (sample.speed) witness_.emplace().measured = *sample.speed;
-  if (has_speed_) {
-    if (!takesSpeeds()) sample.speed.reset();
-    fit_ = innovation.logLikelihood();
-    timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
-    sample.timing_variance = timing_.variance();
-    if (isSpeedOfOtherSide(sample)) {
-      sample.speed.reset();
-      witness_.reset();
-    }
-    const bool without_contact = ratio > square(kToolSeen) && rivalExplains(dt, sample);
-    const bool unlike =
-        !without_contact && (meetsTool(dt, innovation, sample) || meetsOtherBlow(dt, innovation, sample));
-    if (unlike) innovation = sample.ofAngle(now_);                           // (4)
-    if (!without_contact && isContradiction(dt, innovation) && !isLost()) {  // (5)
-      if (const auto result = contradict(last, dt, innovation, sample)) {
-        if (*result == Tracking::kOutlier) lost_time_ = 0.0;
-        return *result;
-      }
-      innovation = sample.ofAngle(now_);
-    }
-    if (!without_contact) learnFrom(innovation, ratio);  // (10)
-  }
-  sample_ = sample;
-  angle_fit_ = withoutRod(dt, innovation).logLikelihood();
-  rod_ = {};
-  before_ = 1 - before_;
-  before_load_ = load_;
-  before_hull_ = now_hull_;
-  step_ = dt;
-  usual_step_.add(dt);
-  angle_lag_.go(behind);
-  outlier_ = 0.0;
-  const bool revised = correct(last, dt, struck, innovation, sample, reading.angle);
-  if (!now_.isSound(mostSpeed())) {
-    now_ = last;
-    return begin(sample);
-  }
-  rememberBlow(last, dt);
-  doubtInertia(dt);
-  takeLoad();
-  judgeSpeed(dt, struck);
-  if (!std::exchange(has_speed_, true)) return Tracking::kRestarted;
-  return revised ? Tracking::kRevised : Tracking::kContinued;
 }
 
 }  // namespace hammer_loads

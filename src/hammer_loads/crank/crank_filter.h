@@ -148,6 +148,20 @@ class CrankFilter final : public CrankTracker {
   static constexpr double kJump = 0.5;  ///< [rad]: an innovation that no working machine makes between two samples
   // Guard: FilterTrouble.OfAReadingThatNoWorkingMachineGives of kJump
 
+  /// To a sample, and what that shows.
+  struct SampleStep {
+    const CrankBelief& last;  ///< at the one before
+    WeighedSample sample;
+    double dt{};      ///< [s]
+    bool struck{};    ///< a blow within it
+    double read{};    ///< angle before any lag is taken off [rad]
+    double behind{};  ///< takeOffLag() [rad]
+    Innovation innovation{};
+  };
+  std::optional<Tracking> followSensor(SampleStep& to) noexcept;
+  std::optional<Tracking> judge(SampleStep& to) noexcept;
+  Tracking take(const SampleStep& to, double reading) noexcept;
+  void countSurprise(bool surprised) noexcept;
   const CrankBelief& before() const noexcept { return earlier_[before_]; }
   /// The last two and the step between them.
   BetweenSamples lastStep() const noexcept {

@@ -9,7 +9,7 @@ class Latch {
   static constexpr double kReleased = 0.5;  ///< of the level at which it engages
   // Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kReleased
 
-  explicit constexpr Latch(double engages) noexcept : Latch(engages, kReleased * engages) {}
+  explicit Latch(double engages) noexcept : Latch(engages, kReleased * engages) {}
   /// releases <= engages.
   constexpr Latch(double engages, double releases) noexcept : engages_(engages), releases_(releases) {}
 

@@ -1,0 +1,124 @@
+// A sample: what is foretold, where the sensor was, whether it fits, what is learned.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/util/square.h"
+
+namespace hammer_loads {
+namespace {
+
+constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
+// Guard: FilterTrouble.OfAPredictionThatIsWorthNothing of kDoubtfulAngle
+constexpr double kForgetRestarts = 2.0;  // [s]
+// Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kForgetRestarts
+constexpr double kForgetDoubts = 30.0;  // [s]
+// Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kForgetDoubts
+
+}  // namespace
+
+/// Steps (1) to (10) are those of model.md 6.
+Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
+  CrankBelief& last = earlier_[1 - before_];
+  last = now_;
+  lost_time_ = 0.0;
+  restart_load_ *= std::max(0.0, 1.0 - dt / kForgetRestarts);
+  doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
+  step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
+  const bool struck = predict(dt, true, now_) > 0;    // (1)
+  SampleStep to{last, weighed(reading), dt, struck};  // (2)
+  to.read = to.sample.angle;
+  const bool begins = findLag();
+  to.behind = takeOffLag(last, dt, struck, to.read, to.sample);
+  if (begins) return begin(to.sample);
+  to.innovation = to.sample.ofAngle(now_);
+  if (has_speed_)
+    if (const auto result = followSensor(to)) return *result;
+  witness_.reset();
+  if (to.sample.speed) witness_.emplace().measured = *to.sample.speed;
+  if (has_speed_)
+    if (const auto result = judge(to)) return *result;
+  return take(to, reading.angle);
+}
+
+/// Time that the stamps lost, steps of an encoder. What ends the update: a slip that the next sample has to show too,
+/// or a prediction that is worth nothing.
+std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
+  lost_time_ = timeLost(to.dt, to.innovation);
+  if (lost_time_ != 0.0) {
+    now_ = to.last;
+    to.dt += lost_time_;
+    to.struck = predict(to.dt, true, now_) > 0;
+    to.behind = takeOffLag(to.last, to.dt, to.struck, to.read, to.sample);
+    to.innovation = to.sample.ofAngle(now_);
+  }
+  const EncoderSlip::Step step = followSlip(to.dt, to.innovation, to.sample);
+  if (step == EncoderSlip::Step::kPerhaps) {  // else an outlier as any other
+    countSurprise(true);
+    return ignore(to.last, to.innovation);
+  }
+  if (step == EncoderSlip::Step::kSlipped) to.innovation = to.sample.ofAngle(now_);
+  const double deviation = std::sqrt(now_.covariance(CrankBelief::kAngle, CrankBelief::kAngle));
+  if (deviation < kDoubtfulAngle) return std::nullopt;
+  if (!now_.isSound(mostSpeed())) now_ = to.last;
+  // The next would begin anew too.
+  if (!(std::sqrt(speed_variance_) * to.dt < kDoubtfulAngle)) to.sample.speed.reset();
+  return begin(to.sample);
+}
+
+/// Whether it fits, and what of it is another contact, another blow or no sample of this crank's, which ends the
+/// update.
+std::optional<Tracking> CrankFilter::judge(SampleStep& to) noexcept {
+  WeighedSample& sample = to.sample;
+  Innovation& innovation = to.innovation;
+  const double ratio = innovation.ratio();
+  if (!takesSpeeds()) sample.speed.reset();
+  fit_ = innovation.logLikelihood();
+  timing_.learn(innovation.value, innovation.total, now_.state.speed);  // (3)
+  sample.timing_variance = timing_.variance();
+  if (isSpeedOfOtherSide(sample)) {
+    sample.speed.reset();
+    witness_.reset();
+  }
+  const bool without_contact = ratio > square(kToolSeen) && rivalExplains(to.dt, sample);
+  if (without_contact) return std::nullopt;
+  if (meetsTool(to.dt, innovation, sample) || meetsOtherBlow(to.dt, innovation, sample))
+    innovation = sample.ofAngle(now_);                    // (4)
+  if (isContradiction(to.dt, innovation) && !isLost()) {  // (5)
+    if (const auto result = contradict(to.last, to.dt, innovation, sample)) {
+      if (*result == Tracking::kOutlier) lost_time_ = 0.0;
+      return *result;
+    }
+    innovation = sample.ofAngle(now_);
+  }
+  learnFrom(innovation, ratio);  // (10)
+  return std::nullopt;
+}
+
+/// reading: of the encoder, as it came [rad].
+Tracking CrankFilter::take(const SampleStep& to, double reading) noexcept {
+  sample_ = to.sample;
+  angle_fit_ = withoutRod(to.dt, to.innovation).logLikelihood();
+  rod_ = {};
+  before_ = 1 - before_;
+  before_load_ = load_;
+  before_hull_ = now_hull_;
+  step_ = to.dt;
+  usual_step_.add(to.dt);
+  angle_lag_.go(to.behind);
+  outlier_ = 0.0;
+  const bool revised = correct(to.last, to.dt, to.struck, to.innovation, to.sample, reading);
+  if (!now_.isSound(mostSpeed())) {
+    now_ = to.last;
+    return begin(to.sample);
+  }
+  rememberBlow(to.last, to.dt);
+  doubtInertia(to.dt);
+  takeLoad();
+  judgeSpeed(to.dt, to.struck);
+  if (!std::exchange(has_speed_, true)) return Tracking::kRestarted;
+  return revised ? Tracking::kRevised : Tracking::kContinued;
+}
+
+}  // namespace hammer_loads
