@@ -40,5 +40,29 @@ TEST(Guards, AreTests) {
   for (const std::string& guard : guards) EXPECT_EQ(tests.count(guard), 1U) << guard;
 }
 
+/// scripts/sensitivity reads them from the environment, which no function that is constexpr can.
+TEST(Guards, AreOfConstantsThatCanBeChanged) {
+  const std::regex guard("// (?:Guard|Limit): [^\\n]* of ([\\w, ]+)"), name("k[A-Z]\\w*");
+  const std::regex function("constexpr\\s+[\\w:<>*& ]*\\w\\([^)]*\\)[^;{]*\\{[^}]*\\}");
+  std::size_t functions = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kGuardRoot / "src")) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string text = wholeText(entry.path());
+    std::set<std::string> guarded;
+    for (std::sregex_iterator found(text.begin(), text.end(), guard), end; found != end; ++found) {
+      const std::string names = (*found)[1];
+      for (std::sregex_iterator one(names.begin(), names.end(), name); one != end; ++one) guarded.insert(one->str());
+    }
+    if (guarded.empty()) continue;
+    for (std::sregex_iterator found(text.begin(), text.end(), function), end; found != end; ++found) {
+      const std::string of = found->str();
+      ++functions;
+      for (std::sregex_iterator one(of.begin(), of.end(), name); one != end; ++one)
+        EXPECT_EQ(guarded.count(one->str()), 0U) << entry.path() << ": " << of;
+    }
+  }
+  EXPECT_GT(functions, 2U);
+}
+
 }  // namespace
 }  // namespace hammer_loads

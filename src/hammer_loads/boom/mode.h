@@ -9,13 +9,14 @@
 
 namespace hammer_loads {
 
-/// Standard deviations of the logarithms of every mode's frequency (half of the bulk modulus's) and damping.
+constexpr double kFrequencyDeviation = 0.15;  // bulk modulus +-30 %: what a file can know of oil with air in it
+constexpr double kDampingDeviation = 0.5;
+// Guard: BoomBounds.DeviationsWhereAFileGivesNone of kFrequencyDeviation, kDampingDeviation
+
+/// Standard deviations of the logarithms of every mode's frequency (half of the bulk modulus's) and damping [-].
 struct OilDeviation {
-  double frequency{0.15};  ///< bulk modulus +-30 %: what a file can know of oil with air in it [-]
-  double damping{0.5};     ///< [-]
-  // Guard: BoomBounds.DeviationsWhereAFileGivesNone of frequency, damping
+  double frequency{kFrequencyDeviation}, damping{kDampingDeviation};
 };
-constexpr OilDeviation kUsualOil{};
 
 struct Mode {
   double omega{};  ///< natural frequency [rad/s], >= 0

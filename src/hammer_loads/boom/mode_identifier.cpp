@@ -9,7 +9,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kCommonDeviation = 2.0 * kUsualOil.frequency;  // of log stiffness, of all cylinders together
+constexpr double kCommonDeviation = 2.0 * kFrequencyDeviation;  // of log stiffness, of all cylinders together
 constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that warms up, a pose that changes
 constexpr double kDampingWalk = 0.01;  // of log damping in a second
 // Guard: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk

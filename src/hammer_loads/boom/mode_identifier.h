@@ -51,7 +51,6 @@ class ModeIdentifier {
   static constexpr int kMaxChannels = 12;
   static constexpr double kMostOil = 2.0;  ///< of log stiffness that is found: a frequency that is e times that given
   // Guard: IdentifierNumbers.OfTheOilsBounds of kMostOil
-  static constexpr double kDampingDeviation = kUsualOil.damping;  ///< of its logarithm at the start
   /// What an identified mode still lacks of log frequency and log damping: the links move in the hull, and bend.
   static constexpr double kLeftFrequency = 0.005, kLeftDamping = 0.1;
   // Guard: IdentifierNumbers.OfWhatAModesShapeLacks of kLeftFrequency, kLeftDamping

@@ -9,7 +9,7 @@ namespace hammer_loads {
 int modeOfOddDamping(const Boom& boom) noexcept {
   const double given = boom.parameters().vibration.damping_ratio;
   int mode = -1;
-  double farthest = gate::kUsual * ModeIdentifier::kDampingDeviation;
+  double farthest = gate::kUsual * kDampingDeviation;
   for (int k = 0; k < boom.vibration().modes().count; ++k) {
     const double off = std::abs(std::log(boom.vibration().mode(k).zeta / given));
     if (off > farthest) mode = k, farthest = off;

@@ -74,6 +74,20 @@ void MeasuredTorques::take(Track& track, StampNs stamp, double torque, double mo
   track.stamp = stamp, track.torque = torque, track.model = model;
 }
 
+MeasuredTorques::Doubt MeasuredTorques::doubtOf(const Vibration& vibration, double stamp_noise) noexcept {
+  const auto& identifier = vibration.identifier();
+  Doubt doubt;
+  doubt.stamp_noise = stamp_noise;
+  if (!identifier) return doubt;
+  doubt.delay = identifier->delay(Clock::kPressures);
+  doubt.delay_deviation = identifier->delayDeviation(Clock::kPressures);
+  const double surprise = identifier->oilSurprise();
+  // Where it is found how late stamps are, what does not fit is no lag.
+  doubt.misfit = surprise > kSurprised && identifier->knowsLag();
+  if (surprise > kSurprised && !doubt.misfit) doubt.lag = square(kLag) * surprise;
+  return doubt;
+}
+
 void MeasuredTorques::follow(const Boom& boom, const JointVector& position, const JointVector& steady,
                              const JointVector& motion, const Instant& instant,
                              const CylinderPressures& pressures) noexcept {
@@ -81,14 +95,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
   Vibration::OilTorque model = boom.vibration().oilTorque();
   model.now += steady;
   if (model_.now.size() != model.now.size()) model_ = model, read_ = model.now, sample_ = sample;
-  const auto& identifier = boom.vibration().identifier();
-  const double surprise = identifier ? identifier->oilSurprise() : 0.0;
-  const double delay = identifier ? identifier->delay(Clock::kPressures) : 0.0;
-  const double delay_deviation = identifier ? identifier->delayDeviation(Clock::kPressures) : 0.0;
-  // Where it is found how late stamps are, what does not fit is no lag.
-  const bool lag_known = identifier && identifier->knowsLag();
-  const double lag = !lag_known && surprise > kSurprised ? square(kLag) * surprise : 0.0;
-  const double no_lag = lag_known && surprise > kSurprised ? 1.0 : 0.0;
+  const Doubt doubt = doubtOf(boom.vibration(), instant.noise);
   const bool gap = seconds(sample - sample_) > look_back::kHalfTurn;  // nothing was said that could be judged
   StampNs oil_at{};
   JointVector oil_then;  // at that stamp; of most cylinders it is the same
@@ -109,36 +116,50 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
       const double before = read_[j] + seconds(stamp - sample_) * model_.rate[j];
       if (oil_then.size() == 0 || stamp != oil_at)
         oil_then = boom.vibration().oilTorqueRead(seconds(stamp - sample)), oil_at = stamp;
-      const double now = oil_then[j] + steady[j];
       const double torque = -forceOf(cylinder, *read) * at.arm;
       if (gap || !track.goes_on) track.stamp = stamp, track.slope = 0.0;
-      take(track, stamp, torque, now, before);
+      take(track, stamp, torque, oil_then[j] + steady[j], before);
       track.readings = pressures.count(i);
       track.goes_on = true;
     }
-    const double age = std::min(seconds(sample - stamp) + delay, kLongestLine);
-    const double line_square = longerLine(delay, track.interval) * track.line_square.mean();
-    const bool by_oil = track.oil_square.mean() <= line_square;
-    // What does not fit has a swing of its own then: a hose's, not the load's.
-    const double rest = no_lag > 0.0 ? track.unexplained.mean.mean() : track.rest;
-    const double value = by_oil ? rest + model.now[j] : track.torque + age * track.slope;
-    const double lost = forgottenPart(overdue(seconds(sample - stamp), track.interval));
-    // A change has the noise of two readings, what is smoothed that of one or less.
-    const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
-    const double off =
-        std::sqrt(of_change * std::min(track.oil_square.mean(), line_square) +
-                  (lag + 2.0 * lost) * track.swing.square.mean() + no_lag * track.unexplained.square.mean() +
-                  (square(delay_deviation) + square(instant.noise)) * square(model.rate[j]));
-    const CylinderParameters& p = cylinder.parameters();
-    const Rubbing seals = rubbing(sealsOf(cylinder, at.arm, value, motion[j]), boom.vibration().velocity()[j]);
-    const double offset = square(at.arm * cylinder.boreArea() * p.pressure_offset_deviation);
-    torque_[i] = Torque{
-        value + seals.torque, off,
-        std::sqrt(square(seals.deviation) + offset + (identifier ? square(identifier->dampingBesideOil(i)) : 0.0)),
-        std::sqrt(square(seals.lasting) + offset), at};
+    torque_[i] = torqueNow(track, seconds(sample - stamp), {model.now[j], model.rate[j]}, doubt);
+    addConstants(boom, i, motion[j], *torque_[i]);
   }
-  read_ = delay != 0.0 ? JointVector(boom.vibration().oilTorqueRead(0.0) + steady) : model.now;
+  read_ = doubt.delay != 0.0 ? JointVector(boom.vibration().oilTorqueRead(0.0) + steady) : model.now;
   model_ = model, sample_ = sample;
+}
+
+/// age: of the last reading [s].
+MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double age, const Model& model,
+                                                   const Doubt& doubt) noexcept {
+  const double ahead = std::min(age + doubt.delay, kLongestLine);
+  const double line_square = longerLine(doubt.delay, track.interval) * track.line_square.mean();
+  const bool by_oil = track.oil_square.mean() <= line_square;
+  // What does not fit has a swing of its own then: a hose's, not the load's.
+  const double rest = doubt.misfit ? track.unexplained.mean.mean() : track.rest;
+  const double value = by_oil ? rest + model.now : track.torque + ahead * track.slope;
+  const double lost = forgottenPart(overdue(age, track.interval));
+  // A change has the noise of two readings, what is smoothed that of one or less.
+  const double of_change = by_oil ? 0.5 * (1.0 + track.gain) : 1.0;
+  const double off = std::sqrt(of_change * std::min(track.oil_square.mean(), line_square) +
+                               (doubt.lag + 2.0 * lost) * track.swing.square.mean() +
+                               (doubt.misfit ? track.unexplained.square.mean() : 0.0) +
+                               (square(doubt.delay_deviation) + square(doubt.stamp_noise)) * square(model.rate));
+  return {value, off, 0.0, 0.0, track.at};
+}
+
+/// What seals take, and what that and the sensors' offsets leave in doubt. motion: of the joint [rad/s].
+void MeasuredTorques::addConstants(const Boom& boom, std::size_t i, double motion, Torque& torque) noexcept {
+  const Cylinder& cylinder = boom.cylinders()[i];
+  const double arm = torque.at.arm;
+  const Rubbing seals =
+      rubbing(sealsOf(cylinder, arm, torque.value, motion), boom.vibration().velocity()[cylinder.joint()]);
+  const double offset = square(arm * cylinder.boreArea() * cylinder.parameters().pressure_offset_deviation);
+  const auto& identifier = boom.vibration().identifier();
+  torque.value += seals.torque;
+  torque.constant =
+      std::sqrt(square(seals.deviation) + offset + (identifier ? square(identifier->dampingBesideOil(i)) : 0.0));
+  torque.lasting = std::sqrt(square(seals.lasting) + offset);
 }
 
 }  // namespace hammer_loads

@@ -71,6 +71,20 @@ class MeasuredTorques {
     RunningMean<> oil_square{look_back::kReadings},
         line_square{look_back::kReadings};  ///< mean of the squares by which each way was off at a reading [N2 m2]
   };
+  /// What is open of the pressures' stamps.
+  struct Doubt {
+    double delay{}, delay_deviation{};  ///< [s]
+    double stamp_noise{};               ///< of the sample [s]
+    double lag{};   ///< of the swing's mean square: how late readings that do not fit are is not known
+    bool misfit{};  ///< it is, and they do not fit
+  };
+  /// Of weight, motion and oil at the sample [N m], and by the second.
+  struct Model {
+    double now{}, rate{};
+  };
+  static Doubt doubtOf(const Vibration& vibration, double stamp_noise) noexcept;
+  static Torque torqueNow(const Track& track, double age, const Model& model, const Doubt& doubt) noexcept;
+  static void addConstants(const Boom& boom, std::size_t cylinder, double motion, Torque& torque) noexcept;
   static void take(Track& track, StampNs stamp, double torque, double model, double model_before) noexcept;
   static void followRest(Track& track, double rest) noexcept;
 

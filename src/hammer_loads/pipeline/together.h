@@ -10,6 +10,6 @@ constexpr double kSameInstant = 1e-4;
 // Guard: HullImu.NoTwoReadingsThatWaitedForABusMakeAnAcceleration of kSameInstant
 
 /// Of stamps of one sensor, one after the other: their difference is the bus's, and no rate can be found over it.
-constexpr bool cameTogether(StampNs before, StampNs after) noexcept { return seconds(after - before) < kSameInstant; }
+inline bool cameTogether(StampNs before, StampNs after) noexcept { return seconds(after - before) < kSameInstant; }
 
 }  // namespace hammer_loads
