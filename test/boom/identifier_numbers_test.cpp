@@ -132,10 +132,10 @@ TEST_F(IdentifierNumbers, OfAccelerationsThatNothingExplains) {
     reading.value = samples % 2 == 0 ? 1e5 : -1e5;
     found.observe(&reading, 1);
   }
-  expectAround(samples, std::log(24.0 / 21.0) / 3e-4);
+  expectAround(samples, std::log(24.0 / 20.0) / 3e-4);
   reading.value = 0.0;
   for (; !found.explains() && again < 10000; ++again) found.observe(&reading, 1);
-  expectAround(again, std::log(4.0 / 2.0) / 3e-4);
+  expectAround(again, std::log(5.0 / 1.8) / 3e-4);
 }
 
 }  // namespace

@@ -11,7 +11,9 @@ namespace {
 
 constexpr double kFarOff = gate::kRare;  // standard deviations beyond which a reading counts less
 constexpr double kSurpriseShare = 3e-4;  // of one reading in the mean of squares: 1.7 s at 1 kHz
-// Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kSurpriseShare
+constexpr double kSurprised = 5.0;       // of that mean: at 4, one pose of eight on rock took the wrong oil for its own
+constexpr double kCalm = 1.8;            // likewise
+// Guard: IdentifierNumbers.OfAccelerationsThatNothingExplains of kSurpriseShare, kSurprised, kCalm
 constexpr double kWorstSurprise = square(gate::kImpossible);  // what one can add at most
 constexpr std::size_t kTogether = 3;                          // readings that are linear about one state
 
@@ -237,9 +239,7 @@ bool ModeIdentifier::mayYetExplain() const noexcept {
 }
 
 /// By the oil that was found.
-bool ModeIdentifier::isExplained() const noexcept {
-  return explains_ && surprise_ < mismatch::kSeen && learns_ && identified();
-}
+bool ModeIdentifier::isExplained() const noexcept { return explains_ && surprise_ < kCalm && learns_ && identified(); }
 
 /// S of a reading, by the variance of what is predicted; 0: it does not count.
 double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, double difference) noexcept {
@@ -247,8 +247,8 @@ double ModeIdentifier::weigh(const VibrationReading& reading, double predicted, 
   if (!(S > 0.0) || !std::isfinite(S) || !std::isfinite(difference)) return 0.0;
   if (!reading.of_oil && reading.acceleration.squaredNorm() > 0.0) {
     if (explains_) {
-      explains_ = surprise_ < mismatch::kContradicts || mayYetExplain();
-    } else if (surprise_ < mismatch::kSeen) {
+      explains_ = surprise_ < kSurprised || mayYetExplain();
+    } else if (surprise_ < kCalm) {
       explains_ = true, seeks_ = false;
     }
     surprise_ +=
