@@ -19,15 +19,26 @@ std::string wholeText(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// use(path, text) of each file of C++ below a folder.
+template <typename Use>
+void forEachSource(const fs::path& folder, const Use& use) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
+      use(entry.path(), wholeText(entry.path()));
+}
+
+/// use(match) of each in a text.
+template <typename Use>
+void forEachMatch(const std::string& text, const std::regex& pattern, const Use& use) {
+  for (std::sregex_iterator found(text.begin(), text.end(), pattern), end; found != end; ++found) use(*found);
+}
+
 /// Matches of the files below a folder, the groups joined by a dot.
 std::set<std::string> namesBelow(const fs::path& folder, const std::regex& pattern) {
   std::set<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-    const std::string text = wholeText(entry.path());
-    for (std::sregex_iterator found(text.begin(), text.end(), pattern), end; found != end; ++found)
-      names.insert((*found)[1].str() + "." + (*found)[2].str());
-  }
+  forEachSource(folder, [&](const fs::path&, const std::string& text) {
+    forEachMatch(text, pattern, [&](const std::smatch& found) { names.insert(found[1].str() + "." + found[2].str()); });
+  });
   return names;
 }
 
@@ -45,22 +56,19 @@ TEST(Guards, AreOfConstantsThatCanBeChanged) {
   const std::regex guard("// (?:Guard|Limit): [^\\n]* of ([\\w, ]+)"), name("k[A-Z]\\w*");
   const std::regex function("constexpr\\s+[\\w:<>*& ]*\\w\\([^)]*\\)[^;{]*\\{[^}]*\\}");
   std::size_t functions = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(kGuardRoot / "src")) {
-    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-    const std::string text = wholeText(entry.path());
+  forEachSource(kGuardRoot / "src", [&](const fs::path& path, const std::string& text) {
     std::set<std::string> guarded;
-    for (std::sregex_iterator found(text.begin(), text.end(), guard), end; found != end; ++found) {
-      const std::string names = (*found)[1];
-      for (std::sregex_iterator one(names.begin(), names.end(), name); one != end; ++one) guarded.insert(one->str());
-    }
-    if (guarded.empty()) continue;
-    for (std::sregex_iterator found(text.begin(), text.end(), function), end; found != end; ++found) {
-      const std::string of = found->str();
+    forEachMatch(text, guard, [&](const std::smatch& found) {
+      forEachMatch(found[1].str(), name, [&](const std::smatch& one) { guarded.insert(one.str()); });
+    });
+    if (guarded.empty()) return;
+    forEachMatch(text, function, [&](const std::smatch& found) {
       ++functions;
-      for (std::sregex_iterator one(of.begin(), of.end(), name); one != end; ++one)
-        EXPECT_EQ(guarded.count(one->str()), 0U) << entry.path() << ": " << of;
-    }
-  }
+      forEachMatch(found.str(), name, [&](const std::smatch& one) {
+        EXPECT_EQ(guarded.count(one.str()), 0U) << path << ": " << found.str();
+      });
+    });
+  });
   EXPECT_GT(functions, 2U);
 }
 

@@ -50,9 +50,8 @@ class ImuTrust {
     return {power.x() + square(mean().x() + weight.x), power.y() + square(mean().z() + weight.z), power.z(),
             turning_.mean()};
   }
-  bool isKnown() const noexcept {
-    return mean_.count() >= look_back::kSomeTurns;
-  }  ///< readings have come for long enough
+  /// Readings have come for long enough.
+  bool isKnown() const noexcept { return mean_.count() >= look_back::kSomeTurns; }
   bool isLost() const noexcept { return is_lost_; }
   bool turnsTooFast() const noexcept { return rate_square_.mean() > square(kMostRate); }
   bool isFrozen() const noexcept { return varies_ && same_for_ == kFrozen; }  ///< no other reading comes any more
