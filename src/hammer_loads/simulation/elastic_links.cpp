@@ -56,7 +56,7 @@ RodStretch ElasticLinks::rodBetween(Place b, Place c) const noexcept {
 ElasticLinks::View ElasticLinks::at(const TwoBodies& angle, const TwoBodies& speed) const noexcept {
   View view;
   const Place out = onCircle(1.0, angle[0]), b = p_.lengths.crank * out;
-  view.rocker = onCircle(1.0, angle[1]);
+  view.rocker = rockerAt(angle[1]);
   const Place c = p_.lengths.rocker * view.rocker;
   view.rod = rodBetween(b, c);
   const double ww = speed[0] * speed[0], vv = speed[1] * speed[1], ls = p_.rocker_com_distance;
@@ -141,9 +141,6 @@ Load ElasticLinks::load(const View& view, const TwoBodies& acceleration, Gravity
   return {-(cos_a_ * force.real() + sin_a_ * force.imag()), -sin_a_ * force.real() + cos_a_ * force.imag() + tool_force,
           torque};
 }
-
-double ElasticLinks::depth(double rocker_angle) const noexcept { return depth(onCircle(1.0, rocker_angle)); }
-double ElasticLinks::depthSlope(double rocker_angle) const noexcept { return depthSlope(onCircle(1.0, rocker_angle)); }
 
 double ElasticLinks::rockerAngle(double crank_angle) const noexcept {
   const Place to_b = onCircle(p_.lengths.crank, crank_angle) - p_.lengths.pivot_distance;

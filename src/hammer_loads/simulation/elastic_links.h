@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <complex>
 
 #include "hammer_loads/linkage/hull_motion.h"
@@ -70,11 +71,11 @@ class ElasticLinks {
   TwoBodies inertiaOfSpeeds(const View& view) const noexcept;
   /// Momentum theorem; tool_force [N]: along +z at the striking point, from outside of hammer and hull.
   Load load(const View& view, const TwoBodies& acceleration, Gravity gravity, double tool_force) const noexcept;
+  /// Cosine and sine of the rocker's angle, as in a View.
+  static std::complex<double> rockerAt(double angle) noexcept { return {std::cos(angle), std::sin(angle)}; }
   /// Depth of the striking point below its place at the dead centre [m] and what the rocker's angle does to it.
   double depth(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.imag(); }
   double depthSlope(std::complex<double> rocker) const noexcept { return -p_.striking_distance * rocker.real(); }
-  double depth(double rocker_angle) const noexcept;
-  double depthSlope(double rocker_angle) const noexcept;
   /// Of a rod that is as long as drawn, on the branch of the working turn, crank angle in [0, 2 pi] [rad].
   double rockerAngle(double crank_angle) const noexcept;
 

@@ -45,7 +45,8 @@ Gravity ElasticMachine::gravity(double time) const noexcept {
 }
 
 StruckTool::Striker ElasticMachine::striker(const State& y) const noexcept {
-  return {links_.depth(y[kRocker]), links_.depthSlope(y[kRocker]) * y[kRockerSpeed]};
+  const std::complex<double> rocker = ElasticLinks::rockerAt(y[kRocker]);
+  return {links_.depth(rocker), links_.depthSlope(rocker) * y[kRockerSpeed]};
 }
 
 ElasticMachine::Acting ElasticMachine::acting(const State& y, double time) const noexcept {

@@ -26,7 +26,8 @@ HammerOnBoom::Rocker HammerOnBoom::rockerAt(const State& s) const {
 }
 
 StruckTool::Striker HammerOnBoom::striker(const State& s) const {
-  return {elastic_->links.depth(s.x[4]), elastic_->links.depthSlope(s.x[4]) * s.v[4]};
+  const std::complex<double> rocker = ElasticLinks::rockerAt(s.x[4]);
+  return {elastic_->links.depth(rocker), elastic_->links.depthSlope(rocker) * s.v[4]};
 }
 
 double HammerOnBoom::gravityDown(const State& s) const { return machine_.gravity * std::cos(hullAngle(s)); }
@@ -45,7 +46,7 @@ HammerOnBoom::Coordinates HammerOnBoom::toolLift(const State& s) const {
   const PlanePoint place = strikingPlace(s), down = std::conj(turnedBy(hullAngle(s)));
   Coordinates lift = Coordinates::Zero();
   for (std::size_t k = 0; k < turns(); ++k) lift[turnIndex(k)] = (-kI * (place - turnPlace(s, k)) * down).imag();
-  lift[4] = -elastic_->links.depthSlope(s.x[4]);
+  lift[4] = -elastic_->links.depthSlope(ElasticLinks::rockerAt(s.x[4]));
   return lift;
 }
 
@@ -58,7 +59,7 @@ HammerOnBoom::Coordinates HammerOnBoom::elasticForce(const State& s) const {
   Coordinates Q = Coordinates::Zero();
   if (answer.tool > 0.0) Q = answer.tool * toolLift(s);
   Q[3] -= tension * rod.slope[0];
-  Q[4] -= tension * rod.slope[1] + answer.retainer * elastic_->links.depthSlope(s.x[4]);
+  Q[4] -= tension * rod.slope[1] + answer.retainer * elastic_->links.depthSlope(ElasticLinks::rockerAt(s.x[4]));
   return Q;
 }
 
