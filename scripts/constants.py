@@ -2,6 +2,8 @@
 
 Each is of one class, by what is to be asked of it:
   tuned      an estimate depends on it; a test notices half or double: // Guard: Suite.Test of kName
+  prior      what is said of an unknown before any reading shows it: its mean, deviation, walk or bounds; a test notices
+             half or double: // Prior: Suite.Test of kName
   limit      beyond it a reading or a file is refused, far from all that a machine has, so that no estimate depends on
              it; its test says where it refuses: // Limit: Suite.Test of kName
   numerical  a step, tolerance or rounding of the arithmetic: results are the same with half and with double, so that
@@ -21,7 +23,7 @@ _STATEMENT = re.compile(
     r"(k[A-Z]\w*[^;()]*?(?:\([^;]*?\)[^;()]*?)*);", re.M)
 _DEFAULT = re.compile(r"^([ ]+)(double|int|std::size_t) ([a-z][a-z0-9_]*[a-z0-9])\{([^{};\n]+)\};", re.M)
 _NAMES = r"((?:\w+(?:,\s+(?://+ )?)?)+)"
-_GUARD = re.compile(r"// (Guard|Limit): ([\w/]+\.[\w/]+) of " + _NAMES)
+_GUARD = re.compile(r"// (Guard|Limit|Prior): ([\w/]+\.[\w/]+) of " + _NAMES)
 _NUMERICAL = re.compile(r"// Numerical: " + _NAMES)
 _MATHEMATICS = {0.5, 1.0, 2.0}
 
@@ -98,7 +100,7 @@ def constants_of(path):
     named = lambda names: [constant for constant in found if constant.name in re.findall(r"\w+", names)]
     for word, guard, names in _GUARD.findall(text):
         for constant in named(names):
-            constant.guard, constant.kind = guard, "tuned" if word == "Guard" else "limit"
+            constant.guard, constant.kind = guard, "tuned" if word == "Guard" else word.lower()
     for names in _NUMERICAL.findall(text):
         for constant in named(names):
             constant.kind = "numerical"

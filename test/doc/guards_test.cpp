@@ -1,5 +1,6 @@
-// Tests that constants name as their guards: `// Guard: Suite.Test of kName, kName`, of limits `// Limit: ...`. Whether
-// they notice is asked by scripts/sensitivity.
+// Tests that constants name as their guards: `// Guard: Suite.Test of kName, kName`, of limits `// Limit: ...`, of
+// priors
+// `// Prior: ...`. Whether they notice is asked by scripts/sensitivity.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -46,14 +47,14 @@ TEST(Guards, AreTests) {
   const std::set<std::string> tests =
       namesBelow(kGuardRoot / "test", std::regex("TEST(?:_[FP])?\\((\\w+),\\s*(\\w+)\\)"));
   const std::set<std::string> guards =
-      namesBelow(kGuardRoot / "src", std::regex("// (?:Guard|Limit): (?:\\w+/)?(\\w+)\\.(\\w+)"));
+      namesBelow(kGuardRoot / "src", std::regex("// (?:Guard|Limit|Prior): (?:\\w+/)?(\\w+)\\.(\\w+)"));
   ASSERT_GT(guards.size(), 10U);
   for (const std::string& guard : guards) EXPECT_EQ(tests.count(guard), 1U) << guard;
 }
 
 /// scripts/sensitivity reads them from the environment, which no function that is constexpr can.
 TEST(Guards, AreOfConstantsThatCanBeChanged) {
-  const std::regex guard("// (?:Guard|Limit): [^\\n]* of ([\\w, ]+)"), name("k[A-Z]\\w*");
+  const std::regex guard("// (?:Guard|Limit|Prior): [^\\n]* of ([\\w, ]+)"), name("k[A-Z]\\w*");
   const std::regex function("constexpr\\s+[\\w:<>*& ]*\\w\\([^)]*\\)[^;{]*\\{[^}]*\\}");
   std::size_t functions = 0;
   forEachSource(kGuardRoot / "src", [&](const fs::path& path, const std::string& text) {

@@ -30,7 +30,7 @@ struct CylinderParameters {
 
   static constexpr double kFrictionDeviation = 0.03;  ///< where the boom file gives none; seals of 0.5 to 5 %
   static constexpr double kStiffnessDeviation = 0.1;  ///< as above; air and hoses of one machine's cylinders
-  // Guard: BoomBounds.DeviationsWhereAFileGivesNone of kFrictionDeviation, kStiffnessDeviation
+  // Prior: BoomBounds.DeviationsWhereAFileGivesNone of kFrictionDeviation, kStiffnessDeviation
 };
 
 /// Length and leverage at a joint angle.

@@ -12,16 +12,16 @@ namespace {
 constexpr double kCommonDeviation = 2.0 * kFrequencyDeviation;  // of log stiffness, of all cylinders together
 constexpr double kOilWalk = 0.004;     // of log stiffness in a second: oil that warms up, a pose that changes
 constexpr double kDampingWalk = 0.01;  // of log damping in a second
-// Guard: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk
+// Prior: IdentifiedOil.WandersAsItWarmsUp of kOilWalk, kDampingWalk
 constexpr double kUnknownRate = 0.05;  // joint velocity where nothing is known [rad/s]
-// Guard: IdentifierNumbers.OfAMotionThatIsNotKnown of kUnknownRate
+// Prior: IdentifierNumbers.OfAMotionThatIsNotKnown of kUnknownRate
 constexpr double kContactWalk = 1.3e5;    // of the rock's force [N/sqrt(s)]
 constexpr double kContactWalkSeen = 3e5;  // where an IMU shows each landing: they are no noise then
-// Guard: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kContactWalkSeen
+// Prior: IdentifierNumbers.OfTheRocksForceWhereAnImuShowsIt of kContactWalkSeen
 constexpr double kUnknownContact = 1e4;  // of it at the start [N]
-// Guard: IdentifierNumbers.OfTheRocksForce of kContactWalk, kUnknownContact
+// Prior: IdentifierNumbers.OfTheRocksForce of kContactWalk, kUnknownContact
 constexpr double kLeastDamping = 2e-3, kMostDamping = 0.7;
-// Guard: IdentifierNumbers.OfTheDampingsBounds of kLeastDamping, kMostDamping
+// Prior: IdentifierNumbers.OfTheDampingsBounds of kLeastDamping, kMostDamping
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace hammer_loads {
 namespace {
 
 constexpr double kDelayWalk = 2e-5;  // of a delay in a second [s]: clocks drift by some 20 ppm
-// Guard: IdentifiedOil.AClocksDelayWanders of kDelayWalk
+// Prior: IdentifiedOil.AClocksDelayWanders of kDelayWalk
 constexpr double kOilWithDelay = 0.1;  // deviation of log stiffness, beside what was known without a delay
 // Guard: IdentifiedOil.AClocksDelayIsLookedForAFifthOfASecondLater of kOilWithDelay
 constexpr double kWrongPart = 0.05;        // of a delay that is found

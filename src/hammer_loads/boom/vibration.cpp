@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
 namespace {
 
-constexpr double kShort = 0.02, kSmall = 0.1;  // [s]; [rad]
-// Guard: VibrationNumbers.OfADisplacementAhead of kShort
+constexpr double kSmall = 0.1;  // [rad]
 // Guard: VibrationNumbers.OfADisplacementThatIsNone of kSmall
 constexpr double kOilStep = 0.003;  // by which the modes' oil is off before they are found anew
 // Numerical: kOilStep
@@ -221,7 +221,7 @@ JointVector Vibration::displacement() const noexcept { return jointsOf(modes_, x
 JointVector Vibration::velocity() const noexcept { return jointsOf(modes_, v_); }
 
 JointVector Vibration::displacementAfter(double step) const noexcept {
-  JointVector q = jointsOf(modes_, x_ + std::clamp(step, 0.0, kShort) * v_);
+  JointVector q = jointsOf(modes_, x_ + std::clamp(step, 0.0, look_back::kLine) * v_);
   bool small = true;
   for (Eigen::Index j = 0; j < q.size(); ++j) small = small && std::abs(q[j]) < kSmall;
   if (!small) q.setZero();

@@ -19,9 +19,10 @@ constexpr double kMostInertia = 1000.0;  // times the first guess: a crank held 
 constexpr double kRelearn = 0.05;        // relative deviation of the inertia after what it cannot explain
 // Guard: FilterAtWork.LeavesRoomToLearnTheInertiaAnew of kRelearn
 constexpr double kMostTorque = 3.0;  // times its first deviation: more is what a bad sample left behind
-// Guard: FilterTrouble.ATorqueThatNoDriveHasIsGivenUpWithTheRest of kMostTorque
+// Prior: FilterTrouble.ATorqueThatNoDriveHasIsGivenUpWithTheRest of kMostTorque
 constexpr double kSoundSpeeds = 2.0;  // times the largest plausible speed: more is a diverged filter
-// Guard: FilterTrouble.WhatItLearnsStaysWithinWhatAMachineMayHave of kLeastInertia, kMostInertia, kSoundSpeeds
+// Guard: FilterTrouble.WhatItLearnsStaysWithinWhatAMachineMayHave of kSoundSpeeds
+// Prior: FilterTrouble.WhatItLearnsStaysWithinWhatAMachineMayHave of kLeastInertia, kMostInertia
 constexpr int kOneSided = 3;       // innovations in a row beyond 5 deviations: no jitter of stamps
 constexpr int kOneSidedLost = 10;  // the same where readings made no sense: they do again, elsewhere
 // Guard: FilterTrouble.ALostFilterGoesWhereTenReadingsAre of kOneSidedLost
@@ -134,7 +135,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
 /// one may be stopped dead.
 bool CrankFilter::isContradiction(double dt, const Innovation& innovation) const noexcept {
   const double most = std::max(kKick * std::abs(now_.state.speed), kLearnSpeed) * dt;
-  return std::abs(innovation.value) > kJump ||
+  return std::abs(innovation.value) > EncoderSlip::kMost ||
          (std::abs(innovation.value) > most && innovation.exceeds(gate::kImpossible));
 }
 

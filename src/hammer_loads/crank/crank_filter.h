@@ -41,7 +41,7 @@ struct CrankFilterSettings {
   double blow_factor{1.0};             ///< a blow's factor on the crank's speed, first guess [-], > 0
   ConstantErrors::Vector constant_deviations{ConstantErrors::priors()};  ///< of kUnknowns, each in its unit, >= 0
   double blow_deviation{0.25};  ///< its standard deviation, first guess; restitution 0 to 0.3: 0.64 to 1.26 [-]
-  // Guard: FilterTrouble.TheFirstGuessOfABlowHoldsAnyTool of blow_deviation
+  // Prior: FilterTrouble.TheFirstGuessOfABlowHoldsAnyTool of blow_deviation
 };
 
 /// Extended Kalman filter, state: angle, speed, net torque, drive inertia, factor of the last blow on the crank's
@@ -145,8 +145,6 @@ class CrankFilter final : public CrankTracker {
   // Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kOftenDoubted
   static constexpr double kSteps = 20.0;  ///< in their mean
   // Numerical: kSteps
-  static constexpr double kJump = 0.5;  ///< [rad]: an innovation that no working machine makes between two samples
-  // Guard: FilterTrouble.OfAReadingThatNoWorkingMachineGives of kJump
 
   /// To a sample, and what that shows.
   struct SampleStep {

@@ -17,7 +17,7 @@ constexpr double kRingOver = 0.8;         // [rad] behind the blow: a rod's ring
 // Guard: BlankStrokes.OneThatIsMissedIsFoundByTheTorque of kRingOver
 constexpr double kToolSeenByStamps = gate::kImpossible;  // shows it where stamps jitter
 // Guard: FilterAtBlow.ACrankAtRestStandsThereWithinFourCounts of kNearCounts
-// Guard: FilterAtBlow.AToolMayTakeMostOfTheSpeed of kToolDeviation
+// Prior: FilterAtBlow.AToolMayTakeMostOfTheSpeed of kToolDeviation
 
 }  // namespace
 

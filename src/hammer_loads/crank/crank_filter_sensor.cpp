@@ -141,7 +141,7 @@ double CrankFilter::timeLost(double dt, const Innovation& innovation) const noex
   if (mayBeRod(innovation)) return 0.0;
   const double intervals = innovation.value / (speed * interval_), whole = std::nearbyint(intervals);
   const bool counted_before = whole < 0.0 && dt + whole * interval_ > 0.5 * interval_;
-  if (!(whole > 0.0 || counted_before) || std::abs(innovation.value) > kJump) return 0.0;
+  if (!(whole > 0.0 || counted_before) || std::abs(innovation.value) > EncoderSlip::kMost) return 0.0;
   const double rest = (intervals - whole) * speed * interval_;
   return exceeds(rest, innovation.total, gate::kRare) ? 0.0 : whole * interval_;
 }

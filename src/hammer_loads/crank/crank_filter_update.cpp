@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -11,8 +12,6 @@ namespace {
 
 constexpr double kDoubtfulAngle = 0.3;  // [rad] predicted deviation from which on the prediction is worth nothing
 // Guard: FilterTrouble.OfAPredictionThatIsWorthNothing of kDoubtfulAngle
-constexpr double kForgetRestarts = 2.0;  // [s]
-// Guard: FilterTrouble.AFilterThatBeginsAnewFiveTimesIsLostForAWhile of kForgetRestarts
 constexpr double kForgetDoubts = 30.0;  // [s]
 // Guard: FilterAtWork.IsUnexplainedAfterThreeTimesThreeSeconds of kForgetDoubts
 
@@ -23,7 +22,7 @@ Tracking CrankFilter::update(double dt, const CrankSample& reading) noexcept {
   CrankBelief& last = earlier_[1 - before_];
   last = now_;
   lost_time_ = 0.0;
-  restart_load_ *= std::max(0.0, 1.0 - dt / kForgetRestarts);
+  restart_load_ *= std::max(0.0, 1.0 - dt / look_back::kTenTurns);
   doubt_load_ *= std::max(0.0, 1.0 - dt / kForgetDoubts);
   step_model_.setHullMotion(blend(now_hull_, model_.hullMotion(), 0.5));
   const bool struck = predict(dt, true, now_) > 0;    // (1)

@@ -18,6 +18,11 @@ class EncoderSlip {
  public:
   enum class Step { kNone, kPerhaps, kSlipped };
 
+  /// [rad]: an innovation that no working machine makes between two samples; the sensor is another one, and the
+  /// estimate begins anew.
+  static constexpr double kMost = 0.5;
+  // Guard: EncoderSlip.NorIsASensorThatIsSomewhereElse of kMost
+
   /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
   /// in a step of usual length; longer: in what this one lasts beyond that [rad]. possible: place and samples before
   /// allow it. kPerhaps: the sample is not to be taken; only the next one says, whose step then begins at the same one.
@@ -55,8 +60,6 @@ class EncoderSlip {
   double deviation() const noexcept { return deviation_; }  ///< of that [rad]
 
  private:
-  static constexpr double kMost = 0.5;  // [rad]: beyond it the sensor is another one, and the estimate begins anew
-  // Guard: EncoderSlip.NorIsASensorThatIsSomewhereElse of kMost
   static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
   static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
   // Guard: EncoderSlip.IsAboutTheSameInTheNextReading of kSame

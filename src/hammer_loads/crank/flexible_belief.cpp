@@ -15,7 +15,8 @@ using Joint = FlexibleVariables;
 
 constexpr double kMostStiffnessChange = 0.1;  // of a logarithm by one sample
 constexpr double kMostLogStiffness = 1.4;     // a factor of two of the frequency either way
-// Guard: FlexibleBounds.OfTheCouplingsStiffness of kMostStiffnessChange, kMostLogStiffness
+// Guard: FlexibleBounds.OfTheCouplingsStiffness of kMostStiffnessChange
+// Prior: FlexibleBounds.OfTheCouplingsStiffness of kMostLogStiffness
 constexpr double kMostTwist = 1.0;  // [rad]: more is a diverged filter
 // Guard: FlexibleBounds.OfTheTwist of kMostTwist
 

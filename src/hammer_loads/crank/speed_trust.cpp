@@ -21,7 +21,7 @@ constexpr double kMostOfOne = 0.999;  // of a correlation
 // Guard: SpeedTrust.AnEvenSpeedWithoutNoiseSaysNothing of kLeastSquare
 // Guard: SpeedTrust.WhatShowedOnceIsReleasedAtHalf of kNotableLag
 // Guard: SpeedTrust.KnowsAsMuchAsThirtyTurnsShow of kSpeedTurns
-// Guard: SpeedTrust.FindsNoMoreThanAnyDriveHas of kMostScale
+// Prior: SpeedTrust.FindsNoMoreThanAnyDriveHas of kMostScale
 // Guard: SpeedTrust.NamesAScaleFromAHundredthOn of kNotableScale
 // Numerical: kMostOfOne
 

@@ -15,6 +15,11 @@ constexpr double kFiveTurns = 1.0;  ///< [s]: what was there in each of them is 
 constexpr double kTenTurns = 2.0;  ///< [s]: a mean in which one turn more or less does not show
 // Guard: SensorBounds.OfPressuresTimes of kSomeTurns, kTenTurns
 
+// Boom and hull vibrate at 2 to 40 Hz.
+constexpr double kHeld = 0.01;  ///< [s]: a reading holds
+// Guard: SensorBounds.OfASilentSensor of kHeld
+constexpr double kLine = 0.02;  ///< [s]: a line through the last readings goes on
+// Guard: MeasuredBoom.ALineGoesOnForTwentyMilliseconds of kLine
 constexpr double kLongestReading = 0.05;  ///< [s]: that one counts for, over a gap as well
 // Guard: SensorBounds.OfPressuresTimes of kLongestReading
 

@@ -23,10 +23,10 @@ constexpr double kNoisiest = 3.0;  // times the first guess: a unit whose noise 
 // Guard: FollowerNumbers.WhatReadingsMissAtWorkIsMotionBeyondTheirNoise of kNoisiest
 constexpr double kFarOff = square(gate::kRare);  // of variances: a reading that is farther off counts as this
 constexpr double kComplianceWalk = 0.01;         // of the first guess's deviation in a second: a pose that changes
-// Guard: FollowerNumbers.ASignalsComplianceWandersAsThePoseChanges of kComplianceWalk
+// Prior: FollowerNumbers.ASignalsComplianceWandersAsThePoseChanges of kComplianceWalk
 // Of a compliance by a description, whose masses are good to 3 % and centres to 2 cm.
 constexpr double kDescribed = 0.05;
-// Guard: HullMotionFilter.KnowsTheHullBeforeItsFirstBlowByItsDescription of kDescribed
+// Prior: HullMotionFilter.KnowsTheHullBeforeItsFirstBlowByItsDescription of kDescribed
 constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
 constexpr double kLeastNoise = 1e-3;    // of the first guess: a logarithm is taken of it
 constexpr double kUnknownSignal = 1e3;  // of the noise: smooth part at the start

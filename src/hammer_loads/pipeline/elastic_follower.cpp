@@ -6,6 +6,7 @@
 
 #include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
 #include "hammer_loads/util/square.h"
@@ -18,8 +19,7 @@ constexpr double kFrom = -0.30, kFromLatest = -0.05;  // [rad] where it begins: 
 // Guard: ElasticNumbers.ItDoesNotBeginJustBeforeTheBlow of kFromLatest
 constexpr double kTo = 2.2;  // [rad]: by then no rod rings
 // Guard: ElasticSession.TightPinsDoNotPassForWornOnes of kTo
-constexpr double kLongestKnown = 0.01, kContact = 5e-4;  // [s]
-// Guard: ElasticNumbers.AGapOfTenMillisecondsEndsIt of kLongestKnown
+constexpr double kContact = 5e-4;  // [s]
 // Guard: ElasticNumbers.AContactLastsForHalfAMillisecond of kContact
 
 constexpr double kEvidenceGain = 0.2, kGivenUp = 20.0;  // of logarithms of likelihoods, a blow
@@ -86,7 +86,7 @@ void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexce
     return;
   }
   const double dt = length_ = crank.step().length();
-  if (!(dt < kLongestKnown)) return rest();
+  if (!(dt < look_back::kHeld)) return rest();
   rigid_fit_ += filter->angleFit();
   late_ = filter->constantErrors().considered(ConstantErrors::kLatency);
   for (RodFilter& rod : filters_) {

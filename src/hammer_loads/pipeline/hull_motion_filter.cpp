@@ -16,19 +16,20 @@ constexpr double kSwings = 2.0;  // times what a load does to it at once: a hull
 // Guard: HullByBoom.AnImuThatNeverSpeaksLeavesTheHullsMotionInDoubt of kSwings
 // Standard deviation of what such a unit adds to all readings alike, which no filter shows.
 constexpr double kForceOffset = 0.05, kRateOffset = 0.005;  // [m/s2], [rad/s]
-// Guard: FollowerNumbers.AnImusOffsetsAreInTheHullsMotion of kForceOffset, kRateOffset
+// Prior: FollowerNumbers.AnImusOffsetsAreInTheHullsMotion of kForceOffset, kRateOffset
 // A hull is some five times as heavy as its rocker at least.
 constexpr double kLightest = 0.2;
-// Guard: FollowerNumbers.AHullIsNoLighterThanFiveRockers of kLightest
+// Prior: FollowerNumbers.AHullIsNoLighterThanFiveRockers of kLightest
 constexpr double kLongestPiece = 2e-3;  // [s]: some 20 of a period of 25 Hz
 // Numerical: kLongestPiece
 constexpr double kWorking = 0.05;  // of the greatest load: the hammer is at work
-// Guard: FollowerNumbers.AnImusNoiseIsLearnedAtWork of kForceNoise, kWorking
+// Guard: FollowerNumbers.AnImusNoiseIsLearnedAtWork of kWorking
+// Prior: FollowerNumbers.AnImusNoiseIsLearnedAtWork of kForceNoise
 
 constexpr double kStiffest = 4e3;  // [1/s2]: some 10 Hz
 constexpr double kDamped = 10.0;   // [1/s]: of that a twelfth of the critical
 constexpr double kArm = 0.5;       // [m] of a hull's turning: from D to where it hangs
-// Guard: HullMotionFilter.GivesTheForcesVectorRightAfterBlowsTooAndHonestDeviations of kRateNoise, kStiffest, kDamped,
+// Prior: HullMotionFilter.GivesTheForcesVectorRightAfterBlowsTooAndHonestDeviations of kRateNoise, kStiffest, kDamped,
 // kArm
 
 /// signal_arm: 1 of a force's signal; of turning over kArm.

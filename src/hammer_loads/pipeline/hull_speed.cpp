@@ -2,14 +2,9 @@
 
 #include <algorithm>
 
+#include "hammer_loads/estimation/look_back.h"
+
 namespace hammer_loads {
-namespace {
-
-constexpr double kSilent = 0.02;  // [s] before the blow without a reading: then it is not known
-// Guard: SensorBounds.OfTheHullsSpeedAtABlow of kSilent
-
-}  // namespace
-
 void HullSpeed::forget() noexcept {
   count_ = 0;
   last_blow_.reset();
@@ -50,7 +45,7 @@ HullSpeed::Point HullSpeed::at(StampNs stamp) const noexcept {
 void HullSpeed::struck(StampNs blow) noexcept {
   at_blow_.reset();
   if (count_ == 0) return;
-  if (seconds(blow - back(0).stamp) > kSilent) return forget();
+  if (seconds(blow - back(0).stamp) > look_back::kLine) return forget();
   const Point now = at(blow);
   const double turn = last_blow_ ? seconds(blow - last_blow_->stamp) : 0.0;
   if (turn > 0.0 && turn < kLongestTurn) {

@@ -11,9 +11,7 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLongestLine = 0.02;  // beyond a reading [s]
-constexpr double kLag = 0.4;           // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
-// Guard: MeasuredBoom.ALineGoesOnForTwentyMilliseconds of kLongestLine
+constexpr double kLag = 0.4;  // of the swing, by the root of the surprise: 5 to 20 ms cost 0.3 to 1.4 of it
 // Guard: MeasuredBoom.ReadingsThatDoNotFitMakeTheSwingDoubtful of kLag
 
 /// What seals take between oil and joint, as part of the load's torque on the joint [N m].
@@ -132,7 +130,7 @@ void MeasuredTorques::follow(const Boom& boom, const JointVector& position, cons
 /// age: of the last reading [s].
 MeasuredTorques::Torque MeasuredTorques::torqueNow(const Track& track, double age, const Model& model,
                                                    const Doubt& doubt) noexcept {
-  const double ahead = std::min(age + doubt.delay, kLongestLine);
+  const double ahead = std::min(age + doubt.delay, look_back::kLine);
   const double line_square = longerLine(doubt.delay, track.interval) * track.line_square.mean();
   const bool by_oil = track.oil_square.mean() <= line_square;
   // What does not fit has a swing of its own then: a hose's, not the load's.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/estimation/look_back.h"
+
 namespace hammer_loads {
 namespace {
 
@@ -11,16 +13,15 @@ struct Doubt {
   double noise, offset, walk;
 };
 constexpr Doubt kAcceleration{0.3, 0.3, 0.05};  // [m/s2]
-// Guard: ObservedBoom.OneAccelerationIsBelievedAsFarAsOffsetAndLinksAreKnown of kAcceleration, kLinksInHull
+// Prior: ObservedBoom.OneAccelerationIsBelievedAsFarAsOffsetAndLinksAreKnown of kAcceleration, kLinksInHull
 constexpr Doubt kRate{0.005, 0.02, 0.005};  // [rad/s]
-// Guard: ObservedBoom.OneRateIsBelievedAsFarAsItsOffsetIsKnown of kRate
+// Prior: ObservedBoom.OneRateIsBelievedAsFarAsItsOffsetIsKnown of kRate
 constexpr Doubt kAngle{2e-4, 0.01, 0.002};  // [rad]
-// Guard: ObservedBoom.OneAngleIsBelievedAsFarAsItsOffsetIsKnown of kAngle
+// Prior: ObservedBoom.OneAngleIsBelievedAsFarAsItsOffsetIsKnown of kAngle
 constexpr Doubt kTorque{0.004, 0.02, 0.002};  // of the torque that the cylinder's relief valve allows
 constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at the mean of their places
-// Guard: ObservedBoom.OneTorqueIsBelievedAsFarAsItsOffsetIsKnown of kTorque
-constexpr double kSlowest = 0.01, kMoved = 0.02;  // [s] between joint states; [rad] a jump
-// Guard: ObservedBoom.AnglesThatComeRarelyShowNoVibration of kSlowest
+// Prior: ObservedBoom.OneTorqueIsBelievedAsFarAsItsOffsetIsKnown of kTorque
+constexpr double kMoved = 0.02;  // [rad]: a jump
 // Guard: ObservedBoom.NorDoAnglesThatJump of kMoved
 
 void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {
@@ -70,7 +71,8 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
     JointTrack& track = joints_[i];
     if (!now || now->stamp == track.stamp) continue;
     const double interval = seconds(now->stamp - track.stamp), ahead = seconds(now->stamp - sample);
-    const bool jumped = !(interval > 0.0) || interval > kSlowest || std::abs(now->position - track.position) > kMoved;
+    const bool jumped =
+        !(interval > 0.0) || interval > look_back::kHeld || std::abs(now->position - track.position) > kMoved;
     track.stamp = now->stamp, track.position = now->position;
     if (jumped || held.isDriven() || std::abs(ahead) > 0.75 * step) continue;
     VibrationReading reading = jointAngleReading(joint, now->position - held.slowAngle()[joint]);

@@ -3,19 +3,20 @@
 
 #include <cmath>
 
+#include "hammer_loads/estimation/look_back.h"
+
 namespace hammer_loads {
 
 /// For how long more than one reading should have come [s]; below 0: not yet. since: the last one; interval: before it.
 inline double overdue(double since, double interval) noexcept {
   constexpr double kIntervals = 2.0;
+  // Guard: SensorBounds.OfASilentSensor of kIntervals
   return since - kIntervals * interval;
 }
 
 /// Part of what the last reading showed that is no longer true, 0 to 1. overdue: as above [s].
 inline double forgottenPart(double overdue) noexcept {
-  constexpr double kHeldFor = 0.01;  // [s]: boom and hull vibrate at 2 to 40 Hz
-  // Guard: SensorBounds.OfASilentSensor of kIntervals, kHeldFor
-  return overdue > 0.0 ? -std::expm1(-overdue / kHeldFor) : 0.0;
+  return overdue > 0.0 ? -std::expm1(-overdue / look_back::kHeld) : 0.0;
 }
 
 }  // namespace hammer_loads
