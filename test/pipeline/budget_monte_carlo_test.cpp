@@ -2,7 +2,7 @@
 // deviations. What each constant does to a figure is the slope of the figures over its draws.
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -81,7 +81,7 @@ std::map<std::string, Eigen::VectorXd> slopesOfDraws(const Settings& settings, c
                                                      const Work& right) {
   const HammerParameters drawing = settings.mechanism.parameters();
   constexpr Eigen::Index kTerms = 2 * kConstants + 2;
-  Eigen::Matrix<double, Eigen::Dynamic, kTerms> regressors(kHammers, kTerms);
+  Eigen::MatrixXd regressors(kHammers, kTerms);
   std::map<std::string, Eigen::VectorXd> values;
   const auto at = [](const char* key) {
     const auto found = std::find_if(kHammerConstants.begin(), kHammerConstants.end(),
@@ -102,9 +102,10 @@ std::map<std::string, Eigen::VectorXd> slopesOfDraws(const Settings& settings, c
     }
     ++row;
   }
+  const Eigen::LDLT<Eigen::MatrixXd> normal(regressors.transpose() * regressors);
   std::map<std::string, Eigen::VectorXd> slopes;
   for (const auto& [quantity, of_draws] : values)
-    slopes[quantity] = regressors.completeOrthogonalDecomposition().solve(of_draws).segment(1, kConstants);
+    slopes[quantity] = normal.solve(regressors.transpose() * of_draws).segment(1, kConstants);
   return slopes;
 }
 

@@ -1,9 +1,10 @@
 #include "hammer_loads/calibration/boom_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
+
+#include "hammer_loads/calibration/positive_system.h"
 
 namespace hammer_loads::calibration {
 namespace {
@@ -106,13 +107,13 @@ class Fitter {
     for (bool again = true; again;) {
       Eigen::MatrixXd N = J.transpose() * weight.asDiagonal() * J + Eigen::MatrixXd::Identity(n, n);
       Eigen::VectorXd right = J.transpose() * weight.asDiagonal() * left - fit_.x;
-      fit_.covariance = N.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+      fit_.covariance = inverseOf(N);
       for (const Eigen::Index i : held) {
         const double way = atZero(i) - fit_.x[i];
         right -= N.col(i) * way;
         N.row(i).setZero(), N.col(i).setZero(), N(i, i) = 1.0, right[i] = way;
       }
-      const Eigen::VectorXd next = fit_.x + N.ldlt().solve(right);
+      const Eigen::VectorXd next = fit_.x + solved(N, right);
       again = false;
       for (Eigen::Index i = 0; i < n; ++i)
         if (isFriction(model_.unknowns()[static_cast<std::size_t>(i)].kind) && next[i] < atZero(i) - 1e-9)

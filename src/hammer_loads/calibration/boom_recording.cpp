@@ -1,6 +1,6 @@
 #include "hammer_loads/calibration/boom_recording.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -32,11 +32,11 @@ std::optional<LocalFit> fitAround(const Trace& trace, double time, double half_w
     const Eigen::Vector3d row(1.0, s, 0.5 * s * s);
     normal += row * row.transpose(), right += y * row, square += y * y;
   }
-  const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
-  const Eigen::Vector3d c = solver.solve(right);
+  const Eigen::Matrix3d inverse = normal.inverse();
+  const Eigen::Vector3d c = inverse * right;
   if (!c.allFinite()) return {};
   const double rest = std::max(0.0, square - c.dot(right)) / static_cast<double>(count - 3);
-  const double spread = solver.solve(Eigen::Vector3d::UnitY()).y();
+  const double spread = inverse(1, 1);
   return LocalFit{level + c[0], c[1] / half_width, c[2] / (half_width * half_width),
                   std::sqrt(rest * spread) / half_width};
 }

@@ -1,11 +1,11 @@
 #include "hammer_loads/calibration/hammer_part.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
 
+#include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/linkage/machine_columns.h"
 #include "hammer_loads/util/square.h"
 
@@ -59,9 +59,9 @@ Information informationOf(const SegmentFit& fit, const JointFit& joint, const Se
     all.score += weight * row.residual * by;
   }
   all.matrix = Eigen::MatrixXd(all.matrix.selfadjointView<Eigen::Lower>());
-  const Eigen::LDLT<LocalMatrix> solver(own.ll);
-  all.matrix -= cross.transpose() * solver.solve(cross);
-  all.score -= cross.transpose() * solver.solve(own.l);
+  const Eigen::MatrixXd by_locals = cross.transpose() * inverseOf(own.ll);
+  all.matrix -= by_locals * cross;
+  all.score -= by_locals * own.l;
   return all;
 }
 
@@ -109,7 +109,7 @@ HammerPart findWithHammer(JointFit joint, const SegmentModel& model, const Free&
       all.matrix += one.matrix, all.score += one.score;
     }
     hold(free, all.matrix, all.score);
-    part.covariance = all.matrix.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+    part.covariance = inverseOf(all.matrix);
     clearHeld(free, part.covariance);
     const Eigen::VectorXd change = part.covariance * all.score;
     if (!change.allFinite()) break;

@@ -1,9 +1,9 @@
 #include "hammer_loads/calibration/joint_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads::calibration {
@@ -119,7 +119,7 @@ double improve(JointFit& joint, const SegmentModel& model, System& s, const Free
   GlobalMatrix matrix = s.matrix;
   Globals score = s.score;
   hold(free, matrix, score);
-  const GlobalMatrix inverse = matrix.ldlt().solve(GlobalMatrix::Identity());
+  const GlobalMatrix inverse = inverseOf(matrix);
   const Globals whole = limitedGlobals(Globals(inverse * score));
   const JointFit before = joint;
   for (double part = 1.0; part > 0.01; part *= 0.4) {
@@ -176,7 +176,7 @@ void judge(JointFit& joint, const SegmentModel& model, const Free& free) {
   if (joint.fits.empty()) return;
   System s = linearised(joint, model);
   hold(free, s.matrix, s.score);
-  joint.plain_covariance = s.matrix.ldlt().solve(GlobalMatrix::Identity());
+  joint.plain_covariance = inverseOf(s.matrix);
   joint.covariance = covarianceOf(s, joint.plain_covariance, free);
   double sum = 0.0, freedom = 0.0;
   for (std::size_t i = 0; i < joint.fits.size(); ++i) {

@@ -1,9 +1,9 @@
 #include "hammer_loads/calibration/local_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/calibration/positive_system.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads::calibration {
@@ -38,7 +38,7 @@ void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& global
     const Locals before = fit.locals();
     bool better = false;
     for (int k = 0; k < 5 && !better; ++k) {
-      fit.setLocals(before + limitedLocals(Locals(damped(e.ll, damping).ldlt().solve(e.l)), before));
+      fit.setLocals(before + limitedLocals(Locals(solved(damped(e.ll, damping), e.l)), before));
       const double now = fit.cost(model, globals, noise);
       better = now < cost;
       if (better) {
@@ -53,7 +53,7 @@ void fitLocals(SegmentFit& fit, const SegmentModel& model, const Globals& global
 
 Reduced reduce(const NormalEquations& e) {
   Reduced r;
-  r.inverse = e.ll.ldlt().solve(LocalMatrix::Identity());
+  r.inverse = inverseOf(e.ll);
   r.by_global = r.inverse * e.lg;
   r.own = r.inverse * e.l;
   r.matrix = e.gg - e.lg.transpose() * r.by_global;

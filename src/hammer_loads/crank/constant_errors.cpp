@@ -54,6 +54,12 @@ void ConstantErrors::considerPriors() noexcept {
     if (kUnknowns[static_cast<std::size_t>(i)].use == Unknown::Use::kConsidered) moment_(i, i) = square(prior_[i]);
 }
 
+void ConstantErrors::learn(double innovation, double variance, const Row& by_error) noexcept {
+  ++samples_;
+  const double weight = fit_.learn(innovation, variance, by_error.head<kTable>());
+  beside_ += (weight * by_error.head<kPlace>().transpose()).lazyProduct(by_error.tail<kMachineColumns>());
+}
+
 void ConstantErrors::endTurn(double growth, double count) noexcept {
   const int samples = std::exchange(samples_, 0);
   ++turns_;

@@ -53,11 +53,7 @@ class ConstantErrors {
   }
 
   /// innovation of an angle, its variance and its derivative by b.
-  void learn(double innovation, double variance, const Row& by_error) noexcept {
-    ++samples_;
-    const double weight = fit_.learn(innovation, variance, by_error.head<kTable>());
-    beside_ += (weight * by_error.head<kPlace>().transpose()).lazyProduct(by_error.tail<kMachineColumns>());
-  }
+  void learn(double innovation, double variance, const Row& by_error) noexcept;
   /// Once a turn. growth: what variances are to be multiplied with; count: of the encoder [rad].
   void endTurn(double growth, double count) noexcept;
 

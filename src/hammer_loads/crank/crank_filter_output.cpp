@@ -9,6 +9,10 @@
 
 namespace hammer_loads {
 
+Eigen::Matrix3d CrankUncertainty::covariance() const noexcept {
+  return own + by_constant.topRows<3>() * by_constant.topRows<3>().transpose();
+}
+
 void CrankFilter::setHullMotion(const HullMotion& hull) noexcept {
   model_.setHullMotion(hull);
   hull_moved_ = true;

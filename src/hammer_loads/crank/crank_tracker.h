@@ -44,9 +44,7 @@ struct CrankUncertainty {
   Eigen::Matrix<double, 1, ConstantErrors::kSize> speedAtAngle(double rate) const noexcept {
     return by_constant.row(kSpeed) - rate * by_constant.row(kAngle);
   }
-  Eigen::Matrix3d covariance() const noexcept {
-    return own + by_constant.topRows<3>() * by_constant.topRows<3>().transpose();
-  }
+  Eigen::Matrix3d covariance() const noexcept;
 };
 
 /// The crank at one place between two samples: by the way forward from the earlier one, by the way back from the later.

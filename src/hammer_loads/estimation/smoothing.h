@@ -27,19 +27,22 @@ std::optional<Smoothed<variables, constants>> smooth(
     const typename GaussianBelief<variables, constants>::Matrix& transition,
     const GaussianBelief<variables, constants>& predicted, const GaussianBelief<variables, constants>& next,
     const typename GaussianBelief<variables, constants>::Vector& change) noexcept {
-  using Belief = GaussianBelief<variables, constants>;
-  using Matrix = typename Belief::Matrix;
-  using Vector = typename Belief::Vector;
+  using Matrix = typename GaussianBelief<variables, constants>::Matrix;
+  using Vector = typename GaussianBelief<variables, constants>::Vector;
+  // Of any size: one solver for all beliefs, which each would build for itself.
+  using Any = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 8, 8>;
+  static_assert(variables <= Any::MaxRowsAtCompileTime);
   // Scaled to a correlation: variables of different units differ by ten powers of ten.
   const Vector scale = predicted.covariance.diagonal().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) return std::nullopt;
-  const Eigen::LDLT<Matrix> factors(scale.asDiagonal() * predicted.covariance * scale.asDiagonal());
+  const Any correlation = scale.asDiagonal() * predicted.covariance * scale.asDiagonal();
+  const Eigen::LDLT<Any> factors(correlation);
   if (factors.info() != Eigen::Success || !(factors.vectorD().array() > 0.0).all()) return std::nullopt;
-  const Matrix scaled = scale.asDiagonal() * (transition * before.covariance);
+  const Any scaled = scale.asDiagonal() * (transition * before.covariance), solved = factors.solve(scaled);
   Smoothed<variables, constants> result;
-  result.gain = factors.solve(scaled).transpose() * scale.asDiagonal();
-  const Vector scaled_change = scale.asDiagonal() * change;
-  result.distance = scaled_change.dot(factors.solve(scaled_change));
+  result.gain = solved.transpose() * scale.asDiagonal();
+  const Any scaled_change = scale.asDiagonal() * change, solved_change = factors.solve(scaled_change);
+  result.distance = scaled_change.cwiseProduct(solved_change).sum();
   result.belief.by_constant = before.by_constant + result.gain * (next.by_constant - predicted.by_constant);
   const Matrix covariance =
       before.covariance + result.gain * (next.covariance - predicted.covariance) * result.gain.transpose();
