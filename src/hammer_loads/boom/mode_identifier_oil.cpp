@@ -50,7 +50,7 @@ LogOil ModeIdentifier::oil() const noexcept {
 
 void ModeIdentifier::forgetOil() noexcept {
   forget(kDelays, 0.0), forget(kDelays + 1, 0.0);
-  known_for_ = lost_for_ = crank_lead_ = 0.0;
+  known_for_ = lost_for_ = unlearns_for_ = crank_lead_ = 0.0;
   for (int k = 0; k < kMaxJoints; ++k) {
     forget(at(k, kOil), 0.0);
     forget(at(k, kDamping), 0.0);

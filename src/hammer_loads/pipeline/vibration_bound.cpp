@@ -6,8 +6,8 @@
 namespace hammer_loads {
 namespace {
 
-constexpr double kLongest = 10.0;  // [s]
-// Guard: VibratingBoom.AMotionThatNothingDampsIsOverAfterTenSeconds of kLongest
+constexpr double kLongestDecay = 10.0;  // [s]
+// Guard: VibratingBoom.AMotionThatNothingDampsIsOverAfterTenSeconds of kLongestDecay
 constexpr double kMostRate = 1.0;  // [rad/s]: no operator swings a boom as fast, no rock throws it so
 // Guard: VibratingBoom.NoOperatorSwingsItFasterThanARadianASecond of kMostRate
 
@@ -32,9 +32,9 @@ bool VibrationBound::holds(const Vibration& vibration) const noexcept {
 }
 
 double VibrationBound::decayTime(const Vibration& vibration) noexcept {
-  if (!vibration.known()) return kLongest;
+  if (!vibration.known()) return kLongestDecay;
   const Mode lowest = vibration.mode(0);
-  return std::min(kLongest, 2.0 / (lowest.zeta * lowest.omega));
+  return std::min(kLongestDecay, 2.0 / (lowest.zeta * lowest.omega));
 }
 
 }  // namespace hammer_loads
