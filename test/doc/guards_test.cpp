@@ -1,6 +1,5 @@
-// Tests that constants name as their guards: `// Guard: Suite.Test of kName, kName`, of limits `// Limit: ...`, of
-// priors
-// `// Prior: ...`. Whether they notice is asked by scripts/sensitivity.
+// Tests that constants name as their guards: `// Guard: Suite.Test of kName, kName`, of priors `// Prior: ...`, of
+// limits `// Limit: ...`. Whether they notice is asked by scripts/sensitivity.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -83,7 +83,7 @@ TEST(GaussianBelief, LastStateOfBatchLeastSquares) {
     ASSERT_FALSE(exceeds(innovation, variance, gate::kRare));  // within it a fit is least squares
     fit.learn(innovation, variance, by_constant);
   }
-  const Batch batch = machine.batch(run.z, Eigen::Vector3d::Zero(), machine.prior);
+  const Machine::Batch batch = machine.batch(run.z, Eigen::Vector3d::Zero(), machine.prior);
   const Eigen::Matrix3d of_constants = fit.covarianceOfFirst<kC>();
   const Eigen::Vector3d p = of_constants * fit.score();
   EXPECT_TRUE(p.isApprox(batch.p(), 1e-8)) << p << '\n' << batch.p();
@@ -105,8 +105,8 @@ TEST(GaussianBelief, ErrorsOfDrawnMachinesAreAsLargeAsSaid) {
     Machine::Vector mean = Machine::Vector::Zero();
     for (const double z : run.z) machine.predict(belief, mean), machine.correct(belief, mean, z);
     const Machine::Vector error = run.x.back() - mean;
-    considered += error.dot(belief.grown(1.0, of_constants).inverse() * error) / kRuns;
-    left_out += error.dot(belief.covariance.inverse() * error) / kRuns;
+    considered += error.dot(belief.grown(1.0, of_constants).llt().solve(error)) / kRuns;
+    left_out += error.dot(belief.covariance.llt().solve(error)) / kRuns;
   }
   EXPECT_NEAR(considered, kN, 4.0 * std::sqrt(2.0 * kN / kRuns));  // four deviations of a mean of chi squares
   EXPECT_GT(left_out, 2.0 * kN);

@@ -9,49 +9,6 @@
 
 namespace hammer_loads::test {
 
-/// All x and p of a machine, by all z at once.
-struct Batch {
-  Eigen::Index N, C;  ///< sizes of x and p
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
-  Eigen::VectorXd x(Eigen::Index k) const { return mean.segment(N * k, N); }
-  Eigen::MatrixXd of(Eigen::Index k) const { return covariance.block(N * k, N * k, N, N); }
-  Eigen::VectorXd p() const { return mean.tail(C); }
-  Eigen::MatrixXd ofConstants() const { return covariance.bottomRightCorner(C, C); }
-};
-
-/// A machine's matrices, of any size.
-struct LinearModel {
-  Eigen::MatrixXd F, B, H, D, step_noise, first;
-  double noise{};
-
-  /// Normal equations. deviations of p: their prior; where it is `known`, next to none.
-  Batch batch(const std::vector<double>& z, const Eigen::VectorXd& known, const Eigen::VectorXd& deviations) const {
-    const Eigen::Index N = B.rows(), C = B.cols(), n = N * static_cast<Eigen::Index>(z.size() + 1) + C;
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
-    information.topLeftCorner(N, N) = first.inverse();
-    const Eigen::VectorXd weight = deviations.cwiseAbs2().cwiseInverse();
-    information.bottomRightCorner(C, C) = weight.asDiagonal();
-    score.tail(C) = weight.cwiseProduct(known);
-    const Eigen::MatrixXd step_weight = step_noise.inverse();
-    for (std::size_t k = 0; k < z.size(); ++k) {
-      const Eigen::Index at = N * static_cast<Eigen::Index>(k);
-      Eigen::MatrixXd off = Eigen::MatrixXd::Zero(N, n), seen = Eigen::MatrixXd::Zero(1, n);
-      off.block(0, at + N, N, N).setIdentity();
-      off.block(0, at, N, N) = -F;
-      off.rightCols(C) = -B;
-      information += off.transpose() * step_weight * off;
-      seen.block(0, at + N, 1, N) = H;
-      seen.rightCols(C) = D;
-      information += seen.transpose() * seen / noise;
-      score += seen.transpose() * z[k] / noise;
-    }
-    const Eigen::MatrixXd covariance = information.inverse();
-    return {N, C, covariance * score, covariance};
-  }
-};
-
 /// x' = F x + B p + w, z = H x + D p + v.
 template <int N, int C>
 struct LinearMachine {
@@ -122,8 +79,37 @@ struct LinearMachine {
     return run;
   }
 
-  Batch batch(const std::vector<double>& z, const Eigen::VectorXd& known, const Eigen::VectorXd& deviations) const {
-    return LinearModel{F, B, H, D, step_noise, first, noise}.batch(z, known, deviations);
+  struct Batch {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    Vector x(int k) const { return mean.segment<N>(N * k); }
+    typename Belief::Matrix of(int k) const { return covariance.block<N, N>(N * k, N * k); }
+    Constants p() const { return mean.tail<C>(); }
+    typename Belief::ConstantMatrix ofConstants() const { return covariance.bottomRightCorner<C, C>(); }
+  };
+  /// All x and p by all z at once, normal equations. deviations of p: their prior; where it is `known`, next to none.
+  Batch batch(const std::vector<double>& z, const Constants& known, const Constants& deviations) const {
+    const Eigen::Index n = N * static_cast<Eigen::Index>(z.size() + 1) + C;
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
+    information.topLeftCorner(N, N) = first.inverse();
+    const Constants weight = deviations.cwiseAbs2().cwiseInverse();
+    information.bottomRightCorner(C, C) = weight.asDiagonal();
+    score.tail(C) = weight.cwiseProduct(known);
+    for (std::size_t k = 0; k < z.size(); ++k) {
+      const Eigen::Index at = N * static_cast<Eigen::Index>(k);
+      Eigen::MatrixXd off = Eigen::MatrixXd::Zero(N, n), seen = Eigen::MatrixXd::Zero(1, n);
+      off.block(0, at + N, N, N).setIdentity();
+      off.block(0, at, N, N) = -F;
+      off.rightCols(C) = -B;
+      information += off.transpose() * step_noise.inverse() * off;
+      seen.block(0, at + N, 1, N) = H;
+      seen.rightCols(C) = D;
+      information += seen.transpose() * seen / noise;
+      score += seen.transpose() * z[k] / noise;
+    }
+    const Eigen::MatrixXd covariance = information.inverse();
+    return {covariance * score, covariance};
   }
 };
 

@@ -25,7 +25,7 @@ TEST(Smoothing, EqualsBatchLeastSquaresForGivenConstants) {
     belief.push_back(next), mean.push_back(x);
   }
   const Eigen::Vector2d given = Eigen::Vector2d::Zero(), exact = Eigen::Vector2d::Constant(1e-4);
-  const Batch batch = machine.batch(run.z, given, exact);
+  const Smoothing::Batch batch = machine.batch(run.z, given, exact);
   for (std::size_t k = kSteps; k-- > 0;) {
     const auto smoothed =
         smooth(belief[k], machine.F, predicted[k], belief[k + 1], Smoothing::Vector(mean[k + 1] - predicted_mean[k]));
@@ -36,7 +36,7 @@ TEST(Smoothing, EqualsBatchLeastSquaresForGivenConstants) {
     EXPECT_TRUE(mean[k].isApprox(batch.x(at), 1e-5)) << k;
     EXPECT_TRUE(belief[k].covariance.isApprox(batch.of(at), 1e-5)) << k;
     for (int c = 0; c < 2; ++c) {
-      const Batch beside = machine.batch(run.z, Eigen::Vector2d::Unit(c), exact);
+      const Smoothing::Batch beside = machine.batch(run.z, Eigen::Vector2d::Unit(c), exact);
       EXPECT_LT((belief[k].by_constant.col(c) + (beside.x(at) - batch.x(at))).norm(), 1e-4) << k << ' ' << c;
     }
   }

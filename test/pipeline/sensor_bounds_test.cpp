@@ -272,11 +272,11 @@ TEST(SensorBounds, OfUnits) {
   // Rpm: eight votes, each of a radian that is predicted: 8 rad/4.77 rad/s = 1.68 s.
   EXPECT_FALSE(looksWrong(kBelow * 1.68, kReadingStep, 0.5, 0.5 * kRpm));
   EXPECT_TRUE(looksWrong(kAbove * 1.68, kReadingStep, 0.5, 0.5 * kRpm));
-  // The ratio may be off by a factor of 1.4, samples 0.2 s apart.
+  // The ratio may be off by a factor of 1.4, samples 0.25 s apart.
   EXPECT_TRUE(looksWrong(5.0, kReadingStep, 0.5 / 1.25, 0.5 * kRpm));
   EXPECT_FALSE(looksWrong(5.0, kReadingStep, 0.5 / 1.6, 0.5 * kRpm));
-  EXPECT_TRUE(looksWrong(20.0, kBelow * 0.2, 0.5, 0.5 * kRpm));
-  EXPECT_FALSE(looksWrong(20.0, kAbove * 0.2, 0.5, 0.5 * kRpm));
+  EXPECT_TRUE(looksWrong(20.0, kBelow * 0.25, 0.5, 0.5 * kRpm));
+  EXPECT_FALSE(looksWrong(20.0, kAbove * 0.25, 0.5, 0.5 * kRpm));
 }
 
 }  // namespace

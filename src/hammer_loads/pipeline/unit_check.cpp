@@ -14,13 +14,14 @@ constexpr double kRpm = 60.0 / kTwoPi;       // in a radian a second
 constexpr double kTolerance = 1.4;           // factor: counts of a coarse encoder, noise of the speed
 constexpr double kLeastStretch = 0.01;       // [rad] of the shorter one: of the speed's noise as well
 // Guard: FollowerNumbers.AHundredthOfARadianIsEnoughOfTheOtherUnit of kLeastStretch
-constexpr double kStretch = 1.0;  // [rad]: shorter than a turn, so that most stretches see no jump back
-constexpr double kRepeats = 0.2;  // relative change between steps that repeat each other
+constexpr double kStretch = 1.0;       // [rad]: shorter than a turn, so that most stretches see no jump back
+constexpr double kLongestStep = 0.25;  // [s]
+constexpr double kRepeats = 0.2;       // relative change between steps that repeat each other
 // Guard: FollowerNumbers.StepsOfDegreesRepeatThemselves of kRepeats
 constexpr double kMoves = 1.0;  // [rad/s]: a slower angle says nothing of its unit
 // Guard: FollowerNumbers.AUnitIsRightAgainAfterTwoSecondsOfMotion of kMoves
 constexpr int kEnough = 8;  // votes more for another unit than against
-// Guard: SensorBounds.OfUnits of kTolerance, kStretch, kEnough
+// Guard: SensorBounds.OfUnits of kTolerance, kStretch, kLongestStep, kEnough
 
 /// The closest one within the tolerance; ratio: turned over predicted.
 CrankUnit unitOf(double ratio) noexcept {
@@ -53,7 +54,7 @@ void UnitCheck::add(double dt, double angle, std::optional<double> speed) noexce
     last_angle_.reset();
     return;
   }
-  if (!last_angle_ || !(dt > 0.0) || dt > look_back::kTurn) return begin(angle);
+  if (!last_angle_ || !(dt > 0.0) || dt > kLongestStep) return begin(angle);
   const double step = angle - *last_angle_;
   last_angle_ = angle;
   compareWithBound(dt, step / dt);
