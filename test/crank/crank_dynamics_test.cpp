@@ -7,7 +7,6 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <vector>
 
-#include "hammer_loads/crank/way_piece.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {

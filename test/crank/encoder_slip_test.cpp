@@ -1,5 +1,5 @@
 // Which innovations are a slip of the encoder, and which are the crank's.
-#include "hammer_loads/crank/encoder_slip.h"
+#include "hammer_loads/crank/encoder.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
-#include "hammer_loads/crank/supply_roughness.h"
+#include "hammer_loads/crank/supply.h"
 #include "hammer_loads/estimation/timing_noise.h"
 
 namespace hammer_loads {

@@ -1,5 +1,5 @@
 // A rod that gives is known by where in the turn innovations are too large.
-#include "hammer_loads/crank/rod_evidence.h"
+#include "hammer_loads/crank/consistency.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Which stamps are rounded, and by how much.
-#include "hammer_loads/crank/stamp_rounding.h"
+#include "hammer_loads/crank/stamp_sequence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The supply's law, against a pump of constant flow that feeds a motor through a hose: own equations, in small steps.
-#include "hammer_loads/crank/supply_law.h"
+#include "hammer_loads/crank/supply.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What sequences of innovations make of the torque's walk.
-#include "hammer_loads/crank/supply_roughness.h"
+#include "hammer_loads/crank/supply.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "hammer_loads/estimation/gates.h"
-#include "hammer_loads/estimation/latch.h"
 
 namespace hammer_loads::test {
 namespace {

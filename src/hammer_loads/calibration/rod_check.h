@@ -4,7 +4,7 @@
 #include <string>
 
 #include "hammer_loads/calibration/calibration.h"
-#include "hammer_loads/crank/rod_evidence.h"
+#include "hammer_loads/crank/consistency.h"
 
 namespace hammer_loads::calibration {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "hammer_loads/crank/column_step.h"
 #include "hammer_loads/crank/constant_errors.h"
 #include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/motor_side.h"
-#include "hammer_loads/crank/near_columns.h"
-#include "hammer_loads/crank/supply_law.h"
+#include "hammer_loads/crank/supply.h"
 #include "hammer_loads/estimation/gaussian_belief.h"
 
 namespace hammer_loads {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "hammer_loads/crank/flexible_shaft.h"
-#include "hammer_loads/crank/way_piece.h"
 
 namespace hammer_loads {
 namespace {

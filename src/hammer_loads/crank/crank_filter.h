@@ -5,20 +5,16 @@
 #include <cmath>
 #include <optional>
 
-#include "hammer_loads/crank/angle_lag.h"
 #include "hammer_loads/crank/blow_history.h"
 #include "hammer_loads/crank/consistency.h"
 #include "hammer_loads/crank/contact_rival.h"
 #include "hammer_loads/crank/crank_belief.h"
+#include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_tracker.h"
 #include "hammer_loads/crank/encoder.h"
-#include "hammer_loads/crank/encoder_slip.h"
 #include "hammer_loads/crank/estimate_between.h"
-#include "hammer_loads/crank/rod_evidence.h"
 #include "hammer_loads/crank/speed_trust.h"
-#include "hammer_loads/crank/supply_law.h"
-#include "hammer_loads/crank/supply_roughness.h"
-#include "hammer_loads/crank/way_piece.h"
+#include "hammer_loads/crank/supply.h"
 #include "hammer_loads/crank/weighed_sample.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/estimation/timing_noise.h"

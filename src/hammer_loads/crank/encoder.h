@@ -1,11 +1,15 @@
-/// From an encoder's reading to the angle.
+/// From an encoder's reading to the angle: its counts, its slips on the shaft, its lag.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "hammer_loads/crank/crank_sensor.h"
+#include "hammer_loads/estimation/gates.h"
+#include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/linkage/crank_angle.h"
 
 namespace hammer_loads {
@@ -133,6 +137,95 @@ class Encoder {
   int strays_{};    ///< such readings, one after the other
   int agreeing_{};  ///< differences in a row that fit the count
   int finer_readings_{};
+};
+
+/// A crank has inertia: from one reading to the next no torque moves it by more than some milliradians, and what moves
+/// it goes on. A reading that is suddenly further off, and whose next one is off by the same, is of a sensor that
+/// moved; the step itself says by how much, to the count. Stamps must not jitter by as much (a clock that was set looks
+/// alike, but makes its step longer or shorter), and the blow must not be near. A model that is surprised in every
+/// turn is wrong otherwise: some turns without must have gone before.
+class EncoderSlip {
+ public:
+  enum class Step { kNone, kPerhaps, kSlipped };
+
+  /// [rad]: an innovation that no working machine makes between two samples; the sensor is another one, and the
+  /// estimate begins anew.
+  static constexpr double kMost = 0.5;
+  // Guard: EncoderSlip.NorIsASensorThatIsSomewhereElse of kMost
+
+  /// An innovation of an angle, its variance, and what the largest torque does within the step [rad]. way: of the crank
+  /// in a step of usual length; longer: in what this one lasts beyond that [rad]. possible: place and samples before
+  /// allow it. kPerhaps: the sample is not to be taken; only the next one says, whose step then begins at the same one.
+  Step follow(double innovation, double total, double by_torque, double way, double longer, bool possible) noexcept {
+    const double seen = std::exchange(seen_, 0.0), before = std::exchange(before_, innovation);
+    if (seen != 0.0) {
+      const bool stays = std::abs(innovation - seen) < kSame * std::abs(seen);
+      before_ = 0.0;  // the sample is another one once the encoder has moved
+      if (!stays || std::abs(longer - way) > kOfClock * std::abs(innovation)) return Step::kNone;
+      ++count_;
+      turns_since_ = 0;
+      last_ = 0.5 * (innovation + seen), deviation_ = std::sqrt(0.5 * total);
+      return Step::kSlipped;
+    }
+    const bool jumped = std::abs(before) < kSame * std::abs(innovation);
+    if (!possible || !jumped || std::abs(innovation) < by_torque || !exceeds(innovation, total, gate::kImpossible))
+      return Step::kNone;
+    const bool undoes = isFresh() && std::abs(innovation + last_) < kSame * std::abs(last_);
+    const int quiet = std::exchange(quiet_turns_, 0);
+    if ((quiet < look_back::kTurnsToKnow && !undoes) || std::abs(innovation) > kMost) return Step::kNone;
+    if (std::abs(longer) > kOfClock * std::abs(innovation)) return Step::kNone;
+    seen_ = innovation;
+    return Step::kPerhaps;
+  }
+  void endTurn() noexcept { ++quiet_turns_, ++turns_since_; }
+  /// The last one is some turns old at most: a step back belongs to it, and a restart says that it was none.
+  bool isFresh() const noexcept { return last_ != 0.0 && turns_since_ < look_back::kTurnsToKnow; }
+  /// The last one was none.
+  void takeBack() noexcept {
+    --count_;
+    last_ = 0.0;
+  }
+  int count() const noexcept { return count_; }             ///< since the beginning
+  double last() const noexcept { return last_; }            ///< of the crank's angle [rad]
+  double deviation() const noexcept { return deviation_; }  ///< of that [rad]
+
+ private:
+  static constexpr double kSame = 0.4;     // of it: a crank that was pushed is off by twice as much in the next sample
+  static constexpr double kOfClock = 0.5;  // of it: a clock that was set makes the step as much longer or shorter
+  // Guard: EncoderSlip.IsAboutTheSameInTheNextReading of kSame
+  // Guard: EncoderSlip.NorAClockThatWasSetNorASurpriseOfEachTurn of kOfClock
+  double before_{};  ///< innovation of the sample before [rad]
+  double seen_{};    ///< the same where it may be a slip; else 0
+  double last_{}, deviation_{};
+  int count_{}, quiet_turns_{}, turns_since_{};
+};
+
+/// A low-pass of first order, lag y' = angle - y: by the exact answer to an even acceleration within a step, angle - y
+/// is lag (w - lag w') and what is left of the step's start. A reading that is late by as much looks alike but for
+/// lag^2 w'/2. Measured speeds show it (SpeedTrust): they cannot be ahead of their crank.
+class AngleLag {
+ public:
+  bool isThere() const noexcept { return lag_ > 0.0; }
+  double lag() const noexcept { return lag_; }              ///< taken off the readings [s]
+  double deviation() const noexcept { return deviation_; }  ///< of that, standard [s]
+  /// more: seen in readings from which lag() has been taken off [s]; deviation: of it.
+  void take(double more, double deviation) noexcept {
+    lag_ = std::max(0.0, lag_ + more);
+    deviation_ = deviation;
+  }
+  /// The readings begin anew, at an even speed [rad/s].
+  void begin(double speed) noexcept { behind_ = lag_ * speed; }
+  /// After a step of dt [s] > 0 from one speed to another [rad/s], how far the reading is behind [rad].
+  double behind(double from, double to, double dt) const noexcept {
+    if (!isThere()) return 0.0;
+    const double bent = lag_ * (to - from) / dt;
+    return lag_ * (to - bent) + std::exp(-dt / lag_) * (behind_ - lag_ * (from - bent));
+  }
+  /// The reading at the end of the last step was taken up.
+  void go(double behind) noexcept { behind_ = behind; }
+
+ private:
+  double lag_{}, deviation_{}, behind_{};
 };
 
 }  // namespace hammer_loads

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/flexible_rates.h"
-#include "hammer_loads/crank/way_piece.h"
 
 namespace hammer_loads {
 namespace {

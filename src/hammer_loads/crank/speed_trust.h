@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "hammer_loads/crank/unknowns.h"
-#include "hammer_loads/estimation/latch.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/util/square.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "hammer_loads/crank/supply_law.h"
+#include "hammer_loads/crank/supply.h"
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/util/format.h"
 

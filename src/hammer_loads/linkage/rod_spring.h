@@ -1,5 +1,7 @@
-/// The spring between crank and rocker.
+/// The spring between crank and rocker, and how what hangs on it swings.
 #pragma once
+
+#include <cmath>
 
 #include "hammer_loads/util/constants.h"
 
@@ -42,5 +44,26 @@ inline RodPrior priorOf(const RodSpring& rod, const RodSpring& deviation) noexce
   prior.gives = rod.stiffness > 0.0 || deviation.stiffness > 0.0 || rod.play > 0.0 || deviation.play > 0.0;
   return prior;
 }
+
+/// y'' = -square y - 2 decay y', exactly over a time, with any damping.
+struct Oscillator {
+  double square{};  ///< of its free frequency [rad2/s2], > 0
+  double decay{};   ///< [1/s], >= 0
+
+  void move(double time, double& y, double& speed) const noexcept {
+    const double rest = square - decay * decay, from = y, v = speed;
+    double cosine, sine;  // sine over the frequency, both with the decay
+    if (rest > 0.0) {
+      const double frequency = std::sqrt(rest), e = std::exp(-decay * time);
+      cosine = e * std::cos(frequency * time), sine = e * std::sin(frequency * time) / frequency;
+    } else {
+      const double s = std::sqrt(-rest);
+      const double slow = std::exp((s - decay) * time), fast = std::exp(-(s + decay) * time);
+      cosine = 0.5 * (slow + fast), sine = s > 0.0 ? 0.5 * (slow - fast) / s : time * slow;
+    }
+    y = from * cosine + (v + decay * from) * sine;
+    speed = v * cosine - (square * from + decay * v) * sine;
+  }
+};
 
 }  // namespace hammer_loads

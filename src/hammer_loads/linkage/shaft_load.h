@@ -3,7 +3,6 @@
 
 #include "hammer_loads/linkage/crank_angle.h"
 #include "hammer_loads/linkage/hull_motion.h"
-#include "hammer_loads/linkage/hull_turning.h"
 #include "hammer_loads/linkage/level.h"
 #include "hammer_loads/linkage/link_motion.h"
 #include "hammer_loads/linkage/mechanism.h"

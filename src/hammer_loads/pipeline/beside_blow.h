@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/crank/way_piece.h"
 #include "hammer_loads/estimation/gates.h"
 
 namespace hammer_loads {

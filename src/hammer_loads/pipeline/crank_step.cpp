@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/crank/way_piece.h"
+#include "hammer_loads/crank/crank_dynamics.h"
 
 namespace hammer_loads {
 namespace {

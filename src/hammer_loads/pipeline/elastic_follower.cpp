@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hammer_loads/crank/way_piece.h"
+#include "hammer_loads/crank/crank_dynamics.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/hammer/hull_wrench.h"
@@ -78,8 +78,8 @@ void ElasticFollower::begin(const CrankFollower& crank, const CrankFilter& filte
     if (!alone_ || &rod == best_) rod.begin(filter, gravity);
 }
 
-void ElasticFollower::follow(const CrankFollower& crank, Gravity gravity) noexcept {
-  const CrankFilter* filter = wanted_ ? crank.tracker().filterNow() : nullptr;
+void ElasticFollower::followRods(const CrankFollower& crank, Gravity gravity) noexcept {
+  const CrankFilter* filter = crank.tracker().filterNow();
   if (filter == nullptr) return;
   if (!runs_) {
     if (mayBegin(crank, *filter)) begin(crank, *filter, gravity);

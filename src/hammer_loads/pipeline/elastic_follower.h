@@ -25,7 +25,9 @@ class ElasticFollower {
 
   void rest() noexcept;
   /// Over the step to the crank's last sample, which continued.
-  void follow(const CrankFollower& crank, Gravity gravity) noexcept;
+  void follow(const CrankFollower& crank, Gravity gravity) noexcept {
+    if (wanted_) followRods(crank, gravity);
+  }
   /// The last blow was none of two bodies on a tool near the dead centre, however the rod may be: nothing explains what
   /// it did to the crank.
   bool isLost() const noexcept { return lost_; }
@@ -102,6 +104,7 @@ class ElasticFollower {
   Loads rigidLoads(const RodMotion& motion, const DriveReaction& drive) const noexcept;
   Loads besideLater(const DriveReaction& drive, const Loads& here, double time) const noexcept;
   LoadCovariance covariance(const DriveReaction& drive, const Loads& here) const noexcept;
+  void followRods(const CrankFollower& crank, Gravity gravity) noexcept;
   void begin(const CrankFollower& crank, const CrankFilter& filter, Gravity gravity) noexcept;
   const RodFilter& likelier() const noexcept;
   bool runsAlone(std::int64_t blow) const noexcept;

@@ -31,8 +31,10 @@ HullState::HullState(const HammerParameters& hammer, const PipelineSettings& set
   weigh();
 }
 
-/// Of a fixed hull the weight is all its motion.
+/// By the joint angles as they are now. Of a fixed hull the weight is all its motion.
 void HullState::weigh() noexcept {
+  pitch_known_ = weight_.pitch().known();
+  in_degrees_ = weight_.pitch().looksLikeDegrees();
   if (source_ == HullMotionSource::kFixed) now_ = {weight_.gravity(), false, HullMotionCovariance::Zero()};
 }
 
@@ -53,7 +55,7 @@ std::optional<ImuRefusal> HullState::imu(StampNs stamp, const ImuReading& readin
     const double step = seconds(stamp - last);
     imu_trust_.follow(taken.reading.specific_force, taken.reading.rate, step);
     if (followsLoad()) filter_.add(taken);
-    if (weight_.pitch().known()) imu_trust_.judge(weight_.gravity(), step);
+    if (pitch_known_) imu_trust_.judge(weight_.gravity(), step);
   }
   ++(refusal ? imu_counts_.refused[static_cast<std::size_t>(*refusal)] : imu_counts_.accepted);
   return refusal;
@@ -86,7 +88,7 @@ void HullState::find(StampNs stamp) noexcept {
   by_imu_ = known_ && !(vibration_ && overdue > 0.0);
   if (!by_imu_) return findByBoom();
   now_ = {measured->motion, true, measured->covariance};
-  if (overdue > 0.0 && weight_.pitch().known()) forgetReading(1.0 - forgottenPart(overdue));
+  if (overdue > 0.0 && pitch_known_) forgetReading(1.0 - forgottenPart(overdue));
 }
 
 /// What a reading that is held has beside the weight is no longer true: only a part of it. Held to the end it would

@@ -65,6 +65,8 @@ class HullState {
   /// angles then, and the vibration of a boom whose oil is identified.
   bool motionKnown() const noexcept { return known_; }
   const HullPitch& pitch() const noexcept { return weight_.pitch(); }
+  bool pitchKnown() const noexcept { return pitch_known_; }
+  bool anglesLookLikeDegrees() const noexcept { return in_degrees_; }
   const Gravity& gravity() const noexcept { return weight_.gravity(); }  ///< by the joint angles
   const ImuCounts& imuCounts() const noexcept { return imu_counts_; }
   const ImuTrust& imuTrust() const noexcept { return imu_trust_; }
@@ -89,6 +91,7 @@ class HullState {
   Motion now_;
   std::uint64_t imu_taken_{};  ///< readings accepted up to the last newImuReading()
   bool known_{true}, by_imu_{};
+  bool pitch_known_{}, in_degrees_{};  ///< as of the last message of joints
 };
 
 }  // namespace hammer_loads

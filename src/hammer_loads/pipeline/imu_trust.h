@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hammer_loads/estimation/latch.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/hammer/hammer_model.h"

@@ -106,7 +106,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   if (!settled_) return withhold(Refusal::kImplausible);
   const DriveReaction drive = driveReaction(model_, crank_.tracker().driveInertia());
   const ElasticFollower::Beside rod = weigh(links, drive);
-  followBoom(links, drive);
+  result_.boom = nullptr;
+  if (boom_) followBoom(links, drive);
   hullMovedAtBlow();
   hull_.vibrates(result_.boom != nullptr ? &*boom_ : nullptr);
   fill(links, drive, rod);
@@ -114,7 +115,8 @@ const SampleResult& Pipeline::crankSample(StampNs header, const CrankSample& mea
   turn_.published(result_);
   ++counts_.accepted;
   counts_.beside_blow += result_.beside_blow;
-  followMisuse();
+  if (crank_.step().known()) counts_.misuse.work_time += crank_.step().length();
+  if (boom_) followMisuse();
   return result_;
 }
 
@@ -147,7 +149,7 @@ void Pipeline::follow(CrankFollower::Taken taken) noexcept {
 std::optional<Refusal> Pipeline::whyWithheld() noexcept {
   settled_ = !crank_.tracker().isDoubtful() && crank_.isSettled(hull_.motion().motion, turn_.peakForce());
   if (const auto distrust = trust_.refusal()) return distrust;
-  if (hull_.pitch().looksLikeDegrees()) return Refusal::kDegrees;
+  if (hull_.anglesLookLikeDegrees()) return Refusal::kDegrees;
   return settled_ ? std::nullopt : std::make_optional(Refusal::kUnsettled);
 }
 
@@ -197,7 +199,7 @@ ElasticFollower::Beside Pipeline::weigh(const LinksBeside& links, const DriveRea
 void Pipeline::fill(const LinksBeside& links, const DriveReaction& drive, const ElasticFollower::Beside& rod) noexcept {
   const CrankMotion motion = motionOf(result_.crank);
   result_.hull = hull_.motion();
-  result_.pitch_known = hull_.pitch().known();
+  result_.pitch_known = hull_.pitchKnown();
   result_.links = linkState(links.here.links, motion);
   if (elastic_.runs()) {
     const TwoBodyState& bodies = elastic_.filter().motion().state;

@@ -29,8 +29,6 @@ CrankLead Pipeline::crankLead(double speed) const noexcept {
 }
 
 void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) noexcept {
-  result_.boom = nullptr;
-  if (!boom_) return;
   const CrankMotion crank = motionOf(result_.crank);
   const HullWrench motion = hullWrench(model_, drive, links.here.links, crank, Gravity{});
   const HullWrench displaced = displaced_links_.wrench(links.here.links, crank.speed, hull_.motion().motion);
@@ -52,8 +50,7 @@ void Pipeline::followBoom(const LinksBeside& links, const DriveReaction& drive) 
 }
 
 void Pipeline::followMisuse() noexcept {
-  if (crank_.step().known()) counts_.misuse.work_time += crank_.step().length();
-  const bool placed = boom_ && boom_->known();
+  const bool placed = boom_->known();
   if (placed)
     misuse_.hullAt(boom_->boom().pose().tip().translation());
   else

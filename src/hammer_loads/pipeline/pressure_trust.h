@@ -6,7 +6,6 @@
 
 #include "hammer_loads/boom/wrench.h"
 #include "hammer_loads/estimation/gates.h"
-#include "hammer_loads/estimation/latch.h"
 #include "hammer_loads/estimation/look_back.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/util/square.h"

@@ -12,7 +12,6 @@
 #include "hammer_loads/pipeline/pending_blow.h"
 #include "hammer_loads/pipeline/rod_ring.h"
 #include "hammer_loads/pipeline/sample_result.h"
-#include "hammer_loads/pipeline/turn_errors.h"
 #include "hammer_loads/pipeline/turn_recorder.h"
 
 namespace hammer_loads {

@@ -1,10 +1,15 @@
-/// Follows a turn from blow to blow, so that its pulse is known when it ends.
+/// Follows a turn from blow to blow, so that its pulse, and how far that may be off, is known when it ends.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "hammer_loads/hammer/hammer_model.h"
+#include "hammer_loads/hammer/pulse.h"
+#include "hammer_loads/pipeline/number_error.h"
+#include "hammer_loads/util/stamp.h"
 
 namespace hammer_loads {
 
@@ -42,6 +47,52 @@ class TurnRecorder {
   double weight_impulse_x_{}, weight_impulse_z_{};
   std::size_t stride_{1}, skipped_{};
   bool recording_{};
+};
+
+/// An impulse is the difference of two momenta and the weight's in between (TurnRecorder): so is its error. The sum of
+/// the samples' errors is not: at each of them readings correct the crank, and its momentum with it.
+class TurnErrors {
+ public:
+  /// A turn begins with a blow.
+  void begin(StampNs blow) noexcept;
+  /// How far a momentum may be off [N s]: in all, and by readings alone, without a rod that may give.
+  struct Momentum {
+    HullWrench all, by_readings;
+  };
+  /// That after the blow, and by constants [N s]. Known some time later.
+  void momentumAfterBlow(const Momentum& deviation, const MomentumColumns& columns) noexcept {
+    after_blow_ = deviation, at_begin_ = columns;
+  }
+  /// Whether Fz rises through zero with the coming sample: who knows says rose() first.
+  bool rises(double force_z) const noexcept { return last_force_ <= 0.0 && force_z > 0.0; }
+  /// A lobe begins here. There the momentum along z stands still, so that the instant itself does not matter.
+  void rose(StampNs stamp, const MomentumColumns& columns) noexcept { rise_ = {stamp, columns}; }
+  /// The load at a sample, its deviation as of an extreme. rod: of that what a rod makes that may give.
+  void sample(double force_z, double deviation, double common, double rod, const LoadColumns& columns) noexcept;
+  /// At the blow that ends the turn. before_blow, at_end: how far the momentum there may be off, by samples and by
+  /// constants [N s]; weight: what constants make of the links' weight [N].
+  PulseErrors end(StampNs blow, const HalfSinePulse& pulse, const Momentum& before_blow, const MomentumColumns& at_end,
+                  const MomentumColumns& weight) const noexcept;
+  /// A ring's peak lies between samples, by its model alone: what it is beyond the highest of them is in doubt.
+  void doubtBetween(double peak, NumberError& error) const noexcept {
+    const double beyond = std::max(0.0, peak - peak_);
+    error.own = std::hypot(error.own, beyond), error.rod = std::hypot(error.rod, beyond);
+  }
+
+ private:
+  struct Lobe {
+    StampNs begin{};
+    MomentumColumns columns{MomentumColumns::Zero()};
+  };
+
+  StampNs begin_{};
+  MomentumColumns at_begin_{MomentumColumns::Zero()};
+  Momentum after_blow_;
+  std::optional<Lobe> rise_, lobe_;  ///< of the last rise; of the last lobe that counts
+  double last_force_{1.0}, peak_{};  ///< Fz of the last sample; its largest [N]
+  NumberError at_peak_;
+  NumberError highest_;  ///< own, rod: of the sample that may be highest, by one of its own deviations
+  double reach_{};       ///< there [N]
 };
 
 }  // namespace hammer_loads

@@ -19,7 +19,7 @@ std::string count(std::uint64_t n) { return std::to_string(n); }
 
 void warnOfUnits(const Pipeline& pipeline, const SampleCounts& counts, std::vector<Warning>& warnings) {
   const CrankUnit unit = pipeline.crank().unit();
-  const bool boom = pipeline.hull().pitch().looksLikeDegrees();
+  const bool boom = pipeline.hull().anglesLookLikeDegrees();
   const std::uint64_t degrees = counts.refusedFor(Refusal::kDegrees), speed = counts.refusedFor(Refusal::kSpeedUnit),
                       turns = counts.refusedFor(Refusal::kAngleUnit);
   const auto withheld = [](std::uint64_t samples) { return "; " + count(samples) + " samples withheld"; };
