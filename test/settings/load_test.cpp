@@ -52,6 +52,18 @@ TEST(Load, GivenKeysReplaceShippedOnesKeyByKey) {
   EXPECT_EQ(settings.value->mechanism.parameters().rocker_mass, 35.2);
 }
 
+TEST(Load, MergedKeysLeaveWhatWasReadBeforeAsItIs) {
+  std::vector<std::string> problems;
+  const ParameterMap over = *parameterMap(YAML::Load("level: rocker"), "over", problems);
+  const ParameterMap before = *parameterMap(YAML::Load("{level: linkage, output: mean}"), "before", problems);
+  ParameterMap base = before;
+  merge(over, base);
+  EXPECT_EQ(base.at("level").value.Scalar(), "rocker");
+  EXPECT_EQ(base.at("level").origin, over.at("level").origin);
+  EXPECT_EQ(base.at("output").value.Scalar(), "mean");
+  EXPECT_EQ(before.at("level").value.Scalar(), "linkage");
+}
+
 TEST(Load, LaterFilesReplaceEarlierOnes) {
   const TemporaryFile first("gravity_m_s2: 1.0\nstale_after_s: 0.5\n"), second("gravity_m_s2: 2.0\n");
   const Checked<Settings> settings = loadShippedWith({first.path(), second.path()});

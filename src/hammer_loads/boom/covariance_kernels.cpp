@@ -9,8 +9,10 @@ void subtractSquare(CovarianceBlock P, const Eigen::Ref<const Eigen::VectorXd>& 
 
 void replaceTwo(CovarianceBlock P, int first, const TwoOf& of) noexcept {
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
-  Column one = Column::Zero(P.rows()), other = one;  // products of P and a row of F
-  std::size_t k = 0;
+  // Products of P and a row of F.
+  Column one = of.by_one[0] * P.col(of.state[0]) + of.by_one[1] * P.col(of.state[1]);
+  Column other = of.by_other[0] * P.col(of.state[0]) + of.by_other[1] * P.col(of.state[1]);
+  std::size_t k = 2;
   for (const auto count = static_cast<std::size_t>(of.count); k + 1 < count; k += 2) {
     const auto a = P.col(of.state[k]), b = P.col(of.state[k + 1]);
     one += of.by_one[k] * a + of.by_one[k + 1] * b;

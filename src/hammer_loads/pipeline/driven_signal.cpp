@@ -160,9 +160,9 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
 
 /// More noise makes a hull's compliance no less known than before any reading.
 void DrivenSignal::keepPrior(Candidate& c) const noexcept {
-  const Eigen::Array3d part =
-      (prior_.head<3>().array() / (c.variance * c.P.diagonal().segment<3>(kCompliance).array())).min(1.0).sqrt();
-  if ((part == 1.0).all()) return;
+  const Eigen::Array3d prior = prior_.head<3>(), now = c.variance * c.P.diagonal().segment<3>(kCompliance).array();
+  if ((now <= prior).all()) return;
+  const Eigen::Array3d part = (prior / now).min(1.0).sqrt();
   c.P.middleRows<3>(kCompliance).array().colwise() *= part;
   c.P.middleCols<3>(kCompliance).array().rowwise() *= part.transpose();
 }

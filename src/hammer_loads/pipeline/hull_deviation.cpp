@@ -174,12 +174,12 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
 }
 
 Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept {
-  return covarianceRoot<3>(columns * columns.transpose());
+  return covarianceRoot<3>(columns.lazyProduct(columns.transpose()));
 }
 
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
   const auto of_hammer = columns.middleCols<kMachineColumns>(ConstantErrors::kTable);
-  return covarianceRoot<3>(of_hammer * of_hammer.transpose());
+  return covarianceRoot<3>(of_hammer.lazyProduct(of_hammer.transpose()));
 }
 
 }  // namespace hammer_loads

@@ -108,8 +108,11 @@ std::optional<ParameterMap> readParameterFile(const std::string& file, std::vect
   return std::nullopt;
 }
 
+/// Put in anew: what is assigned to a node changes every copy of it, and both keep each other's documents for ever.
 void merge(const ParameterMap& over, ParameterMap& base) {
-  for (const auto& [key, parameter] : over) base.insert_or_assign(key, parameter);
+  ParameterMap all = over;
+  all.insert(base.begin(), base.end());
+  base.swap(all);
 }
 
 bool addFiles(const std::vector<std::string>& files, ParameterMap& parameters, std::vector<std::string>& problems) {
