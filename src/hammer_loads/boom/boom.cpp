@@ -85,23 +85,23 @@ void checkInertia(const Chain& chain, const std::vector<Cylinder>& cylinders, st
 
 }  // namespace
 
-Checked<Boom> Boom::make(const std::string& urdf_text, const BoomParameters& parameters) {
+Checked<Boom> Boom::make(const RobotDescription& description, const BoomParameters& parameters) {
   std::vector<std::string> problems;
   checkParameters(parameters, problems);
-  return build(urdf_text, parameters, std::move(problems));
+  return build(description, parameters, std::move(problems));
 }
 
-Checked<Boom> Boom::make(const std::string& urdf_text, const ChainRequest& request) {
+Checked<Boom> Boom::make(const RobotDescription& description, const ChainRequest& request) {
   BoomParameters parameters;
   parameters.chain = request;
-  return build(urdf_text, parameters, {});
+  return build(description, parameters, {});
 }
 
-Checked<Boom> Boom::build(const std::string& urdf_text, const BoomParameters& parameters,
+Checked<Boom> Boom::build(const RobotDescription& description, const BoomParameters& parameters,
                           std::vector<std::string> problems) {
   Checked<Boom> result;
   result.problems = std::move(problems);
-  const Checked<Chain> chain = Chain::make(urdf_text, parameters.chain);
+  const Checked<Chain> chain = Chain::make(description, parameters.chain);
   result.problems.insert(result.problems.end(), chain.problems.begin(), chain.problems.end());
   result.notes = chain.notes;
   if (!chain.value) return result;

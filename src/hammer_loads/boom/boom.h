@@ -66,9 +66,9 @@ struct RigidVerdict {
 class Boom {
  public:
   /// Every problem of description and boom file at once, one line each.
-  static Checked<Boom> make(const std::string& urdf_text, const BoomParameters& parameters);
+  static Checked<Boom> make(const RobotDescription& description, const BoomParameters& parameters);
   /// From the description alone: rigid, no cylinders, supports not known.
-  static Checked<Boom> make(const std::string& urdf_text, const ChainRequest& request = {});
+  static Checked<Boom> make(const RobotDescription& description, const ChainRequest& request = {});
 
   /// Joint motion of the chain's joints, g_B: gravity in the root's axes [m/s2]; (0, 0, -g) for a level base.
   void move(const JointMotion& motion, const Eigen::Vector3d& g_B) noexcept;
@@ -152,7 +152,7 @@ class Boom {
  private:
   Boom(const Chain& chain, std::vector<Cylinder> cylinders, std::vector<Section> sections,
        const BoomParameters& parameters);
-  static Checked<Boom> build(const std::string& urdf_text, const BoomParameters& parameters,
+  static Checked<Boom> build(const RobotDescription& description, const BoomParameters& parameters,
                              std::vector<std::string> problems);
 
   Chain chain_;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "hammer_loads/boom/figure_limits.h"
-#include "hammer_loads/boom/urdf_text.h"
 #include "hammer_loads/boom/urdf_tree.h"
 #include "hammer_loads/util/constants.h"
 #include "hammer_loads/util/format.h"
@@ -244,20 +243,19 @@ class ChainBuilder {
   Chain::Data data_;
 };
 
-std::string linksMissing(const std::string& urdf_text, const ChainRequest& request) {
-  std::vector<std::string> problems;
-  const urdf::ModelInterfaceSharedPtr model = readUrdf(urdf_text, problems);
-  if (!model) return {};
+std::string linksMissing(const RobotDescription& description, const ChainRequest& request) {
+  const urdf::ModelInterface* model = description.model();
+  if (model == nullptr) return {};
   for (const std::string& name : {request.root, request.tip}) {
     if (!model->getLink(name)) return "robot_description: has no link " + name;
   }
   return {};
 }
 
-Checked<Chain> Chain::make(const std::string& urdf_text, const ChainRequest& request) {
+Checked<Chain> Chain::make(const RobotDescription& description, const ChainRequest& request) {
   Checked<Chain> result;
-  const urdf::ModelInterfaceSharedPtr model = readUrdf(urdf_text, result.problems);
-  if (model) ChainBuilder(*model, request, result).build();
+  result.problems = description.problems();
+  if (description.model() != nullptr) ChainBuilder(*description.model(), request, result).build();
   return result;
 }
 

@@ -1,4 +1,4 @@
-/// The boom as a chain of rigid links, from the text of a robot description (URDF).
+/// The boom as a chain of rigid links, from a robot description.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hammer_loads/boom/joint_space.h"
+#include "hammer_loads/boom/robot_description.h"
 #include "hammer_loads/util/checked.h"
 
 namespace KDL {
@@ -48,12 +49,12 @@ struct ChainRequest {
 
 /// One line when the description can be read but does not have root or tip: it is that of another machine. Empty when
 /// both are there, and when the text cannot be read, which Chain::make() reports.
-std::string linksMissing(const std::string& urdf_text, const ChainRequest& request);
+std::string linksMissing(const RobotDescription& description, const ChainRequest& request);
 
 /// From `base_link`, or the tree's root where that is not before them, over these joints to `hammer_hull`, or to the
 /// last joint's link where that is not beyond them; for directions alone. Nothing where the description does not have
 /// them one behind the other, or cannot be read.
-std::optional<ChainRequest> chainOver(const std::string& urdf_text, const std::vector<std::string>& joints);
+std::optional<ChainRequest> chainOver(const RobotDescription& description, const std::vector<std::string>& joints);
 
 /// A body's mass and where it acts.
 struct PointMass {
@@ -83,7 +84,7 @@ class Chain {
  public:
   /// Every problem at once, one line each, beginning with `robot_description`: text that is no URDF, missing link, tip
   /// not beyond root, joint not in the chain, kind of joint, impossible mass or inertia.
-  static Checked<Chain> make(const std::string& urdf_text, const ChainRequest& request);
+  static Checked<Chain> make(const RobotDescription& description, const ChainRequest& request);
 
   int joints() const noexcept { return static_cast<int>(data_->joint_names.size()); }
   int links() const noexcept { return static_cast<int>(data_->links.size()); }  ///< root included

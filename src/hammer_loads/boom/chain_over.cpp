@@ -1,7 +1,8 @@
+#include <urdf_model/model.h>
+
 #include <algorithm>
 
 #include "hammer_loads/boom/chain.h"
-#include "hammer_loads/boom/urdf_text.h"
 
 namespace hammer_loads {
 namespace {
@@ -27,10 +28,9 @@ bool isBefore(const std::string& name, urdf::LinkConstSharedPtr link) {
 
 }  // namespace
 
-std::optional<ChainRequest> chainOver(const std::string& urdf_text, const std::vector<std::string>& joints) {
-  std::vector<std::string> problems;
-  const urdf::ModelInterfaceSharedPtr model = readUrdf(urdf_text, problems);
-  if (!model || joints.empty()) return std::nullopt;
+std::optional<ChainRequest> chainOver(const RobotDescription& description, const std::vector<std::string>& joints) {
+  const urdf::ModelInterface* model = description.model();
+  if (model == nullptr || joints.empty()) return std::nullopt;
   urdf::LinkConstSharedPtr first, last;
   for (const std::string& name : joints) {
     const urdf::JointConstSharedPtr joint = model->getJoint(name);

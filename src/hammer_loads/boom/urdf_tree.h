@@ -9,7 +9,7 @@ namespace hammer_loads {
 
 /// Every link as a segment of its own name, with its mass and inertia; a joint that neither turns about an axis nor
 /// slides along one counts as fixed. The root's inertia is left out, as KDL has none for it. The model must be a tree
-/// (readUrdf).
+/// (RobotDescription).
 KDL::Tree treeOf(const urdf::ModelInterface& model);
 
 }  // namespace hammer_loads

@@ -19,7 +19,7 @@ struct TipWeight {
 
 /// Given parameters, and how far they may be off.
 struct BoomBasis {
-  std::string urdf;
+  RobotDescription urdf;
   BoomParameters parameters;
   Eigen::Vector3d g_B{0.0, 0.0, -kStandardGravity};  ///< gravity in the root's axes [m/s2]
   double mass_deviation{0.15};            ///< standard, of each link's mass, relative: a sum of drawn parts [-]

@@ -50,21 +50,21 @@ std::string vibrationConflict(const PipelineSettings& pipeline, bool boom_file, 
 }
 
 /// Nothing when there is none, or the reader got a problem with it.
-std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel model, const std::string& description,
-                             std::vector<std::string>& notes) {
+std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel model,
+                             const std::optional<RobotDescription>& description, std::vector<std::string>& notes) {
   const std::size_t problems_before = reader.problems().size();
   const BoomParameters parameters = boom_file ? readBoomParameters(reader) : BoomParameters{};
-  const std::string conflict = boomConflict(model, boom_file, !description.empty());
+  const std::string conflict = boomConflict(model, boom_file, description.has_value());
   if (!conflict.empty()) reader.addProblem(conflict);
-  if (description.empty() || model == BoomModel::kNone || reader.problems().size() != problems_before) return {};
+  if (!description || model == BoomModel::kNone || reader.problems().size() != problems_before) return {};
   if (!boom_file && model == BoomModel::kAuto) {
-    const std::string missing = linksMissing(description, {});
+    const std::string missing = linksMissing(*description, {});
     if (!missing.empty()) {
       notes.push_back(missing + ": no boom, the hammer's loads on its hull alone");
       return {};
     }
   }
-  Checked<Boom> boom = boom_file ? Boom::make(description, parameters) : Boom::make(description);
+  Checked<Boom> boom = boom_file ? Boom::make(*description, parameters) : Boom::make(*description);
   for (const std::string& problem : boom.problems) reader.addProblem(problem);
   notes.insert(notes.end(), boom.notes.begin(), boom.notes.end());
   return std::move(boom.value);
@@ -72,12 +72,12 @@ std::optional<Boom> readBoom(ParameterReader& reader, bool boom_file, BoomModel 
 
 /// Weight by the description's axes and zeros where there is no boom. Signs that contradict it are a problem.
 void takePitchChain(ParameterReader& reader, PipelineSettings& pipeline, const std::optional<Boom>& boom,
-                    const std::string& description, std::vector<std::string>& notes) {
+                    const std::optional<RobotDescription>& description, std::vector<std::string>& notes) {
   const std::vector<std::string>& joints = pipeline.pitch_joints;
-  if (description.empty() || joints.empty() || !reader.problems().empty()) return;
+  if (!description || joints.empty() || !reader.problems().empty()) return;
   if (!boom) {
-    const std::optional<ChainRequest> request = chainOver(description, joints);
-    if (request) pipeline.pitch_chain = Chain::make(description, *request).value;
+    const std::optional<ChainRequest> request = chainOver(*description, joints);
+    if (request) pipeline.pitch_chain = Chain::make(*description, *request).value;
     if (pipeline.pitch_chain)
       notes.push_back("weight by the robot description's axes and zeros, from " + request->root + " to " +
                       request->tip);
@@ -116,12 +116,14 @@ Checked<Settings> settingsFrom(ParameterMap parameters, const std::string& robot
   PipelineSettings pipeline = readPipelineSettings(reader);
   const LogSettings log = readLogSettings(reader);
   const std::size_t before_boom = reader.yaml().size();
-  std::optional<Boom> boom = readBoom(reader, boom_file, pipeline.boom, robot_description, result.notes);
+  std::optional<RobotDescription> description;
+  if (!robot_description.empty()) description.emplace(robot_description);
+  std::optional<Boom> boom = readBoom(reader, boom_file, pipeline.boom, description, result.notes);
   const std::string boom_yaml = reader.yaml().substr(before_boom);
   const bool vibrates = boom_file && pipeline.boom != BoomModel::kNone && pipeline.boom != BoomModel::kRigid;
   const std::string conflict = vibrationConflict(pipeline, boom_file, vibrates);
   if (!conflict.empty()) reader.addProblem(conflict);
-  takePitchChain(reader, pipeline, boom, robot_description, result.notes);
+  takePitchChain(reader, pipeline, boom, description, result.notes);
   life::LifeSettings life = readLife(reader, boom);
   reader.reportUnknownKeys();
   result.problems.insert(result.problems.end(), reader.problems().begin(), reader.problems().end());

@@ -1,4 +1,4 @@
-#include "hammer_loads/boom/urdf_text.h"
+#include "hammer_loads/boom/robot_description.h"
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
@@ -144,20 +144,31 @@ urdf::ModelInterfaceSharedPtr parsed(const std::string& text, std::vector<std::s
 
 }  // namespace
 
-urdf::ModelInterfaceSharedPtr readUrdf(const std::string& text, std::vector<std::string>& problems) {
-  const urdf::ModelInterfaceSharedPtr model = parsed(text, problems);
-  if (!model) return nullptr;
-  const std::size_t before = problems.size();
-  checkIsTree(*model, problems);
-  if (problems.size() != before) {
+struct RobotDescription::Read {
+  urdf::ModelInterfaceSharedPtr model;
+  std::vector<std::string> problems;
+};
+
+RobotDescription::RobotDescription(const std::string& text) {
+  const auto read = std::make_shared<Read>();
+  read_ = read;
+  const urdf::ModelInterfaceSharedPtr model = parsed(text, read->problems);
+  if (!model) return;
+  const std::size_t before = read->problems.size();
+  checkIsTree(*model, read->problems);
+  if (read->problems.size() != before) {
     release(*model);
-    return nullptr;
+    return;
   }
   for (const auto& [name, link] : model->links_) {
-    if (link->inertial) checkInertia(*link, problems);
+    if (link->inertial) checkInertia(*link, read->problems);
   }
-  for (const auto& [name, joint] : model->joints_) checkJoint(*joint, problems);
-  return model;
+  for (const auto& [name, joint] : model->joints_) checkJoint(*joint, read->problems);
+  read->model = model;
 }
+
+const urdf::ModelInterface* RobotDescription::model() const noexcept { return read_->model.get(); }
+
+const std::vector<std::string>& RobotDescription::problems() const noexcept { return read_->problems; }
 
 }  // namespace hammer_loads
