@@ -274,6 +274,7 @@ TEST_F(CrankDynamics, AToolIsMetNearTheDeadCentreAlone) {
   EXPECT_TRUE(isNear(-0.05, 0.0));
   EXPECT_FALSE(isNear(-0.07, 0.0));
   EXPECT_TRUE(isNear(-0.2, 14.0));
+  EXPECT_FALSE(isNear(-0.22, 14.0));
   EXPECT_TRUE(isNear(-0.45, 84.0));
   EXPECT_FALSE(isNear(-0.55, 84.0));
 }

@@ -1,9 +1,9 @@
 // Which innovations are a slip of the encoder, and which are the crank's.
-#include "hammer_loads/crank/encoder.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "hammer_loads/crank/encoder.h"
 
 namespace hammer_loads {
 namespace {

@@ -107,6 +107,15 @@ TEST(LearnedNumbers, TheBlowsOfTenTurns) {
   expectAbout(1.0 - blows.prior().mean, 0.1 / 10.1);
 }
 
+/// A factor that is known to less than half the spread of blows teaches; others do not.
+TEST(LearnedNumbers, ABlowThatIsHardlyKnownTeachesNothing) {
+  for (const double known : {0.4, 0.6}) {
+    BlowHistory blows({1.0, 0.2, ConstantErrors::Row::Zero()});
+    blows.add(0.8, square(known * 0.2), ConstantErrors::Row::Zero());
+    EXPECT_EQ(blows.prior().mean < 1.0, known < 0.5) << known;
+  }
+}
+
 /// A wrong first guess of the inertia passes for jitter: until 60 samples have come a large innovation counts as two
 /// deviations, later as three.
 TEST(LearnedNumbers, TheFirstSixtySamplesShowLittleJitter) {

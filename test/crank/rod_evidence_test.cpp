@@ -1,7 +1,9 @@
 // A rod that gives is known by where in the turn innovations are too large.
-#include "hammer_loads/crank/consistency.h"
-
 #include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hammer_loads/crank/consistency.h"
 
 namespace hammer_loads {
 namespace {
@@ -37,6 +39,20 @@ TEST(RodEvidence, ReadingsWithoutExcessLeaveARingLittleRoom) {
   EXPECT_NEAR(after(2.0, 1.0, 50).share(kFine), 0.38, 0.02);
   EXPECT_EQ(after(0.95, 1.0, 3).share(kFine), 1.0);     // too few
   EXPECT_EQ(after(0.95, 1.0, 50).share(kCoarse), 1.0);  // nothing would show
+}
+
+/// From the blow until the rod has picked up; three times as many where it has rung out, which is three times as long.
+TEST(RodEvidence, IsThatOfTheLastFourHundredSamples) {
+  RodEvidence rod;
+  const auto add = [&](double ratio, int samples) {
+    for (int i = 0; i < samples; ++i) {
+      for (const double at : {-10.0, 10.0}) rod.add(CrankAngle::fromOffset(at * kDegree), ratio);
+      for (const double at : {100.0, 130.0, 160.0}) rod.add(CrankAngle::fromOffset(at * kDegree), ratio);
+    }
+  };
+  add(1.0, 4000);
+  add(2.0, 400);
+  for (const double mean : {rod.runUp(), rod.pickedUp(), rod.later()}) EXPECT_NEAR(mean, 2.0 - std::exp(-1.0), 0.01);
 }
 
 /// What contradicts a rigid mechanism before the blow and after it are two questions.

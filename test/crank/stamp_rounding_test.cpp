@@ -1,10 +1,10 @@
 // Which stamps are rounded, and by how much.
-#include "hammer_loads/crank/stamp_sequence.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "hammer_loads/crank/stamp_sequence.h"
 
 namespace hammer_loads {
 namespace {
@@ -46,6 +46,15 @@ TEST(StampRounding, IsKnownAfterAHundredStamps) {
   for (; stamps < 1000 && rounding.step() == 0.0; ++stamps) rounding.add(stamps % 2 == 0 ? 1000000 : 2000000);
   EXPECT_GT(stamps, 80);
   EXPECT_LT(stamps, 125);
+}
+
+/// Exact whole milliseconds of which some are missing: each gap is two uneven steps.
+TEST(StampRounding, SomeLostSamplesDoNotMakeIt) {
+  for (const int lost : {4, 7}) {  // of a hundred
+    StampRounding rounding;
+    for (int i = 0; i < 1000; ++i) rounding.add(i % (100 / lost) == 0 ? 2000000 : 1000000);
+    EXPECT_EQ(rounding.step() > 0.0, lost > 5) << lost;
+  }
 }
 
 /// Numbers of seconds in double precision: some 0.2 us of today's time.

@@ -281,6 +281,19 @@ TEST(SteadyClockFit, AStampInItsPlaceContradictsALoss) {
   EXPECT_FALSE(clock.next(0.42).contradictsLoss());
 }
 
+/// One that is half an interval late among stamps without scatter counts as four hundredths of it, and moves a line
+/// through n of them by four over n of that.
+TEST(SteadyClockFit, OneStampAmongExactOnesHardlyMovesTheLine) {
+  constexpr int kStamps = 200;
+  SteadyClockFit fit;
+  fit.begin(0);
+  for (int i = 1; i < kStamps; ++i) fit.add(i * kMs);
+  fit.add(kStamps * kMs + kMs / 2);
+  const std::int64_t moved = fit.add((kStamps + 1) * kMs) - (kStamps + 1) * kMs;
+  const double expected = 0.04 * static_cast<double>(kMs) * 4.0 / kStamps;
+  EXPECT_NEAR(static_cast<double>(moved), expected, 0.1 * expected);
+}
+
 /// A quarter of the drift after 1500 samples of a line through 4096.
 TEST(SteadyClockFit, FollowsAClockThatDriftsWithinFourThousandSamples) {
   EvenClock clock(30000);

@@ -1,11 +1,10 @@
 // The supply's law, against a pump of constant flow that feeds a motor through a hose: own equations, in small steps.
-#include "hammer_loads/crank/supply.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "hammer_loads/crank/crank_filter.h"
+#include "hammer_loads/crank/supply.h"
 #include "support/filter_settings.h"
 #include "support/mo100.h"
 #include "support/striking_crank.h"

@@ -1,10 +1,10 @@
 // What sequences of innovations make of the torque's walk.
-#include "hammer_loads/crank/supply.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "hammer_loads/crank/supply.h"
 
 namespace hammer_loads {
 namespace {

@@ -152,6 +152,14 @@ TEST(FollowerNumbers, ASignalsNoiseIsThatOfAThousandReadings) {
   expectRoughly((square(quiet.signal.noise()) - before) / (square(0.14) - square(0.1)), 1.0 - std::exp(-0.5));
 }
 
+/// The first reading that is foretold, and is far off, counts as nine times the variance: a tenth of it shows.
+TEST(FollowerNumbers, ASignalsFirstNoiseStandsForTenReadings) {
+  QuietSignal quiet;
+  quiet.run(1, 0.1);
+  quiet.run(1, 1e6);
+  expectRoughly(square(quiet.signal.noise() / 0.1), 1.0 + (9.0 - 1.0) / 10.0);
+}
+
 TEST(FollowerNumbers, ASignalsComplianceWandersAsThePoseChanges) {
   QuietSignal quiet;
   quiet.run(4000, 0.1, 2e-3);

@@ -63,7 +63,9 @@ inline ModeResponse responseAt(const Mode& mode, double t) noexcept {
   ModeResponse r;
   if (w * t <= 1.0) {
     // What is left out is below 1e-18; the equation of motion gives impulse and step.
-    r = w * t <= 0.25 ? seriesOf<12>(w * t, mode.zeta) : seriesOf<20>(w * t, mode.zeta);
+    constexpr double kShort = 0.25;
+    // Numerical: kShort
+    r = w * t <= kShort ? seriesOf<12>(w * t, mode.zeta) : seriesOf<20>(w * t, mode.zeta);
     r.ramp *= t * t * t;
     r.parabola *= t * t * t * t;
     r.step = 0.5 * t * t - damping * r.ramp - ww * r.parabola;

@@ -49,7 +49,8 @@ double rigidError(const BoomModes& modes, double damping_ratio, const JointVecto
   };
   // During the pulse; then over one period of the slowest mode, in steps that resolve the fastest.
   constexpr int kSamples = 64;
-  // Numerical: kSamples
+  constexpr double kOfFastest = 32.0;
+  // Numerical: kSamples, kOfFastest
   std::array<PulseStep, kMaxJoints> pulse_step;
   for (int k = 0; k < modes.count; ++k)
     pulse_step[static_cast<std::size_t>(k)] = PulseStep(mode(k), mu, pulse_length / kSamples);
@@ -65,7 +66,7 @@ double rigidError(const BoomModes& modes, double damping_ratio, const JointVecto
     look(i == kSamples ? 0.0 : sine);
   }
   const double slowest = kTwoPi / modes.omega[0], fastest = kTwoPi / modes.omega[modes.count - 1];
-  const int after = std::clamp(static_cast<int>(32.0 * slowest / fastest), kSamples, 100 * kSamples);
+  const int after = std::clamp(static_cast<int>(kOfFastest * slowest / fastest), kSamples, 100 * kSamples);
   std::array<ModeStep, kMaxJoints> step;
   for (int k = 0; k < modes.count; ++k) step[static_cast<std::size_t>(k)] = stepOf(mode(k), slowest / after);
   for (int i = 1; i <= after; ++i) {

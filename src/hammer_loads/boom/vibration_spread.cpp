@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kSameDeviation = 1e-3;  // of it
 constexpr double kFaded = 1e-4;          // of the displacement by the hammer's load [m sqrt(kg)]: 10 kg by 30 um
-// Numerical: kSameDeviation, kFaded
+constexpr double kBelowCritical = 1e-6;  // of critical damping
+// Numerical: kSameDeviation, kFaded, kBelowCritical
 
 }  // namespace
 
@@ -44,7 +45,7 @@ void VibrationSpread::follow(const Vibration& vibration) noexcept {
       factor = {deviation, std::exp(deviation.frequency), std::exp(-deviation.frequency), std::exp(deviation.damping)};
     mode_[kStiffer][i].omega *= factor.stiffer;
     mode_[kSofter][i].omega *= factor.softer;
-    mode_[kDamped][i].zeta = std::min(0.9, mode_[kDamped][i].zeta * factor.damped);
+    mode_[kDamped][i].zeta = std::min(1.0 - kBelowCritical, mode_[kDamped][i].zeta * factor.damped);
   }
   if (waits_ || vibration.followsReadings()) start(vibration);
   waits_ = vibration.followsReadings();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_belief.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/estimation/running_mean.h"
 #include "hammer_loads/util/square.h"
 
@@ -22,7 +23,8 @@ class BlowHistory {
 
   /// factor of a blow, its variance and its derivative by the sensor's errors, by all samples since.
   void add(double factor, double variance, const ConstantErrors::Row& by_error) noexcept {
-    if (!(variance < 0.25 * variance_.mean() || variance < kLeast * kLeast)) return;  // nothing was learned of it
+    const double doubt = square(gate::kUsual) * variance;
+    if (!(doubt < variance_.mean() || variance < square(kLeast))) return;  // nothing was learned of it
     variance_.add(square(factor - mean_.mean()));
     mean_.add(factor);
     by_error_.add(by_error);

@@ -92,6 +92,10 @@ class RodEvidence {
     if (at.offset < kPickedUp) picked_up_.add(bounded);
     if (at.offset > kRungOut) later_.add(bounded);
   }
+  /// Beside the blow: a rod that gives has picked the rocker up; it has rung out [rad].
+  static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;
+  // Guard: Rival.IsLookedAtAgainBehindTheDeadCentre of kPickedUp
+  // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kRungOut
   /// Standard deviation of a reading from which on it shows no rod [rad]: through noise beyond it the sensor's place is
   /// taken for the rod's stiffness.
   static constexpr double kCoarsest = 1e-3;
@@ -118,11 +122,12 @@ class RodEvidence {
     const double doubt = gate::kUsual * std::sqrt(2.0 / place.count());
     return std::clamp((place.mean() - 1.0 + doubt) / mismatch::kUnexplained, 0.0, 1.0);
   }
-  static constexpr double kPickedUp = 30.0 * kDegree, kRungOut = 90.0 * kDegree;  ///< beside the blow
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
   static constexpr double kShare = 5.0;
-  // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kPickedUp, kRungOut, kEnough, kShare
-  RunningMean<> run_up_{400.0}, picked_up_{400.0}, later_{1200.0};  ///< some 20 turns at 1 kHz
+  // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kEnough, kShare
+  static constexpr double kLength = 400.0;  ///< samples until it has picked up: some 20 turns at 1 kHz
+  // Guard: RodEvidence.IsThatOfTheLastFourHundredSamples of kLength
+  RunningMean<> run_up_{kLength}, picked_up_{kLength}, later_{kLength * (kPi - kRungOut) / kPickedUp};
 };
 
 }  // namespace hammer_loads

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hammer_loads/util/constants.h"
+#include "hammer_loads/crank/consistency.h"
 #include "hammer_loads/util/square.h"
 
 namespace hammer_loads {
@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kDecided = 12.0;  // logarithm of odds: the less likely belief is set aside, and never less likely
 // Guard: Rival.IsSetAsideAtAHundredThousandToOne of kDecided
-constexpr double kRungOut = 30.0 * kDegree;  // from the blow: a rod that gives has rung out
-// Guard: Rival.IsLookedAtAgainBehindTheDeadCentre of kRungOut
 constexpr double kChange = 9.0;  // as above at which the other one becomes the estimate
 // Guard: Rival.IsBelievedAtEightThousandToOne of kChange
 constexpr double kMostFit = 8.0;  // as above that one sample may add: it may be an outlier
@@ -52,7 +50,7 @@ void ContactRival::follow(const WeighedSample& sample, const ShaftModel& model, 
 
 bool ContactRival::choose(CrankBelief& estimate, bool& mirrored) noexcept {
   aside_ = aside_ || evidence_ == -kDecided;
-  if (aside_ && !mirrored && std::abs(estimate.state.position.angle.offset) < kRungOut) return false;
+  if (aside_ && !mirrored && std::abs(estimate.state.position.angle.offset) < RodEvidence::kPickedUp) return false;
   const bool change = evidence_ > kChange;
   if (change) {
     std::swap(estimate, *belief_);

@@ -115,10 +115,14 @@ struct ShaftState {
   double log_odds{};       ///< as above
 };
 
-/// Whether the tool may be met within a step of length dt [s]: 3.4 deg or 1.5 steps around the dead centre, at most
-/// half a radian, where it would stand higher than it is long.
+constexpr double kNearTool = 0.06, kHighestTool = 0.5;  ///< [rad] from the dead centre: it would be higher than long
+constexpr double kStepsToTool = 1.5;
+// Guard: CrankDynamics.AToolIsMetNearTheDeadCentreAlone of kNearTool, kHighestTool, kStepsToTool
+
+/// Whether the tool may be met within a step of length dt [s].
 inline bool isNearTool(const ShaftState& state, double dt) noexcept {
-  return std::abs(state.position.angle.offset) < std::clamp(1.5 * std::abs(state.speed) * dt, 0.06, 0.5);
+  return std::abs(state.position.angle.offset) <
+         std::clamp(kStepsToTool * std::abs(state.speed) * dt, kNearTool, kHighestTool);
 }
 
 /// w' = (tau + weight - Jc r alpha - J'/2 w^2)/(Jc + J) [rad/s2], weight and hull's motion in one (model.md 3, 6).

@@ -119,7 +119,7 @@ void CrankFilter::correctAngle(Innovation innovation) noexcept {
   if (side != 0 && !one_sided && (surprises_ > kManySurprises || isLost())) {
     innovation.variance = squared / square(gate::kImpossible);  // with many like it on both sides: the stamps
   } else if (side != 0) {
-    const double factor = (0.25 * squared - innovation.variance) / now_.encoderVariance(Belief::kAngle);
+    const double factor = (squared / square(gate::kUsual) - innovation.variance) / now_.encoderVariance(Belief::kAngle);
     now_.widen(factor);
     now_.forgetInertiaCoupling();
     // What does not fit may be the inertia itself: leave it room to be learned again.

@@ -34,7 +34,7 @@ bool CrankFilter::isSpeedOfOtherSide(const WeighedSample& sample) const noexcept
 }
 
 bool CrankFilter::isAtTool(double dt) const noexcept {
-  return isNearTool(now_.state, dt) && now_.state.speed > 1.0 && !mirrored_;
+  return isNearTool(now_.state, dt) && now_.state.speed > kCreeping && !mirrored_;
 }
 
 /// (4) A crank that is suddenly slower near the dead centre: the tool. True where the belief has taken it up.
@@ -112,7 +112,9 @@ void CrankFilter::settleSide(const CrankBelief& last, double dt, const WeighedSa
 /// exact.
 std::optional<Side> CrankFilter::readSide(double reading) const noexcept {
   if (encoder_.isFiner() || settings_.angle_noise > 0.0 || now_.motor || angle_lag_.isThere()) return std::nullopt;
-  const double count = encoder_.resolution(), edge_tolerance = 1e-6 * count;
+  constexpr double kEdge = 1e-6;  // of a count
+  // Numerical: kEdge
+  const double count = encoder_.resolution(), edge_tolerance = kEdge * count;
   const double doubt = kCertain * std::abs(now_.state.speed) * timing_.deviation();
   const auto [low, high] = encoder_.edges(reading);
   if (low - doubt > -edge_tolerance) return Side::kAfterBlow;

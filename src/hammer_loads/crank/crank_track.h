@@ -56,9 +56,9 @@ class CrankTrack {
 
  private:
   static constexpr double kWindow = 20.0;  ///< [s] smoothed at once
-  static constexpr double kOverlap =
-      10.0;  ///< [s] after it, whose samples are used: what changes slowly is known by then
-  // Guard: CrankTrack.GivesEverySampleOnceAndSomeSecondsLater of kWindow, kOverlap
+  // Guard: CrankTrack.GivesEverySampleOnceAndSomeSecondsLater of kWindow
+  /// [s] after it, whose samples are used: what changes slowly is known by then.
+  static constexpr double kOverlap = 0.5 * kWindow;
 
   void add(TrackedSample sample);
   void revise() noexcept;

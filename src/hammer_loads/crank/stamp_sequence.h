@@ -23,7 +23,7 @@ class StampRounding {
     if (stamps_ > 0) uneven_ += std::llabs(difference - last_) > kTolerance;
     last_ = difference;
     if (++stamps_ < kMany) return;
-    rounded_ = uneven_ > kMany / 10;
+    rounded_ = uneven_ > kUneven;
     stamps_ = 1, uneven_ = 0;
   }
   double step() const noexcept {
@@ -34,7 +34,9 @@ class StampRounding {
   static constexpr std::array<std::int64_t, 6> kSteps{10000000, 5000000, 2000000, 1000000, 500000, 100000};  ///< [ns]
   static constexpr std::int64_t kTolerance = 1000;  // [ns]: of stamps that were numbers of seconds on their way
   static constexpr int kMany = 100;                 // stamps that are judged together
+  static constexpr int kUneven = 10;                // of them: some samples are late or lost
   // Guard: StampRounding.IsKnownAfterAHundredStamps of kMany
+  // Guard: StampRounding.SomeLostSamplesDoNotMakeIt of kUneven
   // Guard: StampRounding.StampsWithinAMicrosecondAreWhole of kTolerance
 
   static bool isWhole(std::int64_t difference, std::int64_t step) noexcept {

@@ -20,7 +20,9 @@ constexpr double kBurst = 2.0;  // samples in the mean
 // Guard: StampSequence.EqualStampsOfIrregularSamplesOnlyStepOn of kBurst
 constexpr double kRegular = 0.1;  // scatter of bursts over the time between them
 // Guard: SteadyClockFit.ExplainsBurstsThatComeRegularly of kRegular
-constexpr double kClip = gate::kVeryRare;   // root mean squares: a stamp further off counts as that far off
+constexpr double kClip = gate::kVeryRare;  // root mean squares: a stamp further off counts as that far off
+constexpr double kExact = 0.01;            // of the interval: stamps without scatter have this much
+// Guard: SteadyClockFit.OneStampAmongExactOnesHardlyMovesTheLine of kExact
 constexpr double kGap = gate::kImpossible;  // likewise: samples were lost for certain
 constexpr double kEvidence = 16.0;          // logarithm of likelihood that one was lost: by chance in 14 h at 1 kHz
 constexpr double kNoLoss = 3.0;             // likewise that none was: 20 to 1
@@ -64,7 +66,7 @@ void SteadyClockFit::endRun() noexcept {
   const double n = std::min<double>(runs_, kMemorySamples / mean_length_);
   double used = end;
   if (runs_ >= kWarm) {
-    const double most = kClip * std::max(std::sqrt(end_square_), 0.01 * interval_);
+    const double most = kClip * std::max(std::sqrt(end_square_), kExact * interval_);
     used = std::clamp(used, -most, most);
   }
   instant_ += used * 2.0 * (2.0 * n - 1.0) / (n * (n + 1.0));

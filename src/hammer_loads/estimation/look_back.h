@@ -4,16 +4,14 @@
 namespace hammer_loads::look_back {
 
 // Turns of a hammer at work, which strikes some five times a second.
-constexpr double kHalfTurn = 0.1;  ///< [s]: a sensor that speaks has said something
-// Guard: MeasuredBoom.OverATenthOfASecondNothingWasForetold of kHalfTurn
 constexpr double kTurn = 0.2;  ///< [s]: all that a turn holds was there
 // Guard: SensorBounds.OfAFrozenImu of kTurn
-constexpr double kSomeTurns = 0.5;  ///< [s]: the least for a mean
+constexpr double kHalfTurn = 0.5 * kTurn;  ///< [s]: a sensor that speaks has said something
+constexpr double kSomeTurns = 0.5;         ///< [s]: the least for a mean
 // Guard: VibrationNumbers.OfTheRocksMeanForce of kSomeTurns
 constexpr double kFiveTurns = 1.0;  ///< [s]: what was there in each of them is no accident
 // Guard: VibrationNumbers.OfTheUsualSwing of kFiveTurns
-constexpr double kTenTurns = 2.0;  ///< [s]: a mean in which one turn more or less does not show
-// Guard: SensorBounds.OfPressuresTimes of kSomeTurns, kTenTurns
+constexpr double kTenTurns = 2.0 * kFiveTurns;  ///< [s]: a mean in which one turn more or less does not show
 
 // Boom and hull vibrate at 2 to 40 Hz.
 constexpr double kHeld = 0.01;  ///< [s]: a reading holds

@@ -27,7 +27,7 @@ class TimingNoise {
     const double visible = std::max(kVisible, variance_);
     if (!(squared_speed * visible > total - squared_speed * variance())) return;  // too slow to show it
     if (samples_++ == 0) information_ = lever * lever;
-    const double gain = std::max(kGain, 1.0 / (samples_ + 50.0));
+    const double gain = std::max(kGain, 1.0 / (samples_ + kFirstCounts));
     information_ += gain * (lever * lever - information_);
     const double clipped =
         std::min(0.5 * change * change / total, square(samples_ < kLearning ? gate::kUsual : gate::kRare));
@@ -47,7 +47,8 @@ class TimingNoise {
   static constexpr double kGain = 1.0 / look_back::kReadings;
   static constexpr int kLearning =
       60;  // samples: a wrong first guess of the inertia passes for jitter, and counts less
-  // Guard: LearnedNumbers.TheFirstSixtySamplesShowLittleJitter of kLearning
+  static constexpr double kFirstCounts = 50.0;  // samples that the first guess stands for
+  // Guard: LearnedNumbers.TheFirstSixtySamplesShowLittleJitter of kLearning, kFirstCounts
   static constexpr double kVisible = 9e-8;  // [s2]: a sample that could not see 0.3 ms is not asked
   // Guard: LearnedNumbers.SlowCranksShowNoJitter of kVisible
   static constexpr double kLargest = 0.02;  // [s]: more is no jitter

@@ -7,6 +7,9 @@
 namespace hammer_loads {
 namespace {
 
+constexpr std::size_t kSectionChannels =
+    decltype(Wrench::force)::SizeAtCompileTime + decltype(Wrench::torque)::SizeAtCompileTime;
+
 double* put(const Wrench& wrench, double* place) noexcept {
   place = std::copy_n(wrench.force.data(), 3, place);
   return std::copy_n(wrench.torque.data(), 3, place);

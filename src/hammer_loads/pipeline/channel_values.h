@@ -6,9 +6,7 @@
 
 namespace hammer_loads {
 
-constexpr std::size_t kHullChannels = 3;     ///< they come first: force_x, force_z, torque_y
-constexpr std::size_t kSectionChannels = 6;  ///< of each section
-// Guard: TurnLoads.OfJointsAreThoseOfTheSamples of kSectionChannels
+constexpr std::size_t kHullChannels = 3;  ///< they come first: force_x, force_z, torque_y
 
 inline void wrenchValues(const HullWrench& wrench, double* values) noexcept {
   values[0] = wrench.force_x, values[1] = wrench.force_z, values[2] = wrench.torque_y;

@@ -30,7 +30,10 @@ constexpr double kDescribed = 0.05;
 constexpr double kUnknownSlope = 1e3;   // [1/s] times the smooth part's deviation: vibration of up to 100 Hz
 constexpr double kLeastNoise = 1e-3;    // of the first guess: a logarithm is taken of it
 constexpr double kUnknownSignal = 1e3;  // of the noise: smooth part at the start
-// Numerical: kUnknownSignal, kUnknownSlope, kLeastNoise
+constexpr double kOfInterval = 0.05;    // that one reading has in the mean
+// Numerical: kUnknownSignal, kUnknownSlope, kLeastNoise, kOfInterval
+constexpr double kFirstCounts = 10.0;  // readings that the first guess of the noise stands for
+// Guard: FollowerNumbers.ASignalsFirstNoiseStandsForTenReadings of kFirstCounts
 
 /// M F^T of rows of states, where F makes integral, smooth part and slope at the end of a step; for slope_step of it
 /// the slope counts.
@@ -151,7 +154,7 @@ void DrivenSignal::update(double reading, const Eigen::Vector3d& load, const Dou
     c.quiet += (std::min(size, kFarOff * c.quiet) - c.quiet) / look_back::kManyReadings;
     return;
   }
-  const double share = 1.0 / std::min(counted_ + 10.0, look_back::kManyReadings);
+  const double share = 1.0 / std::min(counted_ + kFirstCounts, look_back::kManyReadings);
   c.variance = std::max(c.variance + share * (std::min(size, kFarOff * c.variance) - c.variance),
                         square(kLeastNoise * settings_.noise));
   c.log_spread += share * (std::log(S) - c.log_spread);
@@ -174,7 +177,7 @@ void DrivenSignal::advance(const Step& step) noexcept {
 void DrivenSignal::read(double reading, double step, const Eigen::Vector3d& load, const Doubt& doubt,
                         bool counts) noexcept {
   if (!begun_) return begin(reading, load);
-  interval_ = interval_ > 0.0 ? interval_ + 0.05 * (step - interval_) : step;
+  interval_ = interval_ > 0.0 ? interval_ + kOfInterval * (step - interval_) : step;
   for (Candidate& c : candidates_) update(reading, load, doubt, counts, c);
   if (settings_.reads == Reads::kItself)
     steady_ += std::min(1.0, step / steady_time_) * (readOf(best().x, load) - steady_);

@@ -74,7 +74,7 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
     const bool jumped =
         !(interval > 0.0) || interval > look_back::kHeld || std::abs(now->position - track.position) > kMoved;
     track.stamp = now->stamp, track.position = now->position;
-    if (jumped || held.isDriven() || std::abs(ahead) > 0.75 * step) continue;
+    if (jumped || held.isDriven() || std::abs(ahead) > step) continue;
     VibrationReading reading = jointAngleReading(joint, now->position - held.slowAngle()[joint]);
     reading.velocity[joint] = ahead;
     Doubt doubt = kAngle;

@@ -20,10 +20,9 @@ constexpr double kRestitutionDoubt = 0.05;  // what a rod that gives adds to a m
 // Prior: RodRing.RestitutionIsCovered of kRestitutionDoubt
 constexpr double kMeanRestitution = 0.5, kAnyRestitution = 0.29;  // of one that may be anything from 0 to 1
 // Prior: RodRing.OfLivelyRockARigidLevelKnowsNoRestitution of kMeanRestitution, kAnyRestitution
-constexpr double kRungOut = 90.0 * kDegree, kApproach = 30.0 * kDegree;  // behind the blow, before it
-constexpr double kPart = 1e-2;                                           // [rad], as kLongest
+constexpr double kPart = 1e-2;       // [rad], as kLongest
 constexpr double kBallistic = 1e-2;  // [rad]: below, the spring does nothing within a part
-// Numerical: kLongest, kRungOut, kApproach, kPart, kBallistic
+// Numerical: kLongest, kPart, kBallistic
 
 /// Root mean square of y'' over the phase that is not known; without a phase y'' itself.
 double acceleration(const Oscillator& rod, double y, double speed) noexcept {
@@ -102,7 +101,7 @@ void RodRing::strike(double speed_before, const BlowFactor& blow) noexcept {
 
 /// angle, speed, acceleration: of the crank in the middle of a time in which its lever counts as constant.
 void RodRing::moveThrough(const CrankAngle& angle, double speed, double acceleration, double time) noexcept {
-  if (!(angle.offset > -kApproach) || !(speed > 0.0)) return rest();
+  if (!(angle.offset > -RodEvidence::kPickedUp) || !(speed > 0.0)) return rest();
   const HammerParameters& p = model_->mechanism().parameters();
   const LinkMotion links = linkMotion(model_->mechanism().linkage(), angle);
   const double lever = p.lengths.rocker * links.sin_mu;
@@ -132,7 +131,7 @@ void RodRing::restart(const CrankTracker& tracker) noexcept {
   rest();
   const CrankEstimate now = tracker.estimate();
   const CrankAngle at = now.position.angle;
-  if (!gives_ || !(at.offset > 0.0) || !(at.offset < kRungOut) || !(now.speed > kSlowCrank)) return;
+  if (!gives_ || !(at.offset > 0.0) || !(at.offset < RodEvidence::kRungOut) || !(now.speed > kSlowCrank)) return;
   const auto loadAt = [&](double offset) {
     const LinkMotion links = linkMotion(model_->mechanism().linkage(), {offset, at.side});
     ShaftLoad load = shaftLoadLinkage(model_->mechanism(), links, {});
@@ -143,7 +142,7 @@ void RodRing::restart(const CrankTracker& tracker) noexcept {
   double from = 0.0;
   if (now.position.isMirrored()) {
     begin(0.0);
-    from = -kApproach;
+    from = -RodEvidence::kPickedUp;
   } else {
     strike(std::sqrt(energy / loadAt(0.0).inertia) / tracker.blowFactor().mean, tracker.blowFactor());
   }
@@ -158,7 +157,7 @@ void RodRing::restart(const CrankTracker& tracker) noexcept {
 }
 
 void RodRing::approach(const CrankAngle& at) noexcept {
-  if (approaches_ || !(at.offset < 0.0 && at.offset > -kApproach)) return;
+  if (approaches_ || !(at.offset < 0.0 && at.offset > -RodEvidence::kPickedUp)) return;
   begin(0.0);
   approaches_ = settles_ = true;
 }
