@@ -1,8 +1,7 @@
 /// The drive's reaction against the angular momentum of a rotor that somebody gears.
-#include "hammer_loads/linkage/drive_reaction.h"
-
 #include <gtest/gtest.h>
 
+#include "hammer_loads/linkage/mechanism.h"
 #include "support/mo100.h"
 
 namespace hammer_loads {

@@ -1,8 +1,7 @@
 // Samples and outputs that are closer to the blow than the crank's angle is known, by the simulated machine's truth.
-#include "hammer_loads/pipeline/beside_blow.h"
-
 #include <gtest/gtest.h>
 
+#include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/pipeline.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/util/square.h"

@@ -10,8 +10,8 @@
 #include "hammer_loads/crank/coupling.h"
 #include "hammer_loads/crank/crank_state.h"
 #include "hammer_loads/linkage/crank_angle.h"
-#include "hammer_loads/linkage/drive_reaction.h"
 #include "hammer_loads/linkage/machine_columns.h"
+#include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/shaft_load.h"
 
 namespace hammer_loads {

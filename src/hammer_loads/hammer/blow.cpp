@@ -5,7 +5,7 @@
 
 #include "hammer_loads/hammer/hull_wrench.h"
 #include "hammer_loads/linkage/blow_inertia.h"
-#include "hammer_loads/linkage/drive_reaction.h"
+#include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/motion.h"
 
 namespace hammer_loads {

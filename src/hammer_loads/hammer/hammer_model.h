@@ -5,7 +5,7 @@
 #include "hammer_loads/hammer/blow.h"
 #include "hammer_loads/hammer/hull_model.h"
 #include "hammer_loads/hammer/pulse.h"
-#include "hammer_loads/linkage/drive_reaction.h"
+#include "hammer_loads/linkage/mechanism.h"
 #include "hammer_loads/linkage/pin_forces.h"
 
 namespace hammer_loads {

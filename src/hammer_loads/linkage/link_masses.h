@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <tuple>
 
-#include "hammer_loads/linkage/drive_reaction.h"
 #include "hammer_loads/linkage/mechanism.h"
 
 namespace hammer_loads {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/covariance_root.h"
 #include "hammer_loads/pipeline/crank_step.h"
 
@@ -180,6 +181,19 @@ Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept {
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept {
   const auto of_hammer = columns.middleCols<kMachineColumns>(ConstantErrors::kTable);
   return covarianceRoot<3>(of_hammer.lazyProduct(of_hammer.transpose()));
+}
+
+double deviationFromBlow(const CrankTracker& tracker, double angle_deviation) noexcept {
+  const CrankFilter* filter = tracker.filter();
+  if (filter == nullptr) return angle_deviation;
+  const ConstantErrors& errors = filter->constantErrors();
+  if (filter->belief().motor) return std::hypot(angle_deviation, errors.zeroLeftOpen());
+  return std::hypot(angle_deviation, filter->rodEvidence().gives() ? errors.zeroLooks() : errors.zeroSeen());
+}
+
+bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate) noexcept {
+  const CrankPosition& at = crank.position;
+  return std::abs(at.angle.offset) < gate * deviation && std::abs(crank.speed) > kSlowCrank && !at.isMirrored();
 }
 
 }  // namespace hammer_loads

@@ -5,6 +5,7 @@
 
 #include "hammer_loads/boom/boom.h"
 #include "hammer_loads/crank/crank_tracker.h"
+#include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/hammer/hammer_model.h"
 #include "hammer_loads/hammer/wrench_columns.h"
 #include "hammer_loads/pipeline/hull_motion_filter.h"
@@ -77,5 +78,15 @@ WrenchSpread wrenchSpread(const HullModel& model, const DriveReaction& drive, co
 /// or of the hammer's alone.
 Eigen::Matrix3d constantErrors(const LoadColumns& columns) noexcept;
 Eigen::Matrix3d hammerErrors(const LoadColumns& columns) noexcept;
+
+/// Of the crank's angle from the blow [rad]: its own, and by what the readings say that the zero is wrong, or that a
+/// rod which gives lets the rocker strike later. Through a coupling they say little of the zero: what they leave open.
+/// angle_deviation: its own [rad]; NaN: not known.
+double deviationFromBlow(const CrankTracker& tracker, double angle_deviation) noexcept;
+
+/// The wrench jumps at the blow (MO-100: Fx by nearly all of its peak), so there it is one of two values and nothing
+/// says which; WrenchStamped has no deviation that could. A slow crank jumps by less than 1 %, one on the mirrored
+/// branch nowhere. deviation: of the crank from the blow [rad]; NaN: not known. gate: so many of them.
+bool isBesideBlow(const CrankEstimate& crank, double deviation, double gate = gate::kUsual) noexcept;
 
 }  // namespace hammer_loads

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "hammer_loads/pipeline/beside_blow.h"
+#include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/settings/channel_names.h"
 
 namespace hammer_loads {

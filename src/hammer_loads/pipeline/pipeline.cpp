@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hammer_loads/crank/crank_filter.h"
-#include "hammer_loads/pipeline/beside_blow.h"
+#include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/step_impulse.h"
 #include "hammer_loads/util/square.h"
 

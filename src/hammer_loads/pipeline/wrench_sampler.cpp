@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hammer_loads/pipeline/beside_blow.h"
+#include "hammer_loads/pipeline/hull_deviation.h"
 #include "hammer_loads/pipeline/step_impulse.h"
 #include "hammer_loads/util/square.h"
 
