@@ -27,11 +27,11 @@ class ObservedBoom : public testing::Test {
     const JointVector zero = JointVector::Zero(position_.size());
     return {position_, zero, zero};
   }
-  /// The joint's angle beside that at which it is held, so long after the one before.
-  void read(double interval, double beside) {
+  /// The joint's angle beside that at which it is held, so long after the one before; age: the sample is later [ns].
+  void read(double interval, double beside, StampNs age = 0) {
     stamp_ += static_cast<StampNs>(1e9 * interval);
     joints_.update(stamp_, {boom_.chain().jointNames()[1]}, {position_[1] + beside}, {});
-    observer_.joints(boom_, held_, stamp_, 1e-3, joints_);
+    observer_.joints(boom_, held_, stamp_ + age, 1e-3, joints_);
   }
   const ModeIdentifier& found() const { return *boom_.vibration().identifier(); }
   /// Of the modes, without any force.
@@ -65,6 +65,14 @@ TEST_F(ObservedBoom, NorDoAnglesThatJump) {
   read(0.005, 0.025);
   EXPECT_EQ(found().channels(), 0);
   read(0.005, 0.025 - 0.016);
+  EXPECT_EQ(found().channels(), 1);
+}
+
+/// Samples are a millisecond apart here.
+TEST_F(ObservedBoom, NorDoAnglesOfAnotherSample) {
+  for (int i = 0; i < 2; ++i) read(0.005, 0.0, 900000);
+  EXPECT_EQ(found().channels(), 0);
+  read(0.005, 0.0, 600000);
   EXPECT_EQ(found().channels(), 1);
 }
 

@@ -23,6 +23,8 @@ constexpr double kLinksInHull = 1.0;          // [m/s2]: modes take the links at
 // Prior: ObservedBoom.OneTorqueIsBelievedAsFarAsItsOffsetIsKnown of kTorque
 constexpr double kMoved = 0.02;  // [rad]: a jump
 // Guard: ObservedBoom.NorDoAnglesThatJump of kMoved
+constexpr double kOfSample = 0.75;  // of the step between samples: what lies further from one is of another
+// Guard: ObservedBoom.NorDoAnglesOfAnotherSample of kOfSample
 
 void setDoubt(const Doubt& doubt, double size, VibrationReading& reading) noexcept {
   reading.noise = size * doubt.noise;
@@ -74,7 +76,7 @@ void ModeObserver::joints(Boom& boom, const HeldPose& held, StampNs sample, doub
     const bool jumped =
         !(interval > 0.0) || interval > look_back::kHeld || std::abs(now->position - track.position) > kMoved;
     track.stamp = now->stamp, track.position = now->position;
-    if (jumped || held.isDriven() || std::abs(ahead) > step) continue;
+    if (jumped || held.isDriven() || std::abs(ahead) > kOfSample * step) continue;
     VibrationReading reading = jointAngleReading(joint, now->position - held.slowAngle()[joint]);
     reading.velocity[joint] = ahead;
     Doubt doubt = kAngle;
