@@ -125,9 +125,9 @@ class RodEvidence {
   static constexpr double kEnough = 40.0;  ///< samples: ten turns at 200 Hz; the mean's deviation is then 0.22
   static constexpr double kShare = 5.0;
   // Guard: RodEvidence.IsTheExcessJustAfterTheBlow of kEnough, kShare
-  static constexpr double kLength = 400.0;  ///< samples until it has picked up: some 20 turns at 1 kHz
-  // Guard: RodEvidence.IsThatOfTheLastFourHundredSamples of kLength
-  RunningMean<> run_up_{kLength}, picked_up_{kLength}, later_{kLength * (kPi - kRungOut) / kPickedUp};
+  static constexpr double kSamples = 400.0;  ///< samples until it has picked up: some 20 turns at 1 kHz
+  // Guard: RodEvidence.IsThatOfTheLastFourHundredSamples of kSamples
+  RunningMean<> run_up_{kSamples}, picked_up_{kSamples}, later_{kSamples * (kPi - kRungOut) / kPickedUp};
 };
 
 }  // namespace hammer_loads
