@@ -17,27 +17,30 @@ using Belief = Machine::Belief;
 /// Kalman's filter as in a textbook, the constants as states without noise.
 struct Textbook {
   static constexpr int kAll = kN + kC;
-  Eigen::Matrix<double, kAll, 1> mean = Eigen::Matrix<double, kAll, 1>::Zero();
-  Eigen::Matrix<double, kAll, kAll> covariance = Eigen::Matrix<double, kAll, kAll>::Zero();
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(kAll);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(kAll, kAll);
 
   explicit Textbook(const Machine& m) {
     covariance.topLeftCorner<kN, kN>() = m.first;
     covariance.bottomRightCorner<kC, kC>() = m.prior.cwiseAbs2().asDiagonal();
   }
   void predict(const Machine& m) {
-    Eigen::Matrix<double, kAll, kAll> F = Eigen::Matrix<double, kAll, kAll>::Identity();
+    Eigen::MatrixXd F = Eigen::MatrixXd::Identity(kAll, kAll);
     F.topLeftCorner<kN, kN>() = m.F;
     F.topRightCorner<kN, kC>() = m.B;
     mean = F * mean;
-    covariance = (F * covariance * F.transpose()).eval();
+    const Eigen::MatrixXd stepped = F * covariance;
+    covariance = stepped * F.transpose();
     covariance.topLeftCorner<kN, kN>() += m.step_noise;
   }
   void correct(const Machine& m, double z) {
-    Eigen::Matrix<double, 1, kAll> H;
-    H << m.H, m.D;
-    const Eigen::Matrix<double, kAll, 1> gain = covariance * H.transpose() / (H * covariance * H.transpose() + m.noise);
-    mean += gain * (z - H.dot(mean));
-    covariance = ((Eigen::Matrix<double, kAll, kAll>::Identity() - gain * H) * covariance).eval();
+    Eigen::VectorXd seen(kAll);
+    seen << m.H.transpose(), m.D.transpose();
+    const Eigen::VectorXd shared = covariance * seen;
+    const Eigen::VectorXd gain = shared / (seen.dot(shared) + m.noise);
+    mean += gain * (z - seen.dot(mean));
+    const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(kAll, kAll) - gain * seen.transpose();
+    covariance = left * Eigen::MatrixXd(covariance);
   }
 };
 

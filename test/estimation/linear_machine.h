@@ -96,19 +96,22 @@ struct LinearMachine {
     const Constants weight = deviations.cwiseAbs2().cwiseInverse();
     information.bottomRightCorner(C, C) = weight.asDiagonal();
     score.tail(C) = weight.cwiseProduct(known);
+    const Eigen::MatrixXd of_step = step_noise.inverse();
     for (std::size_t k = 0; k < z.size(); ++k) {
       const Eigen::Index at = N * static_cast<Eigen::Index>(k);
-      Eigen::MatrixXd off = Eigen::MatrixXd::Zero(N, n), seen = Eigen::MatrixXd::Zero(1, n);
+      Eigen::MatrixXd off = Eigen::MatrixXd::Zero(N, n);
       off.block(0, at + N, N, N).setIdentity();
       off.block(0, at, N, N) = -F;
       off.rightCols(C) = -B;
-      information += off.transpose() * step_noise.inverse() * off;
-      seen.block(0, at + N, 1, N) = H;
-      seen.rightCols(C) = D;
-      information += seen.transpose() * seen / noise;
-      score += seen.transpose() * z[k] / noise;
+      const Eigen::MatrixXd weighed = of_step * off;
+      information += off.transpose() * weighed;
+      Eigen::VectorXd seen = Eigen::VectorXd::Zero(n);
+      seen.segment(at + N, N) = H;
+      seen.tail(C) = D;
+      information += seen * seen.transpose() / noise;
+      score += z[k] / noise * seen;
     }
-    const Eigen::MatrixXd covariance = information.inverse();
+    const Eigen::MatrixXd covariance = information.llt().solve(Eigen::MatrixXd::Identity(n, n));
     return {covariance * score, covariance};
   }
 };
