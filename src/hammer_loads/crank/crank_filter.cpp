@@ -228,11 +228,11 @@ void CrankFilter::takeLoad() noexcept {
 /// Where the ring would throw the filter off, which knows of no rod; smaller ones it smooths. A reading that it then
 /// follows is as good a sign of a rod as one that contradicts it.
 void CrankFilter::considerRod(double angle, double speed) noexcept {
-  double& of_speed = now_.covariance(CrankBelief::kSpeed, CrankBelief::kSpeed);
+  double& of_speed = now_.covariance(Belief::kSpeed, Belief::kSpeed);
   if (!exceeds(speed, of_speed, gate::kImpossible)) return;
   rod_evidence_.add(now_.state.position.angle, square(speed) / of_speed);
   of_speed += square(speed);
-  now_.covariance(CrankBelief::kAngle, CrankBelief::kAngle) += square(angle);
+  now_.covariance(Belief::kAngle, Belief::kAngle) += square(angle);
   rod_ = {angle, speed};
 }
 

@@ -64,7 +64,7 @@ std::optional<Tracking> CrankFilter::followSensor(SampleStep& to) noexcept {
     return ignore(to.last, to.innovation);
   }
   if (step == EncoderSlip::Step::kSlipped) to.innovation = to.sample.ofAngle(now_);
-  const double deviation = std::sqrt(now_.covariance(CrankBelief::kAngle, CrankBelief::kAngle));
+  const double deviation = std::sqrt(now_.covariance(Belief::kAngle, Belief::kAngle));
   if (deviation < kDoubtfulAngle) return std::nullopt;
   if (!now_.isSound(mostSpeed())) now_ = to.last;
   // The next would begin anew too.

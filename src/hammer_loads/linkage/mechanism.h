@@ -93,8 +93,7 @@ struct DriveReaction {
 };
 
 /// The crank's own inertia about A [kg m2] where the level counts it as part of Jc, not as that of a link: it turns
-/// with r = 1. With r = 0 the whole reaction is left
-/// out.
+/// with r = 1. With r = 0 the whole reaction is left out.
 inline double crankWithinDrive(const Mechanism& mechanism, Level level) noexcept {
   const HammerParameters& p = mechanism.parameters();
   if (level == Level::kLinkage || p.drive_reaction_ratio == 0.0) return 0.0;

@@ -49,10 +49,6 @@ bool Pipeline::boomJoints(StampNs stamp, const std::vector<std::string>& names, 
   return hull_.joints(names, positions) || of_boom;
 }
 
-std::optional<ImuRefusal> Pipeline::hullImu(StampNs stamp, const ImuReading& reading) noexcept {
-  return hull_.imu(stamp, reading);
-}
-
 const SampleResult& Pipeline::crankJoint(StampNs stamp, const std::vector<std::string>& names,
                                          const std::vector<double>& positions,
                                          const std::vector<double>& velocities) noexcept {

@@ -34,7 +34,9 @@ class Pipeline {
                   const std::vector<double>& velocities) noexcept;
   /// A reading of the hull's IMU; used with hull_motion imu and boom_stiffness identified. Why it was refused, if it
   /// was.
-  std::optional<ImuRefusal> hullImu(StampNs stamp, const ImuReading& reading) noexcept;
+  std::optional<ImuRefusal> hullImu(StampNs stamp, const ImuReading& reading) noexcept {
+    return hull_.imu(stamp, reading);
+  }
   /// Gauge pressure [Pa] in a chamber of a cylinder of the boom, index as in Boom::cylinders(). Whether it was taken.
   bool cylinderPressure(StampNs stamp, std::size_t cylinder, Chamber chamber, double pressure) noexcept {
     return boom_ && boom_->pressure(stamp, cylinder, chamber, pressure);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hammer_loads/crank/consistency.h"
 #include "hammer_loads/crank/crank_filter.h"
 #include "hammer_loads/estimation/gates.h"
 #include "hammer_loads/linkage/blow_inertia.h"
