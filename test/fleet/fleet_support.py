@@ -55,12 +55,12 @@ class FleetTest(unittest.TestCase):
 class MergeTest(FleetTest):
     """Outcomes of bags, merged."""
 
-    def add(self, name, machine="red", status="done", seconds=40.0, first=0, seed=1, **options):
+    def add(self, name, machine="red", status="done", seconds=40.0, first=0, seed=1, reason="is no bag", **options):
         """An outcome, with its database."""
         folder = self.directory / "bags"
         folder.mkdir(exist_ok=True)
         outcome = {"machine": machine, "bag": f"/in/{name}.bag", "input_sha256": f"{name}{seed}{first}",
-                   "parameters_sha256": "p", "status": status, "reason": None if status == "done" else "is no bag"}
+                   "parameters_sha256": "p", "status": status, "reason": None if status == "done" else reason}
         if status == "done":
             sample.make(folder / (name + ".sqlite"), options.pop("of", sample.Machine(machine)), seconds=seconds,
                         first_ns=(1700000000 + first) * 10**9, seed=seed, boom=False, classes=64, **options)

@@ -52,6 +52,28 @@ class Queries(MergeTest):
         warned, amber, green = (text.index(words) for words in ("crank stamps jitter", "bag /in/a.bag", "bag /in/g.bag"))
         self.assertLess(warned, min(amber, green))
 
+    def test_a_reason_on_a_page_names_the_bag_once(self):
+        self.merge(self.add("x", "violet", status="failed", reason="/elsewhere/x.bag: no message on /hammer/crank"))
+        out = self.directory / "all.html"
+        self.assertEqual(report(self.directory / "merged.sqlite", "--html", out).returncode, 0)
+        line = next(text for tag, text in Reader(out.read_text(encoding="utf-8")).pieces if "/hammer/crank" in text)
+        self.assertEqual(line.count("x.bag"), 1, line)
+
+    def test_machines_that_worked_minutes_in_different_years_fill_their_pictures(self):
+        year = 365 * 86400
+        self.merge(*(self.add(f"y{at}", "yellow", first=at * year, seed=at) for at in range(4)),
+                   *(self.add(f"v{at}", "violet", first=at * year + 1000, seed=9 + at) for at in range(4)))
+        out = self.directory / "all.html"
+        self.assertEqual(report(self.directory / "merged.sqlite", "--html", out).returncode, 0)
+        pictures = [p for p in Reader(out.read_text(encoding="utf-8")).pictures if p.title.endswith("over the time of work")]
+        self.assertEqual(len(pictures), 5)
+        for picture in pictures:
+            self.assertGreater(len(picture.x), 2)  # labels of the time
+            places = [x for kind in picture.classes("line") for piece in picture.curves(kind) for x, _ in piece]
+            self.assertLess(max(places), 200.0)  # seconds of work, not years
+            self.assertGreater(max(places) - min(places), 0.9 * (picture.x[-1][0] - picture.x[0][0]))
+            self.assertGreaterEqual(len({round(place) for place in places}), 4)
+
     def test_misuse_by_machine(self):
         self.merge(self.add("m", "mauve", of=sample.Machine("mauve", misuse=(3, 100, 5, None)), seconds=80.0))
         row = next(row for row in self.answer("misuse") if row["machine"] == "mauve")

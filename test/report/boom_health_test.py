@@ -26,8 +26,12 @@ class BoomHealth(ReportTest):
         self.assertTrue(rows["boom_cylinder"]["First run"].startswith("1.1"), rows)
         self.assertTrue(rows["boom_cylinder"]["Last run"].startswith("1 ") or
                         rows["boom_cylinder"]["Last run"].startswith("1.0"), rows)
-        charts = [c for c in self.page.charts() if c["title"].startswith("boom_cylinder: ")]
-        self.assertEqual([len([r for r in c["rows"] if r[1]]) for c in charts], [3])
+        picture = self.page.drawn("Stiffness of the oil by run")
+        arm, boom, hammer = (picture.curves(kind)[0] for kind in picture.classes("line"))
+        for curve, expected in ((arm, (0.9, 0.9, 0.9)), (boom, (1.1, 1.05, 1.0)), (hammer, (1.0, 1.04, 1.08))):
+            self.assertEqual([round(x) for x, _ in curve], [1, 2, 3])
+            for (_, stiffness), truth in zip(curve, expected):
+                self.assertAlmostEqual(stiffness, truth, delta=0.005)
 
     def test_a_doubtful_one_is_no_trend(self):
         rows = self.rows(2, arm_cylinder=(0.9, -0.3, 1))

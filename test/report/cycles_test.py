@@ -91,36 +91,39 @@ CREATE TABLE epochs(epoch INTEGER PRIMARY KEY, machine TEXT, equivalent_cycles_p
 CREATE TABLE channels(channel INTEGER PRIMARY KEY, epoch INTEGER, name TEXT, least REAL, greatest REAL,
   classes INTEGER, sn_knee_range_MPa REAL, sn_knee_cycles REAL, sn_slope REAL, sn_slope_below REAL,
   mean_stress_sensitivity REAL);
-CREATE TABLE runs(run INTEGER PRIMARY KEY, name TEXT, epoch INTEGER, pieces INTEGER, ended INTEGER);
-CREATE TABLE days(day INTEGER PRIMARY KEY, epoch INTEGER, date TEXT, duration_ns INTEGER, turns INTEGER);
+CREATE TABLE runs(run INTEGER PRIMARY KEY, name TEXT, epoch INTEGER, pieces INTEGER, parameters TEXT,
+  messages INTEGER);
+CREATE TABLE days(day INTEGER PRIMARY KEY, epoch INTEGER, run INTEGER, date TEXT, duration_ns INTEGER, turns INTEGER);
 CREATE TABLE tallies(channel INTEGER, day INTEGER, counted INTEGER, skipped INTEGER, below INTEGER, above INTEGER,
-  gaps INTEGER, deviations INTEGER, deviation_sum INTEGER, least REAL, greatest REAL, PRIMARY KEY(channel, day));
+  gaps INTEGER, deviations INTEGER, deviation_sum INTEGER, least REAL, greatest REAL, range_square INTEGER,
+  range_own INTEGER, range_common INTEGER, PRIMARY KEY(channel, day));
 CREATE TABLE cycles(channel INTEGER, day INTEGER, steps INTEGER, low INTEGER, count INTEGER,
   PRIMARY KEY(channel, day, steps, low));
-CREATE TABLE residues(channel INTEGER, open INTEGER, place INTEGER, class INTEGER, PRIMARY KEY(channel, open, place));
+CREATE TABLE residues(channel INTEGER, run INTEGER, place INTEGER, class INTEGER, PRIMARY KEY(channel, run, place));
+CREATE TABLE marks(mark INTEGER, run INTEGER, PRIMARY KEY(mark, run));
 INSERT INTO epochs VALUES(1, 'mo100', 3600.0);
 INSERT INTO channels VALUES(1, 1, 'hull_wrench/force_z_N', -2e5, 2e5, 512, NULL, NULL, NULL, NULL, NULL);
 INSERT INTO channels VALUES(2, 1, 'stress/weld_MPa', -4e2, 4e2, 256, 80.0, 1e7, 3.0, 5.0, 0.3);
-INSERT INTO runs VALUES(1, 'a', 1, 3, 1);
-INSERT INTO runs VALUES(2, 'b', 1, 1, 0);
-INSERT INTO days VALUES(1, 1, '2026-01-31', 7200000000000, 36000);
-INSERT INTO days VALUES(2, 1, '2026-02-01', 1800000000000, 9000);
+INSERT INTO runs VALUES(1, 'a', 1, 3, '', 3000);
+INSERT INTO runs VALUES(2, 'b', 1, 1, '', 3000);
+INSERT INTO days VALUES(1, 1, 1, '2026-01-31', 7200000000000, 36000);
+INSERT INTO days VALUES(2, 1, 2, '2026-02-01', 1800000000000, 9000);
 """
 
 
 def make_ledger(path):
-    """Counts of a random series over two days, the second run still at work."""
+    """Counts of a random series over two days, a run on each."""
     rng, db = random.Random(3), sqlite3.connect(str(path))
     db.executescript(LEDGER)
     for channel, classes in ((1, 512), (2, 256)):
-        for day, is_open in ((1, 0), (2, 1)):
+        for day in (1, 2):
             series = [min(classes - 1, max(0, int(rng.gauss(classes / 2, classes / 9)))) for _ in range(3000)]
             closed, residue = sample.count_all(series)
             db.executemany("INSERT INTO cycles VALUES(?,?,?,?,?)",
                            [(channel, day, b - a, a, n) for (a, b), n in closed.items()])
             db.executemany("INSERT INTO residues VALUES(?,?,?,?)",
-                           [(channel, is_open, place, c) for place, c in enumerate(residue)])
-            db.execute("INSERT INTO tallies VALUES(?,?,3000,2,1,0,1,3000,?,-1e3,1e3)", (channel, day, 3000 * 300 * day))
+                           [(channel, day, place, c) for place, c in enumerate(residue)])
+            db.execute("INSERT INTO tallies VALUES(?,?,3000,2,1,0,1,3000,?,-1e3,1e3,0,0,0)", (channel, day, 3000 * 300 * day))
     db.execute(f"PRAGMA application_id = {0x484C4C31}")
     db.execute("PRAGMA user_version = 1")
     db.commit()

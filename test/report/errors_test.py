@@ -1,10 +1,12 @@
 """Bad input and outputs that must stay: one line each, nothing replaced."""
 import os
+import shutil
 import signal
 import sqlite3
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 from support import REPORT, SOURCE, ReportTest, report
 import sample_database as sample
@@ -119,6 +121,17 @@ class Usage(ReportTest):
     def test_wrong_usage(self):
         for arguments in ((), ("a.sqlite",), ("--html", "x.html"), ("a.sqlite", "--html", "x", "--colour")):
             self.assertRefused(report(*arguments), "report: ", "--help", code=2)
+
+    def test_a_missing_python_package_is_named(self):
+        file = self.directory / "in.sqlite"
+        sample.make(file, seconds=5.0, boom=False)
+        for package in ("pandas", "jinja2", "matplotlib"):
+            broken = self.directory / package
+            broken.mkdir()
+            (broken / "__init__.py").write_text(f"raise ImportError('No module named {package}')\n")
+            with mock.patch.dict(os.environ, PYTHONPATH=str(self.directory)):
+                self.assertRefused(report(file, "--html", self.directory / "x.html"), f"No module named {package}")
+            shutil.rmtree(broken)
 
     def test_help_and_version(self):
         self.assertIn("--html OUT.html", report("--help").stdout)

@@ -1,16 +1,21 @@
 """The command under test, and the databases of sample_database.py."""
+import contextlib
 import html.parser
-import json
+import io
 import os
 import pathlib
+import re
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(SOURCE / "src" / "hammer_loads")]
+PAGES = {}  # by the files and options
 REPORT = SOURCE / "src" / "hammer_loads" / "commands" / "report_main.py"
 
 
@@ -20,9 +25,79 @@ def program(name):
     return str(path) if os.environ.get("HAMMER_LOADS_PROGRAMS") and path.exists() else None
 
 
+def report_here(*arguments):
+    """(exit code, stdout, stderr) of the command in this process: without a second to start each."""
+    from report.command import main  # here: the path is set above
+    out, said = io.StringIO(), io.StringIO()
+    signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = [signal.getsignal(name) for name in signals]
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
+            code = main([str(argument) for argument in arguments])
+    finally:
+        for name, handler in zip(signals, before):
+            signal.signal(name, handler)
+    return code, out.getvalue(), said.getvalue()
+
+
 def report(*arguments):
     return subprocess.run([sys.executable, str(REPORT), *map(str, arguments)], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, universal_newlines=True)
+
+
+def elements(tree, tag):
+    return [element for element in tree.iter() if element.tag == tag]
+
+
+class Drawn:
+    """A picture of a page: its curves in the numbers of its axes."""
+
+    def __init__(self, svg):
+        self.tree = ElementTree.fromstring(svg.replace("xlink:", ""))
+        self.title = self.tree.get("aria-label")
+        ticks = [self._tick(group) for group in elements(self.tree, "g") if len(group) == 3 and elements(group[2], "text")]
+        self.x, self.y = ([tick[1:] for tick in ticks if tick and tick[0] == axis] for axis in "xy")
+
+    @staticmethod
+    def _points(path):
+        """Subpaths of an element."""
+        pieces = path.get("d").split("M")[1:]
+        numbers = [[float(number) for number in re.findall(r"-?[0-9.]+", piece)] for piece in pieces]
+        return [list(zip(piece[::2], piece[1::2])) for piece in numbers]
+
+    def _tick(self, group):
+        """(axis, number, place); nothing for what is no line of the grid."""
+        label, paths = elements(group[2], "text")[0].text, elements(group[0], "path")
+        if not paths:
+            return None
+        (x0, y0), (x1, y1) = self._points(paths[0])[0]
+        return ("x", value(label), x0) if x0 == x1 else ("y", value(label), y0)
+
+    @staticmethod
+    def _scaled(ticks, place):
+        (low, at_low), (high, at_high) = ticks[0], ticks[-1]
+        return low + (place - at_low) / (at_high - at_low) * (high - low)
+
+    def curves(self, kind):
+        """Unbroken pieces of the lines or bands of this class: lists of (x, y)."""
+        return [[(self._scaled(self.x, x), self._scaled(self.y, y)) for x, y in piece]
+                for group in elements(self.tree, "g") if group.get("class") == kind
+                for path in elements(group, "path") for piece in self._points(path)]
+
+    def y_range(self):
+        """Least and greatest number of the axis: its lines across are as long as that."""
+        frame = [point for path in elements(self.tree, "rect") for point in
+                 (float(path.get("y")), float(path.get("y")) + float(path.get("height")))]
+        return self._scaled(self.y, max(frame)), self._scaled(self.y, min(frame))
+
+    def classes(self, kind):
+        """Of what is drawn of this kind, each once."""
+        classes = [group.get("class") or "" for group in elements(self.tree, "g")]
+        return list(dict.fromkeys(c for c in classes if c.startswith(kind)))
+
+
+def value(text):
+    return float(text.replace("\u202f", "").replace("\u2212", "-").split()[0])
 
 
 class Reader(html.parser.HTMLParser):
@@ -30,6 +105,7 @@ class Reader(html.parser.HTMLParser):
 
     def __init__(self, page):
         super().__init__()
+        self.pictures = [Drawn(svg) for svg in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
         self.text, self.tables, self.ids, self.tags, self.scripts, self.links = "", {}, [], [], [], []
         self.pieces = []  # (tag, text) of every piece of text
         self.open, self._rows, self._caption, self._cell = [], None, "", None
@@ -78,8 +154,9 @@ class Reader(html.parser.HTMLParser):
         header, *rows = self.tables[caption][at]
         return {row[0]: dict(zip(header[1:], row[1:])) for row in rows}
 
-    def charts(self):
-        return json.loads(next(s for s in self.scripts if s.startswith("[")))
+    def drawn(self, title):
+        """The picture whose title begins so."""
+        return next(picture for picture in self.pictures if picture.title.startswith(title))
 
 
 class ReportTest(unittest.TestCase):
@@ -89,11 +166,14 @@ class ReportTest(unittest.TestCase):
         self.directory = pathlib.Path(self._directory.name)
 
     def page_of(self, *files, options=(), note=""):
-        """`note`: the one that the command gives."""
-        out = self.directory / "page.html"
-        outcome = report(*files, "--html", out, *options)
-        self.assertEqual((outcome.returncode, outcome.stderr), (0, note and f"note: {note}\n"))
-        return Reader(out.read_text(encoding="utf-8"))
+        """`note`: the one that the command gives. The same files give the same page: it is made once."""
+        key = (*((file.name, file.read_bytes()) for file in files), *map(str, options))
+        if key not in PAGES:
+            out = self.directory / "page.html"
+            code, _, said = report_here(*files, "--html", out, *options)
+            self.assertEqual((code, said), (0, note and f"note: {note}\n"))
+            PAGES[key] = Reader(out.read_text(encoding="utf-8"))
+        return PAGES[key]
 
     def assertRefused(self, outcome, *words, code=1):
         """Exit code, one line that holds the words, nothing on stdout."""

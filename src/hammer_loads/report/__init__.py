@@ -1,1 +1,1 @@
-"""One page and tables from the databases of process_bag --db and from ledgers. Needs the standard library alone."""
+"""Pages, tables, budgets and certificates from the databases of process_bag --db, ledgers and fleets."""

@@ -1,90 +1,82 @@
 """The boom's oil and vibration as its sensors show them: air, worn pins and cracks come as a change over months."""
-from collections import namedtuple
 import math
 
-from report.markup import Raw, measured, number, paragraph, table
-from report.series import Segments
+from report.formats import NOTHING, Table, measured, number
 
 CHANGED = 3.0  # deviations: once in three hundred comparisons by chance
 MOST = 0.5     # of a run's turns
 
 # Means of a run: stiffness over that of the boom file, its deviation, share of turns whose damping no oil makes.
-OfRun = namedtuple("OfRun", "stamp_ns turns stiffness deviation doubtful")
 OF_TURNS = ("SELECT cylinder, count(*) AS turns, avg(stiffness_ratio) AS stiffness, avg(stiffness_ratio_deviation) AS "
             "deviation, avg(doubtful) AS doubtful FROM boom_cylinders WHERE run_id = ? GROUP BY cylinder ORDER BY cylinder")
-OF_RUNS = ("SELECT cylinder, turns, stiffness_ratio AS stiffness, stiffness_ratio_deviation AS deviation, doubtful "
-           "FROM run_cylinders WHERE run_id = ? ORDER BY cylinder")
+ALL_TURNS = OF_TURNS[len("SELECT "):].replace("run_id = ?", "{runs}").replace("GROUP BY", "GROUP BY run_id,")
+OF_RUNS = ("cylinder, stiffness_ratio AS stiffness, stiffness_ratio_deviation AS deviation, doubtful FROM run_cylinders "
+           "WHERE {runs} ORDER BY cylinder")
 MODES = ("SELECT mode, count(*), min(frequency_Hz), avg(frequency_Hz), max(frequency_Hz), avg(damping_ratio), "
          "avg(damping_ratio_deviation) FROM boom_modes WHERE run_id = ? GROUP BY mode ORDER BY mode")
 
 
 def cylinders_of(subject):
-    """Figures of its runs in the order of time, by cylinder."""
+    """(name, rows of its runs in the order of time)."""
     tables = subject.database.tables()
-    sql = OF_RUNS if "run_cylinders" in tables else OF_TURNS if "boom_cylinders" in tables else None
-    found = {}
-    for run, row in subject.of_runs(sql) if sql else []:
-        if row["stiffness"] is not None:
-            found.setdefault(row["cylinder"], []).append(
-                OfRun(run["first_stamp_ns"], row["turns"], row["stiffness"], row["deviation"], row["doubtful"]))
-    return found
+    sql = OF_RUNS if "run_cylinders" in tables else ALL_TURNS if "boom_cylinders" in tables else None
+    rows = subject.frame(sql, text=["cylinder"]).dropna(subset=["stiffness"]) if sql else None
+    return [] if rows is None else list(rows.fillna(0.0).groupby("cylinder"))
 
 
 def verdict(runs):
-    """Of the last run against the first."""
-    first, last = runs[0], runs[-1]
+    """Comparison of the last run with the first."""
+    first, last = runs.iloc[0], runs.iloc[-1]
     if max(first.doubtful, last.doubtful) > MOST:
         return "doubtful: something else than oil damps the boom"
     if len(runs) < 2:
         return "one run: nothing to compare"
-    spread = math.hypot(first.deviation or 0.0, last.deviation or 0.0)
-    if abs(last.stiffness - first.stiffness) <= CHANGED * spread:
+    if abs(last.stiffness - first.stiffness) <= CHANGED * math.hypot(first.deviation, last.deviation):
         return "as before"
     return "softer" if last.stiffness < first.stiffness else "stiffer"
 
 
 def cylinder_table(found):
     rows = []
-    for name, runs in sorted(found.items()):
-        first, last = runs[0], runs[-1]
-        change = 100.0 * (last.stiffness / first.stiffness - 1.0) if len(runs) > 1 and first.stiffness else None
-        rows.append([name, measured(first.stiffness, first.deviation), measured(last.stiffness, last.deviation),
-                     "\u2013" if change is None else f"{change:+.1f} %", len(runs), verdict(runs)])
-    return table("Stiffness of the oil over that of the boom file, mean of a run",
-                 ["Cylinder", "First run", "Last run", "Change", "Runs", "Verdict"], rows, kind="words figures-first")
+    for name, runs in found:
+        first, last = runs.iloc[0], runs.iloc[-1]
+        compared = len(runs) > 1 and first.stiffness
+        change = f"{100.0 * (last.stiffness / first.stiffness - 1.0):+.1f} %" if compared else NOTHING
+        rows.append([name, measured(first.stiffness, first.deviation), measured(last.stiffness, last.deviation), change,
+                     len(runs), verdict(runs)])
+    return Table("Stiffness of the oil over that of the boom file, mean of a run",
+                 ["Cylinder", "First run", "Last run", "Change", "Runs", "Verdict"], rows, "words figures-first")
 
 
 def mode_table(subject):
-    """Of the last run: frequencies depend on the pose."""
+    """Modes of the last run alone: frequencies depend on the pose."""
     if "boom_modes" not in subject.database.tables() or not subject.runs:
-        return ""
-    rows = [[f"{mode}", f"{number(least, 3)} to {number(most, 3)}", number(mean, 3), measured(damping, deviation),
-             turns] for mode, turns, least, mean, most, damping, deviation in
+        return None
+    rows = [[f"{mode}", f"{number(least, 3)} to {number(most, 3)}", number(mean, 3), measured(damping, deviation), turns]
+            for mode, turns, least, mean, most, damping, deviation in
             subject.database.rows(MODES, subject.runs[-1]["run_id"])]
-    return table("Modes of the last run, over its poses", ["Mode", "Frequency [Hz]", "Mean [Hz]", "Damping ratio", "Turns"],
-                 rows) if rows else ""
+    return Table("Modes of the last run, over its poses",
+                 ["Mode", "Frequency [Hz]", "Mean [Hz]", "Damping ratio", "Turns"], rows)
 
 
-def chart_of(runs, subject):
-    """A point a run; a line between them: what it shows changes slowly."""
-    segments = Segments()
-    segments.begin_run()
-    for run in runs:
-        spread = run.deviation or 0.0
-        segments.add_band(((run.stamp_ns or 0) - (subject.first_ns or 0)) * 1e-9, run.stiffness - spread, run.stiffness,
-                          run.stiffness + spread)
-    return segments
+def stiffness_picture(found):
+    """A point a run with its standard deviation; none where no cylinder has two runs."""
+    from report.pictures import COLOURS, CURVES, Picture  # here: a fleet takes OF_TURNS from this file and draws nothing
+    drawn = [(colour, name, runs) for colour, (name, runs) in zip(CURVES, found) if len(runs) > 1]
+    if not drawn:
+        return None
+    picture = Picture("run", "stiffness over the boom file's")
+    for colour, _, runs in drawn:
+        place = runs.run.astype(float) + 1.0
+        picture.line(place, runs.stiffness, colour, marker="o", markersize=4.0)
+        picture.axes.vlines(place, runs.stiffness - runs.deviation, runs.stiffness + runs.deviation, color=COLOURS[colour])
+    picture.axes.margins(x=0.05)
+    return picture.figure("Stiffness of the oil by run, \u00b1 one standard deviation",
+                          [(f"line {colour}", name) for colour, name, _ in drawn])
 
 
-def boom_health(subject, charts, most):
+def boom_health(subject):
     found = cylinders_of(subject)
     if not found:
-        return paragraph("Not known: it needs boom_stiffness: identified, a boom file and hull_imu or cylinder_pressures.")
-    content = paragraph("Every blow is an impulse that is known: how the boom swings after it shows its oil. The ratio does "
-                        "not depend on the pose; what the boom file has wrong of masses is the same in every run.", "note")
-    content += cylinder_table(found) + mode_table(subject)
-    for name, runs in sorted(found.items()):
-        if len(runs) > 1:
-            content += charts.over_time(f"{name}: stiffness over the boom file's", "", chart_of(runs, subject).thinned(most),
-                                        subject.first_ns, "health")
-    return Raw(content)
+        return None
+    return {"table": cylinder_table(found), "modes": mode_table(subject), "picture": stiffness_picture(found)}

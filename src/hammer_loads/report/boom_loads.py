@@ -1,61 +1,71 @@
 """Loads of hull, boom joints, cylinders and sections, a value per turn each."""
+import pandas
+
+from report.formats import Table, in_unit, scaled
 from report.names import without_unit
-from report.markup import Raw, details, in_unit, number, paragraph, scaled, table
-from report.series import Segments
+from report.over_time import time_unit
+from report.pictures import CURVES, Picture
+from report.series import BAND, Series, time_of_work
 
-MOST_POINTS = 240
+MOST_POINTS = 200
+MOST_OPEN = 2  # pictures; the others are folded
 
 
-def bands_of(subject):
-    """{(name, unit): [[turns, least, sum of means, greatest], Segments]} of all channels with rows per turn."""
-    found, first = {}, subject.first_ns or 0
+def loads_of(subject):
+    """Rows of neighbouring turns together: name and unit of the channel, turns, least, middle, greatest, x."""
     if "turn_loads" not in subject.database.tables():
-        return found
+        return pandas.DataFrame({"name": []})
     together = max(1, -(-subject.total("turns") // MOST_POINTS))
-    for run in subject.runs:
-        names = {row["channel"]: (row["name"], row["unit"] or "") for row in subject.database.records(
-            "SELECT channel, name, unit FROM channels WHERE run_id = ? ORDER BY channel", run["run_id"])}
-        for key in names.values():
-            if key in found:
-                found[key][1].begin_run()
-        stamps = dict(subject.database.rows("SELECT turn, stamp_ns FROM turns WHERE run_id = ?", run["run_id"]))
-        for channel, count, turn, least, middle, greatest in subject.database.rows(
-                "SELECT channel, count(*), min(turn), min(minimum), avg(mean), max(maximum) FROM turn_loads "
-                "WHERE run_id = ? AND minimum IS NOT NULL GROUP BY channel, turn / ? ORDER BY channel, turn",
-                run["run_id"], together):
-            key = names.get(channel, (f"channel {channel}", ""))
-            if key not in found:
-                found[key] = [[0, least, 0.0, greatest], Segments()]
-                found[key][1].begin_run()
-            tally, segments = found[key]
-            found[key][0] = [tally[0] + count, min(tally[1], least), tally[2] + count * (middle or 0.0),
-                             max(tally[3], greatest)]
-            at = stamps.get(turn)
-            if at is not None:
-                factor = in_unit(key[1])[0]
-                segments.add_band((at - first) * 1e-9, *(factor * (v if v is not None else least)
-                                                         for v in (least, middle, greatest)))
-    return found
+    rows = subject.frame(
+        "channels.name, coalesce(channels.unit, '') AS unit, count(*) AS turns, "
+        "min(turn_loads.minimum) AS least, avg(mean) AS middle, max(turn_loads.maximum) AS greatest, min(stamp_ns) AS stamp_ns "
+        "FROM turn_loads JOIN turns USING(run_id, turn) JOIN channels USING(run_id, channel) WHERE {runs} AND "
+        f"turn_loads.minimum IS NOT NULL GROUP BY run_id, channel, turn / {together} ORDER BY channel, min(turn)",
+        text=["name", "unit"])
+    rows["x"] = time_of_work(subject, rows)
+    return rows
 
 
-def boom_loads(subject, charts):
-    bands = bands_of(subject)
-    if not bands:
-        return paragraph("The file holds no loads per turn.")
-    rows, choices = [], []
-    for (name, unit), (tally, segments) in bands.items():
+def picture_of(group, unit, channels):
+    """Channels of one kind and unit: the parts of a joint's torque, the forces of a section. channels: {name: rows}."""
+    factor, shown = in_unit(unit)
+    seconds, time = time_unit(max(rows.x.max() for rows in channels.values()))
+    picture, keys = Picture(f"time of work [{time}]", f"load [{shown}]"), []
+    for name, colour in zip(channels, CURVES):
+        points = Series(channels[name].dropna(subset=["x", "middle"])).thinned(MOST_POINTS)
+        picture.curve((points[BAND] * factor).assign(x=points.x / seconds), colour, len(channels))
+        keys.append((f"line {colour}", without_unit(name.rpartition("/")[2])))
+    return picture.figure(group, keys)
+
+
+def loads_table(rows):
+    result = []
+    for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
         factor, shown = in_unit(unit)
-        rows.append([without_unit(name), shown] + [number(scaled(v, factor)) for v in
-                                     (tally[1], tally[2] / tally[0], tally[3])] + [tally[0]])
-        choices.append((name, without_unit(name), shown, segments.thinned(MOST_POINTS)))
-    strongest = max(bands, key=lambda key: key[0].startswith("joint_loads") and key[1] == "Nm" and
-                    bands[key][0][3] - bands[key][0][1])
-    choices.sort(key=lambda choice: choice[0] != strongest[0])
-    choices = [choice[1:] for choice in choices]
-    content = table("Loads over all turns", ["Channel", "Unit", "Least", "Mean of turns", "Greatest", "Turns"], rows)
-    if not any(name.startswith("section_loads/") for name, _ in bands):
-        content += paragraph("No sections: the boom file names none, or there was no robot description.")
-    words = paragraph("Line: mean of the turns; band: least and greatest within them, kept where turns are put together.",
-                      "note")
-    return Raw(words + charts.of_choice("Load per turn", choices, subject.first_ns) +
-               (content if len(rows) <= 8 else details(f"All {len(rows)} channels as a table", content)))
+        mean = (some.middle * some.turns).sum() / some.turns.sum()
+        result.append([without_unit(name), shown, *(scaled(v, factor) for v in (some.least.min(), mean, some.greatest.max())),
+                       int(some.turns.sum())])
+    return Table("Loads over all turns", ["Channel", "Unit", "Least", "Mean of turns", "Greatest", "Turns"], result)
+
+
+def groups_of(rows):
+    """{name: rows} of each picture, that of the joint with the largest range first."""
+    groups, reach = {}, {}
+    for (name, unit), some in rows.groupby(["name", "unit"], sort=False):
+        kind = (name.rpartition("/")[0] or name, unit)
+        groups.setdefault(kind, {})[name] = some
+        if name.startswith("joint_loads/") and unit == "Nm":
+            reach[kind] = max(reach.get(kind, 0.0), some.greatest.max() - some.least.min())
+    for kind in sorted(groups, key=lambda kind: kind != max(reach, key=reach.get, default=None)):
+        names = list(groups[kind])
+        for at in range(0, len(names), len(CURVES)):
+            yield kind, {name: groups[kind][name] for name in names[at:at + len(CURVES)]}
+
+
+def boom_loads(subject):
+    rows = loads_of(subject)
+    if not len(rows):
+        return None
+    pictures = [picture_of(*kind, channels) for kind, channels in groups_of(rows)]
+    return {"table": loads_table(rows), "open": pictures[:MOST_OPEN], "folded": pictures[MOST_OPEN:],
+            "sections": any(rows.name.str.startswith("section_loads/"))}

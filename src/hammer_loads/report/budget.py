@@ -1,12 +1,21 @@
-"""Where the uncertainty of a machine's figures comes from, and what to measure next (JCGM 100, 5)."""
+"""Where the uncertainty of a machine's figures comes from, and what to measure next (JCGM 100, 5): section and command."""
+import csv
+import json
 import math
+import sys
+import tempfile
 
-from report.markup import Raw, in_unit, measured, number, paragraph, scaled, table, text
+from report.command import Parser, add_bag_options, databases, guarded
+from report.database import LEDGER, Database
+from report.formats import Table, in_unit, measured, number
 from report.names import without_unit
-from report.svg import coordinate
+from report.problem import Problem
+from report.subjects import subjects_of
 
-COLOURS = ("#1f5fa8", "#b4530f", "#2d7a3a", "#7b4fa3", "#a31621", "#8a7a1f", "#3a8f94")
 REST = "the rest"
+COLOURS = 7  # of sources in the bars, the rest beside
+TEXT, JSON, CSV = "text", "json", "csv"
+LEAST_SHOWN = 5e-4
 
 
 class Figure:
@@ -30,74 +39,125 @@ def budget_of(subject):
     """Figures of all runs of a machine; runs count by their turns. Nothing for files that keep no budget."""
     if "budget" not in subject.database.tables():
         return []
-    parts = {}
-    for run, row in subject.of_runs("SELECT quantity, value, deviation, source, share FROM budget WHERE run_id = ?"):
-        part = parts.setdefault(row["quantity"], {}).setdefault(run["run_id"], [run["turns"] or 1, row, {}])
-        if row["deviation"] is not None and row["share"] is not None:
-            part[2][row["source"]] = row["share"] * row["deviation"] ** 2
-    return [combined(quantity, list(of_runs.values())) for quantity, of_runs in parts.items()]
+    rows = subject.frame("quantity, source, value, deviation, share FROM budget WHERE {runs}", text=["quantity", "source"])
+    turns = rows.run.map(lambda run: subject.runs[run]["turns"] or 1)
+    rows = rows.assign(turns=turns, variance=turns * rows.share * rows.deviation ** 2)
+    return [combined(quantity, of_quantity) for quantity, of_quantity in rows.groupby("quantity", sort=False)]
 
 
-def combined(quantity, of_runs):
-    turns = sum(part[0] for part in of_runs)
-    variances = {}
-    for count, _, sources in of_runs:
-        for source, variance in sources.items():
-            variances[source] = variances.get(source, 0.0) + variance * count / turns
-    total = sum(variances.values())
-    shares = {source: variance / total for source, variance in variances.items() if total > 0.0}
-    value = sum(part[0] * (part[1]["value"] or 0.0) for part in of_runs) / turns
-    return Figure(quantity, value, math.sqrt(total), shares or {REST: 1.0})
+def combined(quantity, rows):
+    runs = rows.drop_duplicates("run")
+    turns = runs.turns.sum()
+    variances = rows.dropna(subset=["variance"]).groupby("source").variance.sum() / turns
+    total = variances.sum()
+    shares = (variances / total).to_dict() if total > 0.0 else {REST: 1.0}
+    return Figure(quantity, float((runs.turns * runs.value.fillna(0.0)).sum() / turns), math.sqrt(total), shares)
 
 
-CHARACTER = 6.6  # width of one in a picture, in its units
-
-
-def picture(figures):
-    """A bar for each figure, parts by source."""
+def bars(figures):
+    """(name, parts as (class, source, share)) of each figure, and the keys: the largest sources over all have a colour."""
     order = {}
     for figure in figures:
         for source, share in figure.shares:
             order[source] = order.get(source, 0.0) + share
-    shown = sorted(order, key=lambda source: -order[source])[:len(COLOURS) - 1]
-    colour = dict(zip(shown, COLOURS))
-    names = [without_unit(figure.quantity) for figure in figures]
-    parts, height, width = [], 22, 440
-    left = math.ceil(CHARACTER * max(map(len, names), default=0)) + 10
-    for at, (name, figure) in enumerate(zip(names, figures)):
-        y, x = at * height + 4, float(left)
-        parts.append(f'<text x="{left - 6}" y="{y + 12}" text-anchor="end">{text(name)}</text>')
-        rest = 1.0 - sum(share for source, share in figure.shares if source in colour)
-        for source, share in [one for one in figure.shares if one[0] in colour] + [(REST, rest)]:
-            if share <= 0.0:
-                continue
-            step = share * width
-            parts.append(f'<rect x="{coordinate(x)}" y="{y}" width="{coordinate(step)}" height="15" '
-                         f'fill="{colour.get(source, COLOURS[-1])}"><title>{text(source)}: {100 * share:.0f} %</title></rect>')
-            x += step
-    keys = "".join(f'<span class="key"><i style="border-color: {c}"></i>{text(source)}</span> '
-                   for source, c in [*colour.items(), (REST, COLOURS[-1])])
-    return Raw(f'<figure><svg viewBox="0 0 {left + width + 8} {len(figures) * height + 8}" role="img" '
-               f'aria-label="Shares of the variance by source">{"".join(parts)}</svg>'
-               f"<figcaption>Shares of the variance.<br>{keys}</figcaption></figure>\n")
+    colours = {source: f"c{at}" for at, source in enumerate(sorted(order, key=lambda source: -order[source])[:COLOURS])}
+    shown = []
+    for figure in figures:
+        parts = [(colours[source], source, share) for source, share in figure.shares if source in colours]
+        parts.append(("soft", REST, max(0.0, 1.0 - sum(part[2] for part in parts))))
+        shown.append((without_unit(figure.quantity), parts))
+    return shown, [(f"box {colour}", source) for source, colour in [*colours.items(), (REST, "soft")]]
+
+
+def budget_row(figure):
+    factor, unit = in_unit(figure.unit)
+    source, share = figure.shares[0]
+    relative = 100.0 / abs(figure.value) if figure.value else math.nan
+    return [without_unit(figure.quantity), unit, measured(figure.value * factor, figure.deviation * factor),
+            number(relative * figure.deviation, 2), f"{source} ({100 * share:.0f} %)", number(relative * figure.halved, 2)]
 
 
 def budget(subject):
-    """Section of the page."""
     figures = budget_of(subject)
     if not figures:
-        return paragraph("This file keeps no budget: process_bag --db of this version writes one.")
-    rows = []
-    for figure in figures:
-        factor, unit = in_unit(figure.unit)
-        source, share = figure.shares[0]
-        relative = 100.0 * figure.deviation / abs(figure.value) if figure.value else None
-        rows.append([without_unit(figure.quantity), unit,
-                     measured(scaled(figure.value, factor), scaled(figure.deviation, factor)), number(relative, 2),
-                     f"{source} ({100 * share:.0f} %)",
-                     number(None if relative is None else relative * figure.halved / figure.deviation, 2)
-                     if figure.deviation > 0.0 else number(None)])
-    return (paragraph("Standard deviations of one turn's figures; what makes most of one is what to measure next. Constants "
-                      "err alike in all turns: more hours do not lower them.") +
-            table("Uncertainty budget", ["Figure", "Unit", "Value", "Deviation [%]", "Largest source", "With it halved [%]"],
-                  rows) + picture(figures))
+        return None
+    shown, keys = bars(figures)
+    return {"bars": shown, "legend": keys, "table": Table(
+        "Uncertainty budget", ["Figure", "Unit", "Value", "Deviation [%]", "Largest source", "With it halved [%]"],
+        [budget_row(figure) for figure in figures])}
+
+
+def parser():
+    result = Parser(
+        prog="budget", description="Where the uncertainty of a machine's figures comes from, and what to measure next.",
+        epilog="Shares are those of the variance and sum to 1 (JCGM 100, 5.1.2). Deviations are those of one turn's "
+               "figures. Errors are one line each; exit code 1, or 2 for wrong usage.")
+    result.add_argument("files", nargs="+", metavar="FILE",
+                        help="bags, or a database of process_bag --db; splits of one recording count as one")
+    kind = result.add_mutually_exclusive_group()
+    for name in (JSON, CSV):
+        kind.add_argument(f"--{name}", dest="kind", action="store_const", const=name, default=TEXT,
+                          help=f"print {name.upper()}")
+    add_bag_options(result)
+    return result
+
+
+def budgets_of(database):
+    """(machine, figures) of each machine in a file."""
+    if database.kind == LEDGER:
+        raise Problem(f"{database.path}: is a ledger, which keeps no sources; give the bags or process_bag --db")
+    budgets = [(subject.label, budget_of(subject)) for subject in subjects_of(database)]
+    if not any(figures for _, figures in budgets):
+        raise Problem(f"{database.path}: holds no budget; it has no whole turn, or is of an older process_bag --db")
+    return budgets
+
+
+def share_lines(shares):
+    """Lines; one for all that would be 0.0 %."""
+    seen = [one for one in shares if one[1] >= LEAST_SHOWN]
+    few = [f"  {100.0 * share:5.1f} %  {source}" for source, share in seen]
+    rest = len(shares) - len(seen)
+    return few + [f"  {100.0 * sum(share for _, share in shares[len(seen):]):5.1f} %  {rest} more"] * (rest > 0)
+
+
+def as_text(budgets):
+    lines = []
+    for machine, figures in budgets:
+        lines.append(f"{machine}: standard deviations of one turn, by source")
+        for f in figures:
+            lines.append(f"{f.quantity}: {f.value:.5g} +- {f.deviation:.2g}; {f.halved:.2g} with the largest source halved")
+            lines += share_lines(f.shares)
+    return "\n".join(lines) + "\n"
+
+
+def as_json(budgets):
+    return json.dumps({"machines": [
+        {"machine": machine,
+         "figures": [{"quantity": f.quantity, "unit": f.unit, "value": f.value, "deviation": f.deviation,
+                      "deviation_with_largest_halved": f.halved,
+                      "sources": [{"source": source, "share": share} for source, share in f.shares]} for f in figures]}
+        for machine, figures in budgets]}, indent=2) + "\n"
+
+
+def write_csv(budgets, stream):
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(["machine", "quantity", "value", "deviation", "deviation_with_largest_halved", "source", "share"])
+    for machine, figures in budgets:
+        for f in figures:
+            for source, share in f.shares:
+                writer.writerow([machine, f.quantity, f.value, f.deviation, f.halved, source, share])
+
+
+def run(given):
+    with tempfile.TemporaryDirectory(prefix="hammer_loads_budget") as folder:
+        budgets = [budget for path in databases(given, folder) for budget in budgets_of(Database(path))]
+    if given.kind == CSV:
+        write_csv(budgets, sys.stdout)
+    else:
+        sys.stdout.write(as_json(budgets) if given.kind == JSON else as_text(budgets))
+
+
+def main(arguments):
+    """Exit code."""
+    options = parser()
+    return guarded(run, options.parse_args(arguments), options)

@@ -1,26 +1,26 @@
-"""A test certificate: one page that says what was measured, with which uncertainty, and how that is known."""
+"""A test certificate, and its command: one page that says what was measured, with which uncertainty, and how that is known."""
+import tempfile
+
+from report import output
 from report.budget import budget_of
-from report.markup import duration, in_unit, number, paragraph, places_of, scaled, section, table, text, utc
+from report.command import Parser, add_bag_options, databases, guarded, package_version
+from report.database import RECORDING, Database
+from report.formats import NOTHING, Table, duration, in_unit, is_nothing, number, places_of, scaled, utc
 from report.names import without_unit
 from report.overview import warnings_of
-from report.page import GENERATOR
+from report.page import rendered
 from report.problem import Problem
-from report.sensor_health import health_rows, refusals_of
+from report.sensor_health import DOUBTFUL, health_rows, refusals_of
+from report.subjects import subjects_of
 
-COVERAGE = 2  # k of the expanded uncertainty: some 95 % of a normal distribution (JCGM 100, 6.3.3)
-STYLE = """
-@page { size: A4; margin: 12mm }
-body { font: 9pt/1.25 sans-serif; max-width: 180mm; margin: 1em auto; color: #111; background: #fff }
-h1 { font-size: 15pt; margin: 0 } h2 { font-size: 11pt; margin: .9em 0 .2em }
-p { margin: .3em 0 } table { border-collapse: collapse; width: 100%; font-size: 8pt }
-caption { text-align: left; font-style: italic } th, td { text-align: left; padding: 1px 6px; border-bottom: 1px solid #ccc }
-td.n, th.n { text-align: right } ul.plain { columns: 2; margin: .2em 0; padding-left: 1.2em }
-"""
+COVERAGE = 2   # k of the expanded uncertainty: some 95 % of a normal distribution (JCGM 100, 6.3.3)
+NOT_GIVEN = {"rod_stiffness_N_m", "rod_damping_ratio", "pin_play_m"}  # where the files have 0 or nothing
+LISTED = 0.01  # of the variance of a measurand: a source that makes more is an input quantity
 
 
 def rounded(value, uncertainty):
     """Both with the last digit of the uncertainty's two (JCGM 100, 7.2.6)."""
-    if value is None or uncertainty is None or not uncertainty > 0.0:
+    if is_nothing(value) or is_nothing(uncertainty) or not uncertainty > 0.0:
         return number(value), number(uncertainty)
     places = places_of(uncertainty)
     return tuple(f"{round(x, places):.{max(places, 0)}f}" for x in (value, uncertainty))
@@ -33,8 +33,8 @@ def results(figures):
         value, expanded = rounded(scaled(figure.value, factor), scaled(COVERAGE * figure.deviation, factor))
         largest = ", ".join(f"{source} {100 * share:.0f} %" for source, share in figure.shares[:2] if share >= 0.1)
         rows.append([without_unit(figure.quantity), value, expanded, unit, largest])
-    return table(f"Mean of the turns; U = k u, k = {COVERAGE}", ["Measurand", "Estimate", "U", "Unit", "Largest contributions to u\u00b2"],
-                 rows)
+    return Table(f"Mean of the turns; U = k u, k = {COVERAGE}",
+                 ["Measurand", "Estimate", "U", "Unit", "Largest contributions to u\u00b2"], rows)
 
 
 def deviation_key(key, keys):
@@ -44,50 +44,24 @@ def deviation_key(key, keys):
                  if (name := "_".join(parts[:at] + ["deviation"] + parts[at:])) in keys), None)
 
 
-def inputs(subject):
-    """Input quantities with a standard uncertainty in the parameter files: evaluations of type B."""
-    parameters = {row["key"]: row["value"] for _, row in subject.of_runs("SELECT key, value FROM parameters WHERE run_id = ?")}
-    rows = []
-    for key in sorted(parameters):
-        twin = deviation_key(key, parameters)
-        if twin is not None:
-            rows.append([key, parameters[key], parameters[twin]])
-    half = (len(rows) + 1) // 2  # two columns side by side
-    both = [left + (rows[half + at] if half + at < len(rows) else ["", "", ""]) for at, left in enumerate(rows[:half])]
-    return table("In the key's unit; u by the parameter files (type B)", 2 * ["Input quantity", "Estimate", "u"], both)
-
-
-def checks(subject):
-    rows = [row[:3] for row in health_rows(subject) if row[2]]
-    words = [f"{reason}: {count}" for reason, count in refusals_of(subject)]
-    return table("", ["Check", "Found", "Verdict"], rows, numbers=False) + paragraph(
-        "Samples not used: " + ("; ".join(words) if words else "none") + ".")
-
-
-def warnings(subject):
-    found = list(warnings_of(subject))
-    if not found:
-        return paragraph("None.")
-    return "<ul>" + "".join(f"<li>{text(words)}</li>" for words in found) + "</ul>\n"
-
-
-def identity(subject):
-    run = subject.runs[0]
-    return paragraph(
-        f"Machine {subject.label}. Recorded {utc(subject.first_ns)} to {utc(subject.last_ns)}; "
-        f"{duration(subject.total('duration_s'))} of work, {number(subject.total('turns'))} turns, {number(subject.total('blows'))} blows. "
-        f"Model at level {run['level']}. Input SHA-256 {run['input_sha256'][:16]}, parameters {run['parameters_sha256'][:16]}, "
-        f"hammer_loads {run['version']}, revision {run['revision'][:12]}: the same bags, parameters and revision give this "
-        "page to the last byte.")
-
-
-METHOD = (
-    "The loads are those of the crank-rocker linkage (momentum theorem over crank, rod and rocker) at the crank's angle, speed "
-    "and acceleration, which a Kalman filter estimates from its readings; a blow is measured by what it does to the crank. u is "
-    "combined by the law of propagation of uncertainty (JCGM 100:2008, 5.1.2): each constant of hammer and sensor contributes "
-    "its standard uncertainty times the derivative of the measurand, the same in all turns, so that the mean of many turns "
-    "keeps it; readings contribute what differs from turn to turn (type A). Constants are taken as uncorrelated; a rod's length "
-    "follows from the other three.")
+def inputs(subject, figures):
+    """Sources of more than LISTED of the variance of any measurand, the largest share first."""
+    rows = subject.frame("key, value FROM parameters WHERE {runs}", text=["key", "value"])
+    parameters = dict(zip(rows.key, rows.value))
+    largest = {}
+    for figure in figures:
+        for source, share in figure.shares:
+            if share > max(LISTED, largest.get(source, ("", 0.0))[1]):
+                largest[source] = (without_unit(figure.quantity), share)
+    listed = []
+    for source, (quantity, share) in sorted(largest.items(), key=lambda item: (-item[1][1], item[0])):
+        estimate = parameters.get(source, NOTHING)
+        if source in NOT_GIVEN and estimate in (NOTHING, "0", "0.0"):
+            estimate = "not given"
+        listed.append([source, estimate, parameters.get(deviation_key(source, parameters), NOTHING),
+                       f"{100 * share:.0f} % of u\u00b2 of {quantity}"])
+    return Table("Estimate and standard uncertainty u in the key's unit, by the parameter files (type B); readings: type A",
+                 ["Input quantity", "Estimate", "u", "Largest contribution"], listed)
 
 
 def certificate(subject, version):
@@ -95,22 +69,49 @@ def certificate(subject, version):
     figures = budget_of(subject)
     if not figures:
         raise Problem(f"{subject.database.path}: holds no budget; it has no whole turn, or is of an older process_bag --db")
-    parts = [("identity", "What was measured", identity(subject)), ("results", "Results", results(figures)),
-             ("inputs", "Input quantities", inputs(subject)), ("checks", "What was checked", checks(subject)),
-             ("warnings", "Reservations", warnings(subject)), ("method", "Method", paragraph(METHOD))]
-    content = "".join(section(*part) for part in parts)
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-{GENERATOR}
-<title>Certificate: loads of the hammer</title>
-<style>{STYLE}</style>
-</head>
-<body>
-<h1>Certificate: loads of the hammer</h1>
-{content}
-<footer><p>hammer_loads {text(version)}</p></footer>
-</body>
-</html>
-""".encode("utf-8")
+    checks = [row for row in health_rows(subject) if row[2]]
+    return rendered(
+        "certificate.html", version=version, label=subject.label, run=subject.runs[0], first=utc(subject.first_ns),
+        last=utc(subject.last_ns), work=duration(subject.total("duration_s")), turns=subject.total("turns"),
+        blows=subject.total("blows"), results=results(figures), inputs=inputs(subject, figures),
+        checks=Table("The crank's sensor", ["Check", "Found", "Verdict"], [row[:3] for row in checks], "words"),
+        refusals=refusals_of(subject),
+        reservations=[*warnings_of(subject), *(f"{name}: {found}, {verdict} ({meaning})"
+                                               for name, found, verdict, meaning in checks if verdict == DOUBTFUL)])
+
+
+def parser():
+    result = Parser(
+        prog="certificate",
+        description="A test certificate of one recording: results with their uncertainty, inputs, checks, method.",
+        epilog="One page of A4; the same bags, parameters and version give the same bytes. Words and rules are those of "
+               "JCGM 100:2008. Errors are one line each; exit code 1, or 2 for wrong usage.")
+    result.add_argument("files", nargs="+", metavar="FILE",
+                        help="bags of one machine, or a database of process_bag --db; splits of one recording count as one")
+    result.add_argument("--html", required=True, metavar="OUT.html", help="page to write, which must not exist")
+    result.add_argument("--machine", metavar="NAME", help="of a file with more than one")
+    result.add_argument("--force", action="store_true", help="replace a page of this package")
+    add_bag_options(result)
+    return result
+
+
+def the_subject(paths, machine):
+    found = [s for path in paths for s in subjects_of(Database(path), machine) if s.database.kind == RECORDING]
+    if len(found) != 1:
+        raise Problem(f"a certificate is of one machine's recording, not of {len(found)}"
+                      + (": " + ", ".join(s.label for s in found) if found else ""))
+    return found[0]
+
+
+def run(given):
+    output.check_file(given.html, given.files, given.force, output.why_page_must_stay)
+    with tempfile.TemporaryDirectory(prefix="hammer_loads_certificate") as folder:
+        content = certificate(the_subject(databases(given, folder), given.machine), package_version())
+    output.publish_file(given.html, content, given.force)
+    print(f"{given.html}: {len(content) / 1e3:.0f} kB")
+
+
+def main(arguments):
+    """Exit code."""
+    options = parser()
+    return guarded(run, options.parse_args(arguments), options)

@@ -5,11 +5,13 @@ import pathlib
 import signal
 import sys
 import tempfile
+import warnings
 import xml.etree.ElementTree as ElementTree
 
-from report import bags, csv_tables, output, page
+from report import bags, csv_tables, output
 from report.database import Database, Interrupt
 from report.problem import Problem, one_line
+from report.subjects import notes
 
 TOPICS = {"crank-topic": "the crank's samples", "joint-states-topic": "the boom's joints", "imu-topic": "the hull's IMU",
           "pressures-topic": "the cylinders' pressures, a prefix"}
@@ -64,9 +66,10 @@ def add_bag_options(to):
 
 def run(given):
     if given.html is not None:
-        output.check_file(given.html, given.files, given.force, page.why_page_must_stay)
+        output.check_file(given.html, given.files, given.force, output.why_page_must_stay)
     if given.csv is not None:
-        output.check_directory(given.csv, [*given.files, *([given.html] if given.html else [])], given.force, csv_tables.why_directory_must_stay)
+        needed = [*given.files, *([given.html] if given.html else [])]
+        output.check_directory(given.csv, needed, given.force, csv_tables.why_directory_must_stay)
     with tempfile.TemporaryDirectory(prefix="hammer_loads_report") as folder:
         write(given, [Database(path) for path in databases(given, folder)])
 
@@ -92,9 +95,10 @@ def databases(given, folder):
 
 
 def write(given, databases):
-    for note in page.notes(databases):
+    for note in notes(databases):
         print(one_line(f"note: {note}"), file=sys.stderr)
     if given.html is not None:
+        from report import page  # here: tables and refusals need no pandas and no matplotlib
         content = page.page(databases, package_version(), given.machine)
         output.publish_file(given.html, content, given.force)
         print(f"{given.html}: {len(databases)} file{'s' if len(databases) > 1 else ''}, {len(content) / 1e6:.2f} MB")
@@ -116,6 +120,7 @@ def guarded(run, given, options):
     """Exit code of run(given)."""
     if bag_options(given) and not any(map(bags.is_bag, given.files)):
         options.error("--params, --urdf and topics are for bags; a database has its parameters")
+    warnings.simplefilter("ignore")  # of numpy: what is no number is shown as such; stderr has this command's own lines alone
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(name) != signal.SIG_IGN:
             signal.signal(name, Interrupt.handler)

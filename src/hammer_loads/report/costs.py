@@ -1,9 +1,11 @@
 """Which work cost what: shares of the damage by turn, hour, day and recording; what another load would do to the life."""
-import bisect
+import numpy
+import pandas
 
 from report.channel import Channel
+from report.damage import columns_of
 from report.database import FLEET
-from report.markup import Raw, block, details, moment, number, paragraph, scaled, table, utc
+from report.formats import Table, moment, number, utc
 from report.names import recording_of, without_unit
 from report.subjects import MOST_TURNS_ONE_BY_ONE, add_piece
 
@@ -17,150 +19,134 @@ HOUR_NS = 3600 * 10 ** 9
 
 
 def judged_channel(channels):
-    """With an S-N curve if one is given, else the force along the tool."""
+    """Channel with an S-N curve if there is one, else the force along the tool."""
     curved = [c for c in channels if c.curve is not None]
     along = [c for c in channels if c.name.endswith("force_z_N")]
     return (curved or along or channels)[0]
 
 
 def rule_of(channel):
-    return "S-N curve" if channel.curve else f"slope {SLOPE:g}"
+    return f"{without_unit(channel.name)}, " + ("S-N curve" if channel.curve else f"slope {SLOPE:g}")
 
 
-def damage_of(channel, cycles):
-    """By the curve, else relative at SLOPE. cycles: (range, mean, count)."""
+def damage_of_each(channel, ranges, means):
+    """Damage of one cycle of each range and mean: by the S-N curve, else relative at SLOPE."""
     if channel.curve is not None:
-        return channel.curve.damage(cycles)[0]
-    return sum(n * (r / (channel.count.greatest - channel.count.least)) ** SLOPE for r, _, n in cycles)
+        return channel.curve.of_each(ranges, means)[0]
+    return (ranges / (channel.count.greatest - channel.count.least)) ** SLOPE
+
+
+def damage_of(channel):
+    """Damage of all counted cycles."""
+    ranges, means, counts = columns_of(channel.count.ranges_and_means())
+    return (counts * damage_of_each(channel, ranges, means)).sum()
 
 
 def turn_costs(subject, channel):
-    """(damage of the turn's range alone, stamp_ns, run, turn) of every turn with loads, in the order of time."""
+    """Turns with loads: damage by the range of the turn alone, stamp_ns, run, turn, peak [kN]."""
     if subject.total("turns") > MOST_TURNS_ONE_BY_ONE or "turn_loads" not in subject.database.tables():
-        return []
-    sql = ("SELECT l.maximum - l.minimum, 0.5 * (l.maximum + l.minimum), t.stamp_ns, l.turn FROM turn_loads l "
-           "JOIN channels c USING(run_id, channel) JOIN turns t USING(run_id, turn) WHERE l.run_id = ? AND c.name = ? "
-           "AND l.minimum IS NOT NULL AND l.maximum IS NOT NULL AND t.stamp_ns IS NOT NULL ORDER BY l.turn")
-    return [(damage_of(channel, [(reach, mean, 1.0)]), stamp, run["run_id"], turn) for run in subject.runs
-            for reach, mean, stamp, turn in subject.database.rows(sql, run["run_id"], channel.name)]
+        return pandas.DataFrame({"damage": []})
+    rows = subject.frame(
+        "turn, stamp_ns, turn_loads.minimum AS least, turn_loads.maximum AS greatest, amplitude_N / 1000 AS peak "
+        "FROM channels JOIN turn_loads USING(run_id, channel) JOIN turns USING(run_id, turn) WHERE {runs} AND name = ? "
+        "ORDER BY turn", channel.name).dropna(subset=["stamp_ns", "least", "greatest"])
+    return rows.assign(damage=damage_of_each(channel, rows.greatest - rows.least, 0.5 * (rows.greatest + rows.least)))
 
 
-def dearest_share(costs, part):
-    """Share of the damage that the dearest part of the turns did."""
-    ordered = sorted((cost[0] for cost in costs), reverse=True)
-    count = max(1, round(part * len(ordered)))
-    return sum(ordered[:count]) / (sum(ordered) or 1.0)
-
-
-def grouped_table(caption, title, costs, key_of):
-    """Share of turns and of damage; nothing where there is one group alone."""
-    groups = {}
-    for cost in costs:
-        tally = groups.setdefault(key_of(cost), [0, 0.0])
-        tally[0] += 1
-        tally[1] += cost[0]
-    return shares_table(caption, title, "Turns", [(name, count, damage) for name, (count, damage) in groups.items()])
+def dearest_share(damages, part):
+    """Share of the damage that is due to the most damaging part of the turns."""
+    ordered = numpy.sort(damages)[::-1]
+    return ordered[:max(1, round(part * len(ordered)))].sum() / ordered.sum()
 
 
 def shares_table(caption, title, counted, groups):
-    """groups: (name, count, damage)."""
+    """groups: (name, count, damage); nothing where there is one group alone."""
     if len(groups) < 2:
-        return ""
+        return None
     count_all = sum(count for _, count, _ in groups) or 1
     damage_all = sum(damage for _, _, damage in groups) or 1.0
-    rows = [[name, number(count), number(100.0 * count / count_all, 3), number(100.0 * damage / damage_all, 3)]
-            for name, count, damage in groups]
-    content = table(caption, [title, counted, f"{counted} [%]", "Damage [%]"], rows)
-    return content if len(rows) <= 24 else details(f"{caption}: {len(rows)} rows", content)
+    return Table(caption, [title, counted, f"{counted} [%]", "Damage [%]"],
+                 [[name, count, number(100.0 * count / count_all, 3), number(100.0 * damage / damage_all, 3)]
+                  for name, count, damage in groups])
 
 
-def dearest_turns(subject, costs):
-    total = sum(cost[0] for cost in costs) or 1.0
-    names, rows = recording_of(subject), []
-    for cost, stamp, run, turn in sorted(costs, key=lambda c: (-c[0], c[1]))[:DEAREST]:
-        peak = subject.database.value("SELECT amplitude_N FROM turns WHERE run_id = ? AND turn = ?", run, turn)
-        rows.append([moment(stamp), names.get(run, "?"), number(turn), number(100.0 * cost / total, 2),
-                     number(scaled(peak, 1e-3))])
-    return details(f"The {len(rows)} dearest turns", table(
-        "Dearest turns", ["End (UTC)", "Recording", "Turn", "Damage [%]", "Peak force [kN]"], rows))
+def grouped_table(caption, title, turns, stretch_ns, name_of):
+    """Shares by stretches of time. name_of(stamp_ns): name of the stretch that begins then."""
+    groups = turns.damage.groupby((turns.stamp_ns // stretch_ns).astype(int)).agg(["size", "sum"])
+    return shares_table(caption, title, "Turns", [(name_of(at * stretch_ns), int(count), damage)
+                                                  for at, count, damage in groups.itertuples()])
+
+
+def dearest_turns(subject, turns):
+    names = recording_of(subject)
+    dearest = turns.sort_values(["damage", "stamp_ns"], ascending=[False, True]).head(DEAREST)
+    rows = [[moment(turn.stamp_ns), names[subject.runs[turn.run]["run_id"]], int(turn.turn),
+             number(100.0 * turn.damage / turns.damage.sum(), 2), turn.peak] for turn in dearest.itertuples()]
+    return Table("Dearest turns", ["End (UTC)", "Recording", "Turn", "Damage [%]", "Peak force [kN]"], rows)
+
+
+def by_turns(subject, channel):
+    """Tables and sentences about the turns; empty where none did damage."""
+    turns = turn_costs(subject, channel)
+    held, counted = turns.damage.sum(), damage_of(channel)
+    if not held > 0.0:
+        return {"words": "", "held": None, "tables": [], "dearest": None}
+    return {"words": "; ".join(f"{100 * part:g} % of the blows did {number(100.0 * dearest_share(turns.damage, part), 3)} %"
+                               for part in PARTS if part * len(turns) >= LEAST_TURNS),
+            "held": number(100.0 * held / counted, 3) if counted > 0.0 else None,
+            "tables": [grouped_table("Damage by day", "Day (UTC)", turns, 24 * HOUR_NS, lambda stamp: utc(stamp)[:10]),
+                       grouped_table("Damage by hour", "Hour (UTC)", turns, HOUR_NS, lambda stamp: moment(stamp, "minutes"))],
+            "dearest": dearest_turns(subject, turns)}
 
 
 def by_recording(subject, channel):
-    """By the counted cycles of each run."""
+    """Shares by the counted cycles of each run, and by day for a machine of a fleet."""
     if len(subject.runs) > MOST_RECORDINGS:
-        return ""
-    names, groups = recording_of(subject), {}
+        return []
+    names, groups, days = recording_of(subject), [], {}
     for run in subject.runs:
         for row in subject.database.records("SELECT * FROM channels WHERE run_id = ? AND name = ? AND counted",
                                             run["run_id"], channel.name):
             piece = Channel.of(row, run["equivalent_cycles_per_hour"])
             add_piece(piece, subject.database, run, row)
-            groups[run["run_id"]] = damage_of(channel, piece.count.ranges_and_means())
-    rows = [(names[run["run_id"]], run["blows"] or 0, groups[run["run_id"]]) for run in subject.runs
-            if run["run_id"] in groups]
-    content = shares_table("Damage by recording", "Recording", "Blows", rows)
+            groups.append((names[run["run_id"]], run["blows"] or 0, damage_of(piece)))
+            day = days.setdefault(run.get("day") or "?", [0, 0.0])
+            day[0] += groups[-1][1]
+            day[1] += groups[-1][2]
+    tables = [shares_table("Damage by recording", "Recording", "Blows", groups)]
     if subject.database.kind == FLEET:
-        days = {}
-        for run in subject.runs:
-            if run["run_id"] in groups:
-                tally = days.setdefault(run["day"] or "?", [0, 0.0])
-                tally[0] += run["blows"] or 0
-                tally[1] += groups[run["run_id"]]
-        content += shares_table("Damage by day", "Day (UTC)", "Blows", [(day, *tally) for day, tally in days.items()])
-    return content
+        tables.append(shares_table("Damage by day", "Day (UTC)", "Blows", [(day, *tally) for day, tally in days.items()]))
+    return tables
 
 
-def which_turns(subject, channel):
-    costs = turn_costs(subject, channel)
-    if not any(cost[0] > 0.0 for cost in costs):
-        return ""
-    words = "; ".join(f"{100 * part:g} % of the blows did {number(100 * dearest_share(costs, part), 3)} %"
-                      for part in PARTS if part * len(costs) >= LEAST_TURNS)
-    counted = damage_of(channel, channel.count.ranges_and_means())
-    held = sum(cost[0] for cost in costs)
-    content = paragraph(f"Of the damage {words}.") if words else ""
-    if counted > 0.0:
-        content += paragraph(f"A turn counts here with its range alone: that is {number(100.0 * held / counted, 3)} % of "
-                             "the damage of all counted cycles.", "note")
-    content += grouped_table("Damage by day", "Day (UTC)", costs, lambda cost: utc(cost[1])[:10])
-    content += grouped_table("Damage by hour", "Hour (UTC)", costs,
-                             lambda cost: moment(cost[1] // HOUR_NS * HOUR_NS, "minutes"))
-    return content + dearest_turns(subject, costs)
+def life_factors(channel, factors):
+    """Life over that of now, by the S-N curve, with all loads multiplied by each factor."""
+    ranges, means, counts = columns_of(channel.count.ranges_and_means())
+    damages = [(counts * channel.curve.of_each(ranges * factor, means * factor)[0]).sum() for factor in (1.0, *factors)]
+    return [damages[0] / damage if damage > 0.0 else float("inf") for damage in damages[1:]]
 
 
-def life_factor(channel, cycles, factor, slope=None):
-    """Of the life, where all loads are `factor` times as large; by the slope, else by the channel's curve."""
-    if slope is not None:
-        return factor ** -slope
-    scaled_cycles = [(r * factor, mean * factor, n) for r, mean, n in cycles]
-    now, then = channel.curve.damage(cycles)[0], channel.curve.damage(scaled_cycles)[0]
-    return now / then if then > 0.0 else float("inf")
-
-
-def doubling_factor(channel, cycles):
+def doubling_factor(channel):
     """Factor of the load at which the life by the channel's curve is twice as long, to 0.001."""
     factors = [0.001 * i for i in range(200, 1001)]
-    at = bisect.bisect_right([-life_factor(channel, cycles, f) for f in factors], -2.0)
-    return factors[at - 1] if at > 0 else None
+    long_enough = [factor for factor, life in zip(factors, life_factors(channel, factors)) if life >= 2.0]
+    return max(long_enough, default=None)
 
 
 def back_calculation(channels):
-    ways = [(f"slope {m:g}", lambda f, m=m: life_factor(None, None, f, m), 2.0 ** (-1.0 / m)) for m in (3.0, 5.0, 10.0)]
-    for channel in channels:
-        cycles = channel.count.ranges_and_means()
-        if channel.curve is not None and channel.curve.damage(cycles)[0] > 0.0:
-            ways.append((without_unit(channel.name), lambda f, c=channel, y=cycles: life_factor(c, y, f),
-                         doubling_factor(channel, cycles)))
+    """(words, table): life over that of now by the load over that of now."""
+    ways = [(f"slope {m:g}", [factor ** -m for factor in FACTORS], 2.0 ** (-1.0 / m)) for m in (3.0, 5.0, 10.0)]
+    ways += [(without_unit(c.name), life_factors(c, FACTORS), doubling_factor(c)) for c in channels
+             if c.curve is not None and c.damage()[0] > 0.0]
     words = "; ".join(f"{name}: {number(double, 3)} of the load" for name, _, double in ways if double)
-    rows = [[number(factor)] + [number(way(factor), 3) for _, way, _ in ways] for factor in FACTORS]
-    return (paragraph(f"Twice the life: {words}.") +
-            table("Life over that of now", ["Load over that of now", *(name for name, _, _ in ways)], rows))
+    rows = [[number(factor), *(number(lives[at], 3) for _, lives, _ in ways)] for at, factor in enumerate(FACTORS)]
+    return words, Table("Life over that of now", ["Load over that of now", *(name for name, _, _ in ways)], rows)
 
 
 def costs(subject, channels):
     if not channels:
-        return paragraph("No channel was counted.")
+        return None
     channel = judged_channel(channels)
-    shares = which_turns(subject, channel) + by_recording(subject, channel)
-    title = f"Share of the damage: {without_unit(channel.name)}, {rule_of(channel)}"
-    return Raw((block(title, shares) if shares else "") + block("Another load, another life", back_calculation(channels)))
+    turns = by_turns(subject, channel)
+    return {**turns, "title": f"Share of the damage: {rule_of(channel)}",
+            "tables": list(filter(None, turns["tables"] + by_recording(subject, channel))), "life": back_calculation(channels)}

@@ -4,8 +4,8 @@ import os
 import re
 
 from report.database import LEDGER, quoted
+from report.names import stem
 from report.problem import Problem, one_line
-from report.subjects import stem
 
 # A spreadsheet runs what begins so; a text that it does not run begins with a quotation mark.
 FORMULA = ("=", "+", "-", "@", "\t")

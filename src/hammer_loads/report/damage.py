@@ -1,10 +1,17 @@
-"""What counted cycles cost. The same formulas as life/damage.h; doc/fatigue.md, 3.
+"""Damage of counted cycles by the formulas of life/damage.h; doc/fatigue.md, 3.
 
 A figure is (value, standard deviation); the deviation is None where the loads have none. `cycles`: (range, mean, count).
 """
 import math
 
+import numpy
+
 SLOPES = (3.0, 4.0, 5.0, 10.0)
+
+
+def columns_of(cycles):
+    """Ranges, means and counts as arrays."""
+    return numpy.array(cycles, dtype=float).reshape(-1, 3).T
 
 
 def by_samples(load_deviation):
@@ -14,16 +21,17 @@ def by_samples(load_deviation):
 
 def figure_of(value, by_absolute, by_relative, deviation):
     """deviation: of all ranges, (absolute, over the range), or None."""
-    return value, None if deviation is None else math.hypot(by_absolute * deviation[0], by_relative * deviation[1])
+    return float(value), None if deviation is None else math.hypot(by_absolute * deviation[0], by_relative * deviation[1])
 
 
 def equivalent_range(cycles, slope, equivalent_cycles, deviation=None):
     """Range that does the same damage in this number of cycles; 0 without cycles. deviation: as for figure_of()."""
-    largest = max((r for r, _, _ in cycles), default=0.0)
+    ranges, _, counts = columns_of(cycles)
+    largest = ranges.max(initial=0.0)
     if largest == 0.0:
         return 0.0, None if deviation is None else 0.0
-    total = sum(n * (r / largest) ** slope for r, _, n in cycles)
-    derivative = sum(n * (r / largest) ** (slope - 1.0) for r, _, n in cycles)
+    total = (counts * (ranges / largest) ** slope).sum()
+    derivative = (counts * (ranges / largest) ** (slope - 1.0)).sum()
     value = largest * (total / equivalent_cycles) ** (1.0 / slope)
     return figure_of(value, value * derivative / (total * largest), value, deviation)
 
@@ -31,13 +39,10 @@ def equivalent_range(cycles, slope, equivalent_cycles, deviation=None):
 def at_alternating(amplitude, mean, sensitivity):
     """FKM: amplitude at R = -1 that does the same damage, and its derivative by the amplitude."""
     beyond = (1.0 + sensitivity) / (1.0 + sensitivity / 3.0)
-    if mean < -amplitude:
-        return amplitude * (1.0 - sensitivity), 1.0 - sensitivity
-    if mean <= amplitude:
-        return amplitude + sensitivity * mean, 1.0
-    if mean < 3.0 * amplitude:
-        return beyond * (amplitude + sensitivity / 3.0 * mean), beyond
-    return beyond * (1.0 + sensitivity) * amplitude, beyond * (1.0 + sensitivity)
+    regions = [mean < -amplitude, mean <= amplitude, mean < 3.0 * amplitude]
+    slant = numpy.select(regions, [1.0 - sensitivity, 1.0, beyond], beyond * (1.0 + sensitivity))
+    by_mean = numpy.select(regions, [0.0, sensitivity, beyond * sensitivity / 3.0], 0.0)
+    return slant * amplitude + by_mean * mean, slant
 
 
 class Curve:
@@ -47,26 +52,26 @@ class Curve:
         self.knee_range, self.knee_cycles = knee_range, knee_cycles
         self.slope, self.slope_below, self.sensitivity = slope, slope_below, sensitivity
 
+    def of_each(self, ranges, means):
+        """Damage of one cycle of each range and mean, and its derivative by the range."""
+        amplitudes, slant = 0.5 * ranges, numpy.ones_like(ranges)
+        if self.sensitivity is not None:
+            amplitudes, slant = at_alternating(amplitudes, means, self.sensitivity)
+        counts = amplitudes > 0.0
+        at = 2.0 * numpy.where(counts, amplitudes, 1.0)
+        slopes = numpy.where(at >= self.knee_range, self.slope, self.slope_below)
+        each = counts * (at / self.knee_range) ** slopes / self.knee_cycles
+        return each, each * slopes / at * slant
+
     def damage(self, cycles, deviation=None):
         """Part of the life that is used. deviation: as for figure_of()."""
-        total = by_absolute = by_relative = 0.0
-        for r, mean, n in cycles:
-            amplitude, slant = 0.5 * r, 1.0
-            if self.sensitivity is not None:
-                amplitude, slant = at_alternating(amplitude, mean, self.sensitivity)
-            if not amplitude > 0.0:
-                continue
-            at = 2.0 * amplitude
-            m = self.slope if at >= self.knee_range else self.slope_below
-            each = (at / self.knee_range) ** m / self.knee_cycles
-            total += n * each
-            by_absolute += n * each * m / at * slant
-            by_relative += n * each * m / at * slant * r
-        return figure_of(total, by_absolute, by_relative, deviation)
+        ranges, means, counts = columns_of(cycles)
+        each, slope = self.of_each(ranges, means)
+        return figure_of((counts * each).sum(), (counts * slope).sum(), (counts * slope * ranges).sum(), deviation)
 
 
 def curve_of(row):
-    """From the columns of a `channels` table; None without a curve."""
+    """Curve by the columns of a table `channels`; None where they have none."""
     if row["sn_knee_range_MPa"] is None:
         return None
     return Curve(row["sn_knee_range_MPa"], row["sn_knee_cycles"], row["sn_slope"], row["sn_slope_below"],

@@ -8,7 +8,7 @@ from report.problem import Problem
 
 RECORDING, LEDGER, FLEET = "recording", "ledger", "fleet"
 KINDS = {0x484C5242: RECORDING, 0x484C4C31: LEDGER, 0x484C5246: FLEET}
-VERSIONS = {RECORDING: (1,), LEDGER: (1, 2, 3), FLEET: (1,)}
+VERSIONS = {RECORDING: (1,), LEDGER: (1,), FLEET: (1,)}
 STEPS = 100000  # of SQLite's machine, some ms, between two looks for a signal
 BUSY_S = 5.0  # a node that writes its ledger needs some ms
 
@@ -78,10 +78,10 @@ class Database:
     def _guarded(self, call, *arguments, **options):
         try:
             return call(*arguments, **options)
-        except (sqlite3.Error, OverflowError, UnicodeError, MemoryError) as error:
+        except (sqlite3.Error, OSError, OverflowError, UnicodeError, MemoryError) as error:  # pandas' is an OSError
             if Interrupt.came:
                 raise KeyboardInterrupt
-            raise Problem(f"{self.path}: cannot be read: {' '.join(str(error).split())}")
+            raise Problem(f"{self.path}: cannot be read: {' '.join(str(error.__cause__ or error).split())}")
 
     def rows(self, sql, *values):
         """Iterates over tuples."""
@@ -91,6 +91,11 @@ class Database:
             if not some:
                 return
             yield from some
+
+    def frame(self, sql, *values):
+        """All rows as a pandas.DataFrame."""
+        from pandas import read_sql_query  # here: what reads no numbers (a fleet's jobs, CSV, refusals) is fast without
+        return self._guarded(read_sql_query, sql, self._connection, params=values)
 
     def records(self, sql, *values):
         """All rows as dictionaries by the columns' names."""

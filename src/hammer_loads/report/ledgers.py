@@ -9,17 +9,6 @@ CYCLES = "SELECT steps, low, sum(count) FROM cycles WHERE channel = ?{} GROUP BY
 DEVIATION_UNITS = 1024.0  # per class width, in tallies.deviation_sum
 
 
-# A ledger of version 1 as one of version 2: it keeps no run apart.
-VERSION_1 = (
-    "CREATE TEMP VIEW days AS SELECT day, epoch, date, duration_ns, turns, (SELECT min(run) FROM main.runs r "
-    "WHERE r.epoch = d.epoch) AS run FROM main.days d",
-    "CREATE TEMP VIEW residues AS SELECT r.channel, place, class, (SELECT CASE r.open WHEN 1 THEN max(run) ELSE "
-    "min(run) END FROM main.runs WHERE runs.epoch = c.epoch) AS run FROM main.residues r JOIN main.channels c "
-    "USING(channel)")
-# One of version 1 or 2 as one of version 3.
-BEFORE_3 = "CREATE TEMP VIEW tallies AS SELECT *, 0 AS range_square, 0 AS range_own, 0 AS range_common FROM main.tallies"
-
-
 class Epoch:
     """Same hammer, boom and grids. `days`: (ids, date, hours, blows), one id for each run of the date."""
 
@@ -86,9 +75,4 @@ class Epoch:
 
 
 def epochs_of(database):
-    if database.version == 1:
-        for view in VERSION_1:
-            database.value(view)
-    if database.version < 3:
-        database.value(BEFORE_3)
     return [Epoch(database, row) for row in database.records("SELECT * FROM epochs ORDER BY epoch")]

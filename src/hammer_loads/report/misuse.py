@@ -1,5 +1,5 @@
-"""What wears the hammer without breaking rock, as far as it was measured."""
-from report.markup import Raw, number, paragraph, table
+"""Work that wears the hammer without breaking rock, as far as it was measured."""
+from report.formats import NOTHING, Table, number
 
 UNKNOWN = "not known"
 COUNTERS = [
@@ -26,11 +26,10 @@ def misuse(subject):
     for name, title, meaning, missing in COUNTERS:
         count, per_hour = counter(subject, name)
         if count is None:
-            rows.append([title, UNKNOWN, "\u2013", missing])
+            rows.append([title, UNKNOWN, NOTHING, missing])
             continue
         if name == "unpressed_blows":
             judged = sum(run["judged_blows"] or 0 for run in subject.runs if run.get(name) is not None)
             meaning += f"; of {number(judged)} blows whose press force was measured"
         rows.append([title, number(count), number(per_hour, 3), meaning])
-    return Raw(table("Misuse", ["What", "Count", "Per hour", "Meaning"], rows, kind="words figures-first") +
-               paragraph("Per hour of work. What nothing measures is not known, which is not zero.", "note"))
+    return Table("Misuse", ["What", "Count", "Per hour", "Meaning"], rows, "words figures-first")

@@ -9,6 +9,7 @@ import stat
 
 from report.problem import Problem
 
+GENERATOR = b'<meta name="generator" content="hammer_loads report">'  # of every page's template
 AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux
 KINDS = [(stat.S_ISDIR, "a directory"), (stat.S_ISLNK, "a symbolic link"), (stat.S_ISFIFO, "a FIFO"),
          (stat.S_ISSOCK, "a socket")]
@@ -64,6 +65,15 @@ def check_directory(name, needed, force, keep):
     """`needed`: paths of inputs and other outputs."""
     refuse_place(name, needed)
     check_existing(name, force, stat.S_ISDIR, "a new directory", keep)
+
+
+def why_page_must_stay(name):
+    """A page of this package may be replaced."""
+    try:
+        with open(name, "rb") as file:
+            return None if GENERATOR in file.read(2000) else "it is no page of this command"
+    except OSError as error:
+        return error.strerror
 
 
 def part_name(name):

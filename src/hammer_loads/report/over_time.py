@@ -1,53 +1,90 @@
-"""Blow rate, energy, restitution, peak force and hold-down over time."""
-from report.histograms import histograms
-from report.markup import block, details, number, paragraph, table
+"""Blow rate, energy, restitution, peak force and hold-down over the time of work, and how often which value came."""
+from matplotlib.ticker import MaxNLocator
+import numpy
+
+from report.formats import Table, number, titled
+from report.pictures import COLOURS, Picture
 from report.quantities import QUANTITIES
 
-MOST_POINTS = 600
+MOST_POINTS = 400
+COUNTED = ("energy_J", "amplitude_N")  # in a histogram
+MOST_BARS = 24
+STRETCHES = 12
+MOST_MARKS = 20
+TIME_UNITS = [(86400.0, "days"), (3600.0, "h"), (60.0, "min"), (1.0, "s")]
 
 
-def summary_table(segments):
-    rows, of_runs = [], any(s.of_runs for s in segments.values())
+def time_unit(longest_s):
+    return next(unit for unit in TIME_UNITS if longest_s >= 3.0 * unit[0] or unit[0] == 1.0)
+
+
+def summary_table(series):
+    rows, of_runs = [], any(s.of_runs for s in series.values())
     for quantity in QUANTITIES:
-        values = segments[quantity.key]
+        values = series[quantity.key]
         if len(values):
-            unit = f" [{quantity.unit}]" if quantity.unit else ""
-            rows.append([quantity.title + unit] + [number(v) for v in values.statistics()] +
-                        [number(values.spread(), 2), number(values.deviation, 2), len(values)])
-    if of_runs:
-        return table("Over all runs: least and greatest of all turns, between them means of runs",
-                     ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Spread", "Deviation", "Runs"], rows)
-    return table("Over all turns", ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Spread", "Deviation",
-                                    "Values"], rows) + paragraph(
-        "Spread: of the values from blow to blow (half of what holds the middle 68 %). Deviation: standard, of the "
-        "measurement of one value, median.", "note")
+            rows.append([titled(quantity.title, quantity.unit), *values.statistics(), number(values.spread(), 2),
+                         number(values.deviation, 2), len(values)])
+    return Table("Over all runs: least and greatest of all turns, between them means of runs" if of_runs else "Over all turns",
+                 ["Quantity", "Least", "5 %", "Median", "95 %", "Greatest", "Spread", "Deviation",
+                  "Runs" if of_runs else "Values"], rows)
 
 
-def by_time_table(segments):
-    """A dozen stretches of time: the charts in numbers."""
-    grids, longest = {}, max((p[0] for s in segments.values() for run in s.runs for p in run), default=0.0)
-    count = 12
-    step = longest / count or 1.0
-    for quantity in QUANTITIES:
-        grids[quantity.key] = segments[quantity.key].on_grid(step, count)
-    rows = []
-    for i in range(count):
-        points = [grids[q.key][i] for q in QUANTITIES]
-        if any(points):
-            rows.append([f"{number(i * step, 3)} to {number((i + 1) * step, 3)}"] +
-                        [number(p[2]) if p else "\u2013" for p in points])
-    header = ["Time after the start [s]"] + [q.title + (f" [{q.unit}]" if q.unit else "") for q in QUANTITIES]
-    return table("Means by time", header, rows)
+def by_time_table(series):
+    """The pictures in numbers."""
+    step = max((s.points.x.max() for s in series.values() if len(s)), default=0.0) / STRETCHES or 1.0
+    means = [series[q.key].on_grid(step, STRETCHES).middle for q in QUANTITIES]
+    rows = [[f"{number(at * step, 3)} to {number((at + 1) * step, 3)}", *(float(column[at]) for column in means)]
+            for at in range(STRETCHES)]
+    rows = [row for row in rows if not all(numpy.isnan(row[1:]))]
+    return Table("Means by time", ["Time of work [s]", *(titled(q.title, q.unit) for q in QUANTITIES)], rows)
 
 
-def over_time(subject, segments, charts, group, most=MOST_POINTS):
-    if not any(len(s) for s in segments.values()):
-        return paragraph("No turn, so there is nothing over time.")
-    content = str(histograms(segments, QUANTITIES))
-    for quantity in QUANTITIES:
-        values = segments[quantity.key]
-        unit = f" [{quantity.unit}]" if quantity.unit else ""
-        chart = charts.over_time(quantity.title, "", values.thinned(most), subject.first_ns,
-                                 group) if len(values) else paragraph("No value in any turn.")
-        content += block(quantity.title + unit, paragraph(quantity.meaning.capitalize() + ".", "note") + chart)
-    return summary_table(segments) + content + details("The charts as a table", by_time_table(segments))
+def time_picture(quantity, values, most):
+    """The axis of the values is never finer than the standard deviation of their measurement, which it shows."""
+    points = values.thinned(most)
+    seconds, unit = time_unit(points.x.max())
+    picture = Picture(f"time of work [{unit}]", titled(quantity.title.lower(), quantity.unit))
+    begins = values.points.groupby("run").x.first()[1:] / seconds
+    if len(begins) <= MOST_MARKS and not values.of_runs:
+        for begin in begins:
+            picture.axes.axvline(begin, color=COLOURS["soft"], linewidth=0.8, linestyle=":")
+    keys = [("line first", "mean"), ("band first", "least to greatest")]
+    if values.deviation:
+        middle = values.points.middle.median()
+        picture.axes.axhspan(middle - values.deviation, middle + values.deviation, facecolor=COLOURS["soft"], alpha=0.15)
+        keys.append(("band soft", "median \u00b1 standard deviation of one measurement"))
+    picture.curve(points.assign(x=points.x / seconds), "first")
+    picture.axes.margins(x=0.03 if values.of_runs else 0.0)
+    return picture.figure(f"{quantity.title}: {quantity.meaning}", keys)
+
+
+def bins(values):
+    """(edges, counts) at round numbers; a value on an edge is in the bin above it."""
+    edges = MaxNLocator(MOST_BARS, steps=[1, 2, 2.5, 5, 10]).tick_values(values.min(), values.max())
+    edges = numpy.append(edges, 2.0 * edges[-1] - edges[-2])
+    counts = numpy.histogram(values, edges)[0]
+    kept = numpy.flatnonzero(counts)
+    return edges[kept[0]:kept[-1] + 2], counts[kept[0]:kept[-1] + 1]
+
+
+def histogram(quantity, values):
+    """(picture, table)."""
+    edges, counts = bins(values)
+    picture = Picture(titled(quantity.title.lower(), quantity.unit), "blows")
+    picture.axes.bar(edges[:-1], counts, numpy.diff(edges), align="edge", color=COLOURS["first"], alpha=0.75)
+    rows = [[f"{number(low)} to {number(high)}", int(count), number(100.0 * count / len(values), 3)]
+            for low, high, count in zip(edges, edges[1:], counts) if count]
+    return (picture.figure(f"{quantity.title} of {number(len(values))} blows"),
+            Table(f"Blows by {quantity.title.lower()}", [titled(quantity.title, quantity.unit), "Blows", "Share [%]"], rows))
+
+
+def over_time(series, most):
+    drawn = [q for q in QUANTITIES if len(series[q.key])]
+    if not drawn:
+        return None
+    return {"table": summary_table(series), "of_runs": any(s.of_runs for s in series.values()),
+            "pictures": [time_picture(q, series[q.key], most) for q in drawn],
+            "histograms": [histogram(q, series[q.key].points.middle) for q in drawn
+                           if q.key in COUNTED and not series[q.key].of_runs],
+            "by_time": by_time_table(series)}

@@ -1,4 +1,4 @@
-"""What is shown over time, a value for each turn."""
+"""Quantities that are shown over time, with a value for each turn."""
 from collections import namedtuple
 
 # expression: of the table's columns; factor: from its unit to the one shown; deviation: column of the measurement's.

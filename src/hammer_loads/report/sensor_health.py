@@ -1,15 +1,16 @@
 """Whether the crank's sensor is sound."""
-from report.markup import Raw, number, paragraph, scaled, table
+from report.formats import Table, number, scaled
 
 CONSISTENT = 3.0   # times the variance; a sound sensor has 0.9
 JITTER_S = 1e-4    # from there on the wrench is some 0.2 % worse
 REFUSED = 0.01     # of the samples
+SOUND, DOUBTFUL = "sound", "look at it"
 
 
 def refusals_of(subject):
-    counts = {}
-    for _, row in subject.of_runs("SELECT reason, count FROM refusals WHERE run_id = ? ORDER BY reason"):
-        counts[row["reason"]] = counts.get(row["reason"], 0) + row["count"]
+    """(reason, samples), the most first."""
+    rows = subject.frame("reason, count AS samples FROM refusals WHERE {runs}", text=["reason"])
+    counts = rows.groupby("reason").samples.sum().astype(int)
     return sorted(counts.items(), key=lambda item: (-item[1], item[0]))
 
 
@@ -20,11 +21,11 @@ def worst_of(subject, name):
 def judged(value, limit):
     if value is None:
         return "not determined"
-    return "sound" if value <= limit else "look at it"
+    return SOUND if value <= limit else DOUBTFUL
 
 
 def health_rows(subject):
-    """(what, value, verdict, meaning)."""
+    """[figure, value, verdict, meaning]."""
     consistency, jitter = worst_of(subject, "consistency"), worst_of(subject, "timing_noise_s")
     resolution, noise = worst_of(subject, "angle_resolution_rad"), worst_of(subject, "speed_noise_rad_s")
     deviation = worst_of(subject, "drive_inertia_deviation")
@@ -38,9 +39,9 @@ def health_rows(subject):
         ["Jitter of the stamps", f"{number(scaled(jitter, 1e3), 3)} ms", judged(jitter, JITTER_S),
          "beyond 0.1 ms the wrench is some 0.2 % worse"],
         ["Refused samples", f"{refused} of {samples}", judged(share, REFUSED), "by reason below"],
-        ["Restarts", number(restarts), "sound" if restarts <= len(subject.runs) else "look at it",
+        ["Restarts", number(restarts), judged(restarts, len(subject.runs)),
          "drop-outs, jumps, time running back; one a run is its start"],
-        ["Passages backward", number(backward), "sound" if backward <= 3 else "look at it",
+        ["Passages backward", number(backward), judged(backward, 3),
          "more than a few: crank_direction has the wrong sign"],
         ["Resolution of the angle", f"{number(scaled(resolution, 1e3), 3)} mrad", "", "step between two readings"],
         ["Noise of the speed", f"{number(noise, 3)} rad/s", "", "where the speed is measured"],
@@ -50,12 +51,5 @@ def health_rows(subject):
 
 
 def sensor_health(subject):
-    if not subject.runs:
-        return paragraph("The file holds no run.")
-    note = paragraph("Of several runs the worst.", "note") if len(subject.runs) > 1 else ""
-    content = note + table("The crank's sensor", ["Figure", "Value", "Verdict", "Meaning"], health_rows(subject),
-                           numbers=False)
-    refusals = refusals_of(subject)
-    if not refusals:
-        return Raw(content + paragraph("No sample was refused."))
-    return Raw(content + table("Refused samples by reason", ["Reason", "Samples"], [list(row) for row in refusals]))
+    return {"table": Table("The crank's sensor", ["Figure", "Value", "Verdict", "Meaning"], health_rows(subject), "words"),
+            "refusals": Table("Refused samples by reason", ["Reason", "Samples"], refusals_of(subject))}

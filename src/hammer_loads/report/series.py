@@ -1,96 +1,93 @@
-"""Numbers over time: statistics of all, and few enough to draw, with least and greatest kept."""
-import math
+"""Values over the time of work: statistics of all, and few enough to draw, with least and greatest kept."""
+import numpy
+import pandas
+
+from report.quantities import value_of
 
 PAUSE_TURNS = 4.0  # times the usual step: there was no work between two points
 PAUSE_S = 2.0      # at least: a slow turn is no pause
+BAND = ["least", "middle", "greatest"]
 
 
-class Segments:
-    """Values of several runs: each a list of (time_s since the first stamp, least, middle, greatest)."""
+class Series:
+    """points: `run` (its place among the machine's), `x` (time of work [s]) and BAND; a value alone is all three."""
 
-    def __init__(self):
-        self.runs = []
-        self.of_runs = False  # a point is a run, its middle the mean of its turns
-        self.deviation = None  # of the measurement of a value, median; None: not known
-
-    def begin_run(self):
-        self.runs.append([])
-
-    def add(self, time_s, value):
-        self.runs[-1].append((time_s, value, value, value))
-
-    def add_band(self, time_s, least, middle, greatest):
-        self.runs[-1].append((time_s, least, middle, greatest))
+    def __init__(self, points, deviation=None, of_runs=False):
+        self.points = points
+        self.deviation = deviation  # of the measurement of a value, median; None: not known
+        self.of_runs = of_runs      # a point is a run, its middle the mean of its turns
 
     def __len__(self):
-        return sum(len(run) for run in self.runs)
-
-    def middles(self):
-        return [point[2] for run in self.runs for point in run]
+        return len(self.points)
 
     def statistics(self):
         """Least, 5 %, median, 95 %, greatest; of runs the parts between are those of their means."""
-        ordered = sorted(self.middles())
-        points = [point for run in self.runs for point in run]
-        return ([min((p[1] for p in points), default=None)] + [quantile(ordered, part) for part in (0.05, 0.5, 0.95)] +
-                [max((p[3] for p in points), default=None)])
+        points = self.points
+        return [points.least.min(), *points.middle.quantile([0.05, 0.5, 0.95]), points.greatest.max()]
 
     def spread(self):
         """Half of what holds the middle 68 %: a standard deviation that a few odd values do not change."""
-        ordered = sorted(self.middles())
-        if len(ordered) < 3 or self.of_runs:
+        if len(self) < 3 or self.of_runs:
             return None
-        return 0.5 * (quantile(ordered, 0.8413) - quantile(ordered, 0.1587))
+        low, high = self.points.middle.quantile([0.1587, 0.8413])
+        return 0.5 * (high - low)
 
-    def stretches(self):
-        """Points of uninterrupted work: a run, cut where nothing was struck for long. Of runs each stands alone."""
-        for run in self.runs:
-            if self.of_runs:
-                yield from ([point] for point in run)
-            else:
-                yield from cut_at_pauses(run)
+    def of_run(self, run):
+        return Series(self.points[self.points.run == run], self.deviation, self.of_runs)
+
+    def _stretches(self):
+        """Places at which stretches of uninterrupted work begin. Values of runs stand alone."""
+        if self.of_runs:
+            return numpy.arange(len(self))
+        steps = self.points.groupby("run").x.diff()
+        usual = steps.groupby(self.points.run).transform("median").fillna(0.0)
+        return numpy.flatnonzero(steps.isna() | (steps > numpy.maximum(PAUSE_S, PAUSE_TURNS * usual)))
 
     def thinned(self, most):
-        """At most some `most` points; neighbours become one with least, mean and greatest. None where work paused."""
-        together = max(1, math.ceil(len(self) / most))
-        points = []
-        for stretch in self.stretches():
-            if points:
-                points.append(None)
-            points += [merged(stretch[at:at + together]) for at in range(0, len(stretch), together)]
-        return points
+        """At most some `most` points; neighbours become one with least, mean and greatest. No number where work paused."""
+        if not len(self):
+            return self.points
+        begins, count = self._stretches(), len(self)
+        place = numpy.arange(count) - numpy.repeat(begins, numpy.diff(begins, append=count))
+        starts = numpy.flatnonzero(place % int(numpy.ceil(count / most)) == 0)
+        x, least, middle, greatest = (self.points[name].to_numpy() for name in ("x", *BAND))
+        merged = {"x": x[starts], "least": numpy.minimum.reduceat(least, starts),
+                  "middle": numpy.add.reduceat(middle, starts) / numpy.diff(starts, append=count),
+                  "greatest": numpy.maximum.reduceat(greatest, starts)}
+        pauses = numpy.searchsorted(starts, begins[1:])
+        return pandas.DataFrame({name: numpy.insert(column, pauses, numpy.nan) for name, column in merged.items()})
 
-    def on_grid(self, step_s, count):
-        """Mean over each interval of time, with least and greatest; None where there is nothing."""
-        cells = [[] for _ in range(count)]
-        for run in self.runs:
-            for point in run:
-                cells[min(count - 1, max(0, int(point[0] / step_s)))].append(point)
-        return [merged(cell) if cell else None for cell in cells]
-
-
-def cut_at_pauses(run):
-    steps = sorted(b[0] - a[0] for a, b in zip(run, run[1:]))
-    pause = max(PAUSE_S, PAUSE_TURNS * (quantile(steps, 0.5) or 0.0))
-    begin = 0
-    for at in range(1, len(run)):
-        if run[at][0] - run[at - 1][0] > pause:
-            yield run[begin:at]
-            begin = at
-    if run:
-        yield run[begin:]
+    def on_grid(self, step, count):
+        """Least, mean and greatest in each interval of time; no number where there is nothing."""
+        place = (self.points.x / step).astype(int).clip(0, count - 1)
+        cells = self.points.groupby(place).agg({"least": "min", "middle": "mean", "greatest": "max"}).reindex(range(count))
+        return cells.assign(x=(cells.index + 0.5) * step)
 
 
-def merged(points):
-    return (points[0][0], min(p[1] for p in points), sum(p[2] for p in points) / len(points),
-            max(p[3] for p in points))
+def time_of_work(subject, rows):
+    """[s] of rows with `run` and `stamp_ns`: runs follow each other without the time between them."""
+    firsts = numpy.array([run["first_stamp_ns"] or 0 for run in subject.runs], dtype=float)
+    lasts = numpy.array([run["last_stamp_ns"] or 0 for run in subject.runs], dtype=float)
+    spans = numpy.maximum(0.0, lasts - firsts)
+    begins = numpy.concatenate([[0.0], numpy.cumsum(spans)[:-1]]) if len(spans) else spans
+    run = rows.run.to_numpy(dtype=int)
+    return (rows.stamp_ns - firsts[run] + begins[run]) * 1e-9
 
 
-def quantile(ordered, part):
-    """Of values in rising order; None of none."""
-    if not ordered:
-        return None
-    at = part * (len(ordered) - 1)
-    low = int(at)
-    high = min(low + 1, len(ordered) - 1)
-    return ordered[low] + (at - low) * (ordered[high] - ordered[low])
+def series_of(subject, quantity):
+    """Values of turns in the unit shown, or of runs where the file has no rows of turns."""
+    of_runs = not subject.has_rows(quantity.table)
+    if of_runs:
+        rows = subject.frame("(first_stamp_ns + last_stamp_ns) / 2 AS stamp_ns, least, mean AS middle, greatest, "
+                             "NULL AS deviation FROM run_figures JOIN runs USING(run_id) WHERE {runs} AND quantity = ?", quantity.key)
+    else:
+        columns = subject.database.columns(quantity.table)
+        deviation = quantity.deviation if quantity.deviation in columns else "NULL"
+        rows = subject.frame(f"stamp_ns, {value_of(quantity, columns)} AS middle, {deviation} AS deviation "
+                             f"FROM {quantity.table} WHERE {{runs}} ORDER BY turn")
+        rows = rows.assign(least=rows.middle, greatest=rows.middle)
+    rows = rows.dropna(subset=["stamp_ns", "middle"])
+    points = pandas.DataFrame({"run": rows.run, "x": time_of_work(subject, rows),
+                               **{name: rows[name] * quantity.factor for name in BAND}})
+    known = rows.deviation.dropna() * quantity.factor
+    return Series(points.reset_index(drop=True), known.median() if len(known) else None, of_runs)

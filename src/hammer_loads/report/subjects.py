@@ -1,12 +1,11 @@
-"""What a page is about: one machine's runs in one file, in the order of time."""
+"""Machines of a page: each with its runs in one file, in the order of time."""
 import re
 
 from report.channel import Channel
-from report.database import FLEET, LEDGER
+from report.database import FLEET, LEDGER, RECORDING
 from report.names import stem
 from report.problem import Problem
-from report.quantities import is_possible, value_of
-from report.series import Segments, quantile
+from report.quantities import is_possible
 
 MOST_TURNS_ONE_BY_ONE = 500000  # beyond: a run is a point, where the file has figures of runs
 
@@ -30,52 +29,29 @@ class Subject:
     def hours(self):
         return self.total("duration_s") / 3600.0
 
-    def of_runs(self, sql):
-        """(run, row as a dictionary) of a query with one parameter, the run."""
-        for run in self.runs:
-            for row in self.database.records(sql, run["run_id"]):
-                yield run, row
+    def frame(self, sql, *values, text=()):
+        """Rows of all runs in their order. sql: from the columns on, {runs} is its condition for the runs; `run` is added:
+        the place of the run. Columns but those of text are numbers."""
+        places = {run["run_id"]: place for place, run in enumerate(self.runs)}
+        runs = f"run_id IN ({', '.join(str(int(run_id)) for run_id in places)})"
+        rows = self.database.frame("SELECT run_id AS run, " + sql.format(runs=runs), *values)
+        rows["run"] = rows.run.map(places)
+        return rows.astype({name: float for name in rows if name not in ("run", *text)}).sort_values("run", kind="mergesort")
 
-    def _has_rows(self, table):
+    def has_rows(self, table):
+        """Whether values are those of turns; else of runs, as a merged file has them."""
         tables = self.database.tables()
         if "run_figures" not in tables:
             return True
         return table in tables and self.total("turns") <= MOST_TURNS_ONE_BY_ONE and any(
             self.database.value(f"SELECT 1 FROM {table} WHERE run_id = ? LIMIT 1", run["run_id"]) for run in self.runs)
 
-    def segments(self, quantity):
-        """A value per turn, in the unit shown; per run where the file has no rows of turns."""
-        result, first = Segments(), self.first_ns or 0
-        if self._has_rows(quantity.table):
-            columns = self.database.columns(quantity.table)
-            deviation = quantity.deviation if quantity.deviation in columns else "NULL"
-            sql = (f"SELECT stamp_ns, {value_of(quantity, columns)}, {deviation} FROM {quantity.table} WHERE run_id = ? "
-                   "ORDER BY turn")
-            deviations = []
-            for run in self.runs:
-                result.begin_run()
-                for stamp, value, spread in self.database.rows(sql, run["run_id"]):
-                    if value is not None and stamp is not None:
-                        result.add((stamp - first) * 1e-9, value * quantity.factor)
-                        deviations += [] if spread is None else [spread * quantity.factor]
-            result.deviation = quantile(sorted(deviations), 0.5)
-            return result
-        sql = "SELECT least, mean, greatest FROM run_figures WHERE run_id = ? AND quantity = ?"
-        result.of_runs = True
-        result.begin_run()
-        for run in self.runs:
-            for row in self.database.rows(sql, run["run_id"], quantity.key):
-                if row[1] is not None and run["first_stamp_ns"] is not None:
-                    result.add_band((run["first_stamp_ns"] - first) * 1e-9, *(v * quantity.factor for v in row))
-        return result
-
     def impossible_blows(self):
         """Blows that say nothing possible of their energy: not drawn, not in any figure."""
-        if not self._has_rows("blows"):
+        if not self.has_rows("blows"):
             return 0
         possible = is_possible(self.database.columns("blows"))
-        return sum(self.database.value(f"SELECT count(*) FROM blows WHERE run_id = ? AND coalesce({possible}, 0) = 0",
-                                       run["run_id"]) for run in self.runs)
+        return len(self.frame(f"turn FROM blows WHERE {{runs}} AND coalesce({possible}, 0) = 0"))
 
     def failed_bags(self):
         """(bag, reason) of a merged file's bags that gave nothing."""
@@ -162,3 +138,22 @@ def subjects_of(database, only_machine=None):
     if len(groups) < 2:
         return [Subject(database, name, runs) for runs in groups.values()] or [Subject(database, name, [])]
     return [Subject(database, f"{name}, machine {at}", runs) for at, runs in enumerate(groups.values(), 1)]
+
+
+def mixed_machines(databases, subjects):
+    """Lines for files with more than one machine: their cycles are never added."""
+    lines = []
+    for database in databases:
+        count = sum(s.database is database for s in subjects)
+        if count > 1 and database.kind == RECORDING:
+            lines.append(f"{stem(database.path)}: holds {count} machines (hammer, boom or their parameters differ); "
+                         "each stands alone")
+    return lines
+
+
+def notes(databases):
+    """Notes for the user of the command, one line each."""
+    subjects = [s for database in databases for s in subjects_of(database)]
+    lines = mixed_machines(databases, subjects)
+    return lines + [f"{s.label}: {'no whole turn' if s.runs else 'no run at all'}" for s in subjects
+                    if not s.total("turns")]

@@ -1,97 +1,71 @@
 """The typical and the worst turn: force, its deviation, the half-sine pulse."""
-import math
+import numpy
 
-from report.markup import Raw, details, number, paragraph, table, utc
-from report.svg import Axes, figure
+from report.formats import Table, number, utc
+from report.pictures import Picture
 
-MOST_POINTS = 400
 KINDS = [("typical", "Typical turn"), ("worst", "Worst turn")]
+FORCES = ["force_x_N", "force_z_N", "force_z_deviation_N"]
+MOST_ROWS = 20
+KEYS = [("line first", "along the tool, Fz"), ("band first", "\u00b1 one standard deviation"),
+        ("line third", "half-sine pulse"), ("line second", "across, Fx")]
 
 
 def trace_of(subject, kind):
-    """(run, rows) of the run with the strongest (worst) or the most turns (typical); (None, []) without any."""
-    best, at_best = None, None
-    for run in subject.runs:
-        if "traces" not in subject.database.tables():
-            break
-        peak = subject.database.value("SELECT max(abs(force_z_N)) FROM traces WHERE run_id = ? AND kind = ?",
-                                      run["run_id"], kind)
-        rank = peak if kind == "worst" else run["turns"]
-        if peak is not None and (best is None or rank > best):
-            best, at_best = rank, run
-    if at_best is None:
-        return None, []
-    return at_best, subject.database.records(
-        "SELECT * FROM traces WHERE run_id = ? AND kind = ? ORDER BY place", at_best["run_id"], kind)
+    """Samples of the run with the strongest (worst) or the most turns (typical); none where there is none."""
+    rows = subject.frame("turn, time_s, force_x_N, force_z_N, force_z_deviation_N, torque_y_Nm FROM traces "
+                         "WHERE {runs} AND kind = ? ORDER BY place", kind)
+    peaks = rows.force_z_N.abs().groupby(rows.run).max().dropna()
+    if not len(peaks):
+        return rows[:0]
+    rank = peaks if kind == "worst" else peaks.index.map(lambda run: subject.runs[run]["turns"])
+    return rows[rows.run == peaks.index[int(numpy.argmax(rank))]]
 
 
 def half_sine(pulse, period, count=200):
-    """(time, force) of the pulse model."""
-    amplitude, mu, start = pulse["amplitude_N"], pulse["frequency_rad_s"], pulse["start_s"]
-    if None in (amplitude, mu, start):
-        return []
-    times = [period * i / count for i in range(count + 1)]
-    return [(t, amplitude * math.sin(mu * (t - start)) if t >= start else 0.0) for t in times]
+    """(times, forces) of the pulse model."""
+    times = numpy.linspace(0.0, period, count)
+    since = times - pulse["start_s"]
+    return times, numpy.where(since >= 0.0, pulse["amplitude_N"] * numpy.sin(pulse["frequency_rad_s"] * since), 0.0)
 
 
-def kept_extremes(points, most):
-    """Of (time, value): least and greatest of each stretch, in their order."""
-    together = max(1, math.ceil(2 * len(points) / most))
-    if together < 3:
-        return points
-    kept = []
-    for at in range(0, len(points), together):
-        some = [p for p in points[at:at + together] if p[1] is not None]
-        kept += sorted({min(some, key=lambda p: p[1]), max(some, key=lambda p: p[1])}) if some else []
-    return kept
+def force_picture(rows, pulse, caption):
+    picture = Picture("time since the blow before [ms]", "force on the hull [kN]")
+    times, force_z, deviation = rows.time_s * 1e3, rows.force_z_N * 1e-3, rows.force_z_deviation_N * 1e-3
+    picture.band(times, force_z - deviation, force_z + deviation, "first")
+    picture.line(times, rows.force_x_N * 1e-3, "second", linewidth=1.2)
+    period = (pulse or {}).get("period_s") or rows.time_s.max()
+    if pulse and None not in (pulse["amplitude_N"], pulse["frequency_rad_s"], pulse["start_s"]):
+        at, force = half_sine(pulse, period)
+        picture.line(at * 1e3, force * 1e-3, "third", linestyle="--")
+    picture.line(times, force_z, "first")
+    picture.axes.set_xlim(0.0, period * 1e3 or 1.0)
+    return picture.figure(caption, KEYS)
 
 
-def force_picture(rows, pulse, title):
-    points = {name: [(row["time_s"], None if row[name] is None else row[name] * 1e-3) for row in rows]
-              for name in ("force_x_N", "force_z_N")}
-    spread = [(r["time_s"], *(None if None in (r["force_z_N"], r["force_z_deviation_N"]) else
-                              (r["force_z_N"] + sign * r["force_z_deviation_N"]) * 1e-3 for sign in (-1, 1)))
-              for r in rows]
-    period = (pulse or {}).get("period_s") or rows[-1]["time_s"]
-    pulse_points = [(t, f * 1e-3) for t, f in half_sine(pulse, period)] if pulse else []
-    values = [p[1] for some in (*points.values(), pulse_points) for p in some if p[1] is not None]
-    values += [v for p in spread for v in p[1:] if v is not None] + [0.0]
-    margin = 0.05 * (max(values) - min(values) or 1.0)
-    to_ms = lambda some: [(p[0] * 1e3, *p[1:]) for p in some]  # noqa: E731
-    axes = Axes((0.0, period * 1e3 or 1.0), (min(values) - margin, max(values) + margin), "time since the blow before [ms]",
-                "force on the hull [kN]")
-    axes.band(to_ms(spread), "first")
-    axes.line(to_ms(kept_extremes(points["force_x_N"], MOST_POINTS)), "second")
-    axes.line(to_ms(pulse_points), "pulse")
-    axes.line(to_ms(kept_extremes(points["force_z_N"], MOST_POINTS)), "first")
-    return axes.drawn(title)
+def turn_table(title, rows):
+    some = rows[::max(1, len(rows) // MOST_ROWS)]
+    shown = zip(some.time_s * 1e3, *(some[name] * 1e-3 for name in (*FORCES, "torque_y_Nm")))
+    return Table(f"Samples of the {title.lower()}", ["Time [ms]", "Fx [kN]", "Fz [kN]", "deviation of Fz [kN]", "moment [kN m]"],
+                 [list(row) for row in shown])
 
 
-def turn_table(rows):
-    step = max(1, len(rows) // 20)
-    shown = [[number(r["time_s"] * 1e3), *(number(None if r[n] is None else r[n] * 1e-3) for n in
-              ("force_x_N", "force_z_N", "force_z_deviation_N", "torque_y_Nm"))] for r in rows[::step]]
-    return table("Samples of the turn", ["Time [ms]", "Fx [kN]", "Fz [kN]", "deviation of Fz [kN]", "moment [kN m]"], shown)
+def caption_of(title, turn, pulse):
+    caption = f"{title}, number {turn}"
+    if not pulse or None in (pulse["amplitude_N"], pulse["half_sine_rms_error"]):
+        return caption
+    return (f"{caption}, ends {utc(pulse['stamp_ns'])} UTC: peak {number(pulse['amplitude_N'] * 1e-3)} kN along the tool, "
+            f"half-sine's error {number(100 * pulse['half_sine_rms_error'], 2)} % rms")
 
 
 def turn_pictures(subject):
-    pictures, tables = "", ""
-    for kind, title in KINDS:
-        run, rows = trace_of(subject, kind)
-        if not rows:
-            continue
-        turn = rows[0]["turn"]
-        found = subject.database.records("SELECT * FROM turns WHERE run_id = ? AND turn = ?", run["run_id"], turn)
-        pulse = found[0] if found else None
-        caption = f"{title}, number {turn}" + (f", ends {utc(pulse['stamp_ns'])} UTC: peak "
-                                               f"{number(pulse['amplitude_N'] * 1e-3)} kN, half-sine's error "
-                                               f"{number(100 * pulse['half_sine_rms_error'], 2)} % rms"
-                                               if pulse and pulse["amplitude_N"] is not None
-                                               and pulse["half_sine_rms_error"] is not None else "")
-        legend = [("line first", "along the tool, Fz"), ("band first", "one standard deviation"),
-                  ("line pulse", "half-sine"), ("line second", "across, Fx")]
-        pictures += figure(force_picture(rows, pulse, caption), caption, legend)
-        tables += details(f"{title} as a table", turn_table(rows))
-    if not pictures:
-        return paragraph("The file holds no turn's samples.")
-    return Raw(f'<div class="pair">{pictures}</div>\n{tables}')
+    """(picture, table) of each kind that the file holds."""
+    result = []
+    for kind, title in KINDS if "traces" in subject.database.tables() else []:
+        rows = trace_of(subject, kind)
+        if len(rows):
+            run, turn = subject.runs[rows.run.iloc[0]], int(rows.turn.iloc[0])
+            found = subject.database.records("SELECT * FROM turns WHERE run_id = ? AND turn = ?", run["run_id"], turn)
+            pulse = found[0] if found else None
+            result.append((force_picture(rows, pulse, caption_of(title, turn, pulse)), turn_table(title, rows)))
+    return result
