@@ -34,12 +34,12 @@ struct Table {
             at(8, from), at(9, from), at(10, from), at(11, from)};
   }
   double* at(std::size_t column, std::size_t from) { return out[column].data() + from; }
-  void compute(const HullModel& model, bool with_pins, BatchWidth width = BatchWidth::kAvx512) {
+  void compute(const HullModel& model, bool with_pins) {
     out.assign(kColumns, std::vector<double>(size(), -1.0));
     if (with_pins) {
-      linkLoads(model, states(0, size()), kGravity, wrenches(0), pins(0), width);
+      linkLoads(model, states(0, size()), kGravity, wrenches(0), pins(0));
     } else {
-      hullWrenches(model, states(0, size()), kGravity, wrenches(0), width);
+      hullWrenches(model, states(0, size()), kGravity, wrenches(0));
     }
   }
 };
@@ -60,25 +60,21 @@ std::array<double, kColumns> scalarRow(const HullModel& model, const CrankMotion
           p.rod_on_rocker.z, p.hull_on_rocker.x, p.hull_on_rocker.z, p.drive_torque};
 }
 
-constexpr BatchWidth kWidths[] = {BatchWidth::kBaseline, BatchWidth::kAvx2, BatchWidth::kAvx512};
-
-TEST(Batch, EqualsTheScalarCallAtEveryLevelAndWidth) {
+TEST(Batch, EqualsTheScalarCallAtEveryLevel) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
-  for (BatchWidth width : kWidths) {
-    for (Level level : {Level::kPulse, Level::kRocker, Level::kLinkage}) {
-      const HullModel model(mechanism, level);
-      for (bool with_pins : {false, true}) {
-        if (with_pins && level == Level::kPulse) continue;
-        Table table = randomTable(1001, 81);
-        table.compute(model, with_pins, width);
-        for (std::size_t i = 0; i < table.size(); ++i) {
-          const CrankMotion crank{CrankAngle::fromAngle(table.angle[i]), table.speed[i], table.acceleration[i]};
-          const std::array<double, kColumns> right = scalarRow(model, crank);
-          for (std::size_t c = 0; c < (with_pins ? kColumns : 3); ++c) {
-            // Of the state's own size, as forces may grow next to the blow.
-            const double size = 1e4 + std::abs(right[c]) + (c < 3 ? 0.0 : std::abs(right[7]));
-            EXPECT_NEAR(table.out[c][i], right[c], 1e-13 * size) << i << " column " << c;
-          }
+  for (Level level : {Level::kPulse, Level::kRocker, Level::kLinkage}) {
+    const HullModel model(mechanism, level);
+    for (bool with_pins : {false, true}) {
+      if (with_pins && level == Level::kPulse) continue;
+      Table table = randomTable(1001, 81);
+      table.compute(model, with_pins);
+      for (std::size_t i = 0; i < table.size(); ++i) {
+        const CrankMotion crank{CrankAngle::fromAngle(table.angle[i]), table.speed[i], table.acceleration[i]};
+        const std::array<double, kColumns> right = scalarRow(model, crank);
+        for (std::size_t c = 0; c < (with_pins ? kColumns : 3); ++c) {
+          // Of the state's own size, as forces may grow next to the blow.
+          const double size = 1e4 + std::abs(right[c]) + (c < 3 ? 0.0 : std::abs(right[7]));
+          EXPECT_NEAR(table.out[c][i], right[c], 1e-13 * size) << i << " column " << c;
         }
       }
     }
@@ -88,20 +84,18 @@ TEST(Batch, EqualsTheScalarCallAtEveryLevelAndWidth) {
 TEST(Batch, DoesNotDependOnTheCut) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
   std::mt19937 random(82);
-  for (BatchWidth width : kWidths) {
-    for (Level level : {Level::kPulse, Level::kRocker, Level::kLinkage}) {
-      const HullModel model(mechanism, level);
-      Table whole = randomTable(1000, 83), parts = whole;
-      whole.compute(model, true, width);
-      for (int trial = 0; trial < 20; ++trial) {
-        parts.out.assign(kColumns, std::vector<double>(parts.size(), 0.0));
-        for (std::size_t from = 0; from < parts.size();) {
-          const std::size_t count = std::min<std::size_t>(parts.size() - from, 1 + random() % (trial < 5 ? 7 : 200));
-          linkLoads(model, parts.states(from, count), kGravity, parts.wrenches(from), parts.pins(from), width);
-          from += count;
-        }
-        EXPECT_EQ(parts.out, whole.out) << "bit for bit";
+  for (Level level : {Level::kPulse, Level::kRocker, Level::kLinkage}) {
+    const HullModel model(mechanism, level);
+    Table whole = randomTable(1000, 83), parts = whole;
+    whole.compute(model, true);
+    for (int trial = 0; trial < 20; ++trial) {
+      parts.out.assign(kColumns, std::vector<double>(parts.size(), 0.0));
+      for (std::size_t from = 0; from < parts.size();) {
+        const std::size_t count = std::min<std::size_t>(parts.size() - from, 1 + random() % (trial < 5 ? 7 : 200));
+        linkLoads(model, parts.states(from, count), kGravity, parts.wrenches(from), parts.pins(from));
+        from += count;
       }
+      EXPECT_EQ(parts.out, whole.out) << "bit for bit";
     }
   }
 }
@@ -131,30 +125,27 @@ double relativeError(double x, double z, const test::Vector& exact) {
 
 TEST(Batch, KeepsItsDigitsNearTheBlow) {
   std::mt19937 random(85);
-  for (BatchWidth width : kWidths) {
-    for (int i = 0; i < 4; ++i) {
-      const HammerParameters p = i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random);
-      const Mechanism mechanism = test::mechanismOf(p);
-      for (Level level : {Level::kRocker, Level::kLinkage}) {
-        Table table;
-        for (int decade = 1; decade <= 12; ++decade) {
-          for (double sign : {-1.7, 1.7}) table.add(sign * std::pow(10.0, -decade), 30.0, decade % 2 ? 0.0 : 400.0);
-        }
-        table.compute(HullModel(mechanism, level), true, width);
-        const test::NewtonEuler exact(p, level);
-        double worst = 0.0;
-        for (std::size_t k = 0; k < table.size(); ++k) {
-          const test::Reference right =
-              exact.at(CrankAngle::fromOffset(table.angle[k]), 30.0, table.acceleration[k], kGravity);
-          const auto& o = table.out;
-          worst = std::max({worst, relativeError(o[0][k], o[1][k], right.hull_force),
-                            relativeError(o[3][k], o[4][k], right.r01), relativeError(o[5][k], o[6][k], right.r12),
-                            relativeError(o[7][k], o[8][k], right.r23), relativeError(o[9][k], o[10][k], right.r03)});
-        }
-        EXPECT_LE(worst, 1e-13);
-        if (width == batchWidth())
-          std::printf("batch near the blow, machine %d level %d: %.2e\n", i, static_cast<int>(level), worst);
+  for (int i = 0; i < 4; ++i) {
+    const HammerParameters p = i == 0 ? test::mo100LinkageParameters() : test::randomParameters(random);
+    const Mechanism mechanism = test::mechanismOf(p);
+    for (Level level : {Level::kRocker, Level::kLinkage}) {
+      Table table;
+      for (int decade = 1; decade <= 12; ++decade) {
+        for (double sign : {-1.7, 1.7}) table.add(sign * std::pow(10.0, -decade), 30.0, decade % 2 ? 0.0 : 400.0);
       }
+      table.compute(HullModel(mechanism, level), true);
+      const test::NewtonEuler exact(p, level);
+      double worst = 0.0;
+      for (std::size_t k = 0; k < table.size(); ++k) {
+        const test::Reference right =
+            exact.at(CrankAngle::fromOffset(table.angle[k]), 30.0, table.acceleration[k], kGravity);
+        const auto& o = table.out;
+        worst = std::max({worst, relativeError(o[0][k], o[1][k], right.hull_force),
+                          relativeError(o[3][k], o[4][k], right.r01), relativeError(o[5][k], o[6][k], right.r12),
+                          relativeError(o[7][k], o[8][k], right.r23), relativeError(o[9][k], o[10][k], right.r03)});
+      }
+      EXPECT_LE(worst, 1e-13);
+      std::printf("batch near the blow, machine %d level %d: %.2e\n", i, static_cast<int>(level), worst);
     }
   }
 }
@@ -217,35 +208,31 @@ TEST(Batch, HasTheFinitePinForcesOfAnUnacceleratedCrankAtTheBlowItself) {
   HammerParameters p = test::mo100LinkageParameters();
   p.rod_com_across = 0.0;  // off its line the rod's mass needs an unbounded force
   const Mechanism mechanism = test::mechanismOf(p);
-  for (BatchWidth width : kWidths) {
-    for (Level level : {Level::kRocker, Level::kLinkage}) {
-      Table table;
-      table.add(0.0, 30.0, 0.0);
-      table.out.assign(kColumns, std::vector<double>(1));
-      linkLoads(HullModel(mechanism, level), table.states(0, 1), {}, table.wrenches(0), table.pins(0), width);
-      const PinReactions right = pinForces(mechanism, level, {{0.0, Side::kAfterBlow}, 30.0, 0.0}, {}, NearBlow(0.01));
-      const double size = std::hypot(right.rod_on_rocker.x, right.rod_on_rocker.z);
-      EXPECT_GT(size, 100.0);
-      EXPECT_NEAR(table.out[7][0], right.rod_on_rocker.x, 1e-13 * size);
-      EXPECT_NEAR(table.out[8][0], right.rod_on_rocker.z, 1e-13 * size);
-      EXPECT_NEAR(table.out[11][0], right.drive_torque, 1e-13 * size);
-    }
+  for (Level level : {Level::kRocker, Level::kLinkage}) {
+    Table table;
+    table.add(0.0, 30.0, 0.0);
+    table.out.assign(kColumns, std::vector<double>(1));
+    linkLoads(HullModel(mechanism, level), table.states(0, 1), {}, table.wrenches(0), table.pins(0));
+    const PinReactions right = pinForces(mechanism, level, {{0.0, Side::kAfterBlow}, 30.0, 0.0}, {}, NearBlow(0.01));
+    const double size = std::hypot(right.rod_on_rocker.x, right.rod_on_rocker.z);
+    EXPECT_GT(size, 100.0);
+    EXPECT_NEAR(table.out[7][0], right.rod_on_rocker.x, 1e-13 * size);
+    EXPECT_NEAR(table.out[8][0], right.rod_on_rocker.z, 1e-13 * size);
+    EXPECT_NEAR(table.out[11][0], right.drive_torque, 1e-13 * size);
   }
 }
 
 TEST(Batch, HasNoPinForcesOfAnAcceleratedCrankAtTheBlowItself) {
   const Mechanism mechanism = test::mechanismOf(test::mo100LinkageParameters());
-  for (BatchWidth width : kWidths) {
-    for (Level level : {Level::kRocker, Level::kLinkage}) {
-      Table table;
-      for (const double angle : {1e-9, 0.0, 1e-17, -1e-300}) table.add(angle, 30.0, 500.0);
-      table.out.assign(kColumns, std::vector<double>(4));
-      linkLoads(HullModel(mechanism, level), table.states(0, 4), {}, table.wrenches(0), table.pins(0), width);
-      EXPECT_TRUE(std::isfinite(table.out[7][0]));
-      for (std::size_t i = 1; i < 4; ++i) {
-        EXPECT_TRUE(std::isnan(table.out[7][i])) << i;
-        EXPECT_TRUE(std::isfinite(table.out[0][i] + table.out[11][i])) << i;
-      }
+  for (Level level : {Level::kRocker, Level::kLinkage}) {
+    Table table;
+    for (const double angle : {1e-9, 0.0, 1e-17, -1e-300}) table.add(angle, 30.0, 500.0);
+    table.out.assign(kColumns, std::vector<double>(4));
+    linkLoads(HullModel(mechanism, level), table.states(0, 4), {}, table.wrenches(0), table.pins(0));
+    EXPECT_TRUE(std::isfinite(table.out[7][0]));
+    for (std::size_t i = 1; i < 4; ++i) {
+      EXPECT_TRUE(std::isnan(table.out[7][i])) << i;
+      EXPECT_TRUE(std::isfinite(table.out[0][i] + table.out[11][i])) << i;
     }
   }
 }

@@ -56,7 +56,6 @@ std::vector<Place> drawnPlaces() {
   for (int i = 0; i < 40; ++i) {
     Place place;
     place.crank = {CrankAngle::fromOffset(between(-kPi, kPi)), between(-40.0, 40.0), between(-800.0, 800.0)};
-    place.crank.drive_lead = between(-50.0, 50.0);
     place.hull.gravity = {between(-12.0, 12.0), between(-12.0, 12.0)};
     if (i % 4 != 0) place.hull.rate = between(-3.0, 3.0), place.hull.acceleration = between(-60.0, 60.0);
     places.push_back(place);

@@ -11,6 +11,7 @@
 
 #include "hammer_loads/life/cycle_counter.h"
 #include "hammer_loads/life/exact_cycles.h"
+#include "support/count_text.h"
 
 namespace hammer_loads::life::test {
 

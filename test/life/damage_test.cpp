@@ -89,9 +89,9 @@ TEST(Damage, O12TwoSines) {
   const double by_hand = 8.451272e-4;
   const ExactCycles count = exactCount(twoSines());
   EXPECT_NEAR(damage(rangesAndMeans(count), curve, {}, kNone).value, 8.44221e-4, 5e-10);
-  ExactCycles twice = count;  // the record repeated; less the record once: the repeated residue
-  twice.append(count);
-  const double repeated = damage(rangesAndMeans(twice), curve, {}, kNone).value - 8.44221e-4;
+  Series twice = twoSines();  // the record repeated; less the record once: the repeated residue
+  for (const double value : twoSines()) twice.push_back(value);
+  const double repeated = damage(rangesAndMeans(exactCount(twice)), curve, {}, kNone).value - 8.44221e-4;
   EXPECT_NEAR(repeated, 8.45013e-4, 1e-9);
   double closed = 0.0;
   for (const auto& [pair, n] : count.closed())

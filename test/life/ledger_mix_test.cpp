@@ -47,8 +47,7 @@ std::vector<LifePiece> piecesOf(const Part& part) {
 
 /// process_bag. What it says in one line; empty: counted, or in it already.
 std::string batch(const std::string& path, const Part& part, bool replace) {
-  LedgerBatch ledger(
-      path, [](const std::string& line) { ADD_FAILURE() << line; }, replace);
+  LedgerBatch ledger(path, replace);
   ledger.begin(machine(), idOf(part));
   for (const LifePiece& piece : piecesOf(part)) ledger.add(piece);
   std::vector<std::string> known;
@@ -83,15 +82,10 @@ TEST(LedgerMix, IsTheWholeRecordingsEachOnce) {
   const LedgerFile file;
   for (unsigned seed = 0; seed < 12; ++seed) {
     std::mt19937 random(seed);
-    const std::string path = file.path("mix" + std::to_string(seed)), link = file.path("link" + std::to_string(seed));
-    const std::string soft = file.path("soft" + std::to_string(seed));
+    const std::string path = file.path("mix" + std::to_string(seed)), soft = file.path("soft" + std::to_string(seed));
     std::filesystem::create_symlink(path, soft);
     std::vector<unsigned> order;
-    const auto name = [&]() -> std::string {
-      if (!std::filesystem::exists(path)) return path;
-      if (!std::filesystem::exists(link)) std::filesystem::create_hard_link(path, link);
-      return random() % 3 == 0 ? link : random() % 2 == 0 ? soft : path;
-    };
+    const auto name = [&] { return random() % 2 == 0 ? soft : path; };
     for (int step = 0; step < 12; ++step) {
       Part part{static_cast<unsigned>(random() % 4)};
       if (std::find(order.begin(), order.end(), part.recording) == order.end()) order.push_back(part.recording);
@@ -157,49 +151,46 @@ TEST(LedgerMix, ARunThatContradictsTheMachineGoes) {
   EXPECT_EQ(figures(file.path()), before);
 }
 
-/// As version 1 left it: no run apart, residues of what ended and of the run at work.
-void makeVersion1(const std::string& path) {
-  EXPECT_EQ(batch(path, {1}, false), "");
-  Database old(path, Database::Use::kWrite, 0);
-  old.run(R"(
-DROP INDEX days_of_run; DROP TABLE marks;
-CREATE TABLE old_tallies(
-  channel INTEGER NOT NULL REFERENCES channels, day INTEGER NOT NULL REFERENCES days,
-  counted INTEGER NOT NULL, skipped INTEGER NOT NULL, below INTEGER NOT NULL, above INTEGER NOT NULL,
-  gaps INTEGER NOT NULL, deviations INTEGER NOT NULL, deviation_sum INTEGER NOT NULL, least REAL, greatest REAL,
-  PRIMARY KEY(channel, day)) WITHOUT ROWID;
-INSERT INTO old_tallies SELECT channel, day, counted, skipped, below, above, gaps, deviations, deviation_sum, least,
-  greatest FROM tallies;
-DROP TABLE tallies; ALTER TABLE old_tallies RENAME TO tallies;
-CREATE TABLE old_residues(
-  channel INTEGER NOT NULL REFERENCES channels, open INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
-  PRIMARY KEY(channel, open, place)) WITHOUT ROWID;
-INSERT INTO old_residues SELECT channel, 0, place, class FROM residues;
-DROP TABLE residues; ALTER TABLE old_residues RENAME TO residues;
-CREATE TABLE old_days(
-  day INTEGER PRIMARY KEY, epoch INTEGER NOT NULL REFERENCES epochs, date TEXT NOT NULL,
-  duration_ns INTEGER NOT NULL, turns INTEGER NOT NULL);
-INSERT INTO old_days SELECT day, epoch, date, duration_ns, turns FROM days;
-DROP TABLE days; ALTER TABLE old_days RENAME TO days;
-CREATE TABLE old_runs(
-  run INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, epoch INTEGER NOT NULL REFERENCES epochs,
-  pieces INTEGER NOT NULL, ended INTEGER NOT NULL);
-INSERT INTO old_runs SELECT run, name, epoch, pieces, ended FROM runs;
-DROP TABLE runs; ALTER TABLE old_runs RENAME TO runs;
-PRAGMA user_version = 1;)");
-  EXPECT_EQ(old.problem(), "");
+/// While it is written, someone counts its bag: what the bag has is counted once, and the whole bag completes it.
+TEST(LedgerMix, ARunWhoseBagIsCountedMeanwhileIsNotCountedTwice) {
+  for (const int written : {1, 2}) {
+    const LedgerFile file;
+    LedgerRun live(file.path(), machine(), idOf({1}));
+    const std::vector<LifePiece> pieces = piecesOf({1});
+    for (int i = 0; i < written; ++i) EXPECT_EQ(live.add(pieces[static_cast<std::size_t>(i)]), kWritten);
+    EXPECT_EQ(batch(file.path(), {1, 0, 3}, false), "");
+    EXPECT_NE(live.add(pieces[3]).value_or("").find("not counted again"), std::string::npos);
+    EXPECT_NE(live.end(pieces[4]).value_or("").find("not counted again"), std::string::npos);
+    EXPECT_EQ(contentsOf(file.path()).totals.at(0)[0].tally.counted, 3U * kSamplesOfPiece);
+    EXPECT_EQ(batch(file.path(), {1}, false), "");
+    EXPECT_EQ(batch(file.path("whole"), {1}, false), "");
+    EXPECT_EQ(figures(file.path()), figures(file.path("whole")));
+  }
 }
 
-TEST(LedgerMix, ALedgerOfVersion1GoesOn) {
+TEST(LedgerMix, ARunThatIsTakenOutAtWorkGoesOnAndItsBagCompletesIt) {
   const LedgerFile file;
-  for (const unsigned recording : {1U, 2U}) EXPECT_EQ(batch(file.path("new"), {recording}, false), "");
-  EXPECT_EQ(batch(file.path("first"), {1}, false), "");
-  makeVersion1(file.path());
-  EXPECT_EQ(figures(file.path()), figures(file.path("first"))) << "read as it is";
-  EXPECT_EQ(batch(file.path(), {1}, false), "") << "not counted again";
+  LedgerRun live(file.path(), machine(), idOf({1}));
+  const std::vector<LifePiece> pieces = piecesOf({1});
   EXPECT_EQ(batch(file.path(), {2}, false), "");
-  EXPECT_EQ(figures(file.path()), figures(file.path("new")));
-  EXPECT_NE(removeFromLedger(file.path(), "1-0").value_or("").find("cannot be taken out"), std::string::npos);
+  EXPECT_EQ(live.add(pieces[0]), kWritten);
+  EXPECT_EQ(removeFromLedger(file.path(), idOf({1}).name), std::nullopt);
+  for (std::size_t i = 1; i < pieces.size(); ++i) EXPECT_EQ(live.add(pieces[i]), kWritten);
+  EXPECT_EQ(live.end({}), kWritten);
+  EXPECT_EQ(contentsOf(file.path()).totals.at(0)[0].tally.counted, (2U * kPieces - 1U) * kSamplesOfPiece);
+  EXPECT_EQ(batch(file.path(), {1}, false), "");
+  for (const unsigned recording : {2U, 1U}) EXPECT_EQ(batch(file.path("whole"), {recording}, false), "");
+  EXPECT_EQ(figures(file.path()), figures(file.path("whole")));
+}
+
+TEST(LedgerMix, AFileWithTwoNamesIsRefused) {
+  const LedgerFile file;
+  EXPECT_EQ(batch(file.path(), {1}, false), "");
+  std::filesystem::create_hard_link(file.path(), file.path("other"));
+  for (const std::string& name : {file.path(), file.path("other")})
+    EXPECT_EQ(batch(name, {2}, false), name + ": has several names (hard links), must have one");
+  std::filesystem::remove(file.path("other"));
+  EXPECT_EQ(batch(file.path(), {2}, false), "");
 }
 
 }  // namespace

@@ -12,10 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "hammer_loads/life/count_state.h"
+#include "hammer_loads/life/database.h"
 #include "hammer_loads/life/ledger_reader.h"
 #include "hammer_loads/life/ledger_run.h"
 #include "hammer_loads/life/life_recorder.h"
+#include "support/count_text.h"
 
 namespace hammer_loads::life::test {
 
@@ -85,6 +86,18 @@ class LedgerFile {
   std::filesystem::path directory_;
 };
 
+/// Another program that reads or writes the file and does not let go.
+class Holder {
+ public:
+  Holder(const std::string& path, const char* sql) : database_(path, Database::Use::kWrite, 0) {
+    database_.run(sql);
+    EXPECT_EQ(database_.problem(), "");
+  }
+
+ private:
+  Database database_;
+};
+
 struct Contents {
   std::vector<LedgerEpoch> epochs;
   std::vector<std::vector<CycleCount>> totals;  ///< by epoch and channel
@@ -110,7 +123,7 @@ inline Contents contentsOf(const std::string& path) {
 
 inline std::vector<std::string> statesOf(const std::vector<CycleCount>& counts) {
   std::vector<std::string> states;
-  for (const CycleCount& count : counts) states.push_back(stateText(count));
+  for (const CycleCount& count : counts) states.push_back(textOf(count));
   return states;
 }
 

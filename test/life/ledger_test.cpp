@@ -151,9 +151,9 @@ std::vector<std::string> daysWithPeriod(std::int64_t period) {
   std::vector<std::string> days;
   for (const LedgerDay& day : epoch.days) {
     days.push_back(day.date + " " + std::to_string(day.duration));
-    for (std::size_t i = 0; i < 2; ++i) days.push_back(stateText(reader.ofDay(epoch, i, day)));
+    for (std::size_t i = 0; i < 2; ++i) days.push_back(textOf(reader.ofDay(epoch, i, day)));
   }
-  for (std::size_t i = 0; i < 2; ++i) days.push_back(stateText(reader.total(epoch, i)));
+  for (std::size_t i = 0; i < 2; ++i) days.push_back(textOf(reader.total(epoch, i)));
   return days;
 }
 
@@ -166,17 +166,15 @@ TEST(Ledger, ThePeriodChangesNoNumberOfAnyDay) {
 TEST(Ledger, MidnightAmongWaitingPiecesStays) {
   const LedgerFile file;
   LifeRecorder part = recorder();
-  LedgerRun first(file.path(), machine(), "a"), second(file.path(), machine(), "b");
-  EXPECT_FALSE(first.hold());
+  LedgerRun run(file.path(), machine(), "a");
   for (int day = 0; day < 3; ++day) {
     for (int half = 0; half < 2; ++half) {
       Loads(7, kStart + day * kDay + half * 3600 * kSecond).feed(part, 100);
-      EXPECT_TRUE(second.add(part.take()));
+      run.keep(part.take());
     }
   }
-  EXPECT_EQ(second.waiting(), 3U);
-  EXPECT_EQ(first.end({}), kWritten);
-  EXPECT_EQ(second.end({}), kWritten);
+  EXPECT_EQ(run.waiting(), 3U);
+  EXPECT_EQ(run.end({}), kWritten);
   const Contents contents = contentsOf(file.path());
   ASSERT_EQ(contents.epochs.at(0).days.size(), 3U);
   EXPECT_EQ(contents.epochs[0].days[2].date, "2024-10-06");

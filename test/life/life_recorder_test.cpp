@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "hammer_loads/life/count_state.h"
 #include "hammer_loads/util/constants.h"
 #include "life/astm_reference.h"
 #include "support/counting_new.h"
@@ -43,7 +42,7 @@ TEST(LifeRecorder, AHotSpotIsTheSumOfItsLoadsAtEachInstant) {
     stress.push_back(0.02 * values[2] - 0.01 * values[1]);
   }
   const LifePiece piece = recorder.take();
-  EXPECT_EQ(stateText(piece.counts[0]), stateText(gridCount(force, recorder.grid(0))));
+  EXPECT_EQ(textOf(piece.counts[0]), textOf(gridCount(force, recorder.grid(0))));
   EXPECT_EQ(piece.counts[1].closed, gridCount(stress, recorder.grid(1)).closed);
 }
 
@@ -163,7 +162,7 @@ TEST(LifeRecorder, PiecesOfOneRunGiveItsCount) {
   }
   sum->advance(pieces.take());
   const LifePiece all = whole.take();
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(stateText(sum->counts[i]), stateText(all.counts[i]));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(textOf(sum->counts[i]), textOf(all.counts[i]));
   EXPECT_EQ(sum->duration, all.duration);
   EXPECT_EQ(sum->turns, all.turns);
 }

@@ -1,4 +1,8 @@
 /// Names, directories and deletion of the log's files.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <ctime>
 #include <random>
 
@@ -7,6 +11,21 @@
 
 namespace hammer_loads::test {
 namespace {
+
+/// Some bags' worth of messages through a log that splits.
+LogHealth record(const LogSettings& settings, std::size_t count) {
+  std::mt19937 random(1);
+  BagLog log(settings);
+  EXPECT_EQ(log.start(), std::vector<std::string>{});
+  for (std::size_t i = 0; i < count; ++i) {
+    auto message = wrench(i);
+    message.wrench.force.z = static_cast<double>(random());
+    log.write("/wrench", at(i), message);
+  }
+  log.stop();
+  EXPECT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
+  return log.health();
+}
 
 TEST_F(LogTest, NeverOverwritesAFile) {
   // Every name of the next seconds that the log would choose first is taken, by a bag or by one being written.
@@ -106,20 +125,7 @@ TEST_F(LogTest, DeletesOldestFilesOfItsOwnOnly) {
   settings_.split_size = 100'000;
   settings_.total_size = 350'000;
   writeFile(path("test_2001-01-01-00-00-00_0.bag"), "of another run");
-  std::mt19937 random(1);
-  LogHealth health;
-  {
-    BagLog log(settings_);
-    ASSERT_TRUE(log.start().empty());
-    for (std::size_t i = 0; i < 20000; ++i) {
-      auto message = wrench(i);
-      message.wrench.force.z = static_cast<double>(random());
-      log.write("/wrench", at(i), message);
-    }
-    log.stop();
-    ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
-    health = log.health();
-  }
+  const LogHealth health = record(settings_, 20000);
   EXPECT_GT(health.files_deleted, 2u);
   EXPECT_EQ(health.files_closed, health.files_deleted + files().size() - 1);
   EXPECT_EQ(readFile(path("test_2001-01-01-00-00-00_0.bag")), "of another run");
@@ -131,6 +137,68 @@ TEST_F(LogTest, DeletesOldestFilesOfItsOwnOnly) {
   ASSERT_FALSE(left.empty());
   EXPECT_EQ(number(left.back()), 19999u);
   EXPECT_EQ(number(left.back()) - number(left.front()) + 1, left.size());
+}
+
+TEST_F(LogTest, ReportsThatItsFileWasDeleted) {
+  BagLog log(settings_);
+  ASSERT_TRUE(log.start().empty());
+  log.write("/a", at(0), wrench(0));
+  ASSERT_TRUE(waitFor([&] { return log.health().messages_written == 1; }));
+  std::filesystem::remove(log.health().file);
+  ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kFailed; }, std::chrono::seconds(3)));
+  EXPECT_NE(log.health().reason.find("was deleted"), std::string::npos) << log.health().reason;
+}
+
+TEST_F(LogTest, NamesBagsThatWereNotClosed) {
+  const std::string left = path("test_2001-01-02-00-00-00_0.bag.active");
+  for (const char* name :
+       {"test_2001-01-02-00-00-00_0.bag.active", "test_2001-01-01-00-00-00_2.bag",
+        "test_2_2001-01-01-00-00-00_0.bag.active", "tes_2001-01-01-00-00-00_0.bag.active", "notes.txt"})
+    writeFile(path(name), "x");
+  writeFile(path("test_2001-01-01-00-00-00_8.bag.active"), "");
+  std::filesystem::create_symlink(left, path("test_2001-01-01-00-00-00_9.bag.active"));
+  BagLog log(settings_);
+  ASSERT_TRUE(log.start().empty());
+  log.write("/wrench", at(0), wrench(0));
+  ASSERT_TRUE(waitFor([&] { return log.health().messages_written == 1; }));
+  EXPECT_EQ(BagLog(settings_).unfinishedBags(), std::vector<std::string>{left}) << "not the one being written";
+  const std::string bag = path("test_2001-01-02-00-00-00_0.bag");
+  EXPECT_NE(BagLog::recoveryHint(left).find("mv '" + left + "' '" + bag + "' && rosbag reindex '" + bag + "'"),
+            std::string::npos);
+}
+
+/// The lock of a process that was killed is gone.
+TEST_F(LogTest, NamesTheBagOfAKilledProcess) {
+  settings_.prefix = "killed";
+  const pid_t child = fork();
+  if (child == 0) {
+    BagLog log(settings_);
+    log.start();
+    log.write("/wrench", at(0), wrench(0));
+    waitFor([&] { return log.health().messages_written == 1 && log.health().file_size > 0; });
+    kill(getpid(), SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  const auto left = BagLog(settings_).unfinishedBags();
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left[0].rfind(path("killed_"), 0), 0u) << left[0];
+}
+
+TEST_F(LogTest, TwoNodesWithoutAPrefixHaveNamesOfTheirOwn) {
+  settings_.prefix = "";
+  for (const char* node : {"/left/hammer_loads", "/right/hammer_loads"}) record(forNode(settings_, node), 1);
+  std::vector<std::string> names;
+  for (const std::string& file : files()) {
+    const std::string name = std::filesystem::path(file).filename();
+    names.push_back(name.substr(0, name.find("_2")));
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"left_hammer_loads", "right_hammer_loads"}));
+}
+
+TEST_F(LogTest, APrefixHoldsWhateverTheNodeIsCalled) {
+  record(forNode(settings_, "/left/hammer_loads"), 1);
+  EXPECT_EQ(files().at(0).rfind(path("test_2"), 0), 0u);
 }
 
 }  // namespace

@@ -31,13 +31,34 @@ TEST_F(LogTest, StopsCleanlyWhenTheDiskIsNearlyFullAndStartsAgain) {
   EXPECT_EQ(files("").size(), 1u);
   EXPECT_EQ(log.health().state, LogState::kDiskFull);
   EXPECT_TRUE(log.settingProblems().empty()) << "no reason to end the node";
+  EXPECT_FALSE(log.hasRoomAgain());
+  free = 16'999'999;  // enough to start on request, too little to do so by itself
+  EXPECT_FALSE(log.hasRoomAgain());
+  free = 17'000'000;
+  EXPECT_TRUE(log.hasRoomAgain());
   free = 1'000'000;
   ASSERT_TRUE(log.start().empty());
+  free = 17'000'000;
+  EXPECT_FALSE(log.hasRoomAgain()) << "it is recording";
   log.write("/a", at(101), wrench(101));
   log.stop();
   ASSERT_TRUE(waitFor([&] { return log.health().state == LogState::kOff; }));
   EXPECT_EQ(readAll().size(), 101u);
   EXPECT_EQ(log.health().reason, "");
+}
+
+TEST_F(LogTest, HasRoomAgainOnlyForALogThatIsWanted) {
+  settings_.min_free_space = 1'000'000;
+  std::atomic<std::uint64_t> free{0};
+  LogDisk disk;
+  disk.free_space = [&free](const std::string&) { return free.load(); };
+  BagLog log(settings_, disk);
+  EXPECT_FALSE(log.hasRoomAgain()) << "never started";
+  ASSERT_EQ(log.start().size(), 1u);
+  free = 50'000'000;
+  EXPECT_TRUE(log.hasRoomAgain()) << "a full disk kept it from starting";
+  log.stop();
+  EXPECT_FALSE(log.hasRoomAgain());
 }
 
 /// A small disk of its own, where the system lets us mount one.

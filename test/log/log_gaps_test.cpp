@@ -85,46 +85,5 @@ TEST_F(LogTest, EachBagReportsItsOwnGapAlsoAtItsEnd) {
   EXPECT_EQ(gapsIn(readBag(files()[1])).size() + gapsIn(readBag(files()[2])).size(), 1u);
 }
 
-/// A publisher of /tf_static must not be able to fill the memory.
-TEST_F(LogTest, LatchedMessagesAreBoundedByTheQueuesSize) {
-  settings_.queue_size = 1'000'000;
-  {
-    BagLog log(settings_);
-    for (int i = 0; i < 100; ++i)
-      log.writeLatched("/tf_static", at(0), text(100'000), "/publisher_" + std::to_string(i));
-    EXPECT_EQ(log.health().messages_dropped, 91u) << "nine fit, each with what it hangs on";
-    log.writeLatched("/tf_static", at(0), text(950'000), "/publisher_0");  // one that was kept: holds no longer
-    log.forgetLatched("/tf_static", "/publisher_1");
-    log.forgetLatched("/tf_static", "/publisher_1");
-    ASSERT_TRUE(log.start().empty());
-    log.write("/input", at(0), text(10));
-  }
-  const auto entries = readAll();
-  EXPECT_EQ(onTopic(entries, "/tf_static").size(), 7u);
-  const auto gaps = gapsIn(entries);
-  ASSERT_EQ(gaps.size(), 1u) << "what the bag does not repeat is named in it";
-  EXPECT_EQ(gaps[0].values.size(), 92u);
-}
-
-TEST_F(LogTest, LatchedMessagesOfMoreCallersThanEverAreNotAllKept) {
-  BagLog log(settings_);
-  for (int i = 0; i < 3000; ++i) log.writeLatched("/tf_static", at(0), text(1), "/anonymous_" + std::to_string(i));
-  EXPECT_LE(log.health().topics.size(), 1001u);
-  EXPECT_EQ(log.health().messages_dropped, 2000u);
-}
-
-/// Freed room is used again: nothing leaks out of the account.
-TEST_F(LogTest, LatchedMessagesMayChangeForEver) {
-  settings_.queue_size = 1'000'000;
-  BagLog log(settings_);
-  ASSERT_TRUE(log.start().empty());
-  for (std::size_t i = 0; i < 100; ++i) {
-    log.writeLatched("/tf_static", at(i), text(300'000 + i), "/publisher");
-    if (i % 3 == 0) log.forgetLatched("/tf_static", "/publisher");
-    ASSERT_TRUE(waitFor([&] { return log.health().messages_written == i + 1; }));
-  }
-  EXPECT_EQ(log.health().messages_dropped, 0u);
-}
-
 }  // namespace
 }  // namespace hammer_loads::test

@@ -25,7 +25,7 @@ namespace hammer_loads::test {
 
 inline const bool clock_is_ready = (ros::Time::init(), true);
 
-inline constexpr std::chrono::seconds kDeadline{10};
+inline constexpr std::chrono::seconds kDeadline{120};
 
 /// True as soon as the condition holds, false at the deadline.
 inline bool waitFor(const std::function<bool()>& condition, std::chrono::milliseconds deadline = kDeadline) {

@@ -1,8 +1,8 @@
 /// Loads of many states at once, for studies and tables: several states per instruction, as wide as the CPU allows.
 ///
-/// The width is chosen at run time (AVX-512, AVX2 with FMA, or the baseline). A state's result does not depend, to the
-/// bit, on its place in the arrays nor on how they are cut; it may differ in the last digits from another CPU's and
-/// from the scalar call, which node and process_bag use.
+/// The width is chosen when the library is loaded (AVX-512, AVX with FMA, or the baseline). A state's result does not
+/// depend, to the bit, on its place in the arrays nor on how they are cut; it may differ in the last digits from
+/// another CPU's and from the scalar call, which node and process_bag use.
 #pragma once
 
 #include <cstddef>
@@ -39,20 +39,14 @@ struct PinArrays {
   double* drive_torque{};      ///< [N m]
 };
 
-/// Instruction sets for which the calls below are compiled, poorest first.
-enum class BatchWidth { kBaseline, kAvx2, kAvx512 };
-
-/// The widest that the running CPU has.
-BatchWidth batchWidth() noexcept;
-
-/// Hull wrenches of all states under one gravity, at the model's level; `width` at most (for comparisons). No
-/// allocation. Worst relative error next to the blow: 6e-15 for MO-100, 1e-13 for a pivot distance of 1.02 crank
-/// lengths, growing as 1/(pivot distance/crank - 1); the scalar call has 1e-14 for any machine (test).
-void hullWrenches(const HullModel& model, const CrankStates& states, Gravity gravity, const WrenchArrays& wrenches,
-                  BatchWidth width = BatchWidth::kAvx512) noexcept;
+/// Hull wrenches of all states under one gravity, at the model's level. No allocation. Worst relative error next to the
+/// blow: 6e-15 for MO-100, 1e-13 for a pivot distance of 1.02 crank lengths, growing as 1/(pivot distance/crank - 1);
+/// the scalar call has 1e-14 for any machine (test).
+void hullWrenches(const HullModel& model, const CrankStates& states, Gravity gravity,
+                  const WrenchArrays& wrenches) noexcept;
 
 /// Hull wrenches and pin forces (level pulse: both as rocker). No allocation.
 void linkLoads(const HullModel& model, const CrankStates& states, Gravity gravity, const WrenchArrays& wrenches,
-               const PinArrays& pins, BatchWidth width = BatchWidth::kAvx512) noexcept;
+               const PinArrays& pins) noexcept;
 
 }  // namespace hammer_loads

@@ -138,7 +138,9 @@ void voidImpossible(const Mechanism& mechanism, Level level, RockerBlow& blow) n
   };
   blow.impossible = isOutside(blow.restitution, blow.restitution_deviation, 1.0) ||
                     isOutside(blow.energy, blow.energy_deviation, most);
-  if (blow.impossible) blow.restitution = blow.energy = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (blow.impossible || !(blow.restitution >= 0.0 && blow.restitution <= 1.0)) blow.restitution = kNone;
+  if (blow.impossible || !(blow.energy >= 0.0 && blow.energy <= most)) blow.energy = kNone;
 }
 
 RockerBlow blowAtCrankSpeeds(const Mechanism& mechanism, Level level, double before, double after) noexcept {

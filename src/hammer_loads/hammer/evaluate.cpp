@@ -1,56 +1,129 @@
 #include "hammer_loads/hammer/evaluate.h"
 
 #include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/cpp_dec_float.hpp>
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 
-#include "hammer_loads/hammer/state_table.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads {
 namespace {
 
+enum StateColumn : std::size_t { kAngle, kSpeed, kAcceleration, kPitch, kGravity };
+constexpr std::size_t kStates = kStateColumns.size();
+constexpr std::array<const char*, kStates> kRules{"rad, must be a finite number of size <= 1e15",
+                                                  "rad/s, must be a finite number", "rad/s2, must be a finite number",
+                                                  "rad, must be a finite number", "m/s2, must be a finite number >= 0"};
 constexpr std::array<const char*, 7> kMotionAndWrenchColumns{
     "rocker_angle_rad", "rod_angle_rad",  "rocker_speed_rad_s", "rocker_accel_rad_s2",
     "hull_force_x_N",   "hull_force_z_N", "hull_torque_y_Nm"};
-constexpr std::size_t kResults = kMotionAndWrenchColumns.size() + kPinColumns.size();
+constexpr std::size_t kPins = kMotionAndWrenchColumns.size();  ///< where the pins' results begin
+constexpr std::size_t kResults = kPins + kPinColumns.size();
 
-const char* resultColumn(std::size_t i) {
-  return i < kMotionAndWrenchColumns.size() ? kMotionAndWrenchColumns[i]
-                                            : kPinColumns[i - kMotionAndWrenchColumns.size()];
+using Cells = std::vector<std::string>;
+using Places = std::array<std::size_t, kStates>;  ///< of kStateColumns in a row
+using Problems = std::vector<std::string>;
+
+/// Cells without the spaces around them; one empty cell for a blank line.
+Cells cellsOf(const std::string& line) {
+  constexpr char kSpaces[] = " \t\r";
+  Cells cells;
+  std::istringstream rest(line + ',');  // the last cell may be empty
+  for (std::string cell; std::getline(rest, cell, ',');) {
+    cell.erase(0, std::min(cell.find_first_not_of(kSpaces), cell.size()));
+    cell.erase(cell.find_last_not_of(kSpaces) + 1);
+    cells.push_back(std::move(cell));
+  }
+  return cells;
 }
 
-std::array<double, kResults> resultsOf(const HullModel& model, const TableState& state) noexcept {
-  const Evaluation e = evaluate(model, state.crank, state.gravity);
+bool isBlank(const Cells& cells) { return cells.size() == 1 && cells[0].empty(); }
+
+/// On one line, shortened when long.
+std::string shown(const std::string& cell) {
+  constexpr std::size_t kLongest = 60;
+  std::string text = cell.size() > kLongest ? cell.substr(0, kLongest) + "..." : cell;
+  const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), isControl, ' ');
+  return text.empty() ? "(empty)" : text;
+}
+
+/// strtod would also take hexadecimal digits and names.
+std::optional<double> numberFromText(const std::string& text) {
+  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return std::nullopt;
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+Places placesOf(const Cells& header, Problems& problems) {
+  Places places{};
+  for (std::size_t c = 0; c < kStates; ++c) {
+    const auto found = std::count(header.begin(), header.end(), kStateColumns[c]);
+    places[c] = static_cast<std::size_t>(std::find(header.begin(), header.end(), kStateColumns[c]) - header.begin());
+    if (found == 0) problems.push_back(format("header: %s: is required, not found", kStateColumns[c]));
+    if (found > 1) problems.push_back(format("header: %s: found %td times, must be once", kStateColumns[c], found));
+  }
+  return places;
+}
+
+std::array<double, kResults> resultsOf(const HullModel& model, const CrankMotion& crank, Gravity gravity) noexcept {
+  const Evaluation e = evaluate(model, crank, gravity);
   std::array<double, kResults> results{e.rocker_angle,   e.rod_angle,      e.rocker_speed,   e.rocker_acceleration,
                                        e.wrench.force_x, e.wrench.force_z, e.wrench.torque_y};
   const auto pins = pinValues(e.pins);
-  std::copy(pins.begin(), pins.end(), results.begin() + kMotionAndWrenchColumns.size());
+  std::copy(pins.begin(), pins.end(), results.begin() + kPins);
   return results;
 }
 
-/// A pin's force may have no limit at the blow; what is too large has no finite drive torque, the first of the pins.
-bool isGood(const std::array<double, kResults>& results, std::size_t i) noexcept {
-  return std::isfinite(results[i]) || (i > kMotionAndWrenchColumns.size() && std::isnan(results[i]));
-}
+struct EvaluatedRow {
+  std::string given;  ///< cells of kStateColumns
+  std::array<double, kResults> results;
+};
 
-std::vector<std::string> problemsOf(const HullModel& model, const std::vector<TableState>& states) {
-  std::vector<std::string> problems;
-  for (const TableState& state : states) {
-    const auto results = resultsOf(model, state);
-    std::size_t bad = 0;
-    while (bad < kResults && isGood(results, bad)) ++bad;
-    if (bad == kResults) continue;
-    problems.push_back(
-        format("row %zu: %s: %g, must be finite: the state is too large", state.row, resultColumn(bad), results[bad]));
+/// Adds a line for each bad cell of a row `place`, else for its first bad result.
+void evaluateRow(const HullModel& model, const Cells& all, const Places& places, const std::string& place,
+                 std::vector<EvaluatedRow>& rows, Problems& problems) {
+  const std::size_t problems_before = problems.size();
+  const std::optional<CrankAngle> angle = crankAngleFromText(all[places[kAngle]]);
+  std::array<double, kStates> numbers{};
+  std::string given;
+  for (std::size_t c = 0; c < kStates; ++c) {
+    const std::string& cell = all[places[c]];
+    const std::optional<double> number = numberFromText(cell);
+    const bool allowed = c == kAngle ? angle.has_value() : number && !(c == kGravity && *number < 0.0);
+    if (!allowed) problems.push_back(place + kStateColumns[c] + ": " + shown(cell) + ' ' + kRules[c]);
+    numbers[c] = number.value_or(0.0);
+    given += (c == 0 ? "" : ",") + cell;
   }
-  return shortened(std::move(problems), 20);
+  if (problems.size() > problems_before) return;
+  const Gravity gravity{numbers[kGravity] * std::sin(numbers[kPitch]), -numbers[kGravity] * std::cos(numbers[kPitch])};
+  rows.push_back({given, resultsOf(model, {*angle, numbers[kSpeed], numbers[kAcceleration]}, gravity)});
+  const auto& results = rows.back().results;
+  for (std::size_t i = 0; i < kResults; ++i) {
+    // A pin's force may have no limit at the blow; what is too large has no finite drive torque, the first of the pins.
+    if (std::isfinite(results[i]) || (i > kPins && std::isnan(results[i]))) continue;
+    const char* column = i < kPins ? kMotionAndWrenchColumns[i] : kPinColumns[i - kPins];
+    return problems.push_back(place + column + format(": %g, must be finite: the state is too large", results[i]));
+  }
 }
 
-std::string headerLine() {
-  std::string line;
-  for (const char* column : kStateColumns) line += (line.empty() ? "" : ",") + std::string(column);
-  for (std::size_t i = 0; i < kResults; ++i) line += "," + std::string(resultColumn(i));
-  return line;
+void write(const std::vector<EvaluatedRow>& rows, std::ostream& out) {
+  std::string header;
+  for (const char* column : kStateColumns) header += (header.empty() ? "" : ",") + std::string(column);
+  for (const char* column : kMotionAndWrenchColumns) header += "," + std::string(column);
+  for (const char* column : kPinColumns) header += "," + std::string(column);
+  out << header << '\n';
+  for (const EvaluatedRow& row : rows) {
+    out << row.given;
+    for (const double result : row.results) out << format(",%.17g", result + 0.0);  // no minus before a zero
+    out << '\n';
+    if (!out) break;
+  }
 }
 
 }  // namespace
@@ -76,20 +149,59 @@ std::array<double, kPinColumns.size()> pinValues(const PinReactions& p) noexcept
   return values;
 }
 
-std::vector<std::string> evaluateTable(const HullModel& model, std::istream& in, std::ostream& out) {
-  const Checked<std::vector<TableState>> states = readStates(in);
-  if (!states.value) return states.problems;
-  std::vector<std::string> problems = problemsOf(model, *states.value);
-  if (!problems.empty()) return problems;
-  out << headerLine() << '\n';
-  for (const TableState& state : *states.value) {
-    out << state.text;
-    for (const double result : resultsOf(model, state))
-      out << format(",%.17g", result + 0.0);  // + 0.0: no minus before a zero
-    out << '\n';
-    if (!out) break;
+std::optional<CrankAngle> crankAngleFromText(const std::string& text) {
+  using Extended = boost::multiprecision::cpp_dec_float_50;
+  constexpr double kLargestAngle = 1e15;  // [rad]: beyond it 50 digits no longer hold a double's worth of offset
+  constexpr double kHalfTurn = 3.14159265358979;
+  constexpr int kMostDecimals = 40;
+  const std::optional<double> nearest = numberFromText(text);
+  if (!nearest || std::abs(*nearest) > kLargestAngle) return std::nullopt;
+  if (std::abs(*nearest) < kHalfTurn) return CrankAngle::fromOffset(*nearest);
+  static const Extended two_pi = boost::math::constants::two_pi<Extended>();
+  const Extended angle(text);
+  const Extended blow = round(angle / two_pi) * two_pi;
+  Extended written = blow;
+  const std::string mantissa = text.substr(0, text.find_first_of("eE"));
+  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto digitsFrom = [&](std::size_t at) {
+    return at > mantissa.size() ? 0 : std::count_if(mantissa.begin() + static_cast<long>(at), mantissa.end(), isDigit);
+  };
+  if (digitsFrom(mantissa.find_first_of("123456789")) > std::numeric_limits<double>::max_digits10) {
+    const int exponent = mantissa.size() < text.size() ? std::atoi(text.c_str() + mantissa.size() + 1) : 0;
+    const int decimals = static_cast<int>(digitsFrom(mantissa.find('.'))) - exponent;
+    written = Extended(blow.str(std::clamp(decimals, 0, kMostDecimals), std::ios::fixed));
   }
-  return {};
+  CrankAngle result = CrankAngle::fromOffset(static_cast<double>(angle - written));
+  if (result.offset == 0.0 && angle < blow) result.side = Side::kBeforeBlow;
+  return result;
+}
+
+std::vector<std::string> evaluateTable(const HullModel& model, std::istream& in, std::ostream& out) {
+  constexpr std::size_t kMostProblems = 20;
+  std::string line;
+  std::getline(in, line);
+  if (isBlank(cellsOf(line))) return {"header: missing, must be a line with the names of the columns"};
+  if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);  // mark of UTF-8
+  const Cells header = cellsOf(line);
+  Problems problems;
+  const Places places = placesOf(header, problems);
+  if (!problems.empty()) return problems;
+  std::vector<EvaluatedRow> rows;
+  for (std::size_t row = 1; std::getline(in, line); ++row) {
+    const Cells cells = cellsOf(line);
+    if (isBlank(cells)) continue;
+    if (cells.size() == header.size())
+      evaluateRow(model, cells, places, format("row %zu: ", row), rows, problems);
+    else
+      problems.push_back(format("row %zu: %zu cells, must be %zu as in the header", row, cells.size(), header.size()));
+  }
+  if (in.bad()) problems.emplace_back("input: cannot be read to its end");
+  if (problems.empty()) write(rows, out);
+  if (problems.size() <= kMostProblems) return problems;
+  const std::size_t left_out = problems.size() - (kMostProblems - 1);
+  problems.resize(kMostProblems - 1);
+  problems.push_back(format("and %zu more", left_out));
+  return problems;
 }
 
 }  // namespace hammer_loads

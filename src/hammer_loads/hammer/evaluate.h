@@ -3,6 +3,7 @@
 
 #include <array>
 #include <istream>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -32,9 +33,21 @@ constexpr std::array<const char*, 9> kPinColumns{"drive_torque_y_Nm", "R01_x_N",
 /// In the order of kPinColumns.
 std::array<double, kPinColumns.size()> pinValues(const PinReactions& pins) noexcept;
 
-/// CSV of states in (columns: state_table.h), CSV of states and results out: states as given, results with 17 digits.
-/// Rows in their order. With any problem nothing is written: the whole input is judged before the first line of output.
-/// A state whose results are too large for a double is a problem, too.
+/// Columns that a table of states must have, in any order; others are ignored, so that a table of results can be read
+/// again.
+constexpr std::array<const char*, 5> kStateColumns{"crank_angle_rad", "crank_speed_rad_s", "crank_accel_rad_s2",
+                                                   "hull_pitch_rad", "gravity_m_s2"};
+
+/// Crank angle from its decimal text, at most 1e15 rad in size; digits beyond a double's count.
+///
+/// Offset = text - 2 pi n, rounded to a double once. From a text with more digits than a double's 17, 2 pi n rounded to
+/// the text's last digit is subtracted: 2 pi n + offset written to this many digits gives the offset back, as when 1e-9
+/// rad before the blow is written 6.2831853061795864769. Either way the offset is right to one unit of that digit.
+std::optional<CrankAngle> crankAngleFromText(const std::string& text);
+
+/// Reads a CSV table of states; writes the states as given with their results to 17 digits, in the order of the rows.
+/// Blank lines are skipped, but counted. Returns one line for each bad cell, at most 20; then nothing is written. A
+/// state whose results are too large for a double is bad, too.
 std::vector<std::string> evaluateTable(const HullModel& model, std::istream& in, std::ostream& out);
 
 }  // namespace hammer_loads

@@ -58,7 +58,7 @@ inline DriveReaction driveReaction(const HullModel& model, double drive_inertia)
 inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive, const CrankMotion& crank,
                              const HullMotion& hull) noexcept {
   HullWrench wrench = hullWrench(model, crank, hull);
-  wrench.torque_y += drive.torque(crank.acceleration + crank.drive_lead, hull.acceleration);
+  wrench.torque_y += drive.torque(crank.acceleration, hull.acceleration);
   return wrench;
 }
 
@@ -66,7 +66,7 @@ inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive,
 inline HullWrench hullWrench(const HullModel& model, const DriveReaction& drive, const LinkMotion& links,
                              const CrankMotion& crank, const HullMotion& hull) noexcept {
   HullWrench wrench = hullWrench(model, links, crank, hull);
-  wrench.torque_y += drive.torque(crank.acceleration + crank.drive_lead, hull.acceleration);
+  wrench.torque_y += drive.torque(crank.acceleration, hull.acceleration);
   return wrench;
 }
 

@@ -41,7 +41,7 @@ LinkMasses::Effect effectOnHull(const Mechanism& mechanism, const LinkMotion& l,
   };
   coupling(M::kCoupling, l.delta), coupling(M::kCoupling + 1, turned(l.delta));
   const double r = mechanism.parameters().drive_reaction_ratio;
-  by(2, M::kWithinDrive) = -(1.0 - r) * (crank.acceleration + crank.drive_lead) - (1.0 - r * r) * hull.acceleration;
+  by(2, M::kWithinDrive) = -(1.0 - r) * crank.acceleration - (1.0 - r * r) * hull.acceleration;
   return by;
 }
 

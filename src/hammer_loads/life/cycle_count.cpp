@@ -53,6 +53,23 @@ void CycleCount::advance(const CycleCount& since) {
   extremes.add(since.extremes);
 }
 
+bool isPossible(const CycleCount& count) {
+  const std::uint32_t classes = count.grid.classes();
+  const ClosedCycles* before = nullptr;
+  for (const ClosedCycles& cycles : count.closed) {
+    if (cycles.steps == 0 || cycles.steps >= classes || cycles.low >= classes - cycles.steps) return false;
+    if (cycles.count == 0 || (before != nullptr && !(*before < cycles))) return false;
+    before = &cycles;
+  }
+  for (const std::uint32_t point : count.residue) {
+    if (point >= classes) return false;
+  }
+  std::vector<std::uint32_t> joined;
+  std::vector<ClosedCycles> closed;
+  joinResidues(joined, count.residue, closed);
+  return joined == count.residue;
+}
+
 double meanDeviation(const CycleCount& count) {
   if (count.tally.deviations == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(count.tally.deviation_sum) / static_cast<double>(count.tally.deviations) *

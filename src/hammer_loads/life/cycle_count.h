@@ -93,6 +93,9 @@ void joinResidues(std::vector<std::uint32_t>& residue, const std::vector<std::ui
 /// Sorts and adds up what has the same range and mean.
 void sortClosed(std::vector<ClosedCycles>& closed);
 
+/// Whether a series can have this count: classes on the grid, closed cycles sorted, no cycle left in the residue.
+bool isPossible(const CycleCount& count);
+
 /// Mean standard deviation of a sample [channel's unit]; NaN where none was given.
 double meanDeviation(const CycleCount& count);
 

@@ -1,5 +1,7 @@
 #include "hammer_loads/life/cycle_counter.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <new>
 #include <utility>
@@ -10,12 +12,21 @@ CycleCounter::CycleCounter(const LoadGrid& grid)
     : grid_(grid),
       classes_(grid.classes()),
       stack_(2 * classes_ + 1),
-      // Not a vector: pages without a cycle cost no memory.
-      cells_(static_cast<Cell*>(std::calloc(row(classes_) + 1, sizeof(Cell)))),
+      cells_(newCells()),
       touched_(row(classes_) / kBlock + 1, 0) {
-  if (!cells_) throw std::bad_alloc();
   overruns_.reserve(kOverruns);
   waiting_.fill(row(classes_));
+}
+
+void CycleCounter::Unmap::operator()(Cell* cells) const { munmap(cells, bytes); }
+
+/// Pages of the system's own, each zero until a cycle touches it: one without costs no memory. What the heap gives it
+/// would have to clear, and so to touch.
+CycleCounter::Cells CycleCounter::newCells() const {
+  const std::size_t bytes = (row(classes_) + 1) * sizeof(Cell);
+  void* pages = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (pages == MAP_FAILED) throw std::bad_alloc();
+  return Cells(static_cast<Cell*>(pages), Unmap{bytes});
 }
 
 void CycleCounter::settle() noexcept {
@@ -25,6 +36,7 @@ void CycleCounter::settle() noexcept {
 }
 
 CycleCount CycleCounter::take() {
+  Cells fresh = newCells();
   settle();
   CycleCount count(grid_);
   const std::size_t cells = row(classes_);
@@ -40,9 +52,9 @@ CycleCount CycleCounter::take() {
     for (std::size_t cell = block * kBlock; cell < end; ++cell) {
       if (cells_[cell] == 0) continue;
       add(cell, cells_[cell]);
-      cells_[cell] = 0;
     }
   }
+  cells_ = std::move(fresh);  // gives back the pages that cycles of this period have touched
   if (!overruns_.empty()) {
     std::sort(overruns_.begin(), overruns_.end());
     steps = 1;

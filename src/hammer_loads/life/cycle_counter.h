@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -77,9 +76,12 @@ class CycleCounter {
   static constexpr std::size_t kOverruns = 65536;
   static constexpr std::size_t kWaiting = 16;  ///< closed cycles that wait: memory takes some hundred ns
 
-  struct Free {
-    void operator()(void* memory) const { std::free(memory); }
+  struct Unmap {
+    std::size_t bytes{};
+    void operator()(Cell* cells) const;
   };
+  using Cells = std::unique_ptr<Cell[], Unmap>;
+  Cells newCells() const;
   std::size_t row(std::size_t steps) const { return (steps - 1) * (2 * classes_ - steps) / 2; }
   void close(std::uint32_t b, std::uint32_t c) noexcept {
     const std::uint32_t low = b < c ? b : c, steps = b < c ? c - b : b - c;
@@ -105,7 +107,7 @@ class CycleCounter {
   LoadGrid grid_;
   std::size_t classes_;
   FourPointStack<std::uint32_t> stack_;
-  std::unique_ptr<Cell[], Free> cells_;          ///< and a spare one, for a place in waiting_ without a cycle
+  Cells cells_;                                  ///< and a spare one, for a place in waiting_ without a cycle
   std::vector<std::uint32_t> overruns_;          ///< cells, one entry for each kCellPeriod cycles
   std::array<std::size_t, kWaiting> waiting_{};  ///< cells
   std::size_t next_{};                           ///< in waiting_

@@ -22,7 +22,11 @@ Database::Database(const std::string& path, Use use, int patience_ms) {
 }
 
 void Database::fail(const std::string& problem) {
-  if (problem_.empty()) problem_ = problem;
+  if (!problem_.empty()) return;
+  problem_ = problem;
+  for (char& c : problem_) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // of a damaged file's bytes
+  }
 }
 
 bool Database::check(int result) {
@@ -30,9 +34,6 @@ bool Database::check(int result) {
   const int error = errno;  // sqlite3_system_errno() does not know that of a COMMIT
   std::string reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(result);
   if (error != 0 && (result & 0xFF) == SQLITE_IOERR) reason += std::string(": ") + std::strerror(error);
-  for (char& c : reason) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // SQLite quotes a damaged file's bytes
-  }
   fail(reason);
   return false;
 }

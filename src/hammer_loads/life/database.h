@@ -74,7 +74,7 @@ class Database {
   /// One line, without the file's name; empty while all is well.
   const std::string& problem() const { return problem_; }
   bool good() const { return problem_.empty(); }
-  /// For what the caller finds wrong; the first one stays.
+  /// For what the caller finds wrong, in one line; the first one stays.
   void fail(const std::string& problem);
 
  private:

@@ -1,55 +1,19 @@
 #include "hammer_loads/life/exact_cycles.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "hammer_loads/life/cycle_counter.h"
 
 namespace hammer_loads::life {
-namespace {
-
-bool isLoad(double value) { return CycleCounter::isLoad(value); }
-
-auto closeInto(ExactCycles::Closed& closed) {
-  return [&closed](double b, double c) { ++closed[{std::min(b, c), std::max(b, c)}]; };
-}
-
-}  // namespace
 
 void ExactCycles::add(double value) {
-  if (!isLoad(value)) {
+  if (!CycleCounter::isLoad(value)) {
     ++tally_.skipped;
     return;
   }
   ++tally_.counted;
-  extremes_.add(value);
-  stack_.push(value + 0.0, closeInto(closed_));  // -0 is 0
-}
-
-void ExactCycles::append(const ExactCycles& later) {
-  for (const auto& [extremes, count] : later.closed_) closed_[extremes] += count;
-  const std::vector<double> points = later.residue();
-  for (const double point : points) stack_.push(point, closeInto(closed_));
-  tally_.add(later.tally_);
-  extremes_.add(later.extremes_);
-}
-
-std::optional<ExactCycles> ExactCycles::restore(Closed closed, const std::vector<double>& residue,
-                                                const SampleTally& tally, const Extremes& extremes) {
-  ExactCycles restored;
-  for (const auto& [pair, count] : closed) {
-    if (!(isLoad(pair.first) && isLoad(pair.second) && pair.first < pair.second && count > 0)) return std::nullopt;
-  }
-  Closed further;
-  for (const double point : residue) {
-    if (!isLoad(point)) return std::nullopt;
-    restored.stack_.push(point, closeInto(further));
-  }
-  if (restored.residue() != residue) return std::nullopt;
-  restored.closed_ = std::move(closed);
-  restored.tally_ = tally;
-  restored.extremes_ = extremes;
-  return restored;
+  const auto close = [this](double b, double c) { ++closed_[{std::min(b, c), std::max(b, c)}]; };
+  stack_.push(value + 0.0, close);  // -0 is 0
 }
 
 std::vector<RangeMean> rangesAndMeans(const ExactCycles& count) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,28 +15,17 @@ class ExactCycles {
  public:
   /// What is no load (CycleCounter::isLoad) is skipped and counted.
   void add(double value);
-  void gap() { ++tally_.gaps; }
 
   /// Closed cycles by lower and upper extreme.
   using Closed = std::map<std::pair<double, double>, std::uint64_t>;
   const Closed& closed() const { return closed_; }
   const std::vector<double>& residue() const { return stack_.residue(); }
   const SampleTally& tally() const { return tally_; }
-  const Extremes& extremes() const { return extremes_; }
-
-  /// The count of this series followed by the other one.
-  void append(const ExactCycles& later);
-
-  /// From a saved state. Nothing when no series gives these: extremes out of order, a count of 0, a residue with a
-  /// cycle in it, a value that is no load.
-  static std::optional<ExactCycles> restore(Closed closed, const std::vector<double>& residue, const SampleTally& tally,
-                                            const Extremes& extremes);
 
  private:
   FourPointStack<double> stack_;
   Closed closed_;
   SampleTally tally_;
-  Extremes extremes_;
 };
 
 /// Closed cycles and the residue as half cycles, sorted by range, then by mean.

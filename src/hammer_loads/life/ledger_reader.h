@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "hammer_loads/life/database.h"
 #include "hammer_loads/life/ledger_run.h"
 #include "hammer_loads/util/checked.h"
 
@@ -23,6 +24,7 @@ struct LedgerDay {
 struct LedgerEpoch {
   std::int64_t id{};
   LedgerMachine machine;
+  std::vector<std::int64_t> channels;  ///< ids, in the order of machine.channels
   std::vector<LedgerDay> days;
   std::uint64_t runs{};
 };
@@ -32,7 +34,6 @@ struct LedgerRunInfo {
   std::int64_t epoch{};
   std::uint64_t messages{};  ///< of the crank
   std::uint64_t turns{};
-  bool apart{};  ///< false: counted by version 1, in one sum with others; can be neither removed nor replaced
 };
 
 /// One state of the file, that at the first query, however long the reading takes.
@@ -40,9 +41,6 @@ class LedgerReader {
  public:
   /// One line when the file cannot be read or is no ledger.
   static Checked<LedgerReader> open(const std::string& path);
-  ~LedgerReader();
-  LedgerReader(LedgerReader&&) noexcept;
-  LedgerReader& operator=(LedgerReader&&) noexcept;
 
   /// In the order in which they began.
   std::vector<LedgerEpoch> epochs();
@@ -58,15 +56,21 @@ class LedgerReader {
   std::string problem() const;
 
  private:
-  struct State;
-  explicit LedgerReader(std::unique_ptr<State> state);
-  std::int64_t idOf(const LedgerEpoch& epoch, std::size_t channel);
-  /// Adds what is kept of a day; of all for nothing.
-  void read(std::int64_t channel, std::optional<std::int64_t> day, CycleCount& count);
-  struct Seams;
-  const Seams& seams(std::int64_t epoch, std::int64_t channel);
+  /// What the residues of a channel's runs give, one after another.
+  struct Seams {
+    std::int64_t channel{-1};
+    std::map<std::int64_t, std::vector<ClosedCycles>> closed;  ///< by the last day of the run that closed them
+    std::vector<std::uint32_t> residue;
+  };
 
-  std::unique_ptr<State> state_;
+  explicit LedgerReader(const std::string& path);
+  /// Adds what is kept of a channel where `condition` holds for `value`.
+  void read(CycleCount& count, std::int64_t channel, const char* condition, std::int64_t value);
+  const Seams& seamsOf(std::int64_t channel);
+
+  std::string path_;
+  std::unique_ptr<Database> database_;  ///< stays where it is: statements refer to it
+  Seams seams_;                         ///< of the channel read last
 };
 
 }  // namespace hammer_loads::life

@@ -1,7 +1,6 @@
 #include "hammer_loads/life/ledger_run.h"
 
-#include <unistd.h>
-
+#include <filesystem>
 #include <utility>
 
 #include "hammer_loads/life/ledger_schema.h"
@@ -30,40 +29,13 @@ LedgerMachine ledgerMachine(const LifeSettings& settings, const std::string& ide
 
 LedgerRun::LedgerRun(std::string path, LedgerMachine machine, RunId run)
     : path_(std::move(path)), machine_(std::move(machine)), id_(std::move(run)) {}
-LedgerRun::~LedgerRun() = default;
-LedgerRun::LedgerRun(LedgerRun&&) noexcept = default;
-LedgerRun& LedgerRun::operator=(LedgerRun&&) noexcept = default;
-
-std::optional<std::string> LedgerRun::hold() {
-  if (lock_ && lock_->isAt(path_)) return std::nullopt;
-  lock_.reset();
-  std::string trouble;
-  lock_ = LedgerLock::take(path_, trouble, busy_);
-  if (lock_) return std::nullopt;
-  return problem(trouble);
-}
-
-std::optional<std::string> LedgerRun::prepare() {
-  const bool held = lock_ != nullptr;
-  if (std::optional<std::string> trouble = hold()) return trouble;
-  std::string trouble;
-  {
-    Database database(lock_->name(), Database::Use::kWrite, kPatience);
-    beginAsLedger(database);
-    database.run("ROLLBACK");
-    trouble = database.problem();
-  }
-  if (trouble.empty()) return std::nullopt;
-  if (!held) lock_.reset();
-  return problem(trouble);
-}
 
 void LedgerRun::keep(LifePiece piece) {
   messages_ += piece.messages;
   marks_.insert(marks_.end(), piece.marks.begin(), piece.marks.end());
   piece.marks.clear();
   if (!isEmpty(piece)) waiting_.push_back(std::move(piece));
-  compact(attempted_);
+  compact(failed_ ? failed_->pieces : 0);
 }
 
 std::optional<std::string> LedgerRun::add(LifePiece piece) {
@@ -73,9 +45,11 @@ std::optional<std::string> LedgerRun::add(LifePiece piece) {
 
 std::optional<std::string> LedgerRun::end(std::optional<LifePiece> last) {
   if (last) keep(*std::move(last));
-  std::optional<std::string> trouble = write(true);
-  if (!trouble || refused()) lock_.reset();
-  return trouble;
+  return write(true);
+}
+
+std::string LedgerRun::contradiction() const {
+  return id_.refusal.empty() ? "" : "run " + id_.name + ": is not counted: " + id_.refusal;
 }
 
 void LedgerRun::compact(std::size_t from) {
@@ -89,15 +63,9 @@ void LedgerRun::compact(std::size_t from) {
 
 /// Why the run is refused, in view of what the ledger has of its samples; `like` is what it takes the place of.
 std::optional<std::string> LedgerRun::judge(Database& database, std::vector<RunRow>& like, bool end, bool replace) {
-  known_ = false;
-  if (!id_.refusal.empty()) return "is not counted: " + id_.refusal;
-  like = runsLike(database, machine_, id_, marks_);
+  like = runsLike(database, machine_, id_.name, marks_);
   for (const RunRow& row : like) {
     const std::string sizes = std::to_string(messages_) + " of its " + std::to_string(row.messages) + " samples";
-    if (!row.apart) {
-      known_ = true;
-      return "is in it already, not counted again (by a version that kept no run apart: it cannot be replaced)";
-    }
     if (replace && messages_ >= row.messages) continue;
     if (replace)
       return "cannot replace run " + row.name + ": holds " + sizes + "; life --remove takes that one out first";
@@ -114,85 +82,100 @@ std::optional<std::string> LedgerRun::judge(Database& database, std::vector<RunR
   return std::nullopt;
 }
 
-/// A commit that reported an error may be in the file all the same: what it would have made of the run's row shows it.
-bool LedgerRun::wasWritten(const RunRow& row) {
-  if (!attempting_ || row.pieces != pieces_ + 1 || row.messages != attempted_messages_) return false;
-  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(attempted_));
-  ++pieces_;
-  return true;
+/// Why a run at work is refused: another one has come to have its samples.
+std::optional<std::string> LedgerRun::newlyShared(Database& database, const RunRow& own) const {
+  const std::vector<std::int64_t> fresh(marks_.begin() + static_cast<std::ptrdiff_t>(marks_written_), marks_.end());
+  for (const RunRow& other : runsLike(database, machine_, id_.name, fresh)) {
+    if (other.run != own.run) return "has samples of run " + other.name + ", which is in it already: not counted twice";
+  }
+  return std::nullopt;
+}
+
+void LedgerRun::noteWritten(const Commit& commit) {
+  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(commit.pieces));
+  marks_written_ = commit.marks;
+  messages_written_ = commit.messages;
+  ++commits_;
+}
+
+/// Whether the ledger has the run as this object left it. A commit that reported an error may be in the file all the
+/// same: what it would have made of the row shows it.
+bool LedgerRun::isOurs(const std::optional<RunRow>& row) {
+  const std::optional<Commit> failed = std::exchange(failed_, std::nullopt);
+  if (row && failed && row->pieces == commits_ + 1 && row->messages == failed->messages) noteWritten(*failed);
+  if (row && commits_ > 0 && row->pieces == commits_ && row->messages == messages_written_ &&
+      row->parameters == id_.parameters)
+    return true;
+  // A first piece, or what was written is there no more: the run has what follows alone.
+  messages_ -= std::exchange(messages_written_, 0);
+  marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(std::exchange(marks_written_, 0)));
+  commits_ = 0;
+  return false;
 }
 
 bool LedgerRun::put(Database& database, bool end, bool replace) {
   std::optional<RunRow> row = findRun(database, id_.name);
   if (!database.good()) return true;
-  const bool ours = row && ((pieces_ > 0 && row->pieces == pieces_ && row->apart) || wasWritten(*row));
-  attempting_ = false;
-  attempted_ = 0;
+  const bool ours = isOurs(row);
   std::vector<RunRow> like;
-  if (!ours) pieces_ = 0, marks_written_ = 0;  // a first piece, or another file than before
-  std::optional<std::string> refusal;
-  if (!ours) {
-    refusal = judge(database, like, end, replace);
-  } else {
-    if (!id_.refusal.empty()) refusal = "is not counted: " + id_.refusal;
-    const std::vector<std::int64_t> fresh(marks_.begin() + static_cast<std::ptrdiff_t>(marks_written_), marks_.end());
-    for (const RunRow& other : runsLike(database, machine_, id_, fresh)) {
-      if (other.run != row->run && !refusal)
-        refusal = "has samples of run " + other.name + ", which is in it already: not counted twice";
-    }
-    if (refusal) removeRun(database, *row);
+  known_ = false;
+  refusal_ = contradiction();
+  if (refusal_.empty()) {
+    const std::optional<std::string> reason = ours ? newlyShared(database, *row) : judge(database, like, end, replace);
+    if (reason) refusal_ = "run " + id_.name + ": " + *reason;
   }
+  if (!database.good()) refusal_.clear();  // not known yet
   if (!database.good()) return true;
-  refusal_ = refusal ? "run " + id_.name + ": " + *refusal : "";
-  if (refusal) return false;
+  if (refused() && ours) removeRun(database, *row);
+  if (refused()) return false;
   compact(0);
-  if (!ours) row = like.empty() ? beginRun(database, machine_, id_) : replaceRuns(database, machine_, id_, like);
+  if (!ours) row = beginRun(database, machine_, id_, like);
   for (const LifePiece& piece : waiting_) addPiece(database, *row, piece);
-  addMarks(database, *row, marks_, marks_written_);
-  setRun(database, *row, pieces_ + 1, messages_, end);
+  setRun(database, *row, commits_ + 1, messages_, marks_, marks_written_);
   return true;
 }
 
-bool LedgerRun::putWhole(Database& database, bool replace) { return put(database, true, replace); }
-
 std::optional<std::string> LedgerRun::write(bool end) {
-  if (ended_) return refused() ? std::make_optional(problem(refusal_)) : std::nullopt;
-  const bool gives_up = !id_.refusal.empty();
+  const auto problem = [&](const std::string& what) { return std::make_optional(path_ + ": " + what); };
+  if (ended_) return refused() ? problem(refusal_) : std::nullopt;
   if (!end && refused()) return problem(refusal_);  // the pieces stay: at its end the run may have more than the ledger
-  if (waiting_.empty() && !end && !gives_up) return std::nullopt;
-  if (std::optional<std::string> trouble = hold()) return trouble;
+  if (waiting_.empty() && !end && id_.refusal.empty()) return std::nullopt;
+  if (const std::string trouble = pathProblem(path_); !trouble.empty()) return problem(trouble);
 
-  Database database(lock_->name(), Database::Use::kWrite, kPatience);
+  Database database(path_, Database::Use::kWrite, kPatience);
   beginAsLedger(database);
+  if (commits_ == 0) checkLedger(database);
   const bool taken = put(database, end, false);
-  if (database.good()) {
-    attempting_ = taken;
-    attempted_ = taken ? waiting_.size() : 0;
-    attempted_messages_ = messages_;
-  }
+  const Commit commit{waiting_.size(), marks_.size(), messages_};
+  if (database.good() && taken) failed_ = commit;  // unless it succeeds
   database.run("COMMIT");
   if (!database.good()) return problem(database.problem());
-  attempting_ = false;
-  attempted_ = 0;
+  failed_.reset();
   ended_ = end;
-  if (taken) ++pieces_, marks_written_ = marks_.size();
-  if (taken || end) waiting_.clear();
-  if (taken) return std::nullopt;
-  return problem(refusal_);
+  if (taken) noteWritten(commit);
+  if (end) waiting_.clear();
+  return taken ? std::nullopt : problem(refusal_);
+}
+
+std::string ledgerProblem(const std::string& path, int patience) {
+  std::string problem = pathProblem(path);
+  std::error_code error;
+  if (problem.empty() && std::filesystem::exists(path, error)) {
+    Database database(path, Database::Use::kRead, patience);
+    isLedger(database);
+    problem = database.problem();
+  }
+  return problem.empty() ? problem : path + ": " + problem;
 }
 
 std::optional<std::string> removeFromLedger(const std::string& path, const std::string& name) {
-  std::string trouble;
-  bool busy = false;
-  if (access(path.c_str(), F_OK) != 0) return path + ": does not exist";
-  const std::unique_ptr<LedgerLock> lock = LedgerLock::take(path, trouble, busy);
-  if (!lock) return path + ": " + (busy ? "another run is writing it; remove the run when that has ended" : trouble);
-  Database database(lock->name(), Database::Use::kWrite, LedgerRun::kPatience);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return path + ": does not exist";
+  if (const std::string problem = pathProblem(path); !problem.empty()) return path + ": " + problem;
+  Database database(path, Database::Use::kWrite, LedgerRun::kPatience);
   beginAsLedger(database);
   const std::optional<RunRow> row = findRun(database, name);
   if (!row) database.fail("has no run " + name + "; --runs lists them");
-  if (row && !row->apart)
-    database.fail("run " + name + ": was counted by a version that kept no run apart: it cannot be taken out");
   if (database.good()) removeRun(database, *row);
   database.run("COMMIT");
   if (!database.good()) return path + ": " + database.problem();

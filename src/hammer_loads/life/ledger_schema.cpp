@@ -1,16 +1,23 @@
 #include "hammer_loads/life/ledger_schema.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <initializer_list>
 #include <string>
+#include <utility>
 
 namespace hammer_loads::life {
 namespace {
 
 constexpr std::int64_t kApplication = 0x484C4C31;  ///< "HLL1"
 
-// One step per version. Integers of `least`, `classes` and so on belong to LoadGrid; `steps` and `low` to ClosedCycles.
-// Version 1: residues with open = 1 are of the run at work, with 0 joined of all that ended.
-constexpr const char* kUpgrades[kLedgerVersion] = {
-    R"(
+// Integers of `least`, `classes` and so on belong to LoadGrid; `steps` and `low` to ClosedCycles. A day belongs to one
+// run, so that each run can be taken out.
+constexpr char kTables[] = R"(
 CREATE TABLE epochs(
   epoch INTEGER PRIMARY KEY, machine TEXT NOT NULL, equivalent_cycles_per_hour REAL NOT NULL);
 CREATE TABLE channels(
@@ -20,65 +27,26 @@ CREATE TABLE channels(
   UNIQUE(epoch, name));
 CREATE TABLE runs(
   run INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, epoch INTEGER NOT NULL REFERENCES epochs,
-  pieces INTEGER NOT NULL, ended INTEGER NOT NULL);
+  pieces INTEGER NOT NULL, parameters TEXT NOT NULL, messages INTEGER NOT NULL);
 CREATE TABLE days(
-  day INTEGER PRIMARY KEY, epoch INTEGER NOT NULL REFERENCES epochs, date TEXT NOT NULL,
-  duration_ns INTEGER NOT NULL, turns INTEGER NOT NULL);
+  day INTEGER PRIMARY KEY, epoch INTEGER NOT NULL REFERENCES epochs, run INTEGER NOT NULL REFERENCES runs,
+  date TEXT NOT NULL, duration_ns INTEGER NOT NULL, turns INTEGER NOT NULL);
+CREATE INDEX days_of_run ON days(run);
 CREATE TABLE tallies(
   channel INTEGER NOT NULL REFERENCES channels, day INTEGER NOT NULL REFERENCES days,
   counted INTEGER NOT NULL, skipped INTEGER NOT NULL, below INTEGER NOT NULL, above INTEGER NOT NULL,
   gaps INTEGER NOT NULL, deviations INTEGER NOT NULL, deviation_sum INTEGER NOT NULL, least REAL, greatest REAL,
+  range_square INTEGER NOT NULL, range_own INTEGER NOT NULL, range_common INTEGER NOT NULL,
   PRIMARY KEY(channel, day)) WITHOUT ROWID;
 CREATE TABLE cycles(
   channel INTEGER NOT NULL REFERENCES channels, day INTEGER NOT NULL REFERENCES days,
   steps INTEGER NOT NULL, low INTEGER NOT NULL, count INTEGER NOT NULL,
   PRIMARY KEY(channel, day, steps, low)) WITHOUT ROWID;
 CREATE TABLE residues(
-  channel INTEGER NOT NULL REFERENCES channels, open INTEGER NOT NULL, place INTEGER NOT NULL, class INTEGER NOT NULL,
-  PRIMARY KEY(channel, open, place)) WITHOUT ROWID;
-)",
-    // Runs apart, so that each can be taken out or replaced. What a ledger
-    // of version 1 has stays together, with the first run of its epoch.
-    R"(
-ALTER TABLE runs ADD COLUMN apart INTEGER NOT NULL DEFAULT 1;
-ALTER TABLE runs ADD COLUMN parameters TEXT NOT NULL DEFAULT '';
-ALTER TABLE runs ADD COLUMN messages INTEGER NOT NULL DEFAULT 0;
-UPDATE runs SET apart = 0, ended = 1;
-ALTER TABLE days ADD COLUMN run INTEGER REFERENCES runs;
-UPDATE days SET run = (SELECT min(run) FROM runs WHERE runs.epoch = days.epoch);
-CREATE TABLE residues_by_run(
   channel INTEGER NOT NULL REFERENCES channels, run INTEGER NOT NULL REFERENCES runs, place INTEGER NOT NULL,
   class INTEGER NOT NULL, PRIMARY KEY(channel, run, place)) WITHOUT ROWID;
-INSERT INTO residues_by_run SELECT r.channel,
-  (SELECT CASE r.open WHEN 1 THEN max(run) ELSE min(run) END FROM runs WHERE runs.epoch = c.epoch), r.place, r.class
-  FROM residues r JOIN channels c USING(channel);
-DROP TABLE residues;
-ALTER TABLE residues_by_run RENAME TO residues;
 CREATE TABLE marks(
   mark INTEGER NOT NULL, run INTEGER NOT NULL REFERENCES runs, PRIMARY KEY(mark, run)) WITHOUT ROWID;
-CREATE INDEX days_of_run ON days(run);
-)",
-    // Ranges of turns and their deviations; 0: not known apart.
-    R"(
-ALTER TABLE tallies ADD COLUMN range_square INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE tallies ADD COLUMN range_own INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE tallies ADD COLUMN range_common INTEGER NOT NULL DEFAULT 0;
-)"};
-
-/// A ledger of version 1 as one of version 2, for reading: the file stays as it is.
-constexpr char kReadVersion1[] = R"(
-CREATE TEMP VIEW days AS SELECT day, epoch, date, duration_ns, turns,
-  (SELECT min(run) FROM main.runs r WHERE r.epoch = d.epoch) AS run FROM main.days d;
-CREATE TEMP VIEW residues AS SELECT r.channel, place, class,
-  (SELECT CASE r.open WHEN 1 THEN max(run) ELSE min(run) END FROM main.runs WHERE runs.epoch = c.epoch) AS run
-  FROM main.residues r JOIN main.channels c USING(channel);
-CREATE TEMP VIEW runs AS SELECT run, name, epoch, pieces, ended, 0 AS apart, '' AS parameters, 0 AS messages
-  FROM main.runs;
-)";
-
-/// One of version 1 or 2 as one of version 3.
-constexpr char kReadVersion2[] = R"(
-CREATE TEMP VIEW tallies AS SELECT *, 0 AS range_square, 0 AS range_own, 0 AS range_common FROM main.tallies;
 )";
 
 std::int64_t valueOf(Database& database, const char* sql) {
@@ -86,38 +54,135 @@ std::int64_t valueOf(Database& database, const char* sql) {
   return statement.step() ? statement.integer(0) : -1;
 }
 
-/// Version of the ledger; 0 for an empty database. A problem for anything else.
-std::int64_t versionOf(Database& database) {
-  const std::int64_t application = valueOf(database, "PRAGMA application_id");
-  const std::int64_t version = valueOf(database, "PRAGMA user_version");
-  const std::int64_t tables = valueOf(database, "SELECT count(*) FROM sqlite_master");
-  if (!database.good()) return 0;
-  if (application == 0 && version == 0 && tables == 0) return 0;
-  if (application != kApplication) database.fail("is another database, no ledger");
-  if (version > kLedgerVersion || version < 1)
-    database.fail("a ledger of version " + std::to_string(version) + ", must be at most " +
-                  std::to_string(kLedgerVersion));
-  return version;
+enum Column { kId, kName, kLeast, kGreatest, kClasses, kKneeRange, kKneeCycles, kSlope, kSlopeBelow, kSensitivity };
+
+/// Nothing when the row has no curve, or none that SnCurve takes.
+std::optional<SnCurve> curveOf(const Database::Statement& row) {
+  if (row.isNull(kKneeRange)) return std::nullopt;
+  return SnCurve::make(row.number(kKneeRange), row.number(kKneeCycles), row.number(kSlope), row.number(kSlopeBelow))
+      .value;
+}
+
+/// The first value of a column that is not as `rule`, SQL for a value that is right, says.
+void check(Database& database, const std::string& from, const std::string& column, const std::string& rule,
+           const std::string& words) {
+  if (!database.good()) return;
+  const std::string sql = "SELECT quote(" + column + ") FROM " + from + " WHERE (" + rule + ") IS NOT TRUE LIMIT 1";
+  Database::Statement wrong(database, sql.c_str());
+  if (wrong.step())
+    database.fail("damaged: " + from.substr(0, from.find(' ')) + ": " + column + " " + wrong.text(0).substr(0, 60) +
+                  ", must be " + words);
 }
 
 }  // namespace
 
+std::string pathProblem(const std::string& path) {
+  struct stat found {};
+  if (stat(path.c_str(), &found) == 0) {
+    if (!S_ISREG(found.st_mode)) return "is no regular file";
+    // SQLite finds what a broken commit left by the file's name.
+    if (found.st_nlink > 1) return "has several names (hard links), must have one";
+    return access(path.c_str(), W_OK) == 0 ? "" : std::string("cannot be written: ") + std::strerror(errno);
+  }
+  const std::filesystem::path directory = std::filesystem::absolute(path).parent_path();
+  if (access(directory.c_str(), W_OK | X_OK) == 0) return {};
+  return std::string("cannot be made: ") + std::strerror(errno);
+}
+
+bool isLedger(Database& database) {
+  const std::int64_t application = valueOf(database, "PRAGMA application_id");
+  const std::int64_t version = valueOf(database, "PRAGMA user_version");
+  const std::int64_t tables = valueOf(database, "SELECT count(*) FROM sqlite_master");
+  if (!database.good() || (application == 0 && version == 0 && tables == 0)) return false;
+  Database::Statement other(database,
+                            "SELECT type, name FROM sqlite_master WHERE type IN ('view', 'trigger') OR "
+                            "(type = 'table' AND (rootpage < 1 OR sql LIKE 'CREATE VIRTUAL%'))");
+  if (other.step())
+    database.fail(other.text(0) + " " + other.text(1) + ": must hold tables alone, as this package writes them");
+  if (!database.good()) return false;
+  if (application != kApplication) database.fail("is another database, no ledger");
+  if (version != kLedgerVersion)
+    database.fail("a ledger of version " + std::to_string(version) + ", must be " + std::to_string(kLedgerVersion));
+  return true;
+}
+
+void checkLedger(Database& database) {
+  const auto text = [&](const char* table, const char* column) {
+    check(database, table, column, std::string("typeof(") + column + ") = 'text'", "a text");
+  };
+  // Two of them may be added without going beyond 64 bits, where SQLite goes on in floating point.
+  const std::string most = std::to_string(std::int64_t{1} << 62);
+  const auto count = [&](const char* table, std::initializer_list<const char*> columns) {
+    for (const char* column : columns)
+      check(database, table, column,
+            std::string("typeof(") + column + ") = 'integer' AND " + column + " BETWEEN 0 AND " + most,
+            "an integer in [0, " + most + "]");
+  };
+  const auto classes = [&](const char* table, const char* column, const char* least, const char* greatest) {
+    const std::string bounds = std::string(least) + " AND " + greatest;
+    check(database, std::string(table) + " JOIN channels USING(channel)", column,
+          std::string("typeof(") + column + ") = 'integer' AND " + column + " BETWEEN " + bounds,
+          std::string("an integer in [") + least + ", " + greatest + "]");
+  };
+  const std::string finite = " IN ('integer', 'real') AND abs(";
+  text("epochs", "machine");
+  check(database, "epochs", "equivalent_cycles_per_hour",
+        "typeof(equivalent_cycles_per_hour)" + finite +
+            "equivalent_cycles_per_hour) < 1e300 AND "
+            "equivalent_cycles_per_hour > 0",
+        "a finite number > 0");
+  text("channels", "name");
+  Database::Statement epochs(database, "SELECT epoch FROM epochs");
+  while (epochs.step()) channelsOf(database, epochs.integer(0));
+  text("runs", "name");
+  count("runs", {"pieces", "messages"});
+  check(database, "days", "date", "typeof(date) = 'text' AND date(date) IS date", "a date YYYY-MM-DD");
+  count("days", {"duration_ns", "turns"});
+  count("tallies", {"counted", "skipped", "below", "above", "gaps", "deviations", "deviation_sum", "range_square",
+                    "range_own", "range_common"});
+  for (const std::string column : {"least", "greatest"})
+    check(database, "tallies", column, column + " IS NULL OR (typeof(" + column + ")" + finite + column + ") < 1e300)",
+          "a finite number or none");
+  classes("cycles", "low", "0", "classes - 2");
+  classes("cycles", "steps", "1", "classes - 1 - low");
+  count("cycles", {"count"});
+  classes("residues", "class", "0", "classes - 1");
+}
+
 void beginAsLedger(Database& database) {
   // A commit must outlast a power cut, the journal's removal included.
   database.run("PRAGMA synchronous = EXTRA; PRAGMA foreign_keys = ON; BEGIN IMMEDIATE");
-  std::int64_t version = versionOf(database);
-  if (!database.good() || version == kLedgerVersion) return;
-  for (; version < kLedgerVersion; ++version) database.run(kUpgrades[version]);
+  if (isLedger(database)) return;
+  database.run(kTables);
   database.run(("PRAGMA application_id = " + std::to_string(kApplication)).c_str());
   database.run(("PRAGMA user_version = " + std::to_string(kLedgerVersion)).c_str());
 }
 
 void beginReading(Database& database) {
   database.run("BEGIN");
-  const std::int64_t version = versionOf(database);
-  if (version == 0) database.fail("holds no ledger");
-  if (version == 1) database.run(kReadVersion1);
-  if (version <= 2) database.run(kReadVersion2);
+  if (!isLedger(database)) database.fail("holds no ledger");
+  checkLedger(database);
+}
+
+std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch) {
+  Database::Statement rows(
+      database,
+      "SELECT channel, name, least, greatest, classes, sn_knee_range_MPa, sn_knee_cycles, sn_slope, "
+      "sn_slope_below, mean_stress_sensitivity FROM channels WHERE epoch = ?1 ORDER BY channel");
+  std::vector<ChannelRow> channels;
+  rows.with(epoch);
+  while (rows.step()) {
+    const Checked<LoadGrid> grid = LoadGrid::make(rows.number(kLeast), rows.number(kGreatest), rows.integer(kClasses));
+    const std::optional<SnCurve> curve = curveOf(rows);
+    if (!grid.value || curve.has_value() == rows.isNull(kKneeRange)) {
+      database.fail("damaged: channel " + rows.text(kName) + " has no possible grid or curve");
+      break;
+    }
+    std::optional<FkmMeanStress> mean;
+    if (!rows.isNull(kSensitivity)) mean = FkmMeanStress{rows.number(kSensitivity)};
+    channels.push_back({rows.integer(kId), {rows.text(kName), *grid.value, curve, mean}});
+  }
+  return channels;
 }
 
 }  // namespace hammer_loads::life

@@ -1,17 +1,39 @@
 /// Tables of a ledger, and what makes a file one.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "hammer_loads/life/database.h"
+#include "hammer_loads/life/ledger_run.h"
 
 namespace hammer_loads::life {
 
-constexpr int kLedgerVersion = 3;
+constexpr int kLedgerVersion = 1;
 
-/// Begins a transaction in which the file is a ledger of this version: a new or empty file gets its tables, an older
-/// ledger is upgraded. Anything else is left as it is, with a problem.
+/// Why the path cannot be that of a ledger, one line; empty: it can, or nothing is there yet. Does not open the file.
+std::string pathProblem(const std::string& path);
+
+/// False for an empty database; a problem for anything but that and a ledger of this version.
+bool isLedger(Database& database);
+
+/// Begins a transaction, as the only writer, in which the file is a ledger: a new or empty file gets its tables.
+/// Anything else is left as it is, with a problem.
 void beginAsLedger(Database& database);
 
-/// Begins a transaction for reading; a problem for anything but a ledger of this version or an older one.
+/// A problem for the first value that no run can have written. Reads the whole ledger.
+void checkLedger(Database& database);
+
+/// Begins a transaction for reading; a problem for anything but a ledger of this version.
 void beginReading(Database& database);
+
+struct ChannelRow {
+  std::int64_t id{};
+  LedgerChannel channel;
+};
+
+/// Channels of an epoch, in the order of LedgerMachine::channels. A problem for a grid or curve that none has.
+std::vector<ChannelRow> channelsOf(Database& database, std::int64_t epoch);
 
 }  // namespace hammer_loads::life

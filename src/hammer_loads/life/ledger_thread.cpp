@@ -25,23 +25,40 @@ std::optional<std::string> LedgerThread::close() {
   return state_.problem;
 }
 
-void LedgerThread::put(Job job) {
+void LedgerThread::put(Job job, std::shared_ptr<LifePiece> piece) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!closing_) jobs_.push_back(std::move(job));
+    if (closing_) return;
+    // Pieces of one day that wait for the thread are added up, so that a disk that stands costs no memory.
+    const bool goes_on = piece && !jobs_.empty() && jobs_.back().piece &&
+                         dayOf(jobs_.back().piece->stamp) == dayOf(piece->stamp);
+    if (goes_on)
+      jobs_.back().piece->advance(*piece);
+    else
+      jobs_.push_back({std::move(job), std::move(piece)});
   }
   wake_.notify_one();
 }
 
 void LedgerThread::begin(const LedgerMachine& machine, const RunId& run) {
-  put({LedgerRun(path_, machine, run), {}, false});
+  put([path = path_, machine, run](std::deque<Run>& runs) { runs.push_back({LedgerRun(path, machine, run), false}); });
 }
 
-void LedgerThread::add(const LifePiece& piece) { put({{}, piece, false}); }
+void LedgerThread::add(const LifePiece& piece) {
+  const auto kept = std::make_shared<LifePiece>(piece);
+  put([kept](std::deque<Run>& runs) { runs.back().ledger.keep(*kept); }, kept);
+}
 
-void LedgerThread::refuse(const std::string& reason) { put({{}, {}, false, reason}); }
+void LedgerThread::refuse(const std::string& reason) {
+  put([reason](std::deque<Run>& runs) { runs.back().ledger.refuse(reason); });
+}
 
-void LedgerThread::end(const LifePiece& last) { put({{}, last, true}); }
+void LedgerThread::end(const LifePiece& last) {
+  put([last](std::deque<Run>& runs) {
+    runs.back().ledger.keep(last);
+    runs.back().ends = true;
+  });
+}
 
 LedgerThread::State LedgerThread::state() const {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -50,7 +67,7 @@ LedgerThread::State LedgerThread::state() const {
 
 void LedgerThread::work() {
   for (bool closing = false; !closing;) {
-    std::vector<Job> jobs;
+    std::vector<Waiting> jobs;
     {
       std::unique_lock<std::mutex> lock(mutex_);
       const auto called = [this] { return closing_ || !jobs_.empty(); };
@@ -62,24 +79,20 @@ void LedgerThread::work() {
       jobs.swap(jobs_);
       closing = closing_;
     }
-    for (Job& job : jobs) take(std::move(job));
+    for (const Waiting& waiting : jobs) waiting.job(runs_);
     write();
   }
-}
-
-void LedgerThread::take(Job job) {
-  if (job.begin) runs_.push_back({*std::move(job.begin), false});
-  if (!job.refusal.empty()) runs_.back().ledger.refuse(job.refusal);
-  if (job.piece) runs_.back().ledger.keep(*std::move(job.piece));
-  runs_.back().ends = runs_.back().ends || job.ends;
 }
 
 void LedgerThread::write() {
   std::optional<std::string> problem;
   while (!runs_.empty() && !problem) {
     Run& first = runs_.front();
-    problem = first.ledger.prepare();
-    if (!problem) problem = first.ends ? first.ledger.end({}) : first.ledger.add({});
+    if (std::string trouble = ledgerProblem(path_); !trouble.empty()) {
+      problem = std::move(trouble);
+      break;
+    }
+    problem = first.ends ? first.ledger.end({}) : first.ledger.add();
     const bool refused = first.ledger.refused();
     if (!first.ends || (problem && !refused)) break;
     if (refused) refusal_ = *std::exchange(problem, std::nullopt);

@@ -4,6 +4,8 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -40,20 +42,18 @@ class LedgerThread final : public PieceSink {
   const std::string& path() const { return path_; }
 
  private:
-  struct Job {
-    std::optional<LedgerRun> begin;
-    std::optional<LifePiece> piece;
-    bool ends{};
-    std::string refusal{};
-  };
   struct Run {
     LedgerRun ledger;
     bool ends{};
   };
+  using Job = std::function<void(std::deque<Run>&)>;
+  struct Waiting {
+    Job job;
+    std::shared_ptr<LifePiece> piece;  ///< that the job adds; null: it does something else
+  };
 
-  void put(Job job);
+  void put(Job job, std::shared_ptr<LifePiece> piece = nullptr);
   void work();
-  void take(Job job);
   void write();
 
   const std::string path_;
@@ -61,7 +61,7 @@ class LedgerThread final : public PieceSink {
   std::string refusal_;   ///< as above: of runs that ended; it stays, for what they counted is in no ledger
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::vector<Job> jobs_;  ///< this and the rest under the mutex
+  std::vector<Waiting> jobs_;  ///< this and the rest under the mutex
   State state_;
   bool closing_{};
   std::thread thread_;

@@ -1,11 +1,10 @@
 #include "hammer_loads/life/ledger_writer.h"
 
-#include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
-#include "hammer_loads/life/ledger_rows.h"
 #include "hammer_loads/util/format.h"
 
 namespace hammer_loads::life {
@@ -40,13 +39,10 @@ bool sameChannels(const std::vector<ChannelRow>& rows, const std::vector<LedgerC
   return true;
 }
 
-/// The latest epoch, if it is of this machine.
-std::optional<std::int64_t> presentEpoch(Database& database, const LedgerMachine& machine) {
-  Database::Statement latest(database, "SELECT epoch, machine FROM epochs ORDER BY epoch DESC LIMIT 1");
-  if (!latest.step() || latest.text(1) != machine.identity) return std::nullopt;
-  const std::int64_t epoch = latest.integer(0);
-  if (!sameChannels(channelsOf(database, epoch), machine.channels)) return std::nullopt;
-  return epoch;
+bool isOf(Database& database, std::int64_t epoch, const LedgerMachine& machine) {
+  Database::Statement row(database, "SELECT machine FROM epochs WHERE epoch = ?1");
+  return row.with(epoch).step() && row.text(0) == machine.identity &&
+         sameChannels(channelsOf(database, epoch), machine.channels);
 }
 
 std::int64_t newEpoch(Database& database, const LedgerMachine& machine) {
@@ -116,11 +112,25 @@ void setResidue(Database& database, std::int64_t channel, std::int64_t run, cons
 }
 
 RunRow rowOf(const Database::Statement& row) {
-  return {row.integer(0), row.integer(1),      row.integer(2), row.integer(3) != 0,
-          row.text(4),    row.integer(5) != 0, row.text(6),    static_cast<std::uint64_t>(row.integer(7))};
+  return {row.integer(0), row.integer(1), row.integer(2),
+          row.text(3),    row.text(4),    static_cast<std::uint64_t>(row.integer(5))};
 }
 
-#define HAMMER_LOADS_RUN_COLUMNS "SELECT run, epoch, pieces, ended, name, apart, parameters, messages FROM runs "
+#define HAMMER_LOADS_RUN_COLUMNS "SELECT run, epoch, pieces, name, parameters, messages FROM runs "
+
+void emptyRun(Database& database, const RunRow& run) {
+  for (const char* sql :
+       {"DELETE FROM cycles WHERE day IN (SELECT day FROM days WHERE run = ?1)",
+        "DELETE FROM tallies WHERE day IN (SELECT day FROM days WHERE run = ?1)", "DELETE FROM days WHERE run = ?1",
+        "DELETE FROM residues WHERE run = ?1", "DELETE FROM marks WHERE run = ?1", "DELETE FROM runs WHERE run = ?1"})
+    Database::Statement(database, sql).run(run.run);
+}
+
+void removeUnusedEpochs(Database& database) {
+  database.run(
+      "DELETE FROM channels WHERE epoch NOT IN (SELECT epoch FROM runs); "
+      "DELETE FROM epochs WHERE epoch NOT IN (SELECT epoch FROM runs)");
+}
 
 }  // namespace
 
@@ -130,23 +140,20 @@ std::optional<RunRow> findRun(Database& database, const std::string& name) {
   return rowOf(row);
 }
 
-std::vector<RunRow> runsLike(Database& database, const LedgerMachine& machine, const RunId& id,
+std::vector<RunRow> runsLike(Database& database, const LedgerMachine& machine, const std::string& name,
                              const std::vector<std::int64_t>& marks) {
-  std::vector<RunRow> runs;
-  std::set<std::int64_t> known;
-  const auto take = [&](Database::Statement& rows) {
-    while (rows.step()) {
-      if (known.insert(rows.integer(0)).second) runs.push_back(rowOf(rows));
-    }
-  };
-  Database::Statement named(database, HAMMER_LOADS_RUN_COLUMNS "WHERE name = ?1 OR (apart = 0 AND name = ?2)");
-  take(named.with(id.name, id.older));
+  std::map<std::int64_t, RunRow> runs;
+  if (const std::optional<RunRow> named = findRun(database, name)) runs.emplace(named->run, *named);
   Database::Statement marked(database, HAMMER_LOADS_RUN_COLUMNS
                              "WHERE run IN (SELECT run FROM marks WHERE mark = ?1) AND "
                              "epoch IN (SELECT epoch FROM epochs WHERE machine = ?2)");
-  for (const std::int64_t mark : marks) take(marked.with(mark, machine.identity));
-  std::sort(runs.begin(), runs.end(), [](const RunRow& a, const RunRow& b) { return a.run < b.run; });
-  return runs;
+  for (const std::int64_t mark : marks) {
+    marked.with(mark, machine.identity);
+    while (marked.step()) runs.emplace(marked.integer(0), rowOf(marked));
+  }
+  std::vector<RunRow> in_order;
+  for (const auto& [id, run] : runs) in_order.push_back(run);
+  return in_order;
 }
 
 bool holdsMarksOf(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks) {
@@ -159,51 +166,31 @@ bool holdsMarksOf(Database& database, const RunRow& run, const std::vector<std::
   return true;
 }
 
-RunRow beginRun(Database& database, const LedgerMachine& machine, const RunId& id) {
-  database.run("UPDATE runs SET ended = 1 WHERE ended = 0");
-  const std::optional<std::int64_t> present = presentEpoch(database, machine);
-  const std::int64_t epoch = present ? *present : newEpoch(database, machine);
-  setJudgement(database, epoch, machine);
-  Database::Statement(database, "INSERT INTO runs(name, epoch, pieces, ended, parameters) VALUES(?1, ?2, 0, 0, ?3)")
-      .run(id.name, epoch, id.parameters);
-  return {lastId(database), epoch, 0, false, id.name, true, id.parameters, 0};
-}
-
-RunRow replaceRuns(Database& database, const LedgerMachine& machine, const RunId& id, const std::vector<RunRow>& runs) {
-  const RunRow& first = runs.front();
-  Database::Statement epoch(database, "SELECT machine FROM epochs WHERE epoch = ?1");
-  epoch.with(first.epoch);
-  const bool in_place = epoch.step() && epoch.text(0) == machine.identity &&
-                        sameChannels(channelsOf(database, first.epoch), machine.channels);
-  epoch.reset();
-  if (in_place) {  // before its epoch can be left without a run
-    Database::Statement(database, "UPDATE runs SET name = ?2, pieces = 0, ended = 0, parameters = ?3 WHERE run = ?1")
-        .run(first.run, id.name + " in place", id.parameters);
-    setJudgement(database, first.epoch, machine);
-    emptyRun(database, first.run);
+RunRow beginRun(Database& database, const LedgerMachine& machine, const RunId& id,
+                const std::vector<RunRow>& replaced) {
+  RunRow row;
+  for (const RunRow& run : replaced) emptyRun(database, run);
+  if (!replaced.empty() && isOf(database, replaced.front().epoch, machine)) {
+    row.run = replaced.front().run;
+    row.epoch = replaced.front().epoch;
+  } else {
+    removeUnusedEpochs(database);
+    Database::Statement latest(database, "SELECT max(epoch) FROM epochs");
+    const std::int64_t epoch = latest.step() ? latest.integer(0) : 0;
+    row.epoch = isOf(database, epoch, machine) ? epoch : newEpoch(database, machine);
   }
-  for (const RunRow& run : runs) {
-    if (!in_place || run.run != first.run) removeRun(database, run);
-  }
-  if (!in_place) return beginRun(database, machine, id);
-  Database::Statement(database, "UPDATE runs SET name = ?2 WHERE run = ?1").run(first.run, id.name);
-  return {first.run, first.epoch, 0, false, id.name, true, id.parameters, 0};
-}
-
-void emptyRun(Database& database, std::int64_t run) {
-  for (const char* sql :
-       {"DELETE FROM cycles WHERE day IN (SELECT day FROM days WHERE run = ?1)",
-        "DELETE FROM tallies WHERE day IN (SELECT day FROM days WHERE run = ?1)", "DELETE FROM days WHERE run = ?1",
-        "DELETE FROM residues WHERE run = ?1", "DELETE FROM marks WHERE run = ?1"})
-    Database::Statement(database, sql).run(run);
+  setJudgement(database, row.epoch, machine);
+  const std::optional<std::int64_t> place = row.run > 0 ? std::make_optional(row.run) : std::nullopt;
+  Database::Statement(database, "INSERT INTO runs VALUES(?1, ?2, ?3, 0, ?4, 0)")
+      .run(place, id.name, row.epoch, id.parameters);
+  row.run = lastId(database);
+  removeUnusedEpochs(database);
+  return row;
 }
 
 void removeRun(Database& database, const RunRow& run) {
-  emptyRun(database, run.run);
-  Database::Statement(database, "DELETE FROM runs WHERE run = ?1").run(run.run);
-  for (const char* sql : {"DELETE FROM channels WHERE epoch = ?1 AND NOT EXISTS (SELECT 1 FROM runs WHERE epoch = ?1)",
-                          "DELETE FROM epochs WHERE epoch = ?1 AND NOT EXISTS (SELECT 1 FROM runs WHERE epoch = ?1)"})
-    Database::Statement(database, sql).run(run.epoch);
+  emptyRun(database, run);
+  removeUnusedEpochs(database);
 }
 
 void addPiece(Database& database, const RunRow& run, const LifePiece& piece) {
@@ -220,14 +207,12 @@ void addPiece(Database& database, const RunRow& run, const LifePiece& piece) {
   }
 }
 
-void setRun(Database& database, const RunRow& run, std::int64_t pieces, std::uint64_t messages, bool ended) {
-  Database::Statement(database, "UPDATE runs SET pieces = ?2, messages = ?3, ended = ?4 WHERE run = ?1")
-      .run(run.run, pieces, messages, std::int64_t{ended});
-}
-
-void addMarks(Database& database, const RunRow& run, const std::vector<std::int64_t>& marks, std::size_t from) {
+void setRun(Database& database, const RunRow& run, std::int64_t pieces, std::uint64_t messages,
+            const std::vector<std::int64_t>& marks, std::size_t first_mark) {
+  Database::Statement(database, "UPDATE runs SET pieces = ?2, messages = ?3 WHERE run = ?1")
+      .run(run.run, pieces, messages);
   Database::Statement add(database, "INSERT OR IGNORE INTO marks VALUES(?1, ?2)");
-  for (std::size_t i = from; i < marks.size(); ++i) add.run(marks[i], run.run);
+  for (std::size_t i = first_mark; i < marks.size(); ++i) add.run(marks[i], run.run);
 }
 
 }  // namespace hammer_loads::life

@@ -59,6 +59,13 @@ std::vector<std::string> BagLog::settingProblems() const {
   return problems;
 }
 
+LogOrder BagLog::orderNow(LogOrder::Kind kind) const {
+  LogOrder order;
+  order.kind = kind;
+  order.position = queue_.end();
+  return order;
+}
+
 /// Settings are right, but disk or memory does not allow it now.
 std::vector<std::string> BagLog::refuse(LogState state, std::string problem) {
   writer_.refuse(++last_session_, state, problem);
@@ -68,6 +75,7 @@ std::vector<std::string> BagLog::refuse(LogState state, std::string problem) {
 std::vector<std::string> BagLog::start() {
   if (isRecording()) return {"log: already recording to " + writer_.status().file};
   session_ = 0;
+  is_wanted_ = true;
   std::vector<std::string> problems = settingProblems();
   if (!problems.empty()) return problems;
   const Checked<std::string> directory = findLogDirectory(settings_.directory);
@@ -86,7 +94,7 @@ std::vector<std::string> BagLog::start() {
     return refuse(LogState::kFailed,
                   format("log_queue_mb: %.9g MB, must be <= the free memory", mb(settings_.queue_size)));
   }
-  LogOrder order;
+  LogOrder order = orderNow(LogOrder::Kind::kStart);
   Checked<LogName> name = LogName::take(*directory.value, filePrefix(settings_), order.next_number);
   if (!name.value) return refuse(LogState::kFailed, name.problems.front());
   if (!LogFile::hasRoomFor(*name.value, free)) {
@@ -94,24 +102,27 @@ std::vector<std::string> BagLog::start() {
                                               directory.value->c_str(), mb(LogFile::kAllocationStep)));
   }
 
-  order.kind = LogOrder::Kind::kStart;
-  order.position = queue_.end();
   order.session = last_session_ + 1;
   order.directory = *directory.value;
   order.name.emplace(std::move(*name.value));
   if (!writer_.post(std::move(order))) return refuse(LogState::kFailed, "log: too many orders wait for the disk");
   session_ = ++last_session_;
   gapNoted();
-  // A message that could not be latched meanwhile is missing from the start.
-  for (const LogTopic& topic : topics_) has_gap_ |= topic.latched && topic.refused > 0 && !topic.is_remembered;
   return {};
 }
 
+bool BagLog::hasRoomAgain() const {
+  // So that a disk at its limit does not begin a bag every second.
+  constexpr std::uint64_t kMoreRoom = 16'000'000;  // [byte]
+  if (!is_wanted_ || isRecording() || writer_.status().state != LogState::kDiskFull) return false;
+  const Checked<std::string> directory = findLogDirectory(settings_.directory);
+  return directory.value && disk_.free_space(*directory.value) >= settings_.min_free_space + kMoreRoom;
+}
+
 void BagLog::stop() {
+  is_wanted_ = false;
   if (session_ == 0) return;
-  LogOrder order;
-  order.kind = LogOrder::Kind::kStop;
-  order.position = queue_.end();
+  LogOrder order = orderNow(LogOrder::Kind::kStop);
   noteGapIn(order);
   writer_.post(std::move(order));
   gapNoted();
@@ -120,9 +131,7 @@ void BagLog::stop() {
 
 bool BagLog::split() {
   if (!isRecording()) return false;
-  LogOrder order;
-  order.kind = LogOrder::Kind::kSplit;
-  order.position = queue_.end();
+  LogOrder order = orderNow(LogOrder::Kind::kSplit);
   noteGapIn(order);
   if (!writer_.post(std::move(order))) return false;
   gapNoted();
@@ -139,13 +148,10 @@ LogTopic& BagLog::addTopic(Names& names, const std::string& key, const std::stri
 }
 
 void BagLog::latch(LogTopic& topic, const ros::Time& time, std::vector<std::uint8_t> bytes) {
-  LogOrder order;
-  order.kind = LogOrder::Kind::kLatched;
-  order.position = queue_.end();
+  LogOrder order = orderNow(LogOrder::Kind::kLatched);
   order.topic = &topic;
   order.time = time;
   order.bytes = std::move(bytes);
-  topic.is_remembered = true;
   if (writer_.post(std::move(order))) return;
   lose(topic, time);
   forget(topic);  // what was latched before holds no longer
@@ -156,10 +162,7 @@ void BagLog::forgetLatched(const std::string& topic, const std::string& caller) 
 }
 
 void BagLog::forget(LogTopic& topic) {
-  if (!std::exchange(topic.is_remembered, false)) return;
-  LogOrder order;
-  order.kind = LogOrder::Kind::kForget;
-  order.position = queue_.end();
+  LogOrder order = orderNow(LogOrder::Kind::kForget);
   order.topic = &topic;
   writer_.post(std::move(order));
 }
@@ -182,11 +185,10 @@ std::vector<std::uint8_t> BagLog::describeGap() {
   gap.message = "messages were lost: a bag processed again may differ from what was published (log_queue_mb)";
   for (LogTopic& topic : topics_) {
     const std::uint64_t refused = topic.refused.load(std::memory_order_relaxed);
-    const bool is_missing = topic.latched && refused > 0 && !topic.is_remembered;
-    if (refused == topic.noted && !is_missing) continue;
+    if (refused == topic.noted) continue;
     gap.values.emplace_back();
     gap.values.back().key = topic.name;
-    gap.values.back().value = std::to_string(std::max<std::uint64_t>(refused - topic.noted, 1));
+    gap.values.back().value = std::to_string(refused - topic.noted);
   }
   std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(gap));
   ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
@@ -220,18 +222,13 @@ void BagLog::noteGapIn(LogOrder& order) {
 }
 
 std::vector<std::string> BagLog::unfinishedBags() const {
-  std::vector<std::string> paths;
   const Checked<std::string> directory = findLogDirectory(settings_.directory);
-  if (!directory.value) return paths;
-  for (FoundLog& log : findLogs(*directory.value, filePrefix(settings_)))
-    if (log.is_unfinished) paths.push_back(std::move(log.path));
-  return paths;
+  return directory.value ? unfinishedLogs(*directory.value, filePrefix(settings_)) : std::vector<std::string>{};
 }
 
 std::string BagLog::recoveryHint(const std::string& path) {
   const std::string bag = path.substr(0, path.rfind(".active"));
-  return path + " was not closed; to recover it: mv '" + path + "' '" + bag + "' && rosbag reindex '" + bag +
-         "'; until then it counts for log_total_mb";
+  return path + " was not closed; to recover it: mv '" + path + "' '" + bag + "' && rosbag reindex '" + bag + "'";
 }
 
 LogHealth BagLog::health() const {

@@ -54,6 +54,10 @@ class BagLog {
   /// Messages latched there hold no longer: later bags begin without it.
   void forgetLatched(const std::string& topic, const std::string& caller = {});
 
+  /// Whether a log that a full disk stopped, or kept from starting, may start() again: some room is there beyond
+  /// log_min_free_mb. False after stop().
+  bool hasRoomAgain() const;
+
   /// Bags of earlier runs with this prefix that were not closed: `rosbag reindex` recovers them (recoveryHint).
   std::vector<std::string> unfinishedBags() const;
   /// How to recover such a bag, one line.
@@ -68,8 +72,8 @@ class BagLog {
 
  private:
   using Names = std::unordered_map<std::string, LogTopic*>;
-  static constexpr std::size_t kMostLatched = 1000;  // topics and callers
 
+  LogOrder orderNow(LogOrder::Kind kind) const;
   std::vector<std::string> refuse(LogState state, std::string problem);
   static std::string latchedKey(const std::string& topic, const std::string& caller) { return topic + '\n' + caller; }
   LogTopic& addTopic(Names& names, const std::string& key, const std::string& topic, const LogType& type, bool latched,
@@ -93,6 +97,7 @@ class BagLog {
   const LogDisk disk_;
   std::uint64_t session_{};  // of the current recording; 0: none is wanted
   std::uint64_t last_session_{};
+  bool is_wanted_{};                 // by the last of start() and stop()
   mutable std::mutex topics_mutex_;  // for additions, and for readers of other threads
   std::deque<LogTopic> topics_;
   Names plain_, latched_;
@@ -126,9 +131,6 @@ void BagLog::writeLatched(const std::string& topic, const ros::Time& time, const
                           const std::string& caller) {
   const std::string key = latchedKey(topic, caller);
   const auto known = latched_.find(key);
-  if (known == latched_.end() && latched_.size() >= kMostLatched) {
-    return lose(addTopic(plain_, topic, topic, typeOf(message), false, {}), time);
-  }
   LogTopic& entry =
       known != latched_.end() ? *known->second : addTopic(latched_, key, topic, typeOf(message), true, caller);
   const std::uint32_t size = ros::serialization::serializationLength(message);

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <filesystem>
 #include <regex>
-#include <tuple>
 
 namespace hammer_loads {
 namespace {
@@ -73,26 +72,19 @@ std::uint64_t freeSpace(const std::string& directory) {
   return static_cast<std::uint64_t>(found.f_bavail) * found.f_frsize;
 }
 
-std::vector<FoundLog> findLogs(const std::string& directory, const std::string& prefix) {
-  static const std::regex kPattern(R"(_(\d{4}(?:-\d{2}){5})_(\d{1,9})(?:-(\d{1,9}))?\.bag(\.active)?)");
-  using Age = std::tuple<std::string, unsigned long, unsigned long>;
-  std::vector<std::pair<Age, FoundLog>> found;
+std::vector<std::string> unfinishedLogs(const std::string& directory, const std::string& prefix) {
+  static const std::regex kPattern(R"(_\d{4}(-\d{2}){5}_\d+\.bag\.active)");
+  std::vector<std::string> paths;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename().string();
-    std::smatch match;
-    const std::string rest = name.rfind(prefix, 0) == 0 ? name.substr(prefix.size()) : "";
+    const std::string path = entry.path().string(), name = entry.path().filename().string();
     struct stat status {};
-    if (!std::regex_match(rest, match, kPattern) || lstat(entry.path().c_str(), &status) != 0) continue;
-    if (!S_ISREG(status.st_mode) || status.st_size == 0 || isBeingWritten(entry.path().string())) continue;
-    const auto number = [&match](std::size_t i) { return match[i].matched ? std::stoul(match[i].str()) : 0; };
-    found.push_back({{match[1].str(), number(2), number(3)},
-                     {entry.path().string(), static_cast<std::uint64_t>(status.st_size), match[4].matched}});
+    if (name.rfind(prefix, 0) != 0 || !std::regex_match(name.substr(prefix.size()), kPattern)) continue;
+    if (lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0) continue;
+    if (!isBeingWritten(path)) paths.push_back(path);
   }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<FoundLog> logs;
-  for (auto& [age, log] : found) logs.push_back(std::move(log));
-  return logs;
+  std::sort(paths.begin(), paths.end());
+  return paths;
 }
 
 }  // namespace hammer_loads

@@ -17,15 +17,8 @@ Checked<std::string> findLogDirectory(const std::string& given);
 /// Bytes on the directory's disk that this user may still take; 0 if that cannot be found out.
 std::uint64_t freeSpace(const std::string& directory);
 
-/// One bag of an earlier recording.
-struct FoundLog {
-  std::string path;
-  std::uint64_t size{};  ///< [byte]
-  bool is_unfinished{};  ///< PREFIX_..._N.bag.active: its process was killed, or its disk failed
-};
-
-/// Bags that a log with this prefix has written, oldest first. Left out are those that some process still writes, links
-/// and empty files.
-std::vector<FoundLog> findLogs(const std::string& directory, const std::string& prefix);
+/// Paths of the bags PREFIX_..._N.bag.active that no process writes any more: theirs was killed, or its disk failed.
+/// Left out are links and empty files.
+std::vector<std::string> unfinishedLogs(const std::string& directory, const std::string& prefix);
 
 }  // namespace hammer_loads

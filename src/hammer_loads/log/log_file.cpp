@@ -111,7 +111,7 @@ std::optional<LogFault> LogFile::open() {
       const std::lock_guard<std::mutex> lock(pluginMutex());
       bag_ = std::make_unique<rosbag::Bag>();
     }
-    bag_->open(name_.openPath(), rosbag::bagmode::Write);
+    bag_->open(name_.active(), rosbag::bagmode::Write);
     bag_->setCompression(rosbag::compression::LZ4);
     bag_->setChunkThreshold(chunk_size_);
     is_open_ = true;

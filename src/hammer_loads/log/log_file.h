@@ -66,7 +66,7 @@ class LogFile {
   const std::string& path() const noexcept { return is_complete_ ? name_.final() : name_.active(); }
   bool isOpen() const noexcept { return is_open_; }
   bool isComplete() const noexcept { return is_complete_; }  ///< closed with its index, under its final name
-  bool isInPlace() const noexcept { return name_.isInPlace(); }
+  bool isDeleted() const noexcept { return name_.isDeleted(); }
 
  private:
   struct Connection {

@@ -23,20 +23,15 @@ class LogName {
   const std::string& active() const noexcept { return active_; }  ///< path while it is written
   const std::string& final() const noexcept { return final_; }    ///< path afterwards
   int descriptor() const noexcept { return descriptor_; }         ///< of the active file
-  /// Path that opens this very file, whatever lies under its name by now.
-  std::string openPath() const;
-  /// active() still leads to this file: neither it nor a directory above it was moved, deleted or replaced.
-  bool isInPlace() const noexcept;
+  bool isDeleted() const noexcept;
 
   /// Renames active to final; if the final name was taken meanwhile, to another one. Empty or what went wrong.
   std::string publish();
 
  private:
   LogName() = default;
-  bool isOurs(int directory, const std::string& path) const noexcept;
 
   std::string active_, final_;
-  int directory_{-1};  // where the file is, also if that is called otherwise by now
   int descriptor_{-1};
 };
 

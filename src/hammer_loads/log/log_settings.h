@@ -10,16 +10,13 @@ namespace hammer_loads {
 /// Sizes are in bytes here and in MB = 1e6 bytes in the file.
 struct LogSettings {
   bool enabled{};
-  std::string directory;       ///< as given; a leading ~/ means the home directory of the node's user
-  std::string prefix;          ///< file names begin with it; without /; empty: name of the node
-  std::string node;            ///< name of the node that logs, not from a file: see forNode()
-  std::uint64_t split_size{};  ///< a bag larger than this is closed and a new one begun [byte], > 0
-  std::uint64_t total_size{};  ///< of all bags together; beyond it the oldest is deleted [byte], 0: no limit
-  bool prune_earlier_runs{};   ///< bags of earlier runs with this prefix count for total_size and are deleted first;
-                               ///< without it only the unclosed ones count, and none is deleted
+  std::string directory;           ///< as given; a leading ~/ means the home directory of the node's user
+  std::string prefix;              ///< file names begin with it; without /; empty: name of the node
+  std::string node;                ///< name of the node that logs, not from a file: see forNode()
+  std::uint64_t split_size{};      ///< a bag larger than this is closed and a new one begun [byte], > 0
+  std::uint64_t total_size{};      ///< of the bags of this process; beyond it the oldest is deleted [byte], 0: no limit
   std::uint64_t min_free_space{};  ///< on the disk; below it nothing more is logged [byte]
-  /// Messages waiting for the disk, and again as much for latched ones; beyond it they are dropped and counted [byte],
-  /// > 0.
+  /// Messages waiting for the disk; beyond it they are dropped and counted [byte], > 0.
   std::uint64_t queue_size{};
 };
 

@@ -30,7 +30,6 @@ struct LogTopic {
   std::atomic<std::uint64_t> too_large{};  ///< those of them that never fit into the queue
   std::atomic<std::uint64_t> unsaved{};    ///< messages lost in the queue because the log stopped for a fault
   std::uint64_t noted{};                   ///< of `refused`, those that a bag already reports; producing thread only
-  bool is_remembered{};                    ///< the writer has a latched message of it, or will; producing thread only
 };
 
 }  // namespace hammer_loads

@@ -1,5 +1,7 @@
 #include "hammer_loads/log/log_writer.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -36,11 +38,6 @@ bool LogWriter::post(LogOrder order) {
     // At most one order to stop follows each one to start; one to forget holds no message.
     const bool is_free = order.kind == LogOrder::Kind::kStop || order.kind == LogOrder::Kind::kForget;
     if (orders_.size() >= kMostOrders && !is_free) return false;
-    if (order.kind == LogOrder::Kind::kLatched) {
-      const std::uint64_t size = latchedSize(order.bytes.size());
-      if (latched_size_ + size > settings_.queue_size) return false;
-      latched_size_ += size;
-    }
     if (order.kind == LogOrder::Kind::kStart) {  // known at once, not only when the thread gets there
       status_session_ = order.session;
       status_.state = LogState::kRecording;
@@ -112,7 +109,6 @@ void LogWriter::carryOut(LogOrder& order) {
       session_ = order.session;
       directory_ = order.directory;
       next_number_ = order.next_number;
-      kept_.findEarlierRuns(directory_, settings_);
       return begin(std::move(*order.name));
     case LogOrder::Kind::kStop:
       writeLast(order);
@@ -165,10 +161,7 @@ void LogWriter::keepHouse(Clock::time_point now) {
 }
 
 std::optional<LogFault> LogWriter::checkDisk() {
-  if (!file_->isInPlace()) {
-    return LogFault{LogState::kFailed,
-                    "log file " + file_->path() + " was deleted, moved or replaced, or a directory above it"};
-  }
+  if (file_->isDeleted()) return LogFault{LogState::kFailed, "log file " + file_->path() + " was deleted"};
   const std::uint64_t free = disk_.free_space(directory_);
   if (free >= settings_.min_free_space) return {};
   constexpr double kMb = 1e6;
@@ -178,7 +171,7 @@ std::optional<LogFault> LogWriter::checkDisk() {
 }
 
 void LogWriter::begin(LogName name) {
-  totals_.files_deleted += kept_.makeRoom(settings_);
+  makeRoom();
   const std::uint64_t chunk_size = std::min(kChunkSize, settings_.split_size / 4);
   file_ = std::make_unique<LogFile>(std::move(name), static_cast<std::uint32_t>(chunk_size));
   opened_ = Clock::now();
@@ -235,19 +228,27 @@ void LogWriter::stopFor(LogFault fault) {
 /// Enters a file that has just been closed.
 void LogWriter::settle() {
   if (!file_->isComplete()) return;
-  kept_.add(file_->path(), file_->size());
+  closed_.emplace_back(file_->path(), file_->size());
+  closed_size_ += file_->size();
   totals_.bytes_written += file_->size();
   ++totals_.files_closed;
+}
+
+/// Deletes the oldest files of this process until one more has its place within log_total_mb. Those of earlier runs may
+/// still be wanted.
+void LogWriter::makeRoom() {
+  if (settings_.total_size == 0) return;
+  while (!closed_.empty() && closed_size_ + settings_.split_size > settings_.total_size) {
+    if (unlink(closed_.front().first.c_str()) == 0) ++totals_.files_deleted;
+    closed_size_ -= closed_.front().second;
+    closed_.pop_front();
+  }
 }
 
 void LogWriter::latch(LogOrder& order) {
   const auto same = [&order](const Latched& latched) { return latched.topic == order.topic; };
   auto place = std::find_if(latched_.begin(), latched_.end(), same);
-  if (place == latched_.end()) {
-    place = latched_.insert(place, Latched{order.topic, {}, {}});
-  } else {
-    latched_size_ -= latchedSize(place->bytes.size());
-  }
+  if (place == latched_.end()) place = latched_.insert(place, Latched{order.topic, {}, {}});
   place->time = order.time;
   place->bytes = std::move(order.bytes);
   if (!file_) return;
@@ -261,10 +262,7 @@ void LogWriter::latch(LogOrder& order) {
 
 void LogWriter::forget(const LogTopic* topic) {
   const auto same = [topic](const Latched& latched) { return latched.topic == topic; };
-  const auto place = std::find_if(latched_.begin(), latched_.end(), same);
-  if (place == latched_.end()) return;
-  latched_size_ -= latchedSize(place->bytes.size());
-  latched_.erase(place);
+  latched_.erase(std::remove_if(latched_.begin(), latched_.end(), same), latched_.end());
 }
 
 /// time: of the file's first message, so that the file does not begin with a gap; null: there is none yet.

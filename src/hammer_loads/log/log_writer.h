@@ -10,9 +10,9 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "hammer_loads/log/kept_logs.h"
 #include "hammer_loads/log/log_file.h"
 #include "hammer_loads/log/log_queue.h"
 #include "hammer_loads/log/log_settings.h"
@@ -43,8 +43,7 @@ class LogWriter {
   /// Carries out all orders, writes all messages, closes the file.
   ~LogWriter();
 
-  /// False if far too many orders wait already, or no memory is left for what is latched. To stop and to forget always
-  /// succeeds.
+  /// False if far too many orders wait already. To stop and to forget always succeeds.
   bool post(LogOrder order);
   /// A recording that cannot begin. session: a number of its own.
   void refuse(std::uint64_t session, LogState state, const std::string& reason);
@@ -60,8 +59,6 @@ class LogWriter {
     std::vector<std::uint8_t> bytes;
   };
 
-  static std::uint64_t latchedSize(std::size_t bytes) noexcept { return bytes + 1000; }  // with what it hangs on
-
   void run();
   std::optional<LogOrder> nextOrder();
   void carryOut(LogOrder& order);
@@ -76,6 +73,7 @@ class LogWriter {
   void writeLast(LogOrder& order);
   void stopFor(LogFault fault);
   void settle();
+  void makeRoom();
   void latch(LogOrder& order);
   void forget(const LogTopic* topic);
   void repeatLatched(const ros::Time* time);
@@ -95,11 +93,11 @@ class LogWriter {
   Clock::time_point opened_{}, next_check_{};
   std::uint64_t checked_allocation_{};  // of the file when the disk was looked at last [byte]
   std::vector<Latched> latched_;
-  KeptLogs kept_;
-  LogStatus totals_;  // only its sums
+  std::deque<std::pair<std::string, std::uint64_t>> closed_;  // files of this process, oldest first, with their sizes
+  std::uint64_t closed_size_{};                               // of them together [byte]
+  LogStatus totals_;                                          // only its sums
 
   std::atomic<std::uint64_t> faulty_session_{};
-  std::atomic<std::uint64_t> latched_size_{};  // of what is latched or waits to be [byte]
   mutable std::mutex mutex_;
   std::condition_variable woken_;
   std::deque<LogOrder> orders_;     // guarded by mutex_
