@@ -14,10 +14,8 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first
 NO_DIGITS = 10.0  # where the picture shows errors above 1 and those that are no number
 COLORS = {"printed": "#8a8f98", "scalar": "#1f5fa8", "batch": "#d1602b", "crank": "#3a8f5c", "pipeline": "#7a4ca0",
           "grapple": "#b08a1e"}
-SESSION = {"mechanism, linkage, smoothed": "smoothed"}  # crank rows by estimator; all others: mechanism
-MACHINE = {"mechanism, linkage, flexible shaft of 50 Hz": "coupling of 50 Hz, given as 60"}  # rows with machines of their own
-ELASTIC = {"elastic, a rod that gives": ("elastic average: 1e9 N/m, 0.2", "elastic")}  # likewise: machine, level
-EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage, AVX2"),
+ELASTIC = {"elastic, a rod that gives": ("elastic average: 1e9 N/m, 0.2", "elastic")}  # machine, level of its own
+EXCERPT = [("printed", "P0 with inverse trigonometry"), ("scalar", "linkage"), ("batch", "linkage"),
            ("crank", "mechanism, linkage"), ("pipeline", "linkage"), ("pipeline", "elastic, a rod that gives")]
 SIDE_BY_SIDE = [("clean", "clean"), ("typical", "typical"), ("typical, after calibrate", "typical, after `calibrate`")]
 SESSION_HEAD = "rms Fx | rms Fz | rms torque | peak, worst turn | turn impulse | blow instant | energy |"
@@ -38,15 +36,11 @@ def worst(row):
 
 def picture_error(row, figures):
     """What the picture shows: the worst relative error, for pulse its model error, for steps the session's."""
-    if row["name"] in MACHINE:
-        return next(m["rms_z"] for m in figures["machines"]
-                    if m["machine"] == MACHINE[row["name"]] and m["rate_hz"] == 1000)
     if row["name"] in ELASTIC:
         return next(e["whole"]["rms"][1] for e in figures["elastic"] if (e["machine"], e["level"]) == ELASTIC[row["name"]])
     if row["group"] in ("crank", "pipeline"):
-        estimator = SESSION.get(row["name"], "mechanism")
         return next(s["rms_z"] for s in figures["sessions"]
-                    if s["estimator"] == estimator and s["rate_hz"] == 1000 and s["encoder_counts"] == 4096)
+                    if s["rate_hz"] == 1000 and s["encoder_counts"] == 4096 and s["speed_measured"])
     if row["name"] == "pulse":
         return row["errors"]["regular turn"]["of_peak"]
     if row["group"] == "grapple":

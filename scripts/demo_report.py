@@ -1,165 +1,199 @@
 #!/usr/bin/env python3
-"""Table and picture of a log of the live node: force over some turns, one turn against its half-sine pulse."""
+"""Table and picture of a log of the live node on a simulated machine, beside the machine's true loads and blows."""
 import argparse
-import math
 import pathlib
-import statistics
+import sqlite3
 import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
+import numpy as np  # noqa: E402
 import rosbag  # noqa: E402
 
-WRENCH, PULSE, BLOW = "/hammer_loads/hull_wrench", "/hammer_loads/pulse", "/hammer_loads/blow"
-CRANK = "/hammer/crank"
+LOADS, PULSE, BLOW, CRANK = "/hammer_loads/hull_loads", "/hammer_loads/pulse", "/hammer_loads/blow", "/hammer/crank"
 TURNS_SHOWN = 4
-COLOR_X, COLOR_Z, COLOR_PULSE = "#8a8f98", "#1f5fa8", "#d1602b"
+SAME_SAMPLE = 1e-6  # [s] between a stamp of the node and the true instant
+FORCE_Z, FORCE_X, TRUE, HALF_SINE = "#0072b2", "#009e73", "#c3c7ce", "#d55e00"  # told apart by colour-blind readers too
+
+
+def table_of(rows, names):
+    return np.array(rows, dtype=float).reshape(-1, len(names)).view([(name, float) for name in names])[:, 0]
 
 
 class Log:
-    """What the bags of one run hold, times in seconds since the first crank sample."""
+    """Outputs of the node, times in seconds since `origin` [s]."""
 
-    def __init__(self, bags):
-        self.wrench, self.pulses, self.blows, self.crank_samples = [], [], [], 0
-        origin = None
+    def __init__(self, bags, origin):
+        loads, pulses, blows, self.crank_samples = [], [], [], 0
         for path in bags:
             with rosbag.Bag(str(path)) as bag:
-                for topic, message, _ in bag.read_messages(topics=[WRENCH, PULSE, BLOW, CRANK]):
-                    stamp = message.header.stamp
-                    origin = origin or stamp
-                    time = (stamp - origin).to_sec()
-                    if topic == WRENCH:
-                        self.wrench.append((time, message.wrench.force.x, message.wrench.force.z))
+                for topic, m, _ in bag.read_messages(topics=[LOADS, PULSE, BLOW, CRANK]):
+                    time = m.header.stamp.secs - origin + 1e-9 * m.header.stamp.nsecs
+                    if topic == LOADS:
+                        loads.append((time, m.force_x_N, m.force_z_N))
                     elif topic == PULSE:
-                        self.pulses.append((time, message))
+                        pulses.append((time, m.period_s, m.amplitude_N, m.frequency_rad_s, m.start_s, m.impulse_Ns))
                     elif topic == BLOW:
-                        self.blows.append((time, message))
+                        blows.append((time, m.energy_J, m.energy_deviation_J, m.restitution, m.mean_press_force_N))
                     else:
                         self.crank_samples += 1
+        self.loads = table_of(loads, ["time", "x", "z"])
+        self.pulses = table_of(pulses, ["time", "period", "amplitude", "frequency", "start", "impulse"])
+        self.blows = table_of(blows, ["time", "energy", "deviation", "restitution", "hold_down"])
 
 
-def half_sine(pulse, time):
-    """Fz of the pulse model, time from the turn's start [s]."""
-    if not pulse.start_s < time < pulse.period_s:
-        return 0.0
-    return pulse.amplitude_N * math.sin(pulse.frequency_rad_s * (time - pulse.start_s))
+class Truth:
+    """What simulate_hammer wrote below its truth_prefix, times as in Log."""
+
+    def __init__(self, prefix):
+        samples, blows = ([line.split(",") for line in pathlib.Path("%s_%s.csv" % (prefix, kind)).read_text().split()[1:]]
+                          for kind in ("samples", "blows"))
+        self.origin = int(samples[0][0].partition(".")[0])
+        self.loads = table_of([self.numbers(row)[:3] for row in samples], ["time", "x", "z"])
+        self.blows = table_of([self.numbers(row) for row in blows], ["time", "energy", "impulse", "before", "after"])
+        self.period = np.diff(self.blows["time"])
+        turns = np.searchsorted(self.loads["time"], self.blows["time"])
+        self.peak = np.array([self.loads["z"][a:b].max() for a, b in zip(turns, turns[1:])])
+
+    def numbers(self, row):
+        seconds, _, rest = row[0].partition(".")
+        return [int(seconds) - self.origin + float("0." + rest)] + [float(cell) for cell in row[1:]]
 
 
-def middle(values):
-    return statistics.median(values) if values else math.nan
-
-
-def table(log, bags, working):
-    """Lines of text; medians over the working turns."""
-    energies = [blow.energy_J for _, blow in log.blows]
-    presses = [blow.mean_press_force_N for _, blow in log.blows if math.isfinite(blow.mean_press_force_N)]
-    size = sum(path.stat().st_size for path in bags)
-    rows = [
-        ("blows", f"{len(log.blows)}"),
-        ("blow rate, median", f"{1.0 / middle([p.period_s for _, p in working]):.2f} Hz"),
-        ("blow energy, median", f"{middle(energies):.0f} J"),
-        ("peak force Fz, median of turns", f"{middle([p.amplitude_N for _, p in working]) / 1e3:.2f} kN"),
-        ("largest force Fz", f"{max(f for _, _, f in log.wrench) / 1e3:.2f} kN"),
-        ("mean press force needed, median", f"{middle(presses):.0f} N"),
-        ("crank samples logged", f"{log.crank_samples}"),
-        ("wrenches logged", f"{len(log.wrench)}"),
+def figures(log, truth):
+    """(title, quantity of the page or none, node, true, unit, digits), in the units of the tables."""
+    def median(values):
+        return float(np.nanmedian(values))
+    return [
+        ("blow rate, median", "blow_rate_Hz", median(1.0 / log.pulses["period"]), median(1.0 / truth.period), "Hz", 2),
+        ("blow energy, median", "energy_J", median(log.blows["energy"]), median(truth.blows["energy"]), "J", 0),
+        ("restitution, median", "restitution", median(log.blows["restitution"]),
+         median(-truth.blows["after"] / truth.blows["before"]), "", 3),
+        ("peak force Fz, median of revolutions", "amplitude_N", median(log.pulses["amplitude"]), median(truth.peak), "N", 0),
+        ("hold-down force needed, median", "mean_press_force_N", median(log.blows["hold_down"]),
+         median(truth.blows["impulse"][1:] / truth.period), "N", 0),
     ]
-    rows += [("log", str(path)) for path in bags]
-    rows.append(("log size", f"{size / 1e6:.2f} MB"))
-    width = max(len(name) for name, _ in rows)
-    return [f"{name:<{width}}  {value}" for name, value in rows]
 
 
-def style(axes, title):
-    axes.set_title(title, loc="left", fontsize=11)
-    axes.set_ylabel("force on the hull [kN]")
-    axes.axhline(0.0, color="black", linewidth=0.6)
+def errors_of_samples(log, truth):
+    """Differences of Fx and Fz from the true ones where both have the instant [N]."""
+    at = np.clip(np.searchsorted(truth.loads["time"], log.loads["time"] - SAME_SAMPLE), 0, len(truth.loads) - 1)
+    same = abs(truth.loads["time"][at] - log.loads["time"]) < 2 * SAME_SAMPLE
+    return (log.loads[axis][same] - truth.loads[axis][at][same] for axis in ("x", "z"))
+
+
+def report(log, truth, bags):
+    rows = [("", "node", "true", "error"),
+            ("blows", str(len(log.blows)), str(len(truth.blows)), "%+d" % (len(log.blows) - len(truth.blows)))]
+    for title, _, node, true, unit, digits in figures(log, truth):
+        rows.append((title, *("%.*f %s" % (digits, value, unit) for value in (node, true)),
+                     "%+.1f %%" % (100.0 * (node / true - 1.0))))
+    widths = [max(len(row[column].strip()) for row in rows) for column in range(4)]
+    lines = ["%-*s  %*s  %*s  %*s" % (widths[0], row[0], *(x for i in (1, 2, 3) for x in (widths[i], row[i].strip())))
+             for row in rows]
+    peak = abs(truth.loads["z"]).max()
+    for axis, error in zip(("Fx", "Fz"), errors_of_samples(log, truth)):
+        lines.append("force %s, all samples: root mean square error %.0f N, %.2f %% of the largest Fz" % (
+            axis, np.sqrt(np.mean(error**2)), 100.0 * np.sqrt(np.mean(error**2)) / peak))
+    lines.append("%d crank samples logged, %d with loads" % (log.crank_samples, len(log.loads)))
+    return lines + ["log: %s, %.1f MB" % (path, path.stat().st_size / 1e6) for path in bags]
+
+
+def write_truth(log, truth, path):
+    """Table `truth`, which `report` states beside its own figures."""
+    with sqlite3.connect(str(path)) as database:
+        database.execute("CREATE TABLE truth (quantity TEXT PRIMARY KEY, value REAL NOT NULL)")
+        database.executemany("INSERT INTO truth VALUES (?, ?)",
+                             [("blows", len(truth.blows))] + [(key, true) for _, key, _, true, _, _ in figures(log, truth)])
+
+
+def style(axes, title, x, y):
+    axes.set_title(title, loc="left", fontsize=11, fontweight="bold")
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
     axes.grid(True, linewidth=0.3)
+    axes.margins(x=0.01)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
 
 
-def split_at_blows(points, blow_times):
-    """With a gap where a blow lies between two points: the force jumps there."""
-    split = []
-    for before, after in zip([None] + points, points):
-        if before and any(before[0] < time <= after[0] for time in blow_times):
-            split.append((after[0], math.nan, math.nan))
-        split.append(after)
-    return split
+def curve(axes, table, axis, begin, end, blows, **line):
+    """[kN] over [s]. No line over a blow, where the force jumps."""
+    part = table[(table["time"] >= begin) & (table["time"] <= end)]
+    gaps = np.searchsorted(part["time"], blows[(blows > begin) & (blows < end)])
+    axes.plot(np.insert(part["time"], gaps, np.nan), np.insert(part[axis], gaps, np.nan) / 1e3, **line)
 
 
-def draw_turns(axes, log, shown):
-    """Force over some turns; shown is [(time of the blow that ends the turn, pulse)]."""
-    begin, end = shown[0][0] - shown[0][1].period_s, shown[-1][0]
-    margin = 0.02 * (end - begin)
-    points = split_at_blows([point for point in log.wrench if begin - margin <= point[0] <= end + margin],
-                            [time for time, _ in log.blows])
-    times = [time for time, _, _ in points]
-    axes.plot(times, [fx / 1e3 for _, fx, _ in points], color=COLOR_X, linewidth=1.2, label="$F_x$ across the tool")
-    axes.plot(times, [fz / 1e3 for _, _, fz in points], color=COLOR_Z, linewidth=1.4, label="$F_z$ along the tool")
-    last = shown[-1][0]
-    for time, _ in log.blows:
-        if begin - margin <= time <= end + margin:
-            axes.axvline(time, color="black", linewidth=0.8, linestyle=":", label="blow" if time == last else None)
-    axes.set_xlim(begin - margin, end + margin)
-    axes.set_xlabel("time since the first crank sample [s]")
-    style(axes, f"Force of the hammer on its hull over {len(shown)} turns")
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=3, frameon=False, fontsize=9, borderaxespad=0.2)
+def draw_turns(axes, log, truth, first):
+    """From one true blow over whole revolutions to another."""
+    blows = truth.blows["time"]
+    shown = blows[first:first + TURNS_SHOWN + 1]
+    begin, end = shown[0] - 0.02, shown[-1] + 0.02
+    thick = {"color": TRUE, "linewidth": 4.0, "solid_capstyle": "round"}
+    curve(axes, truth.loads, "z", begin, end, blows, label="true", **thick)
+    curve(axes, truth.loads, "x", begin, end, blows, **thick)
+    curve(axes, log.loads, "z", begin, end, blows, color=FORCE_Z, linewidth=1.4, label="$F_z$ along the tool")
+    curve(axes, log.loads, "x", begin, end, blows, color=FORCE_X, linewidth=1.4, label="$F_x$ across the tool")
+    for blow in shown:
+        axes.axvline(blow, color="black", linewidth=0.8, linestyle=":", label="blow" if blow == shown[0] else None)
+    style(axes, "Force of the hammer on its housing over %d revolutions" % (len(shown) - 1), "time [s]", "force [kN]")
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=4, frameon=False, fontsize=9, borderaxespad=0.2)
 
 
-def draw_pulse(axes, log, end, pulse):
-    """One turn's Fz against its half-sine."""
-    begin = end - pulse.period_s
-    points = [(time - begin, fz) for time, _, fz in log.wrench if begin <= time <= end]
-    axes.plot([1e3 * time for time, _ in points], [fz / 1e3 for _, fz in points], color=COLOR_Z, linewidth=1.4,
-              marker=".", markersize=3, label="$F_z$")
-    grid = [pulse.period_s * i / 1000 for i in range(1001)]
-    axes.plot([1e3 * time for time in grid], [half_sine(pulse, time) / 1e3 for time in grid], color=COLOR_PULSE,
-              linewidth=1.4, linestyle="--",
-              label=f"half-sine: H = {pulse.amplitude_N / 1e3:.2f} kN, S = {pulse.impulse_Ns:.0f} N s")
-    axes.set_xlim(0.0, 1e3 * pulse.period_s)
-    axes.set_xlabel("time since the blow before [ms]")
-    style(axes, f"Turn {pulse.turn}: force along the tool and its half-sine pulse")
-    axes.legend(loc="upper left", frameon=True, framealpha=0.9, edgecolor="none", fontsize=9)
+def draw_pulse(axes, log, pulse):
+    begin = pulse["time"] - pulse["period"]
+    part = log.loads[(log.loads["time"] > begin) & (log.loads["time"] < pulse["time"])]
+    time = 1e3 * (part["time"] - begin)
+    axes.plot(time, part["z"] / 1e3, color=FORCE_Z, linewidth=1.4, label="$F_z$")
+    grid = np.linspace(0.0, pulse["period"], 1001)
+    sine = np.where(grid > pulse["start"], np.sin(pulse["frequency"] * (grid - pulse["start"])), 0.0)
+    axes.plot(1e3 * grid, pulse["amplitude"] * sine / 1e3, color=HALF_SINE, linewidth=1.4, linestyle="--",
+              label="half-sine: H = %.2f kN, S = %.0f N s" % (pulse["amplitude"] / 1e3, pulse["impulse"]))
+    style(axes, "One revolution and its half-sine pulse", "time since the blow before [ms]", "force $F_z$ [kN]")
+    axes.legend(loc="upper left", frameon=False, fontsize=8)
 
 
-def draw(log, working, path):
-    figure, (upper, lower) = plt.subplots(2, 1, figsize=(10, 8), constrained_layout=True)
-    at = max(0, len(working) // 2 - TURNS_SHOWN // 2)
-    shown = working[at:at + TURNS_SHOWN]
-    draw_turns(upper, log, shown)
-    draw_pulse(lower, log, *shown[len(shown) // 2])
+def draw_energies(axes, log, truth):
+    blows = log.blows
+    axes.plot(truth.blows["time"], truth.blows["energy"], "o", color=TRUE, markersize=8, label="true")
+    axes.fill_between(blows["time"], blows["energy"] - 2 * blows["deviation"], blows["energy"] + 2 * blows["deviation"],
+                      color=FORCE_Z, alpha=0.18, linewidth=0.0, label="two standard deviations")
+    axes.plot(blows["time"], blows["energy"], ".", color=FORCE_Z, markersize=5, label="node")
+    axes.set_ylim(0.0, None)
+    style(axes, "Energy of each blow: %d of %d blows" % (len(blows), len(truth.blows)), "time [s]", "energy [J]")
+    axes.legend(loc="lower center", frameon=False, fontsize=8, ncol=3)
+
+
+def draw(log, truth, path):
+    figure = plt.figure(figsize=(11, 8), constrained_layout=True)
+    grid = figure.add_gridspec(2, 2)
+    middle = max(0, (len(truth.blows) - TURNS_SHOWN) // 2)
+    draw_turns(figure.add_subplot(grid[0, :]), log, truth, middle)
+    draw_pulse(figure.add_subplot(grid[1, 0]), log, log.pulses[len(log.pulses) // 2])
+    draw_energies(figure.add_subplot(grid[1, 1]), log, truth)
     figure.savefig(str(path), dpi=130)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path, help="with the bags of one run")
-    parser.add_argument("--picture", type=pathlib.Path, help="PNG to write")
+    parser.add_argument("truth", help="truth_prefix of its simulate_hammer")
+    parser.add_argument("--picture", type=pathlib.Path, required=True, help="PNG to write")
+    parser.add_argument("--db", type=pathlib.Path, required=True, help="tables of the run, which get one more, `truth`")
     arguments = parser.parse_args()
     bags = sorted(arguments.directory.glob("*.bag"))
-    if not bags:
-        print(f"{arguments.directory}: no log bag", file=sys.stderr)
+    truth = Truth(arguments.truth)
+    log = Log(bags, truth.origin)
+    if not len(log.loads) or not len(log.pulses):
+        print(f"{arguments.directory}: {len(log.loads)} samples with loads and {len(log.pulses)} pulses in {len(bags)} "
+              "bag(s): nothing to report", file=sys.stderr)
         return 1
-    try:
-        log = Log(bags)
-    except rosbag.ROSBagException as error:
-        print(f"{arguments.directory}: {error}", file=sys.stderr)
-        return 1
-    strongest = max((pulse.amplitude_N for _, pulse in log.pulses), default=0.0)
-    working = [(time, pulse) for time, pulse in log.pulses if pulse.amplitude_N > 0.5 * strongest]
-    if not log.wrench or not working:
-        print(f"{arguments.directory}: {len(log.wrench)} wrenches and {len(log.pulses)} pulses in "
-              f"{len(bags)} bag(s): nothing to report", file=sys.stderr)
-        return 1
-    if arguments.picture:
-        draw(log, working, arguments.picture)
-    print("\n".join(table(log, bags, working)))
-    if arguments.picture:
-        print(f"picture: {arguments.picture}")
+    draw(log, truth, arguments.picture)
+    write_truth(log, truth, arguments.db)
+    print("\n".join(report(log, truth, bags)))
+    print(f"picture: {arguments.picture}")
     return 0
 
 

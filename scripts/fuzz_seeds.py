@@ -50,29 +50,16 @@ def parameter_seeds(config):
     return {**text, "whole": whole, "whole_bare": bare}
 
 
-def with_checksum(text):
-    """A saved count as src/hammer_loads/life/count_state.h writes it."""
-    value = 14695981039346656037
-    for byte in text.encode():
-        value = (value ^ byte) * 1099511628211 % 2**64
-    return f"{text}checksum {value:016x}\n".encode()
-
-
 def cycles_seeds():
     value = lambda number: struct.pack("<Bd", 0, number)
     noise = bytes([30]) + b"".join(bytes([4, i * 37 % 256]) for i in range(100))
     plateaus = bytes([200]) + b"".join(struct.pack("<Bh", 1 + 8 * 5, i * 331 % 1999 - 999) for i in range(40))
     special = bytes([0]) + b"".join(map(value, (math.nan, 1.0, math.inf, -2.0, -math.inf, 1e308, -1e300, 5e-324, -0.0)))
-    tail = "residue 3\n1\n9\n2\n"
     return {
         "noise": noise,
         "plateaus": plateaus,
         "special": special,
         "cuts_and_gaps": noise + bytes([2, 3]) + plateaus[1:] + bytes([2]) + special[1:],
-        "grid_state": with_checksum("hammer_loads cycle count 1\ngrid 0 10 10\ntally 9 0 0 0 0 0 0\nextremes 1 9\n"
-                                    "cycles 2\n1 3 4\n2 3 1\n" + tail),
-        "exact_state": with_checksum("hammer_loads cycle count 1\nexact\ntally 9 0 0 0 0 0 0\nextremes 1 9\n"
-                                     "cycles 1\n2.5 3 4\n" + tail),
     }
 
 

@@ -32,11 +32,11 @@ Outcome parentOf(const std::string& command) {
       "signal.signal(signal.SIGINT, hear)\n"
       "child = subprocess.Popen(sys.argv[1:], start_new_session=True)\n"
       "try:\n"
-      "    print('ended by itself', child.wait(timeout=20))\n"
+      "    print('ended by itself', child.wait(timeout=120))\n"
       "except Interrupted:\n"
       "    alive = child.poll() is None\n"
       "    child.send_signal(signal.SIGINT)\n"
-      "    print('interrupted', alive, child.wait(timeout=20))\n");
+      "    print('interrupted', alive, child.wait(timeout=120))\n");
   return runCommand("python3", parent.path() + " " HAMMER_LOADS_SOURCE "/scripts/then_end " + command);
 }
 

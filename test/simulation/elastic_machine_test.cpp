@@ -182,6 +182,20 @@ TEST(ElasticMachine, RetainerTakesTheBlowWithoutATool) {
   EXPECT_GT(on_retainer, 2);
 }
 
+/// The supply opens after 1.4 s: the crank swings and the rocker falls onto the tool some ten times, at 0.3 m/s at
+/// most.
+TEST(ElasticMachine, StrikesNothingBeforeItIsDriven) {
+  MachineSettings settings = elastic(7e8, 0.4, 1e-4);
+  ElasticMachine machine(settings);
+  double touches = 0.0;
+  for (int i = 0; i < 14000; ++i) {
+    machine.advanceTo(1e-4 * i);
+    touches += machine.truth().touches();
+  }
+  EXPECT_GT(touches, 10.0);
+  EXPECT_TRUE(machine.takeBlows().empty());
+}
+
 /// The hull's motion is slow against a blow: the same contact on a boom and on a hull that is held.
 TEST(ElasticMachine, StrikesOnItsBoomAsHeld) {
   MachineSettings settings = elastic(7e8, 0.4, 1e-4);

@@ -1,3 +1,4 @@
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "hammer_loads/ros/node_diagnostics.h"
 #include "hammer_loads/settings/load.h"
 #include "hammer_loads/simulation/machine_parameters.h"
 #include "hammer_loads/simulation/session.h"
@@ -19,7 +21,8 @@ namespace hammer_loads::simulation {
 namespace {
 
 constexpr std::uint32_t kQueueSize = 100000;
-const ros::WallDuration kDeadline(40.0);  // the machine needs 3 s
+const ros::WallDuration kDeadline(400.0);  // the machine needs 3 s
+const ros::Time kStart(1700000000, 0);
 
 const Session& expected() {
   static const Session kSession = [] {
@@ -38,26 +41,50 @@ class Heard : public testing::Environment {
   void SetUp() override {
     ros::NodeHandle node;
     const auto no_delay = ros::TransportHints().tcpNoDelay();
+    diagnostics_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 100);
+    const ros::WallTime end = ros::WallTime::now() + kDeadline;
+    while (diagnostics_.getNumSubscribers() == 0 && ros::WallTime::now() < end) ros::WallDuration(0.01).sleep();
+    report(kStart);
     const ros::Subscriber clock_subscriber = node.subscribe("/clock", kQueueSize, &Heard::onClock, this, no_delay);
     const ros::Subscriber joint_subscriber =
         node.subscribe("joint_states", kQueueSize, &Heard::onJoints, this, no_delay);
     const ros::Subscriber crank_subscriber = node.subscribe("crank", kQueueSize, &Heard::onCrank, this, no_delay);
-    const ros::WallTime end = ros::WallTime::now() + kDeadline;
     while (ros::ok() && ros::WallTime::now() < end && !complete())
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
   }
 
   std::vector<sensor_msgs::JointState> cranks, joints;
   std::vector<ros::Time> clock;
+  ros::Time stood;  ///< when the machine stood first; 0: it has not
 
  private:
+  void report(const ros::Time& taken) {
+    diagnostic_msgs::DiagnosticArray message;
+    message.status.resize(1);
+    message.status[0].values.resize(1);
+    message.status[0].values[0].key = kLastSampleKey;
+    message.status[0].values[0].value = std::to_string(taken.toNSec());
+    diagnostics_.publish(message);
+  }
   bool complete() const {
     return cranks.size() >= expected().crank.size() && joints.size() >= expected().joints.size() && !clock.empty() &&
            clock.back() >= ros::Time(1700000006, 0);
   }
-  void onCrank(const sensor_msgs::JointState& message) { cranks.push_back(message); }
+  /// As a node that takes nothing until the machine stands.
+  void onCrank(const sensor_msgs::JointState& message) {
+    cranks.push_back(message);
+    if (!stood.isZero()) report(message.header.stamp);
+  }
   void onJoints(const sensor_msgs::JointState& message) { joints.push_back(message); }
-  void onClock(const rosgraph_msgs::Clock& message) { clock.push_back(message.clock); }
+  void onClock(const rosgraph_msgs::Clock& message) {
+    const bool stands = !clock.empty() && clock.back() == message.clock && message.clock > kStart;
+    clock.push_back(message.clock);
+    if (!stands || !stood.isZero() || cranks.empty()) return;
+    stood = message.clock;
+    report(cranks.back().header.stamp);
+  }
+
+  ros::Publisher diagnostics_;
 };
 
 Heard& heard() {
@@ -98,6 +125,12 @@ TEST(SimulateHammer, BoomJointsAreTheSessions) {
     ASSERT_EQ(message.position, std::vector<double>(reading.position.begin(), reading.position.end()));
     ASSERT_EQ(message.velocity, std::vector<double>(reading.velocity.begin(), reading.velocity.end()));
   }
+}
+
+/// Two seconds at a clock_factor of 2, and a batch.
+TEST(SimulateHammer, WaitsForANodeThatIsBehind) {
+  ASSERT_FALSE(heard().stood.isZero());
+  EXPECT_NEAR((heard().stood - kStart).toSec(), 4.0, 0.02);
 }
 
 TEST(SimulateHammer, ClockRunsForwardToTheEnd) {

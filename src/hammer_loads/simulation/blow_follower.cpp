@@ -3,7 +3,7 @@
 namespace hammer_loads::simulation {
 namespace {
 
-constexpr double kSlowest = 0.1;   // [m/s]
+constexpr double kSlowest = 1.0;   // [m/s]; at work it is some 9
 constexpr double kLongest = 0.02;  // [s]
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace hammer_loads::simulation {
 
-/// A blow begins with a touch at more than 0.1 m/s - a crank that leans on the tool strikes nothing - and takes in all
-/// touches of the next 20 ms.
+/// A blow begins with a touch at more than 1 m/s and takes in all touches of the next 20 ms. A rocker that falls onto
+/// the tool while the supply is shut is slower and strikes nothing.
 class BlowFollower {
  public:
   struct Instant {

@@ -256,6 +256,7 @@ Checked<SimulatorSettings> loadSimulator(const std::string& config_directory, co
   settings.play.publish_clock = reader.boolean("publish_clock");
   settings.play.clock_factor = reader.number("clock_factor", "", kPositive);
   settings.play.wait_for_subscriber = reader.number("wait_for_subscriber_s", "s", kNotNegative);
+  if (const std::string prefix = reader.text("truth_prefix"); prefix != "none") settings.play.truth_prefix = prefix;
   if (const std::optional<Mechanism> mechanism = readMechanism(reader, result.notes))
     settings.machine.hammer = mechanism->parameters();
   reader.reportUnknownKeys();

@@ -14,6 +14,7 @@ struct PlaySettings {
   bool publish_clock{};
   double clock_factor{};         ///< simulated seconds per second, with publish_clock [-], > 0
   double wait_for_subscriber{};  ///< at most, before time 0 [s]
+  std::string truth_prefix;      ///< of TruthFiles; empty: none
 };
 
 struct SimulatorSettings {

@@ -10,7 +10,7 @@ from hammer_loads.msg import RunInfo
 class Use(unittest.TestCase):
     def test_node_explains_itself(self):
         rospy.init_node('use')
-        info = rospy.wait_for_message('/hammer_loads/run_info', RunInfo, timeout=20)
+        info = rospy.wait_for_message('/hammer_loads/run_info', RunInfo, timeout=120)
         self.assertIn('crank_length_m', info.parameters_yaml)
 
 
